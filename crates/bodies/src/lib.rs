@@ -1,0 +1,1 @@
+//! Discretised bodies: mass, forces, tangents, energies.

@@ -1,0 +1,1 @@
+//! From a case file to a model, and the run.

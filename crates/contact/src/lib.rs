@@ -1,0 +1,1 @@
+//! Unilateral contact between surfaces.

@@ -1,0 +1,1 @@
+//! Cases with an analytic or published answer.
