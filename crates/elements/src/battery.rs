@@ -1,0 +1,1 @@
+//! What every element kind must satisfy, checked over [`Kind::ALL`].

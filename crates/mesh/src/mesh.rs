@@ -1,0 +1,330 @@
+//! Nodes, blocks of elements, named groups.
+//!
+//! Elements of all dimensions live in one mesh, as in Gmsh: the facets of a surface are elements too, named by a
+//! group of their own. There is one block per element kind. Points have three components always; in a plane mesh
+//! the third is zero, on a line the second and the third.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use carom_elements::{Kind, MAX_NODES, map};
+
+use crate::Error;
+
+/// A mesh: nodes, elements by kind, named groups of elements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Dimension of the space, 1, 2 or 3.
+    pub dim: usize,
+    /// Node coordinates, in m once scaled; components beyond `dim` are zero.
+    pub nodes: Vec<[f64; 3]>,
+    /// Elements, one block per kind.
+    pub blocks: Vec<Block>,
+    /// Named groups, each of one dimension.
+    pub groups: BTreeMap<String, Group>,
+}
+
+/// The elements of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Their kind.
+    pub kind: Kind,
+    /// Node numbers (from 0, all below the number of nodes), as many per element as the kind has nodes.
+    pub nodes: Vec<u32>,
+}
+
+/// An element of a mesh: its block and its place there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ElementId {
+    /// Index in [`Mesh::blocks`].
+    pub block: u32,
+    /// Index of the element in its block.
+    pub index: u32,
+}
+
+/// A named group of elements of one dimension.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Dimension of the elements, 0 to 3.
+    pub dim: usize,
+    /// The elements, sorted, each once.
+    pub elements: Vec<ElementId>,
+}
+
+/// What makes an element unfit for computation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Defect {
+    /// A coordinate of a node is infinite or not a number.
+    NotFinite {
+        /// The element that uses the node.
+        element: ElementId,
+        /// The node.
+        node: u32,
+    },
+    /// An element names the same node twice.
+    RepeatedNode {
+        /// The element.
+        element: ElementId,
+        /// The node.
+        node: u32,
+    },
+    /// Somewhere in the element the map from the reference cell turns space inside out.
+    Inverted {
+        /// The element.
+        element: ElementId,
+        /// The least determinant of the Jacobian over nodes and integration points, in length^dim.
+        determinant: f64,
+    },
+    /// Somewhere the element has no length, area or volume: least determinant below 1e-12 of its diameter^dim.
+    Degenerate {
+        /// The element.
+        element: ElementId,
+    },
+}
+
+impl Defect {
+    /// The element that has the defect.
+    pub fn element(&self) -> ElementId {
+        match *self {
+            Defect::NotFinite { element, .. }
+            | Defect::RepeatedNode { element, .. }
+            | Defect::Inverted { element, .. }
+            | Defect::Degenerate { element } => element,
+        }
+    }
+}
+
+impl fmt::Display for Defect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Defect::NotFinite { node, .. } => {
+                write!(f, "node {node} has a coordinate that is not finite")
+            }
+            Defect::RepeatedNode { node, .. } => write!(f, "node {node} is listed twice"),
+            Defect::Inverted { determinant, .. } => {
+                write!(f, "inverted (least Jacobian determinant {determinant:e})")
+            }
+            Defect::Degenerate { .. } => write!(f, "without length, area or volume somewhere"),
+        }
+    }
+}
+
+impl Group {
+    /// The group of these elements, sorted, each once.
+    pub fn new(dim: usize, mut elements: Vec<ElementId>) -> Group {
+        elements.sort_unstable();
+        elements.dedup();
+        Group { dim, elements }
+    }
+}
+
+impl Block {
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.nodes.len() / self.kind.table().nodes
+    }
+
+    /// Whether the block has no element.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+}
+
+impl Mesh {
+    /// A mesh without nodes in a space of `dim` dimensions.
+    pub fn new(dim: usize) -> Mesh {
+        Mesh {
+            dim,
+            nodes: Vec::new(),
+            blocks: Vec::new(),
+            groups: BTreeMap::new(),
+        }
+    }
+
+    /// Adds an element to the block of its kind, which is made if there is none. `nodes` has the length that the
+    /// kind asks for.
+    pub fn push(&mut self, kind: Kind, nodes: &[u32]) -> ElementId {
+        debug_assert_eq!(nodes.len(), kind.table().nodes);
+        let block = self.block_of(kind);
+        let index = self.blocks[block].len();
+        self.blocks[block].nodes.extend_from_slice(nodes);
+        ElementId {
+            block: block as u32,
+            index: index as u32,
+        }
+    }
+
+    /// The nodes of an element, in the order of its kind.
+    pub fn element_nodes(&self, id: ElementId) -> &[u32] {
+        let block = &self.blocks[id.block as usize];
+        let n = block.kind.table().nodes;
+        let start = id.index as usize * n;
+        &block.nodes[start..start + n]
+    }
+
+    /// The kind of an element.
+    pub fn kind(&self, id: ElementId) -> Kind {
+        self.blocks[id.block as usize].kind
+    }
+
+    /// The nodes of a group, sorted, each once.
+    pub fn group_nodes(&self, group: &Group) -> Vec<u32> {
+        let mut nodes: Vec<u32> = group
+            .elements
+            .iter()
+            .flat_map(|&id| self.element_nodes(id))
+            .copied()
+            .collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// Appends another mesh. Nothing is fused: coincident nodes stay two. Group names are kept. The dimension
+    /// becomes the larger of both.
+    ///
+    /// `name` is what messages call the other mesh. Fails, without change, if a group name is in both.
+    pub fn merge(&mut self, name: &str, other: Mesh) -> Result<(), Error> {
+        if let Some(group) = other.groups.keys().find(|g| self.groups.contains_key(*g)) {
+            return Err(Error::GroupClash {
+                mesh: name.to_owned(),
+                group: group.clone(),
+            });
+        }
+        let first_node = self.nodes.len() as u32;
+        self.dim = self.dim.max(other.dim);
+        self.nodes.extend(other.nodes);
+        let mut moved = Vec::with_capacity(other.blocks.len());
+        for block in other.blocks {
+            let target = self.block_of(block.kind);
+            moved.push((target as u32, self.blocks[target].len() as u32));
+            let nodes = block.nodes.iter().map(|node| node + first_node);
+            self.blocks[target].nodes.extend(nodes);
+        }
+        for (name, group) in other.groups {
+            let elements = group.elements.iter().map(|id| {
+                let (block, first) = moved[id.block as usize];
+                ElementId {
+                    block,
+                    index: id.index + first,
+                }
+            });
+            self.groups
+                .insert(name, Group::new(group.dim, elements.collect()));
+        }
+        Ok(())
+    }
+
+    /// Multiplies all coordinates by a factor, such as 1e-3 for a file in millimetres.
+    pub fn scale(&mut self, factor: f64) {
+        for x in self.nodes.iter_mut().flatten() {
+            *x *= factor;
+        }
+    }
+
+    /// Diagonal of the bounding box of all nodes, in m; zero for an empty mesh. The length that absolute
+    /// tolerances are fractions of.
+    pub fn size(&self) -> f64 {
+        let extent = |i: usize| {
+            let x = self.nodes.iter().map(|x| x[i]);
+            x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min)
+        };
+        if self.nodes.is_empty() {
+            return 0.0;
+        }
+        (0..3).map(|i| extent(i).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// The defects of these elements, in their order, one per element at most: the first that applies of
+    /// repeated node, coordinate not finite, inverted, degenerate.
+    ///
+    /// Only elements that fill their space (plane cells in two dimensions, solids in three) can be inverted.
+    pub fn check(&self, cells: &[ElementId]) -> Vec<Defect> {
+        cells.iter().filter_map(|&id| self.defect(id)).collect()
+    }
+
+    fn defect(&self, element: ElementId) -> Option<Defect> {
+        let nodes = self.element_nodes(element);
+        for (i, &node) in nodes.iter().enumerate() {
+            if nodes[..i].contains(&node) {
+                return Some(Defect::RepeatedNode { element, node });
+            }
+            if self.nodes[node as usize].iter().any(|x| !x.is_finite()) {
+                return Some(Defect::NotFinite { element, node });
+            }
+        }
+        let mut buffer = [[0.0; 3]; MAX_NODES];
+        let x = gather(&self.nodes, nodes, &mut buffer);
+        let table = self.kind(element).table();
+        let determinant = self.least_determinant(self.kind(element), x);
+        let tolerance = 1e-12 * diameter(x).powi(table.dim as i32);
+        if table.dim == 0 {
+            None
+        } else if determinant < -tolerance {
+            Some(Defect::Inverted {
+                element,
+                determinant,
+            })
+        } else if determinant <= tolerance {
+            Some(Defect::Degenerate { element })
+        } else {
+            None
+        }
+    }
+
+    /// Least determinant of the Jacobian over the nodes and the integration points of an element; a length or
+    /// area factor, never negative, for one that does not fill its space.
+    fn least_determinant(&self, kind: Kind, x: &[[f64; 3]]) -> f64 {
+        let table = kind.table();
+        let fills = table.dim == self.dim && table.dim > 1;
+        let mut dn = [[0.0; 3]; MAX_NODES];
+        let dn = &mut dn[..table.nodes];
+        let points = table.reference.iter().chain(table.mass_rule.points);
+        points.fold(f64::MAX, |least, xi| {
+            (table.gradient)(xi, dn);
+            let here = match fills {
+                true => map::jacobian(x, dn, table.dim).1,
+                false => map::measure(x, dn, table.dim).0,
+            };
+            least.min(here)
+        })
+    }
+
+    fn block_of(&mut self, kind: Kind) -> usize {
+        match self.blocks.iter().position(|block| block.kind == kind) {
+            Some(block) => block,
+            None => {
+                let nodes = Vec::new();
+                self.blocks.push(Block { kind, nodes });
+                self.blocks.len() - 1
+            }
+        }
+    }
+}
+
+/// Copies the positions of some nodes into a buffer and returns the part that was filled.
+///
+/// `positions`: one point per node of the mesh, reference or current; `nodes`: at most [`MAX_NODES`] of them.
+#[inline]
+pub fn gather<'a>(
+    positions: &[[f64; 3]],
+    nodes: &[u32],
+    buffer: &'a mut [[f64; 3]; MAX_NODES],
+) -> &'a [[f64; 3]] {
+    for (x, &node) in buffer.iter_mut().zip(nodes) {
+        *x = positions[node as usize];
+    }
+    &buffer[..nodes.len()]
+}
+
+/// Largest distance between two of the points.
+fn diameter(x: &[[f64; 3]]) -> f64 {
+    let distance = |a: &[f64; 3], b: &[f64; 3]| {
+        let squares = (0..3).map(|i| (a[i] - b[i]).powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    x.iter()
+        .enumerate()
+        .flat_map(|(i, a)| x[..i].iter().map(move |b| distance(a, b)))
+        .fold(0.0, f64::max)
+}
