@@ -1,1 +1,25 @@
-//! What a run leaves behind.
+//! What a run leaves behind: the results folder and every file in it.
+//!
+//! The modules here turn plain data into files and know neither the case file nor the command line. Every file is
+//! either written whole and renamed into place ([`atomic`]) or grows by complete rows ([`rows`]), so that a run cut
+//! anywhere, by a full disk or by a signal, leaves files that can be read.
+//!
+//! Units are SI throughout; the names of columns and fields carry them.
+
+pub mod atomic;
+pub mod folder;
+pub mod history;
+pub mod impacts;
+pub mod pvd;
+pub mod rows;
+pub mod summary;
+pub mod vtu;
+
+mod error;
+
+pub use error::Error;
+pub use folder::Folder;
+pub use history::History;
+pub use impacts::{ImpactRow, ImpactTable};
+pub use pvd::Collection;
+pub use summary::Summary;

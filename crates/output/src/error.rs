@@ -1,0 +1,151 @@
+//! Why an output could not be written.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use carom_elements::Kind;
+
+/// Why an output could not be written. Each variant names the file or the datum and the cause.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The operating system refused: disk full, no permission, a folder standing where a file should be.
+    #[error("cannot {action} '{path}': {source}", path = path.display())]
+    File {
+        /// What was tried, as a verb: `write`, `create`.
+        action: &'static str,
+        /// The file or folder meant, as the user knows it (never the name of a temporary file).
+        path: PathBuf,
+        /// The cause.
+        source: io::Error,
+    },
+    /// Something that is not a folder stands where the results folder should be.
+    #[error("cannot create the results folder '{path}': a file of that name exists", path = path.display())]
+    NotAFolder {
+        /// Where the results folder should be.
+        path: PathBuf,
+    },
+    /// The folder exists, holds files, and none of them says that it is a results folder: it is left alone.
+    #[error("'{path}' holds files and is not a results folder of carom; choose another, or remove it", path = path.display())]
+    ForeignFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file name that would leave the results folder or cannot be kept in its list.
+    #[error("'{name}' is not the name of a file inside the results folder")]
+    FileName {
+        /// The name as given.
+        name: String,
+    },
+    /// Two columns of one table have the same name.
+    #[error("two columns of '{path}' are called '{name}'", path = path.display())]
+    TwinColumns {
+        /// The table.
+        path: PathBuf,
+        /// The name that occurs twice.
+        name: String,
+    },
+    /// A row has not as many values as the table has columns.
+    #[error("a row of '{path}' has {found} values for {expected} columns", path = path.display())]
+    RowLength {
+        /// The table.
+        path: PathBuf,
+        /// Number of columns.
+        expected: usize,
+        /// Number of values.
+        found: usize,
+    },
+    /// A field has not one value per point or per cell.
+    #[error("field '{name}' has {found} values for {expected} {of}")]
+    FieldLength {
+        /// Name of the field.
+        name: String,
+        /// `points` or `cells`.
+        of: &'static str,
+        /// Number of points or cells.
+        expected: usize,
+        /// Number of values.
+        found: usize,
+    },
+    /// Node numbers of a block that do not make whole cells.
+    #[error("{found} node numbers do not make whole cells of kind {kind:?}")]
+    Connectivity {
+        /// Kind of the cells.
+        kind: Kind,
+        /// Number of node numbers.
+        found: usize,
+    },
+    /// A cell names a point that does not exist.
+    #[error("a cell of kind {kind:?} names point {node} of {points}")]
+    MissingPoint {
+        /// Kind of the cell.
+        kind: Kind,
+        /// The point named, counted from zero.
+        node: u32,
+        /// Number of points.
+        points: usize,
+    },
+    /// A curve holds a value that cannot be drawn.
+    #[error("curve '{curve}': the {axis} of sample {index} is {value}")]
+    NotFinite {
+        /// Name of the curve.
+        curve: String,
+        /// `abscissa` or `ordinate`.
+        axis: &'static str,
+        /// Number of the sample, counted from zero.
+        index: usize,
+        /// The value: NaN or an infinity.
+        value: f64,
+    },
+    /// The abscissae of a curve go backwards.
+    #[error("curve '{curve}': sample {index} goes back to {value}")]
+    Backwards {
+        /// Name of the curve.
+        curve: String,
+        /// Number of the sample, counted from zero.
+        index: usize,
+        /// Its abscissa.
+        value: f64,
+    },
+    /// A curve with more abscissae than ordinates, or the reverse.
+    #[error("curve '{curve}' has {x} abscissae and {y} ordinates")]
+    CurveLength {
+        /// Name of the curve.
+        curve: String,
+        /// Number of abscissae.
+        x: usize,
+        /// Number of ordinates.
+        y: usize,
+    },
+    /// A panel without a single sample.
+    #[error("nothing to draw in panel '{panel}'")]
+    EmptyPanel {
+        /// Title of the panel.
+        panel: String,
+    },
+    /// The drawing library failed.
+    #[error("cannot draw figure '{figure}': {cause}")]
+    Drawing {
+        /// Title of the figure.
+        figure: String,
+        /// What it said.
+        cause: String,
+    },
+    /// The page could not be made from its template.
+    #[error("cannot make the report: {0}")]
+    Template(#[from] minijinja::Error),
+    /// The summary could not be put into JSON, or be read from it.
+    #[error("summary: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+impl Error {
+    /// Wraps an error of the operating system: for `map_err`.
+    pub(crate) fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Error {
+        move |source| Error::File {
+            action,
+            path: path.to_owned(),
+            source,
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! The table of impacts: one row from closing to release of a contact.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::Error;
+use crate::rows::{Cell, Rows};
+
+/// One impact: from the step at which a contact closes to the step at which its last point opens.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ImpactRow {
+    /// Name of the contact.
+    pub pair: String,
+    /// Beginning of the first step with contact force, s.
+    pub start: f64,
+    /// From `start` to the release, s; `None` while still closed at the end of the run.
+    pub duration: Option<f64>,
+    /// Largest contact force of a single step, N. The raw peak does not converge with the mesh: read it beside
+    /// `peak_mean_force`.
+    pub peak_force: f64,
+    /// Largest mean of the contact force over a window of `window` seconds, N.
+    pub peak_mean_force: f64,
+    /// Length of that window, s.
+    pub window: f64,
+    /// ∫ F dt over the impact, N s.
+    pub impulse: f64,
+    /// Speed at which the two bodies near each other before the impact, m/s, positive: of their mean velocities
+    /// (momentum / mass).
+    pub approach_speed: f64,
+    /// Speed at which they part after it, m/s, positive when parting; `None` while still closed.
+    pub rebound_speed: Option<f64>,
+    /// `rebound_speed / approach_speed`; `None` while still closed or if there was no approach.
+    pub restitution: Option<f64>,
+    /// Work that the contact did on the secondary body, J.
+    pub energy_given: f64,
+    /// Energy that the contact took from both bodies together, J, positive when lost.
+    pub energy_lost: f64,
+}
+
+/// Names of the columns of `impacts.csv`, with their units.
+pub const COLUMNS: [&str; 12] = [
+    "pair",
+    "start_s",
+    "duration_s",
+    "peak_force_n",
+    "peak_mean_force_n",
+    "window_s",
+    "impulse_n_s",
+    "approach_speed_m_s",
+    "rebound_speed_m_s",
+    "restitution",
+    "energy_given_j",
+    "energy_lost_j",
+];
+
+/// The file `impacts.csv`, open for appending.
+#[derive(Debug)]
+pub struct ImpactTable {
+    rows: Rows,
+}
+
+impl ImpactTable {
+    /// Creates the file with its line of column names ([`COLUMNS`]).
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn create(path: &Path) -> Result<ImpactTable, Error> {
+        Ok(ImpactTable {
+            rows: Rows::create(path, &COLUMNS)?,
+        })
+    }
+
+    /// Adds an impact and hands it to the operating system at once: impacts are rare and worth keeping.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn push(&mut self, impact: &ImpactRow) -> Result<(), Error> {
+        let cells = [
+            Cell::Text(&impact.pair),
+            Cell::Number(impact.start),
+            impact.duration.into(),
+            Cell::Number(impact.peak_force),
+            Cell::Number(impact.peak_mean_force),
+            Cell::Number(impact.window),
+            Cell::Number(impact.impulse),
+            Cell::Number(impact.approach_speed),
+            impact.rebound_speed.into(),
+            impact.restitution.into(),
+            Cell::Number(impact.energy_given),
+            Cell::Number(impact.energy_lost),
+        ];
+        self.rows.push(cells.into_iter())?;
+        self.rows.flush()
+    }
+
+    /// Closes the table, forced to the disk.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn finish(self) -> Result<(), Error> {
+        self.rows.finish()
+    }
+}

@@ -1,0 +1,181 @@
+//! A CSV file that grows by complete rows.
+//!
+//! Rows are gathered in memory and appended in one piece. If an append fails half-way (disk full, file-size limit),
+//! the file is cut back to the end of its last complete row, so that what is on the disk can always be read; the rows
+//! not written stay in memory and the next flush tries them again.
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use crate::Error;
+
+/// Rows are handed to the system when they fill this many bytes ...
+const FLUSH_BYTES: usize = 64 * 1024;
+/// ... or when the last time is this long ago, so that a running case can be watched.
+const FLUSH_TIME: Duration = Duration::from_secs(1);
+
+/// A CSV file open for appending.
+#[derive(Debug)]
+pub struct Rows {
+    path: PathBuf,
+    file: File,
+    columns: usize,
+    /// Length of the file, all of it complete rows.
+    length: u64,
+    pending: Vec<u8>,
+    /// Length of each row in `pending`.
+    row_lengths: Vec<usize>,
+    flushed: Instant,
+}
+
+impl Rows {
+    /// Creates the file, or empties an existing one, and writes the line of column names.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::TwinColumns`] if a name occurs twice.
+    pub fn create<S: AsRef<str>>(path: &Path, columns: &[S]) -> Result<Rows, Error> {
+        let mut names: Vec<&str> = columns.iter().map(AsRef::as_ref).collect();
+        let mut rows = Rows {
+            path: path.to_owned(),
+            file: File::create(path).map_err(Error::file("create", path))?,
+            columns: names.len(),
+            length: 0,
+            pending: Vec::new(),
+            row_lengths: Vec::new(),
+            flushed: Instant::now(),
+        };
+        rows.push(names.iter().map(|name| Cell::Text(name)))?;
+        rows.flush()?;
+        names.sort_unstable();
+        match names.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(Error::TwinColumns {
+                path: path.to_owned(),
+                name: pair[0].to_owned(),
+            }),
+            None => Ok(rows),
+        }
+    }
+
+    /// Adds a row; it reaches the file at the next flush, which is never long after.
+    ///
+    /// # Errors
+    /// [`Error::RowLength`] if there is not one value per column (nothing is added then); [`Error::File`] if the
+    /// rows were due and could not be written.
+    pub fn push<'a>(
+        &mut self,
+        cells: impl ExactSizeIterator<Item = Cell<'a>>,
+    ) -> Result<(), Error> {
+        if cells.len() != self.columns {
+            return Err(Error::RowLength {
+                path: self.path.clone(),
+                expected: self.columns,
+                found: cells.len(),
+            });
+        }
+        let start = self.pending.len();
+        for (column, cell) in cells.enumerate() {
+            if column > 0 {
+                self.pending.push(b',');
+            }
+            cell.put(&mut self.pending);
+        }
+        self.pending.push(b'\n');
+        self.row_lengths.push(self.pending.len() - start);
+        if self.pending.len() >= FLUSH_BYTES || self.flushed.elapsed() >= FLUSH_TIME {
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Hands all rows to the operating system.
+    ///
+    /// # Errors
+    /// [`Error::File`]; the file then ends with the last row that fitted whole.
+    pub fn flush(&mut self) -> Result<(), Error> {
+        self.flushed = Instant::now();
+        let (written, outcome) = append(&mut self.file, &self.pending);
+        let mut complete = 0;
+        let mut rows = 0;
+        while rows < self.row_lengths.len() && complete + self.row_lengths[rows] <= written {
+            complete += self.row_lengths[rows];
+            rows += 1;
+        }
+        self.length += complete as u64;
+        self.pending.drain(..complete);
+        self.row_lengths.drain(..rows);
+        let Err(cause) = outcome else { return Ok(()) };
+        // The first cause is the one to report; if cutting fails too, the file ends with a part of a row.
+        if written > complete && self.file.set_len(self.length).is_ok() {
+            use std::io::Seek;
+            let _ = self.file.seek(io::SeekFrom::Start(self.length));
+        }
+        Err(Error::file("write", &self.path)(cause))
+    }
+
+    /// Flushes and forces the file to the disk.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn finish(mut self) -> Result<(), Error> {
+        self.flush()?;
+        self.file
+            .sync_all()
+            .map_err(Error::file("write", &self.path))
+    }
+}
+
+impl Drop for Rows {
+    /// A run that ends by an error elsewhere still leaves its rows; whoever wants to know calls [`Rows::finish`].
+    fn drop(&mut self) {
+        let _ = self.flush();
+    }
+}
+
+/// Appends bytes; says how many arrived even when it fails.
+fn append(file: &mut File, bytes: &[u8]) -> (usize, io::Result<()>) {
+    let mut written = 0;
+    while written < bytes.len() {
+        match file.write(&bytes[written..]) {
+            Ok(0) => return (written, Err(io::ErrorKind::WriteZero.into())),
+            Ok(count) => written += count,
+            Err(cause) if cause.kind() == io::ErrorKind::Interrupted => {}
+            Err(cause) => return (written, Err(cause)),
+        }
+    }
+    (written, Ok(()))
+}
+
+/// One value of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell<'a> {
+    /// A number, written with the fewest digits that give it back exactly; `NaN`, `inf`, `-inf` as they are.
+    Number(f64),
+    /// Text, quoted where CSV needs it.
+    Text(&'a str),
+    /// Nothing: a value that does not exist (yet).
+    Empty,
+}
+
+impl Cell<'_> {
+    fn put(self, to: &mut Vec<u8>) {
+        match self {
+            // `Debug` switches to powers of ten for very small and very large numbers, `Display` does not.
+            Cell::Number(value) => to.extend_from_slice(format!("{value:?}").as_bytes()),
+            Cell::Text(text) if text.contains([',', '"', '\n', '\r']) => {
+                to.push(b'"');
+                to.extend_from_slice(text.replace('"', "\"\"").as_bytes());
+                to.push(b'"');
+            }
+            Cell::Text(text) => to.extend_from_slice(text.as_bytes()),
+            Cell::Empty => {}
+        }
+    }
+}
+
+impl From<Option<f64>> for Cell<'_> {
+    fn from(value: Option<f64>) -> Self {
+        value.map_or(Cell::Empty, Cell::Number)
+    }
+}

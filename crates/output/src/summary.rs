@@ -1,0 +1,280 @@
+//! The summary of a run: what a script reads first, and what the report shows first.
+//!
+//! Signs: gap positive when open, contact force positive in compression, energy lost positive when lost. A value
+//! that does not exist (the release of a contact that never opened) is `null`, never a made-up number.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Error, atomic};
+
+/// Everything that `summary.json` says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Version of the program.
+    pub version: String,
+    /// Title of the case.
+    pub title: String,
+    /// [`hash`] of the text of the case file.
+    pub case_hash: String,
+    /// Whether the result can be relied on, and why not.
+    pub verdict: Verdict,
+    /// The mesh and its unknowns.
+    pub model: Model,
+    /// Time scheme with its parameters, as text: `theta, theta = 0.5`.
+    pub scheme: String,
+    /// Steps in time.
+    pub time: Time,
+    /// One entry per contact, by name.
+    pub contacts: BTreeMap<String, Contact>,
+    /// Balance of energy.
+    pub energy: Energy,
+    /// Balance of linear momentum.
+    pub momentum: Momentum,
+    /// Errors against the exact solution, where the case names one.
+    pub exact: Vec<ExactError>,
+    /// Work done, in counts that do not depend on the machine.
+    pub counts: Counts,
+    /// Seconds spent, by the name of the part.
+    pub timings: BTreeMap<String, f64>,
+    /// Warnings of the check and of the run.
+    pub warnings: Vec<String>,
+    /// Files of the results folder, relative to it.
+    pub outputs: Vec<String>,
+}
+
+/// Whether the result can be relied on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// True if the run reached its end and every check is within its bound.
+    pub good: bool,
+    /// Why not, one sentence each; empty when good.
+    pub reasons: Vec<String>,
+    /// What was checked.
+    pub checks: Vec<Check>,
+}
+
+impl Verdict {
+    /// The verdict on a run that came to its end (`unfinished` is `None`) or did not (`unfinished` says why): good
+    /// if it did and every check holds.
+    pub fn new(unfinished: Option<String>, checks: Vec<Check>) -> Verdict {
+        let failed = checks.iter().filter(|check| !check.holds());
+        let sentence = |check: &Check| {
+            format!(
+                "{} is {:.3e}, above its bound {:.3e}",
+                check.quantity, check.value, check.bound
+            )
+        };
+        let reasons: Vec<String> = unfinished.into_iter().chain(failed.map(sentence)).collect();
+        Verdict {
+            good: reasons.is_empty(),
+            reasons,
+            checks,
+        }
+    }
+}
+
+/// A quantity with the bound that it must not pass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Check {
+    /// What is checked, with what it is relative to: `energy residual / initial energy`.
+    pub quantity: String,
+    /// Its value.
+    #[serde(with = "float")]
+    pub value: f64,
+    /// The bound on its magnitude.
+    pub bound: f64,
+}
+
+impl Check {
+    /// |value| <= bound; false for NaN.
+    pub fn holds(&self) -> bool {
+        self.value.abs() <= self.bound
+    }
+}
+
+/// The mesh and its unknowns.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Model {
+    /// Dimension of the space in which the bodies move.
+    pub dimension: usize,
+    /// Names of the bodies.
+    pub bodies: Vec<String>,
+    /// Nodes of the mesh.
+    pub nodes: usize,
+    /// Elements of the bodies, by kind.
+    pub elements: BTreeMap<String, usize>,
+    /// Degrees of freedom, supports excluded.
+    pub unknowns: usize,
+    /// Points at which contact is watched.
+    pub contact_points: usize,
+    /// Mass matrix: `lumped` or `consistent`, by body.
+    pub mass: BTreeMap<String, String>,
+}
+
+/// Steps in time.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Time {
+    /// Time reached, s.
+    pub end: f64,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Steps tried and not accepted.
+    pub rejected: u64,
+    /// Smallest accepted step, s.
+    pub smallest_step: f64,
+    /// Largest accepted step, s.
+    pub largest_step: f64,
+    /// Largest step times wave speed over element size (Courant number).
+    pub courant: Option<f64>,
+}
+
+/// What one contact did. Force: the sum of the normal forces over its points.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Contact {
+    /// Contact law with its parameters, as text: `velocity, capture = half`.
+    pub law: String,
+    /// Largest force of a single step, N. It does not converge with the mesh where the exact force jumps: read
+    /// `peak_mean_force` beside it.
+    pub peak_force: f64,
+    /// Largest mean of the force over `window`, N.
+    pub peak_mean_force: f64,
+    /// Length of that window, s.
+    pub window: f64,
+    /// `impulse` over the time spent closed, N; zero if never closed.
+    pub mean_force: f64,
+    /// ∫ F dt over the run, N s.
+    pub impulse: f64,
+    /// Beginning of the first step with force, s.
+    pub first_closing: Option<f64>,
+    /// End of the last step with force, s; `None` if never closed or still closed.
+    pub last_release: Option<f64>,
+    /// Changes of status summed over the points.
+    pub status_changes: u64,
+    /// Largest penetration (minus the smallest gap), m, zero if never penetrated.
+    pub max_penetration: f64,
+    /// Persistency defect: Σ |P · gap rate| dt over the steps after closing, J.
+    pub persistency_defect: f64,
+    /// Impacts from closing to release.
+    pub impacts: usize,
+    /// Restitution of the last complete impact, from the mean velocities (momentum / mass).
+    pub restitution: Option<f64>,
+}
+
+/// Balance of energy, J. Each term has its own formula; nothing is found by subtraction but the residual.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// Kinetic energy at the start.
+    pub kinetic_initial: f64,
+    /// Strain energy at the start.
+    pub strain_initial: f64,
+    /// Kinetic energy at the end.
+    pub kinetic_final: f64,
+    /// Strain energy at the end.
+    pub strain_final: f64,
+    /// Further work and stored or lost energies over the run, by name, positive when the bodies *gain*: `loads`,
+    /// `supports`, `contact`, `scheme`, `material`.
+    pub works: BTreeMap<String, f64>,
+    /// Final - initial - Σ works.
+    #[serde(with = "float")]
+    pub residual: f64,
+    /// `residual` over the largest total energy of the run; what the check bounds.
+    #[serde(with = "float")]
+    pub relative_residual: f64,
+}
+
+/// Balance of linear momentum, N s.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Momentum {
+    /// At the start.
+    pub initial: [f64; 3],
+    /// At the end.
+    pub r#final: [f64; 3],
+    /// Impulses from outside over the run, by name: `loads`, `supports`, `obstacles`.
+    pub impulses: BTreeMap<String, [f64; 3]>,
+    /// Final - initial - Σ impulses.
+    pub residual: [f64; 3],
+    /// Largest component of `residual` over the largest Σ |m v| of the run.
+    #[serde(with = "float")]
+    pub relative_residual: f64,
+}
+
+/// Error of one history against the exact solution.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExactError {
+    /// Name of the exact solution and of the quantity: `two-bars: contact force`.
+    pub quantity: String,
+    /// Relative error in the L² norm over the run.
+    #[serde(with = "float")]
+    pub relative_l2: f64,
+    /// Largest relative overshoot: (computed maximum - exact maximum) / exact maximum.
+    pub overshoot: Option<f64>,
+}
+
+/// Work done, in counts that do not depend on the machine.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Numeric factorisations of the effective matrix.
+    pub factorisations: u64,
+    /// Triangular sweeps (a forward or a backward pass each).
+    pub sweeps: u64,
+    /// Entries of the factor.
+    pub factor_entries: u64,
+    /// Bytes of the factor.
+    pub factor_bytes: u64,
+    /// Iterations of the contact status over the run.
+    pub status_iterations: u64,
+}
+
+impl Summary {
+    /// The summary as JSON.
+    ///
+    /// # Errors
+    /// [`Error::Json`].
+    pub fn to_json(&self) -> Result<String, Error> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+
+    /// Reads a summary back.
+    ///
+    /// # Errors
+    /// [`Error::Json`].
+    pub fn from_json(text: &str) -> Result<Summary, Error> {
+        Ok(serde_json::from_str(text)?)
+    }
+
+    /// Writes the summary as one JSON file, whole or not at all.
+    ///
+    /// # Errors
+    /// [`Error::Json`], [`Error::File`].
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        atomic::write_text(path, &self.to_json()?)
+    }
+}
+
+/// Fingerprint of a text as 16 hexadecimal digits (FNV-1a, 64 bits): tells whether two runs had the same case file;
+/// no protection against intent.
+pub fn hash(text: &str) -> String {
+    let digest = text
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |digest, byte| {
+            (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        });
+    format!("{digest:016x}")
+}
+
+/// Numbers that may be NaN or infinite exactly when something went wrong: JSON has no word for them but `null`, so
+/// they are read back as NaN.
+mod float {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_f64(*value)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
+    }
+}
