@@ -1,0 +1,20 @@
+//! Closed solutions of impact problems, against which the numerical schemes are judged.
+//!
+//! * [`solve`] gives the exact motion of elastic bars that hit a rigid wall or each other: piecewise-linear
+//!   velocity waves, no time step, any number of bounces.
+//! * [`closed_forms`] holds the formulas of the discrete schemes that are known in closed form.
+//!
+//! Nothing here is shared with the code that is judged: this crate depends on no other.
+
+mod bar;
+pub mod closed_forms;
+mod error;
+mod impact;
+mod motion;
+mod wave;
+
+pub use bar::{Bar, FarEnd, constrained_modulus};
+pub use error::Error;
+pub use impact::{Contact, Impact, Solution, solve};
+pub use motion::Motion;
+pub use wave::Wave;
