@@ -4,6 +4,7 @@
 //! one. A [`Surface`] is a group of facets, each matched to the cell that it bounds.
 
 pub mod mesh;
+pub mod read;
 
 mod error;
 
