@@ -1,0 +1,188 @@
+//! Square sparse matrices, stored by rows.
+//!
+//! Both triangles are stored and the columns of a row are sorted. The pattern is fixed when the matrix is made; adding to an
+//! entry that is not in it is a bug and panics.
+
+use crate::pattern::Cliques;
+
+/// Square sparse matrix with both triangles and the whole diagonal stored.
+#[derive(Clone, Debug)]
+pub struct Csr {
+    /// Number of rows and of columns.
+    pub n: usize,
+    row_ptr: Vec<usize>,
+    col: Vec<u32>,
+    val: Vec<f64>,
+}
+
+impl Csr {
+    /// Matrix of zeros that has an entry for every pair of unknowns of every list, and the diagonal.
+    ///
+    /// `n`: number of unknowns, larger than any unknown of the lists.
+    pub fn from_cliques(n: usize, cliques: &Cliques) -> Self {
+        let (offsets, lists) = cliques.by_unknown(n);
+        let mut row_ptr = Vec::with_capacity(n + 1);
+        let mut col = Vec::new();
+        let mut seen = vec![u32::MAX; n];
+        row_ptr.push(0);
+        for i in 0..n {
+            let begin = col.len();
+            seen[i] = i as u32;
+            col.push(i as u32);
+            for &list in &lists[offsets[i]..offsets[i + 1]] {
+                for &j in cliques.get(list as usize) {
+                    if seen[j as usize] != i as u32 {
+                        seen[j as usize] = i as u32;
+                        col.push(j);
+                    }
+                }
+            }
+            col[begin..].sort_unstable();
+            row_ptr.push(col.len());
+        }
+        let val = vec![0.0; col.len()];
+        Self {
+            n,
+            row_ptr,
+            col,
+            val,
+        }
+    }
+
+    /// Number of stored entries.
+    pub fn nnz(&self) -> usize {
+        self.col.len()
+    }
+
+    /// Columns and values of row `i`; the columns ascend.
+    pub fn row(&self, i: usize) -> (&[u32], &[f64]) {
+        let range = self.row_ptr[i]..self.row_ptr[i + 1];
+        (&self.col[range.clone()], &self.val[range])
+    }
+
+    /// Entry (i, j); zero where none is stored.
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        let (columns, values) = self.row(i);
+        columns
+            .binary_search(&(j as u32))
+            .map_or(0.0, |k| values[k])
+    }
+
+    /// Adds `value` to entry (i, j). Panics if the entry is not in the pattern.
+    pub fn add(&mut self, i: usize, j: usize, value: f64) {
+        let k = self.position(i, j as u32);
+        self.val[k] += value;
+    }
+
+    /// Adds a dense block: entry (a, b) of `block` (row-major, `unknowns.len()` squared entries) goes to row `unknowns[a]`,
+    /// column `unknowns[b]`. Panics if an entry is not in the pattern.
+    pub fn add_block(&mut self, unknowns: &[u32], block: &[f64]) {
+        debug_assert_eq!(block.len(), unknowns.len() * unknowns.len());
+        for (a, &i) in unknowns.iter().enumerate() {
+            for (b, &j) in unknowns.iter().enumerate() {
+                let k = self.position(i as usize, j);
+                self.val[k] += block[a * unknowns.len() + b];
+            }
+        }
+    }
+
+    /// Sets every stored entry to zero; the pattern stays.
+    pub fn clear(&mut self) {
+        self.val.fill(0.0);
+    }
+
+    /// Product y = A x.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        for (i, y) in y[..self.n].iter_mut().enumerate() {
+            let (columns, values) = self.row(i);
+            let mut sum = 0.0;
+            for (&j, a) in columns.iter().zip(values) {
+                sum += a * x[j as usize];
+            }
+            *y = sum;
+        }
+    }
+
+    /// Copy in which the rows and columns of the unknowns marked `fixed` hold 1 on the diagonal and nothing else, not even
+    /// a stored zero: a factorisation then spends nothing on them.
+    pub fn with_identity(&self, fixed: &[bool]) -> Self {
+        let mut row_ptr = Vec::with_capacity(self.n + 1);
+        let (mut col, mut val) = (Vec::new(), Vec::new());
+        row_ptr.push(0);
+        for i in 0..self.n {
+            let (columns, values) = self.row(i);
+            for (&j, &a) in columns.iter().zip(values) {
+                if j as usize == i || !(fixed[i] || fixed[j as usize]) {
+                    col.push(j);
+                    val.push(if fixed[i] { 1.0 } else { a });
+                }
+            }
+            row_ptr.push(col.len());
+        }
+        Self {
+            n: self.n,
+            row_ptr,
+            col,
+            val,
+        }
+    }
+
+    fn position(&self, i: usize, j: u32) -> usize {
+        let (columns, _) = self.row(i);
+        match columns.binary_search(&j) {
+            Ok(k) => self.row_ptr[i] + k,
+            Err(_) => panic!("entry ({i}, {j}) is not in the pattern of the matrix"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chain() -> Csr {
+        let mut cliques = Cliques::new();
+        cliques.push(&[1, 0]);
+        cliques.push(&[1, 2]);
+        let mut matrix = Csr::from_cliques(4, &cliques);
+        matrix.add_block(&[1, 0], &[2.0, -2.0, -2.0, 2.0]);
+        matrix.add_block(&[1, 2], &[3.0, -3.0, -3.0, 3.0]);
+        matrix
+    }
+
+    #[test]
+    fn pattern_is_the_union_of_the_lists_and_the_diagonal() {
+        let matrix = chain();
+        assert_eq!(matrix.row(0).0, [0, 1]);
+        assert_eq!(matrix.row(1).0, [0, 1, 2]);
+        assert_eq!(matrix.row(3).0, [3]);
+        assert_eq!(matrix.nnz(), 8);
+    }
+
+    #[test]
+    fn blocks_are_summed_where_they_overlap() {
+        let matrix = chain();
+        assert_eq!(matrix.get(1, 1), 5.0);
+        assert_eq!(matrix.get(0, 1), -2.0);
+        assert_eq!(matrix.get(0, 2), 0.0);
+        let mut y = [9.0; 4];
+        matrix.multiply(&[1.0, 1.0, 1.0, 1.0], &mut y);
+        assert_eq!(y, [0.0; 4]);
+        matrix.multiply(&[0.0, 1.0, 0.0, 7.0], &mut y);
+        assert_eq!(y, [-2.0, 5.0, -3.0, 0.0]);
+    }
+
+    #[test]
+    fn identity_rows_store_the_diagonal_alone() {
+        let matrix = chain().with_identity(&[false, false, true, true]);
+        assert_eq!(matrix.row(2), ([2].as_slice(), [1.0].as_slice()));
+        assert_eq!(matrix.row(3), ([3].as_slice(), [1.0].as_slice()));
+        assert_eq!(matrix.row(1), ([0, 1].as_slice(), [-2.0, 5.0].as_slice()));
+    }
+
+    #[test]
+    #[should_panic(expected = "entry (0, 2) is not in the pattern")]
+    fn adding_outside_the_pattern_is_a_bug() {
+        chain().add(0, 2, 1.0);
+    }
+}

@@ -1,0 +1,16 @@
+//! Small tensors, sparse matrices and linear solvers.
+//!
+//! The crate knows numbers and unknowns, never meshes or mechanics. It is the only one that names the libraries behind the
+//! sparse factorisation, so that none of them appears in a signature of another crate. Results never depend on the number
+//! of threads; they depend on the instruction set of the processor, which is chosen once at run time.
+
+pub mod csr;
+pub mod dense;
+mod error;
+mod ordering;
+pub mod pattern;
+pub mod reduce;
+pub mod solver;
+pub mod tensor;
+
+pub use error::Error;

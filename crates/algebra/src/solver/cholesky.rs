@@ -1,0 +1,496 @@
+//! Sparse Cholesky factorisation A = Pᵀ L Lᵀ P of a symmetric positive definite matrix.
+//!
+//! The order of elimination is ours (`ordering.rs`), the supernodal factor is faer's, computed by one thread so that its bits
+//! depend on the matrix and the processor alone, and the sweeps are ours (`sweep.rs`). Unknowns without neighbours (fixed ones)
+//! never reach the factor: they are divided by their diagonal.
+
+use super::panel::{LANES, Lanes};
+use super::response::{Response, SparseRow};
+use super::sweep::{Backward, Forward, ForwardLanes, Panels};
+use crate::{Error, csr::Csr, ordering};
+use faer::{
+    Par,
+    dyn_stack::{MemBuffer, MemStack, StackReq},
+    linalg::cholesky::llt::factor::{LltError, LltRegularization},
+    sparse::linalg::{
+        SymbolicSupernodalParams,
+        cholesky::{simplicial, supernodal},
+    },
+    sparse::{SparseColMatRef, SymbolicSparseColMatRef},
+};
+use pulp::Arch;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Size and use of a factor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FactorStats {
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// Stored entries of L, diagonal included.
+    pub nnz_factor: usize,
+    /// Additions and multiplications of one factorisation.
+    pub flops: f64,
+    /// Bytes held by the factor, its indices and its scratch.
+    pub bytes: usize,
+    /// Method that gave the order of elimination: `minimum degree` or `nested dissection`.
+    pub ordering: String,
+    /// Factorisations computed so far.
+    pub factorisations: usize,
+    /// Dense sweeps so far, forward and backward counted alike (a solve is two).
+    pub sweeps: usize,
+    /// Sparse columns computed so far by `respond`.
+    pub responses: usize,
+}
+
+/// Factor of a symmetric positive definite matrix.
+pub struct Cholesky {
+    /// Position in the factor to unknown: `connected` unknowns of the factor, then those without neighbours.
+    permutation: Vec<u32>,
+    /// Unknown to position.
+    position: Vec<u32>,
+    connected: usize,
+    /// Fingerprint of the analysed pattern.
+    pattern: Pattern,
+    symbolic: supernodal::SymbolicSupernodalCholesky<usize>,
+    panels: Panels,
+    /// Panels of L, column-major.
+    values: Vec<f64>,
+    /// Square roots of the diagonal entries of the unknowns without neighbours.
+    isolated: Vec<f64>,
+    /// One right-hand side in the factor's order, for whole solves.
+    y: Vec<f64>,
+    scratch: Vec<f64>,
+    stats: FactorStats,
+}
+
+impl Cholesky {
+    /// Analyses and factorises `matrix`, which must be symmetric: one entry of each symmetric pair is read.
+    ///
+    /// `group_of[i]`: node of unknown i; unknowns of one node are eliminated together. Errors: the matrix is not positive
+    /// definite or not finite; `group_of` has the wrong length; memory is short.
+    pub fn new(matrix: &Csr, group_of: &[u32]) -> Result<Self, Error> {
+        if group_of.len() != matrix.n {
+            return Err(Error::WrongLength {
+                what: "groups of unknowns",
+                expected: matrix.n,
+                found: group_of.len(),
+            });
+        }
+        let order = ordering::order(matrix, group_of)?;
+        let position = ordering::inverse(matrix.n, &order.permutation);
+        let symbolic = analyse(matrix, &order.permutation[..order.connected], &position)?;
+        let panels = Panels::new(&symbolic);
+        let (entries, flops) = panels.work();
+        let isolated = matrix.n - order.connected;
+        let mut factor = Self {
+            values: vec![0.0; symbolic.len_val()],
+            isolated: vec![0.0; isolated],
+            y: vec![0.0; matrix.n],
+            scratch: vec![0.0; panels.tallest()],
+            pattern: Pattern::of(matrix),
+            stats: FactorStats {
+                unknowns: matrix.n,
+                nnz_factor: entries + isolated,
+                flops,
+                bytes: 0,
+                ordering: order.name.into(),
+                factorisations: 0,
+                sweeps: 0,
+                responses: 0,
+            },
+            connected: order.connected,
+            permutation: order.permutation,
+            position,
+            symbolic,
+            panels,
+        };
+        factor.stats.bytes = factor.bytes();
+        factor.refactor(matrix)?;
+        Ok(factor)
+    }
+
+    /// Factorises a matrix of the same pattern with other values. After an error the factor must not be used before another
+    /// `refactor` succeeds.
+    pub fn refactor(&mut self, matrix: &Csr) -> Result<(), Error> {
+        if Pattern::of(matrix) != self.pattern {
+            return Err(Error::PatternChanged {
+                expected: self.pattern.entries,
+                found: matrix.nnz(),
+            });
+        }
+        self.stats.factorisations += 1;
+        let connected = &self.permutation[..self.connected];
+        let lower = Lower::new(matrix, connected, &self.position)?;
+        for (root, &i) in self
+            .isolated
+            .iter_mut()
+            .zip(&self.permutation[self.connected..])
+        {
+            *root = isolated_root(matrix, i as usize)?;
+        }
+        let factorised = factorise(&mut self.values, &lower, &self.symbolic)?;
+        factorised.map_err(|LltError::NonPositivePivot { index }| {
+            let unknown = self.permutation[index.min(self.connected - 1)] as usize;
+            Error::NotPositiveDefinite {
+                unknown,
+                diagonal: matrix.get(unknown, unknown),
+            }
+        })
+    }
+
+    /// x ← A⁻¹ x: one forward and one backward sweep, no allocation.
+    pub fn solve(&mut self, x: &mut [f64]) {
+        let mut y = std::mem::take(&mut self.y);
+        self.forward(x, &mut y);
+        self.backward(&mut y, x);
+        self.y = y;
+    }
+
+    /// y = L⁻¹ P r, in the factor's own order; no allocation. Both have one entry per unknown.
+    pub fn forward(&mut self, r: &[f64], y: &mut [f64]) {
+        self.stats.sweeps += 1;
+        for (y, &i) in y.iter_mut().zip(&self.permutation) {
+            *y = r[i as usize];
+        }
+        let (y, alone) = y.split_at_mut(self.connected);
+        for (y, root) in alone.iter_mut().zip(&self.isolated) {
+            *y /= root;
+        }
+        let Self {
+            panels,
+            values,
+            scratch,
+            ..
+        } = self;
+        Arch::new().dispatch(Forward {
+            panels,
+            values,
+            y,
+            scratch,
+        });
+    }
+
+    /// x = Pᵀ L⁻ᵀ y; no allocation. Both have one entry per unknown; `y` is scratch afterwards.
+    pub fn backward(&mut self, y: &mut [f64], x: &mut [f64]) {
+        self.stats.sweeps += 1;
+        let (connected, alone) = y.split_at_mut(self.connected);
+        for (y, root) in alone.iter_mut().zip(&self.isolated) {
+            *y /= root;
+        }
+        let Self {
+            panels,
+            values,
+            scratch,
+            ..
+        } = self;
+        Arch::new().dispatch(Backward {
+            panels,
+            values,
+            y: connected,
+            scratch,
+        });
+        for (y, &i) in y.iter().zip(&self.permutation) {
+            x[i as usize] = *y;
+        }
+    }
+
+    /// Columns Y = L⁻¹ P Nᵀ of the given rows of N, in their order.
+    ///
+    /// Each column visits only the elimination-tree paths of its unknowns. Columns with neighbouring paths are computed
+    /// together, but the bits of a column depend on the factor and its own row alone: neither on its company nor on the
+    /// number of threads. Memory: [`Response::bytes`] each, plus 64 bytes per unknown and thread while it runs.
+    pub fn respond(&mut self, rows: &[SparseRow]) -> Vec<Response> {
+        self.stats.responses += rows.len();
+        let this = &*self;
+        // Rows that start on the same path share most of it: then little of a group's work is on zeros.
+        let mut order: Vec<usize> = (0..rows.len()).collect();
+        let start = |k: usize| {
+            rows[k]
+                .dofs
+                .iter()
+                .map(|&i| this.position[i as usize])
+                .min()
+        };
+        order.sort_by_key(|&k| (start(k), k));
+        let groups: Vec<Vec<Response>> = order
+            .par_chunks(LANES)
+            .map_init(
+                || Columns::new(this),
+                |columns, group| columns.solve(group.iter().map(|&k| &rows[k])),
+            )
+            .collect();
+        let mut responses = vec![Response::default(); rows.len()];
+        for (k, response) in order.into_iter().zip(groups.into_iter().flatten()) {
+            responses[k] = response;
+        }
+        responses
+    }
+
+    /// Size and use of the factor.
+    pub fn stats(&self) -> &FactorStats {
+        &self.stats
+    }
+
+    fn bytes(&self) -> usize {
+        let symbolic = &self.symbolic;
+        size_of_val(&*self.permutation)
+            + size_of_val(&*self.position)
+            + size_of_val(&*self.values)
+            + size_of_val(&*self.isolated)
+            + size_of_val(&*self.y)
+            + size_of_val(&*self.scratch)
+            + size_of_val(symbolic.row_idx())
+            + self.panels.bytes()
+    }
+}
+
+/// Scratch of one group of sparse right-hand sides.
+struct Columns<'a> {
+    factor: &'a Cholesky,
+    /// Zero between two groups.
+    y: Vec<Lanes>,
+    scratch: Vec<Lanes>,
+    /// All false between two groups.
+    mark: Vec<bool>,
+}
+
+impl<'a> Columns<'a> {
+    fn new(factor: &'a Cholesky) -> Self {
+        Self {
+            factor,
+            y: vec![[0.0; LANES]; factor.permutation.len()],
+            scratch: vec![[0.0; LANES]; factor.panels.tallest()],
+            mark: vec![false; factor.panels.len()],
+        }
+    }
+
+    /// Responses of at most [`LANES`] rows.
+    fn solve<'r>(&mut self, rows: impl Iterator<Item = &'r SparseRow> + Clone) -> Vec<Response> {
+        let Cholesky {
+            panels,
+            values,
+            position,
+            ..
+        } = self.factor;
+        for (lane, row) in rows.clone().enumerate() {
+            for (&i, coefficient) in row.dofs.iter().zip(&row.coefficients) {
+                self.y[position[i as usize] as usize][lane] += coefficient;
+            }
+        }
+        let path = self.path(rows.clone().flat_map(|row| &row.dofs));
+        let (y, scratch) = (&mut self.y[..], &mut self.scratch[..]);
+        Arch::new().dispatch(ForwardLanes {
+            panels,
+            values,
+            path: &path,
+            y,
+            scratch,
+        });
+        let responses = rows
+            .clone()
+            .enumerate()
+            .map(|(lane, row)| self.collect(lane, row))
+            .collect();
+        for &s in &path {
+            self.y[panels.columns(s)].fill([0.0; LANES]);
+        }
+        for &i in rows.flat_map(|row| &row.dofs) {
+            self.y[position[i as usize] as usize] = [0.0; LANES];
+        }
+        responses
+    }
+
+    /// Panels on the tree paths from some unknowns to the roots, ascending.
+    fn path<'r>(&mut self, unknowns: impl Iterator<Item = &'r u32>) -> Vec<u32> {
+        let factor = self.factor;
+        let positions = unknowns
+            .map(|&i| factor.position[i as usize] as usize)
+            .filter(|&k| k < factor.connected);
+        let mut path = vec![];
+        factor.panels.climb(positions, &mut self.mark, &mut path);
+        path.sort_unstable();
+        for &s in &path {
+            self.mark[s as usize] = false;
+        }
+        path
+    }
+
+    /// Takes one lane out as a response: its own path, and its unknowns without neighbours.
+    fn collect(&mut self, lane: usize, row: &SparseRow) -> Response {
+        let path = self.path(row.dofs.iter());
+        let Cholesky {
+            panels,
+            position,
+            connected,
+            isolated,
+            ..
+        } = self.factor;
+        let mut alone: Vec<usize> = row
+            .dofs
+            .iter()
+            .map(|&i| position[i as usize] as usize)
+            .filter(|k| k >= connected)
+            .collect();
+        alone.sort_unstable();
+        alone.dedup();
+        let ranges = path
+            .iter()
+            .map(|&s| panels.columns(s))
+            .chain(alone.into_iter().map(|k| k..k + 1));
+        Response::collect(ranges, |k| match k.checked_sub(*connected) {
+            Some(single) => self.y[k][lane] / isolated[single],
+            None => self.y[k][lane],
+        })
+    }
+}
+
+/// What a pattern is recognised by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pattern {
+    unknowns: usize,
+    entries: usize,
+    /// FNV-1a over the columns of all rows and the row lengths.
+    hash: u64,
+}
+
+impl Pattern {
+    fn of(matrix: &Csr) -> Self {
+        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+        let mut add = |word: u32| hash = (hash ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3);
+        for i in 0..matrix.n {
+            let columns = matrix.row(i).0;
+            add(columns.len() as u32);
+            columns.iter().copied().for_each(&mut add);
+        }
+        Self {
+            unknowns: matrix.n,
+            entries: matrix.nnz(),
+            hash,
+        }
+    }
+}
+
+/// Lower triangle of the permuted matrix by columns.
+struct Lower {
+    col_ptr: Vec<usize>,
+    row: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Lower {
+    fn new(matrix: &Csr, connected: &[u32], position: &[u32]) -> Result<Self, Error> {
+        let mut lower = Self {
+            col_ptr: vec![0],
+            row: vec![],
+            values: vec![],
+        };
+        for (k, &unknown) in connected.iter().enumerate() {
+            let (columns, values) = matrix.row(unknown as usize);
+            for (&j, &value) in columns.iter().zip(values) {
+                if !value.is_finite() {
+                    return Err(Error::NotFinite {
+                        row: unknown as usize,
+                        column: j as usize,
+                        value,
+                    });
+                }
+                let i = position[j as usize] as usize;
+                if i >= k {
+                    lower.row.push(i);
+                    lower.values.push(value);
+                }
+            }
+            lower.col_ptr.push(lower.row.len());
+        }
+        Ok(lower)
+    }
+}
+
+/// Square root of the diagonal entry of an unknown without neighbours.
+fn isolated_root(matrix: &Csr, i: usize) -> Result<f64, Error> {
+    let diagonal = matrix.get(i, i);
+    match diagonal {
+        _ if !diagonal.is_finite() => Err(Error::NotFinite {
+            row: i,
+            column: i,
+            value: diagonal,
+        }),
+        _ if diagonal > 0.0 => Ok(diagonal.sqrt()),
+        _ => Err(Error::NotPositiveDefinite {
+            unknown: i,
+            diagonal,
+        }),
+    }
+}
+
+/// Supernodes of the factor of the permuted matrix.
+fn analyse(
+    matrix: &Csr,
+    connected: &[u32],
+    position: &[u32],
+) -> Result<supernodal::SymbolicSupernodalCholesky<usize>, Error> {
+    let n = connected.len();
+    let (mut col_ptr, mut row) = (vec![0], vec![]);
+    for (k, &unknown) in connected.iter().enumerate() {
+        let columns = matrix.row(unknown as usize).0.iter();
+        row.extend(
+            columns
+                .map(|&j| position[j as usize] as usize)
+                .filter(|&i| i <= k),
+        );
+        col_ptr.push(row.len());
+    }
+    let upper = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &col_ptr, None, &row);
+    let requirement = StackReq::any_of(&[
+        simplicial::prefactorize_symbolic_cholesky_scratch::<usize>(n, row.len()),
+        supernodal::factorize_supernodal_symbolic_cholesky_scratch::<usize>(n),
+    ]);
+    let failed = |reason: &dyn std::fmt::Display| Error::Analysis {
+        unknowns: n,
+        reason: reason.to_string(),
+    };
+    let mut memory = MemBuffer::try_new(requirement).map_err(|_| failed(&"out of memory"))?;
+    let stack = MemStack::new(&mut memory);
+    let (mut tree, mut counts) = (vec![0isize; n], vec![0usize; n]);
+    let tree = simplicial::prefactorize_symbolic_cholesky(&mut tree, &mut counts, upper, stack);
+    supernodal::factorize_supernodal_symbolic_cholesky(
+        upper,
+        tree,
+        &counts,
+        stack,
+        SymbolicSupernodalParams::default(),
+    )
+    .map_err(|error| failed(&error))
+}
+
+/// Computes the panels of L. The outer error is a lack of memory, the inner one a pivot that is not positive.
+fn factorise(
+    values: &mut [f64],
+    lower: &Lower,
+    symbolic: &supernodal::SymbolicSupernodalCholesky<usize>,
+) -> Result<Result<(), LltError>, Error> {
+    let n = symbolic.ncols();
+    let pattern =
+        SymbolicSparseColMatRef::new_unsorted_checked(n, n, &lower.col_ptr, None, &lower.row);
+    let matrix = SparseColMatRef::new(pattern, &lower.values[..]);
+    let requirement = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(
+        symbolic,
+        Par::Seq,
+        Default::default(),
+    );
+    let mut memory = MemBuffer::try_new(requirement).map_err(|_| Error::Analysis {
+        unknowns: n,
+        reason: "out of memory".into(),
+    })?;
+    Ok(supernodal::factorize_supernodal_numeric_llt(
+        values,
+        matrix,
+        LltRegularization::default(),
+        symbolic,
+        Par::Seq,
+        MemStack::new(&mut memory),
+        Default::default(),
+    )
+    .map(|_| ()))
+}

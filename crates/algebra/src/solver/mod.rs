@@ -1,0 +1,15 @@
+//! Solvers of sparse systems.
+//!
+//! [`Cholesky`] factorises a symmetric positive definite matrix once and offers the two halves of a solve apart, because a
+//! step with contact costs one forward and one backward sweep: with A = Pᵀ L Lᵀ P and contact rows N,
+//! y = L⁻¹ P r, Y = L⁻¹ P Nᵀ (sparse, computed once), W = Yᵀ Y = N A⁻¹ Nᵀ, N x_free = Yᵀ y, x = Pᵀ L⁻ᵀ (y + Y p).
+
+mod cholesky;
+mod panel;
+mod response;
+mod sweep;
+
+pub use cholesky::{Cholesky, FactorStats};
+pub use response::{Response, SparseRow, gram};
+
+pub(crate) use panel::{backward, forward};
