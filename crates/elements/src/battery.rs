@@ -136,7 +136,7 @@ fn monomial(element: &Element, powers: [usize; 3]) -> f64 {
         return above / factorial(powers.iter().sum::<usize>() + element.dim);
     }
     let line = |p: usize| {
-        if p % 2 == 0 {
+        if p.is_multiple_of(2) {
             2.0 / (p + 1) as f64
         } else {
             0.0

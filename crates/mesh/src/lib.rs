@@ -1,12 +1,20 @@
 //! Meshes, named groups, surfaces and spatial search.
 //!
 //! A [`Mesh`] is nodes, blocks of elements and named groups; it carries no physics. Readers and [`generate`] make
-//! one. A [`Surface`] is a group of facets, each matched to the cell that it bounds.
+//! one. A [`Surface`] is a group of facets, each matched to the cell that it bounds. [`project`] finds the gap of a
+//! point over one face, [`BoxTree`] the faces worth asking.
 
+pub mod generate;
 pub mod mesh;
+pub mod project;
 pub mod read;
+pub mod search;
+pub mod surface;
 
 mod error;
 
 pub use error::Error;
 pub use mesh::{Block, Defect, ElementId, Group, Mesh, gather};
+pub use project::{Projection, project};
+pub use search::{Bounds, BoxTree};
+pub use surface::{Face, Surface};

@@ -1,0 +1,187 @@
+//! Closest point of a face to a point, and the gap.
+//!
+//! One face at a time: which face of a surface is nearest is decided by whoever loops over candidates. The sign:
+//! the normal m of a face points away from its own body, and the gap of a point x over its projection y is
+//! g = m·(x - y), positive when open.
+
+use carom_elements::{Element, Kind, MAX_NODES, map};
+
+use crate::Face;
+
+/// How far outside a face, in reference units, a projection still counts as inside: round-off at shared edges.
+const SLACK: f64 = 1e-9;
+
+/// Where a point falls on a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projection {
+    /// Closest point of the face, in reference coordinates, in the cell.
+    pub xi: [f64; 3],
+    /// The same in space, y, in m.
+    pub point: [f64; 3],
+    /// Unit normal m of the face at y, out of the body that the face belongs to.
+    pub normal: [f64; 3],
+    /// g = m·(x - y) in m, positive when open.
+    pub gap: f64,
+    /// |x - y| in m; equal to |g| where the point projects inside.
+    pub distance: f64,
+    /// Whether x - y is normal to the face: false where the foot of the perpendicular lies beyond an edge (by more
+    /// than 1e-9 in reference units) and y is the nearest point of that edge. Always true for a point.
+    pub inside: bool,
+}
+
+/// The closest point of a face to `point`.
+///
+/// `positions`: those of the face's corners, in its order, reference or current, in m. min |x - y(ξ)| over the
+/// reference cell; exact for bars (in the plane of the first two axes) and triangles; for quadrilaterals by
+/// Newton's method with clamping, to round-off, from the centre of the face. A warped quadrilateral can have several
+/// points that are closest in their neighbourhood: the result is then one of them, and it is the closest of all if
+/// the point is nearer than the face's radius of curvature. For the end of a bar the normal is the face's axis.
+pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Projection {
+    let element = face.kind.table();
+    let (xi, free) = match face.kind {
+        Kind::Point1 => ([0.0; 3], [0.0; 3]),
+        Kind::Bar2 => on_segment(positions, point),
+        Kind::Tri3 => on_triangle(positions, point),
+        Kind::Quad4 => on_patch(element, positions, point),
+        Kind::Tet4 | Kind::Hex8 => unreachable!("a face has two dimensions at most"),
+    };
+    let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);
+    (element.shape)(&xi, &mut n[..element.nodes]);
+    (element.gradient)(&xi, &mut dn[..element.nodes]);
+    let foot = map::point(positions, &n[..element.nodes]);
+    let normal = match face.kind {
+        Kind::Point1 => face.axis,
+        _ => map::measure(positions, &dn[..element.nodes], element.dim).1,
+    };
+    let to_point = difference(point, &foot);
+    Projection {
+        xi,
+        point: foot,
+        normal,
+        gap: dot(&normal, &to_point),
+        distance: dot(&to_point, &to_point).sqrt(),
+        inside: (element.contains)(&free, SLACK),
+    }
+}
+
+/// Closest point of a segment in [-1, 1], and the foot of the perpendicular on its line.
+fn on_segment(x: &[[f64; 3]], point: &[f64; 3]) -> ([f64; 3], [f64; 3]) {
+    let along = difference(&x[1], &x[0]);
+    let t = dot(&difference(point, &x[0]), &along) / dot(&along, &along);
+    let free = 2.0 * t - 1.0;
+    ([free.clamp(-1.0, 1.0), 0.0, 0.0], [free, 0.0, 0.0])
+}
+
+/// Closest point of a triangle, and the foot of the perpendicular on its plane.
+fn on_triangle(x: &[[f64; 3]], point: &[f64; 3]) -> ([f64; 3], [f64; 3]) {
+    let (s, t) = (difference(&x[1], &x[0]), difference(&x[2], &x[0]));
+    let r = difference(point, &x[0]);
+    let (ss, st, tt) = (dot(&s, &s), dot(&s, &t), dot(&t, &t));
+    let (sr, tr) = (dot(&s, &r), dot(&t, &r));
+    let det = ss * tt - st * st;
+    let free = [(tt * sr - st * tr) / det, (ss * tr - st * sr) / det, 0.0];
+    if free[0] >= 0.0 && free[1] >= 0.0 && free[0] + free[1] <= 1.0 {
+        return (free, free);
+    }
+    // The closest point is on an edge: the nearest of three, the first of equals.
+    let edges = [[0, 1], [1, 2], [2, 0]];
+    let corners = Kind::Tri3.table().reference;
+    let mut best = (f64::INFINITY, [0.0; 3]);
+    for [a, b] in edges {
+        let along = on_segment(&[x[a], x[b]], point).0[0];
+        let weights = [0.5 * (1.0 - along), 0.5 * (1.0 + along)];
+        let gap = difference(point, &map::point(&[x[a], x[b]], &weights));
+        let squared = dot(&gap, &gap);
+        if squared < best.0 {
+            best = (squared, map::point(&[corners[a], corners[b]], &weights));
+        }
+    }
+    (best.1, free)
+}
+
+/// Closest point of a bilinear patch, and where Newton's step from there would go if the patch went on.
+///
+/// f = |x - y(ξ, η)|²/2 is a parabola along each coordinate line. Newton's step is kept if it does not raise f, then
+/// f is minimised along each coordinate line in turn: what no longer moves is a minimum in the square, its edges
+/// included.
+fn on_patch(element: &Element, x: &[[f64; 3]], point: &[f64; 3]) -> ([f64; 3], [f64; 3]) {
+    let patch = Patch { element, x, point };
+    let mut xi = [0.0; 3];
+    for _ in 0..MAX_PASSES {
+        let before = xi;
+        let trial = patch.newton(&xi).map(|c| c.clamp(-1.0, 1.0));
+        // Round-off in f hides the last digits of the minimum, where the step is at its best.
+        if patch.half_square(&trial) <= patch.half_square(&xi) * (1.0 + 1e-14) {
+            xi = trial;
+        }
+        for axis in 0..2 {
+            let (tangents, r) = patch.tangents(&xi);
+            let step = dot(&tangents[axis], &r) / dot(&tangents[axis], &tangents[axis]);
+            xi[axis] = (xi[axis] + step).clamp(-1.0, 1.0);
+        }
+        if (0..2).all(|i| (xi[i] - before[i]).abs() < 1e-14) {
+            break;
+        }
+    }
+    let free = patch.newton(&xi);
+    (xi, free)
+}
+
+/// Bound on the passes of [`on_patch`]; Newton's method takes about five.
+const MAX_PASSES: usize = 100;
+
+/// A bilinear quadrilateral and the point to project on it.
+struct Patch<'a> {
+    element: &'a Element,
+    x: &'a [[f64; 3]],
+    point: &'a [f64; 3],
+}
+
+impl Patch<'_> {
+    /// r = x - y(ξ).
+    fn to_point(&self, xi: &[f64; 3]) -> [f64; 3] {
+        let mut n = [0.0; 4];
+        (self.element.shape)(xi, &mut n);
+        difference(self.point, &map::point(self.x, &n))
+    }
+
+    /// f = |r|²/2.
+    fn half_square(&self, xi: &[f64; 3]) -> f64 {
+        let r = self.to_point(xi);
+        0.5 * dot(&r, &r)
+    }
+
+    /// The tangents t_i = ∂y/∂ξ_i, and r.
+    fn tangents(&self, xi: &[f64; 3]) -> ([[f64; 3]; 2], [f64; 3]) {
+        let mut dn = [[0.0; 3]; 4];
+        (self.element.gradient)(xi, &mut dn);
+        let t = [0, 1].map(|i| map::point(self.x, &dn.map(|dn| dn[i])));
+        (t, self.to_point(xi))
+    }
+
+    /// Newton's next point, unclamped: ξ - H^-1 ∇f with ∇f_i = -t_i·r, H_ij = t_i·t_j - r·∂²y/∂ξ_i∂ξ_j; without
+    /// the second derivative (Gauss and Newton) where H is not positive definite.
+    fn newton(&self, xi: &[f64; 3]) -> [f64; 3] {
+        let ([s, t], r) = self.tangents(xi);
+        // ∂²y/∂ξ∂η of the bilinear map; the other second derivatives are zero.
+        let twist = map::point(self.x, &[0.25, -0.25, 0.25, -0.25]);
+        let (ss, tt, st) = (dot(&s, &s), dot(&t, &t), dot(&s, &t));
+        let full = st - dot(&r, &twist);
+        let mixed = if ss * tt > full * full { full } else { st };
+        let det = ss * tt - mixed * mixed;
+        let (sr, tr) = (dot(&s, &r), dot(&t, &r));
+        [
+            xi[0] + (tt * sr - mixed * tr) / det,
+            xi[1] + (ss * tr - mixed * sr) / det,
+            0.0,
+        ]
+    }
+}
+
+fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

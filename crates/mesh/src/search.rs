@@ -1,0 +1,199 @@
+//! Which boxes are near a point or a box: a tree of bounding boxes that can be refitted.
+//!
+//! Built by median splits of the centres along the longest side, with leaves of a fixed number of items. When the
+//! items move, [`BoxTree::refit`] keeps the tree and recomputes its boxes from the leaves up: answers stay right
+//! whatever the motion, only speed suffers. Answers are sorted by item, so they do not depend on the shape of the
+//! tree.
+
+/// Items in a leaf.
+const LEAF: usize = 4;
+
+/// A box with sides along the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Least coordinates.
+    pub min: [f64; 3],
+    /// Largest coordinates.
+    pub max: [f64; 3],
+}
+
+impl Bounds {
+    /// The box that holds nothing; a union with it is the other box.
+    pub const EMPTY: Bounds = Bounds {
+        min: [f64::INFINITY; 3],
+        max: [f64::NEG_INFINITY; 3],
+    };
+
+    /// The smallest box around some points.
+    pub fn of(points: &[[f64; 3]]) -> Bounds {
+        points.iter().fold(Bounds::EMPTY, |bounds, &x| {
+            bounds.union(&Bounds { min: x, max: x })
+        })
+    }
+
+    /// The smallest box around two.
+    pub fn union(&self, other: &Bounds) -> Bounds {
+        Bounds {
+            min: [0, 1, 2].map(|i| self.min[i].min(other.min[i])),
+            max: [0, 1, 2].map(|i| self.max[i].max(other.max[i])),
+        }
+    }
+
+    /// The box moved outward by `margin` on every side, in m.
+    pub fn widened(&self, margin: f64) -> Bounds {
+        Bounds {
+            min: self.min.map(|x| x - margin),
+            max: self.max.map(|x| x + margin),
+        }
+    }
+
+    /// Whether two boxes have a point in common, their boundaries included.
+    pub fn overlaps(&self, other: &Bounds) -> bool {
+        (0..3).all(|i| self.min[i] <= other.max[i] && other.min[i] <= self.max[i])
+    }
+
+    /// Squared distance from a point to the box, in m²; zero inside.
+    pub fn distance_squared(&self, point: &[f64; 3]) -> f64 {
+        (0..3)
+            .map(|i| {
+                let out = (self.min[i] - point[i]).max(point[i] - self.max[i]);
+                out.max(0.0).powi(2)
+            })
+            .sum()
+    }
+
+    fn centre(&self, axis: usize) -> f64 {
+        0.5 * (self.min[axis] + self.max[axis])
+    }
+}
+
+/// A tree over numbered boxes, one per face of a surface for instance.
+#[derive(Clone, Debug)]
+pub struct BoxTree {
+    /// Nodes in preorder: a node's first child follows it.
+    nodes: Vec<Node>,
+    /// Items in the order of the leaves.
+    items: Vec<u32>,
+    /// Box of each entry of `items`.
+    boxes: Vec<Bounds>,
+}
+
+#[derive(Clone, Debug)]
+struct Node {
+    bounds: Bounds,
+    /// The node after the whole subtree of this one.
+    next: usize,
+    /// Range of `items` below it.
+    first: usize,
+    last: usize,
+    /// Second child; `None` for a leaf.
+    second: Option<usize>,
+}
+
+impl BoxTree {
+    /// The tree over these boxes; an item is the index of its box.
+    pub fn new(boxes: &[Bounds]) -> BoxTree {
+        let mut tree = BoxTree {
+            nodes: Vec::new(),
+            items: (0..boxes.len() as u32).collect(),
+            boxes: Vec::new(),
+        };
+        tree.split(boxes, 0, boxes.len());
+        tree.refit(boxes);
+        tree
+    }
+
+    /// Number of items.
+    pub fn len(&self) -> usize {
+        self.items.len()
+    }
+
+    /// Whether the tree has no items.
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// Takes new boxes of the same items, as many as before, and recomputes the tree's boxes in linear time.
+    pub fn refit(&mut self, boxes: &[Bounds]) {
+        debug_assert_eq!(boxes.len(), self.items.len());
+        self.boxes.clear();
+        self.boxes
+            .extend(self.items.iter().map(|&item| boxes[item as usize]));
+        for i in (0..self.nodes.len()).rev() {
+            let node = &self.nodes[i];
+            self.nodes[i].bounds = match node.second {
+                Some(second) => self.nodes[i + 1].bounds.union(&self.nodes[second].bounds),
+                None => self.boxes[node.first..node.last]
+                    .iter()
+                    .fold(Bounds::EMPTY, |all, b| all.union(b)),
+            };
+        }
+    }
+
+    /// Items whose box is within a distance (in m, boundary included) of a point, sorted, into `found`, which is
+    /// cleared first.
+    pub fn near(&self, point: &[f64; 3], distance: f64, found: &mut Vec<u32>) {
+        let limit = distance * distance;
+        self.collect(|bounds| bounds.distance_squared(point) <= limit, found);
+    }
+
+    /// Items whose box has a point in common with a box, sorted, into `found`, which is cleared first.
+    pub fn overlapping(&self, bounds: &Bounds, found: &mut Vec<u32>) {
+        self.collect(|other| other.overlaps(bounds), found);
+    }
+
+    /// Items whose box passes a test that every box around it passes too.
+    fn collect(&self, test: impl Fn(&Bounds) -> bool, found: &mut Vec<u32>) {
+        found.clear();
+        let mut i = 0;
+        while let Some(node) = self.nodes.get(i) {
+            if !test(&node.bounds) {
+                i = node.next;
+                continue;
+            }
+            if node.second.is_none() {
+                let range = node.first..node.last;
+                let leaf = self.items[range.clone()].iter().zip(&self.boxes[range]);
+                found.extend(leaf.filter(|(_, b)| test(b)).map(|(&item, _)| item));
+            }
+            i += 1;
+        }
+        found.sort_unstable();
+    }
+
+    /// Adds the subtree over a range of items, which it reorders.
+    fn split(&mut self, boxes: &[Bounds], first: usize, last: usize) {
+        let here = self.nodes.len();
+        self.nodes.push(Node {
+            bounds: Bounds::EMPTY,
+            next: 0,
+            first,
+            last,
+            second: None,
+        });
+        if last - first > LEAF {
+            let items = &mut self.items[first..last];
+            let axis = longest_side(boxes, items);
+            let middle = items.len() / 2;
+            // Equal centres are told apart by number: the tree is the same on every machine.
+            items.select_nth_unstable_by(middle, |&a, &b| {
+                let centre = |item: u32| boxes[item as usize].centre(axis);
+                centre(a).total_cmp(&centre(b)).then(a.cmp(&b))
+            });
+            self.split(boxes, first, first + middle);
+            self.nodes[here].second = Some(self.nodes.len());
+            self.split(boxes, first + middle, last);
+        }
+        self.nodes[here].next = self.nodes.len();
+    }
+}
+
+/// The axis along which the centres of some boxes spread most.
+fn longest_side(boxes: &[Bounds], items: &[u32]) -> usize {
+    let centres = items.iter().fold(Bounds::EMPTY, |all, &item| {
+        let x = [0, 1, 2].map(|i| boxes[item as usize].centre(i));
+        all.union(&Bounds { min: x, max: x })
+    });
+    let side = |i: usize| centres.max[i] - centres.min[i];
+    (1..3).fold(0, |best, i| if side(i) > side(best) { i } else { best })
+}

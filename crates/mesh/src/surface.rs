@@ -1,0 +1,190 @@
+//! Surfaces: facets matched to the cells they bound, turned outward.
+//!
+//! A facet of a mesh file has no reliable orientation and no parent. Here each one is found among the faces of the
+//! body's cells and takes node order, parent and normal from there. Valid for cells of positive Jacobian
+//! ([`Mesh::check`]).
+
+use std::collections::BTreeMap;
+
+use carom_elements::{Kind, MAX_NODES, map};
+
+use crate::mesh::gather;
+use crate::{ElementId, Error, Group, Mesh};
+
+/// Part of the boundary of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// Its faces, in the order of the facets of the group.
+    pub faces: Vec<Face>,
+    /// Its nodes, sorted, each once.
+    pub nodes: Vec<u32>,
+}
+
+/// A face of a surface, turned so that its normal points out of the parent cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Face {
+    /// Kind of the face.
+    pub kind: Kind,
+    /// Node numbers; only as many entries as the kind has nodes are used ([`Face::corners`]).
+    pub nodes: [u32; 4],
+    /// The cell that the face bounds.
+    pub parent: ElementId,
+    /// For a point, the end of a bar: unit vector along the bar, outward, in the reference position. Zero for
+    /// other kinds, whose normal follows from their nodes.
+    pub axis: [f64; 3],
+}
+
+impl Face {
+    /// The nodes of the face, in its own order.
+    pub fn corners(&self) -> &[u32] {
+        &self.nodes[..self.kind.table().nodes]
+    }
+}
+
+impl Surface {
+    /// The surface made of the facets of a group, seen as faces of these cells.
+    ///
+    /// Fails if the dimension of the facets is not one less than that of every cell, if plane cells stand in
+    /// space (their edges have no normal), if a facet is a face of no cell or of two, or if two facets are the same
+    /// face.
+    pub fn new(mesh: &Mesh, facets: &Group, cells: &[ElementId]) -> Result<Surface, Error> {
+        check_dimensions(mesh, facets, cells)?;
+        let mut faces: Vec<Option<Face>> = vec![None; facets.elements.len()];
+        let wanted = by_nodes(mesh, facets)?;
+        for &cell in cells {
+            for (i, face) in mesh.kind(cell).table().faces.iter().enumerate() {
+                let Some(&facet) = wanted.get(&key(&face_nodes(mesh, cell, i))) else {
+                    continue;
+                };
+                if let Some(first) = faces[facet] {
+                    return Err(Error::FacetOnTwoCells {
+                        nodes: mesh.element_nodes(facets.elements[facet]).to_vec(),
+                        centre: centre(mesh, facets.elements[facet]),
+                        cells: [first.parent, cell],
+                    });
+                }
+                faces[facet] = Some(Face {
+                    kind: face.kind,
+                    nodes: face_nodes(mesh, cell, i),
+                    parent: cell,
+                    axis: axis(mesh, cell, i),
+                });
+            }
+        }
+        let faces = faces.into_iter().zip(&facets.elements);
+        let faces = faces.map(|(face, &id)| {
+            face.ok_or_else(|| Error::FacetOnNoCell {
+                nodes: mesh.element_nodes(id).to_vec(),
+                centre: centre(mesh, id),
+            })
+        });
+        Ok(Surface {
+            faces: faces.collect::<Result<_, _>>()?,
+            nodes: mesh.group_nodes(facets),
+        })
+    }
+
+    /// Place of a node in [`Surface::nodes`]; `None` if the surface does not have it.
+    pub fn index_of(&self, node: u32) -> Option<usize> {
+        self.nodes.binary_search(&node).ok()
+    }
+
+    /// Share of each node in the surface, ∫ N_a dΓ, one value per entry of [`Surface::nodes`].
+    ///
+    /// In the reference position: a length in m in the plane, an area in m² in space; 1 for the end of a bar, whose
+    /// section is not the mesh's business.
+    pub fn node_areas(&self, mesh: &Mesh) -> Vec<f64> {
+        let mut areas = vec![0.0; self.nodes.len()];
+        let mut buffer = [[0.0; 3]; MAX_NODES];
+        for face in &self.faces {
+            let table = face.kind.table();
+            let x = gather(&mesh.nodes, face.corners(), &mut buffer);
+            let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);
+            let rule = table.mass_rule;
+            for (xi, weight) in rule.points.iter().zip(rule.weights) {
+                (table.shape)(xi, &mut n[..table.nodes]);
+                (table.gradient)(xi, &mut dn[..table.nodes]);
+                let (factor, _) = map::measure(x, &dn[..table.nodes], table.dim);
+                for (&node, n) in face.corners().iter().zip(n) {
+                    if let Some(a) = self.index_of(node) {
+                        areas[a] += n * factor * weight;
+                    }
+                }
+            }
+        }
+        areas
+    }
+}
+
+/// Nodes of a face of a cell; entries that the kind does not use are the largest number, so that sorted node lists
+/// compare.
+fn face_nodes(mesh: &Mesh, cell: ElementId, face: usize) -> [u32; 4] {
+    let nodes = mesh.element_nodes(cell);
+    let mut out = [u32::MAX; 4];
+    let corners = mesh.kind(cell).table().faces[face].nodes;
+    for (out, &a) in out.iter_mut().zip(corners) {
+        *out = nodes[a];
+    }
+    out
+}
+
+/// What two lists of the same nodes have in common, whatever their order.
+fn key(nodes: &[u32; 4]) -> [u32; 4] {
+    let mut sorted = *nodes;
+    sorted.sort_unstable();
+    sorted
+}
+
+/// Facets by their nodes.
+fn by_nodes(mesh: &Mesh, facets: &Group) -> Result<BTreeMap<[u32; 4], usize>, Error> {
+    let mut map = BTreeMap::new();
+    for (i, &id) in facets.elements.iter().enumerate() {
+        let mut nodes = [u32::MAX; 4];
+        let corners = mesh.element_nodes(id);
+        nodes[..corners.len()].copy_from_slice(corners);
+        if map.insert(key(&nodes), i).is_some() {
+            return Err(Error::FacetTwice {
+                nodes: corners.to_vec(),
+                centre: centre(mesh, id),
+            });
+        }
+    }
+    Ok(map)
+}
+
+/// Refuses facets that cannot bound the cells.
+fn check_dimensions(mesh: &Mesh, facets: &Group, cells: &[ElementId]) -> Result<(), Error> {
+    for &cell in cells {
+        let dim = mesh.kind(cell).table().dim;
+        if facets.dim + 1 != dim {
+            return Err(Error::FacetDimension {
+                facets: facets.dim,
+                cells: dim,
+            });
+        }
+        if dim == 2 && mesh.dim == 3 {
+            return Err(Error::PlaneCellsInSpace { cell });
+        }
+    }
+    Ok(())
+}
+
+/// Outward unit vector along a bar at one of its ends; zero for cells of other dimensions.
+fn axis(mesh: &Mesh, cell: ElementId, face: usize) -> [f64; 3] {
+    if mesh.kind(cell).table().dim != 1 {
+        return [0.0; 3];
+    }
+    let nodes = mesh.element_nodes(cell);
+    let (end, other) = (nodes[face] as usize, nodes[1 - face] as usize);
+    let along = [0, 1, 2].map(|i| mesh.nodes[end][i] - mesh.nodes[other][i]);
+    let length = along.iter().map(|x| x * x).sum::<f64>().sqrt();
+    along.map(|x| x / length)
+}
+
+fn centre(mesh: &Mesh, id: ElementId) -> [f64; 3] {
+    let nodes = mesh.element_nodes(id);
+    [0, 1, 2].map(|i| {
+        let sum: f64 = nodes.iter().map(|&node| mesh.nodes[node as usize][i]).sum();
+        sum / nodes.len() as f64
+    })
+}
