@@ -182,3 +182,154 @@ fn places(counts: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
         .flat_map(move |k| (0..counts[1]).map(move |j| (j, k)))
         .flat_map(move |(j, k)| (0..counts[0]).map(move |i| [i, j, k]))
 }
+
+#[cfg(test)]
+mod tests {
+    use carom_elements::{MAX_NODES, map};
+
+    use super::*;
+    use crate::{Surface, gather};
+
+    /// ∫ dΩ over a group, by the rule of the cells.
+    fn measure(mesh: &Mesh, group: &str) -> f64 {
+        let mut sum = 0.0;
+        for &id in &mesh.groups[group].elements {
+            let table = mesh.kind(id).table();
+            let (mut x, mut dn) = ([[0.0; 3]; MAX_NODES], [[0.0; 3]; MAX_NODES]);
+            let x = gather(&mesh.nodes, mesh.element_nodes(id), &mut x);
+            let rule = table.stiffness_rule;
+            for (xi, weight) in rule.points.iter().zip(rule.weights) {
+                (table.gradient)(xi, &mut dn[..table.nodes]);
+                let dn = &dn[..table.nodes];
+                sum += weight
+                    * match table.dim {
+                        3 => map::jacobian(x, dn, 3).1,
+                        dim => map::measure(x, dn, dim).0,
+                    };
+            }
+        }
+        sum
+    }
+
+    /// The integral of the outward normal over a side.
+    fn normal_area(mesh: &Mesh, name: &str, side: &str) -> [f64; 3] {
+        let facets = &mesh.groups[&format!("{name}.{side}")];
+        let cells = &mesh.groups[name].elements;
+        let surface = Surface::new(mesh, facets, cells).unwrap();
+        let mut sum = [0.0; 3];
+        for face in &surface.faces {
+            let table = face.kind.table();
+            let (mut x, mut dn) = ([[0.0; 3]; MAX_NODES], [[0.0; 3]; MAX_NODES]);
+            let x = gather(&mesh.nodes, face.corners(), &mut x);
+            let rule = table.stiffness_rule;
+            for (xi, weight) in rule.points.iter().zip(rule.weights) {
+                (table.gradient)(xi, &mut dn[..table.nodes]);
+                let (factor, normal) = map::measure(x, &dn[..table.nodes], table.dim);
+                for i in 0..3 {
+                    sum[i] += weight * factor * normal[i];
+                }
+            }
+        }
+        sum
+    }
+
+    fn assert_close(a: f64, b: f64) {
+        assert!((a - b).abs() < 1e-13, "{a} {b}");
+    }
+
+    fn assert_sound(mesh: &Mesh, name: &str) {
+        assert_eq!(mesh.check(&mesh.groups[name].elements), []);
+        let used = mesh.group_nodes(&mesh.groups[name]);
+        assert_eq!(used.len(), mesh.nodes.len());
+    }
+
+    #[test]
+    fn a_line_has_its_length_and_its_ends_look_outward() {
+        let (from, to) = ([1.0, 2.0, -1.0], [2.0, 4.0, 1.0]);
+        let mesh = line("bar", from, to, 7, 3);
+        assert_sound(&mesh, "bar");
+        assert_eq!(mesh.groups["bar"].elements.len(), 7);
+        assert_close(measure(&mesh, "bar"), 3.0);
+        assert_eq!((mesh.nodes[0], mesh.nodes[7]), (from, to));
+        for (side, node, sign) in [("bar.left", 0, -1.0), ("bar.right", 7, 1.0)] {
+            let facets = &mesh.groups[side];
+            let surface = Surface::new(&mesh, facets, &mesh.groups["bar"].elements).unwrap();
+            assert_eq!(surface.nodes, [node]);
+            assert_eq!(surface.faces[0].corners(), [node]);
+            for (axis, expected) in surface.faces[0].axis.iter().zip([1.0, 2.0, 2.0]) {
+                assert_close(*axis, sign * expected / 3.0);
+            }
+            assert_eq!(surface.node_areas(&mesh), [1.0]);
+        }
+    }
+
+    #[test]
+    fn a_rectangle_has_its_area_and_its_sides_look_outward() {
+        for triangles in [false, true] {
+            let mesh = rectangle("plate", [-1.0, 2.0], [3.0, 0.5], [6, 2], triangles);
+            assert_sound(&mesh, "plate");
+            assert_eq!((mesh.dim, mesh.nodes.len()), (2, 21));
+            assert_eq!(mesh.groups["plate"].elements.len(), 12 << triangles as u32);
+            assert_close(measure(&mesh, "plate"), 1.5);
+            let sides = [
+                ("left", [-0.5, 0.0]),
+                ("right", [0.5, 0.0]),
+                ("bottom", [0.0, -3.0]),
+                ("top", [0.0, 3.0]),
+            ];
+            for (side, expected) in sides {
+                let found = normal_area(&mesh, "plate", side);
+                (0..2).for_each(|i| assert_close(found[i], expected[i]));
+                let length = expected[0].abs() + expected[1].abs();
+                assert_close(measure(&mesh, &format!("plate.{side}")), length);
+            }
+        }
+    }
+
+    #[test]
+    fn a_box_has_its_volume_and_its_sides_look_outward() {
+        for tets in [false, true] {
+            let mesh = box_("block", [1.0, 2.0, 3.0], [2.0, 1.0, 0.5], [3, 2, 4], tets);
+            assert_sound(&mesh, "block");
+            assert_eq!((mesh.dim, mesh.nodes.len()), (3, 60));
+            let cells = if tets { 6 * 24 } else { 24 };
+            assert_eq!(mesh.groups["block"].elements.len(), cells);
+            assert_close(measure(&mesh, "block"), 1.0);
+            let sides = [
+                ("left", [-0.5, 0.0, 0.0]),
+                ("right", [0.5, 0.0, 0.0]),
+                ("front", [0.0, -1.0, 0.0]),
+                ("back", [0.0, 1.0, 0.0]),
+                ("bottom", [0.0, 0.0, -2.0]),
+                ("top", [0.0, 0.0, 2.0]),
+            ];
+            for (side, expected) in sides {
+                let found = normal_area(&mesh, "block", side);
+                (0..3).for_each(|i| assert_close(found[i], expected[i]));
+                let area: f64 = expected.iter().map(|x: &f64| x.abs()).sum();
+                assert_close(measure(&mesh, &format!("block.{side}")), area);
+            }
+        }
+    }
+
+    #[test]
+    fn neighbours_match_every_face_of_a_cell_is_outside_or_shared_once() {
+        let boxes = [false, true].map(|tets| box_("a", [0.0; 3], [1.0; 3], [2, 3, 2], tets));
+        let plates = [false, true].map(|tri| rectangle("a", [0.0; 2], [1.0; 2], [3, 2], tri));
+        for mesh in boxes.iter().chain(&plates) {
+            let mut seen = std::collections::BTreeMap::new();
+            for &id in &mesh.groups["a"].elements {
+                let nodes = mesh.element_nodes(id);
+                for face in mesh.kind(id).table().faces {
+                    let mut key: Vec<u32> = face.nodes.iter().map(|&a| nodes[a]).collect();
+                    key.sort_unstable();
+                    *seen.entry(key).or_insert(0) += 1;
+                }
+            }
+            let sides = mesh.groups.iter().filter(|(name, _)| *name != "a");
+            let outside: usize = sides.map(|(_, group)| group.elements.len()).sum();
+            assert_eq!(seen.values().filter(|&&n| n == 1).count(), outside);
+            assert!(seen.values().all(|&n| n == 1 || n == 2));
+        }
+    }
+}

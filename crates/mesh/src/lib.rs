@@ -1,7 +1,7 @@
 //! Meshes, named groups, surfaces and spatial search.
 //!
 //! A [`Mesh`] is nodes, blocks of elements and named groups; it carries no physics. Readers and [`generate`] make
-//! one. A [`Surface`] is a group of facets, each matched to the cell that it bounds. [`project`] finds the gap of a
+//! one. A [`Surface`] is a group of facets, each matched to the cell that it bounds. [`project()`] finds the gap of a
 //! point over one face, [`BoxTree`] the faces worth asking.
 
 pub mod generate;
@@ -12,6 +12,8 @@ pub mod search;
 pub mod surface;
 
 mod error;
+#[cfg(test)]
+mod random;
 
 pub use error::Error;
 pub use mesh::{Block, Defect, ElementId, Group, Mesh, gather};

@@ -328,3 +328,132 @@ fn diameter(x: &[[f64; 3]]) -> f64 {
         .flat_map(|(i, a)| x[..i].iter().map(move |b| distance(a, b)))
         .fold(0.0, f64::max)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> Mesh {
+        let mut mesh = Mesh::new(2);
+        for x in [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]] {
+            mesh.nodes.push([x[0], x[1], 0.0]);
+        }
+        mesh
+    }
+
+    fn only(mesh: &Mesh, id: ElementId) -> Option<Defect> {
+        let defects = mesh.check(&[id]);
+        assert!(defects.len() < 2);
+        assert!(defects.iter().all(|defect| defect.element() == id));
+        defects.first().copied()
+    }
+
+    #[test]
+    fn elements_keep_their_nodes_and_kinds_share_a_block() {
+        let mut mesh = square();
+        let a = mesh.push(Kind::Tri3, &[0, 1, 2]);
+        let side = mesh.push(Kind::Bar2, &[1, 2]);
+        let b = mesh.push(Kind::Tri3, &[0, 2, 3]);
+        assert_eq!(mesh.blocks.len(), 2);
+        assert_eq!(mesh.blocks[0].len(), 2);
+        assert_eq!(mesh.element_nodes(a), [0, 1, 2]);
+        assert_eq!(mesh.element_nodes(b), [0, 2, 3]);
+        assert_eq!(mesh.element_nodes(side), [1, 2]);
+        assert_eq!(mesh.kind(side), Kind::Bar2);
+        let group = Group::new(2, vec![b, a, b]);
+        assert_eq!(group.elements, [a, b]);
+        assert_eq!(mesh.group_nodes(&group), [0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn a_merged_mesh_keeps_points_elements_and_groups_of_both() {
+        let mut one = square();
+        let a = one.push(Kind::Bar2, &[0, 1]);
+        one.groups.insert("one".to_owned(), Group::new(1, vec![a]));
+        let mut two = square();
+        two.dim = 3;
+        two.push(Kind::Point1, &[3]);
+        let b = two.push(Kind::Bar2, &[2, 3]);
+        two.groups.insert("two".to_owned(), Group::new(1, vec![b]));
+        one.merge("two", two.clone()).unwrap();
+        assert_eq!((one.dim, one.nodes.len()), (3, 8));
+        assert_eq!(one.element_nodes(one.groups["one"].elements[0]), [0, 1]);
+        assert_eq!(one.element_nodes(one.groups["two"].elements[0]), [6, 7]);
+
+        let before = one.clone();
+        let clash = Error::GroupClash {
+            mesh: "again".to_owned(),
+            group: "two".to_owned(),
+        };
+        assert_eq!(one.merge("again", two), Err(clash));
+        assert_eq!(one, before);
+    }
+
+    #[test]
+    fn the_size_is_the_diagonal_and_scales() {
+        let mut mesh = square();
+        assert_eq!(mesh.size(), 5.0f64.sqrt());
+        mesh.scale(1e-3);
+        assert!((mesh.size() - 1e-3 * 5.0f64.sqrt()).abs() < 1e-18);
+        assert_eq!(Mesh::new(3).size(), 0.0);
+    }
+
+    #[test]
+    fn sound_elements_have_no_defect_in_any_position_of_their_nodes_in_the_cycle() {
+        let mut mesh = square();
+        for nodes in [[0, 1, 2, 3], [1, 2, 3, 0]] {
+            let id = mesh.push(Kind::Quad4, &nodes);
+            assert_eq!(only(&mesh, id), None);
+        }
+        // Lines and points have no inside; a line may run either way.
+        let ids = [
+            mesh.push(Kind::Bar2, &[1, 0]),
+            mesh.push(Kind::Point1, &[0]),
+        ];
+        assert_eq!(mesh.check(&ids), []);
+    }
+
+    #[test]
+    fn defects_are_told_apart() {
+        let mut mesh = square();
+        let turned = mesh.push(Kind::Quad4, &[0, 3, 2, 1]);
+        let crossed = mesh.push(Kind::Quad4, &[0, 2, 1, 3]);
+        for element in [turned, crossed] {
+            let defect = only(&mesh, element);
+            assert!(
+                matches!(defect, Some(Defect::Inverted { determinant, .. }) if determinant < -0.4)
+            );
+        }
+        let element = mesh.push(Kind::Tri3, &[0, 1, 1]);
+        let node = 1;
+        assert_eq!(
+            only(&mesh, element),
+            Some(Defect::RepeatedNode { element, node })
+        );
+        mesh.nodes.push([1.0, 0.0, 0.0]);
+        let element = mesh.push(Kind::Tri3, &[0, 4, 1]);
+        assert_eq!(only(&mesh, element), Some(Defect::Degenerate { element }));
+        mesh.nodes.push([f64::NAN, 0.0, 0.0]);
+        let element = mesh.push(Kind::Bar2, &[0, 5]);
+        let node = 5;
+        assert_eq!(
+            only(&mesh, element),
+            Some(Defect::NotFinite { element, node })
+        );
+        mesh.nodes.push(mesh.nodes[0]);
+        let element = mesh.push(Kind::Bar2, &[0, 6]);
+        assert_eq!(only(&mesh, element), Some(Defect::Degenerate { element }));
+    }
+
+    #[test]
+    fn whether_a_cell_is_sound_does_not_depend_on_the_unit_of_length() {
+        for factor in [1e-9, 1e9] {
+            let mut mesh = square();
+            mesh.scale(factor);
+            let good = mesh.push(Kind::Quad4, &[0, 1, 2, 3]);
+            let bad = mesh.push(Kind::Quad4, &[3, 2, 1, 0]);
+            assert_eq!(only(&mesh, good), None);
+            assert!(matches!(only(&mesh, bad), Some(Defect::Inverted { .. })));
+        }
+    }
+}

@@ -185,3 +185,195 @@ fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
 fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ElementId;
+    use crate::random::Random;
+
+    fn face(kind: Kind, axis: [f64; 3]) -> Face {
+        Face {
+            kind,
+            nodes: [0, 1, 2, 3],
+            parent: ElementId { block: 0, index: 0 },
+            axis,
+        }
+    }
+
+    fn position(kind: Kind, x: &[[f64; 3]], xi: &[f64; 3]) -> [f64; 3] {
+        let mut n = vec![0.0; x.len()];
+        (kind.table().shape)(xi, &mut n);
+        map::point(x, &n)
+    }
+
+    fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+        let r = difference(a, b);
+        dot(&r, &r).sqrt()
+    }
+
+    /// Least distance by sampling the reference cell and refining around the best sample.
+    fn least_distance(kind: Kind, x: &[[f64; 3]], point: &[f64; 3]) -> f64 {
+        let contains = kind.table().contains;
+        let (mut centre, mut half) = ([0.0; 3], 1.0);
+        let mut best = f64::INFINITY;
+        let steps = 24;
+        for _ in 0..30 {
+            let mut nearest = centre;
+            for code in 0..(steps + 1) * (steps + 1) {
+                let offset = [code % (steps + 1), code / (steps + 1)];
+                let mut xi = centre;
+                for i in 0..kind.table().dim {
+                    let t = 2.0 * offset[i] as f64 / steps as f64 - 1.0;
+                    xi[i] = (centre[i] + half * t).clamp(-1.0, 1.0);
+                }
+                if kind == Kind::Tri3 {
+                    // Onto the simplex along a ray, so that its slanted edge is sampled too.
+                    xi = xi.map(|c| c.max(0.0));
+                    let sum = (xi[0] + xi[1]).max(1.0);
+                    xi = xi.map(|c| c / sum);
+                }
+                assert!(contains(&xi, 1e-12));
+                let found = distance(point, &position(kind, x, &xi));
+                if found < best {
+                    (best, nearest) = (found, xi);
+                }
+            }
+            (centre, half) = (nearest, half * 0.3);
+        }
+        best
+    }
+
+    /// A face of size about one: the reference cell moved by a random map near a rotation, corners shaken.
+    fn random_face(kind: Kind, random: &mut Random) -> Vec<[f64; 3]> {
+        let plane = kind == Kind::Bar2;
+        let (a, b, origin) = (random.point(1.0), random.point(1.0), random.point(1.0));
+        let flat = |x: [f64; 3]| if plane { [x[0], x[1], 0.0] } else { x };
+        // The second direction is made square to the first, so that the face is no needle.
+        let a = flat([a[0] + a[0].signum() * 0.3, a[1], a[2]]);
+        let shift = dot(&a, &b) / dot(&a, &a);
+        let b = [0, 1, 2].map(|i| b[i] - shift * a[i]);
+        let scale = (dot(&a, &a) / dot(&b, &b)).sqrt();
+        let corners = kind.table().reference.iter();
+        corners
+            .map(|xi| {
+                let shake = random.point(0.1);
+                flat([0, 1, 2].map(|i| origin[i] + xi[0] * a[i] + scale * xi[1] * b[i] + shake[i]))
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_projection_is_the_closest_point_of_the_face() {
+        let mut random = Random::new(2);
+        for kind in [Kind::Bar2, Kind::Tri3, Kind::Quad4] {
+            let mut inside = 0;
+            for _ in 0..200 {
+                let x = random_face(kind, &mut random);
+                let mut point = random.point(1.5);
+                if kind == Kind::Bar2 {
+                    point[2] = 0.0;
+                }
+                let found = project(&face(kind, [0.0; 3]), &x, &point);
+                let expected = least_distance(kind, &x, &point);
+                assert!(
+                    (found.distance - expected).abs() < 1e-9,
+                    "{kind:?} {found:?} {expected}"
+                );
+                assert_eq!(found.point, position(kind, &x, &found.xi));
+                assert!((kind.table().contains)(&found.xi, 1e-15));
+                if found.inside {
+                    inside += 1;
+                    assert!((found.gap.abs() - found.distance).abs() < 1e-9);
+                }
+            }
+            assert!((10..190).contains(&inside), "{kind:?} {inside}");
+        }
+    }
+
+    #[test]
+    fn a_point_lifted_off_the_face_along_the_normal_comes_back_with_its_gap() {
+        let mut random = Random::new(3);
+        for kind in [Kind::Bar2, Kind::Tri3, Kind::Quad4] {
+            for _ in 0..200 {
+                let x = random_face(kind, &mut random);
+                let mut xi = [0.8 * random.unit(), 0.8 * random.unit(), 0.0];
+                match kind {
+                    Kind::Bar2 => xi[1] = 0.0,
+                    Kind::Tri3 => xi[1] *= 1.0 - xi[0],
+                    _ => (),
+                }
+                let mut dn = vec![[0.0; 3]; x.len()];
+                (kind.table().gradient)(&xi, &mut dn);
+                let (_, normal) = map::measure(&x, &dn, kind.table().dim);
+                let foot = position(kind, &x, &xi);
+                for gap in [-0.03, 0.0, 0.03] {
+                    let point = [0, 1, 2].map(|i| foot[i] + gap * normal[i]);
+                    let found = project(&face(kind, [0.0; 3]), &x, &point);
+                    assert!(found.inside);
+                    assert!((found.gap - gap).abs() < 1e-14, "{kind:?} {found:?} {gap}");
+                    (0..2).for_each(|i| assert!((found.xi[i] - xi[i]).abs() < 1e-12));
+                    (0..3).for_each(|i| assert!((found.normal[i] - normal[i]).abs() < 1e-12));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_gap_is_positive_outside_the_body_and_negative_in_it() {
+        let mesh = crate::generate::box_("a", [0.0; 3], [1.0; 3], [1, 1, 1], false);
+        for side in ["left", "right", "front", "back", "bottom", "top"] {
+            let group = &mesh.groups[&format!("a.{side}")];
+            let surface = crate::Surface::new(&mesh, group, &mesh.groups["a"].elements).unwrap();
+            let face = &surface.faces[0];
+            let mut x = [[0.0; 3]; MAX_NODES];
+            let x = crate::gather(&mesh.nodes, face.corners(), &mut x);
+            let inner = project(face, x, &[0.5; 3]);
+            assert_eq!((inner.gap, inner.distance, inner.inside), (-0.5, 0.5, true));
+            let outer = [0, 1, 2].map(|i| 0.5 + 1.5 * inner.normal[i]);
+            let outer = project(face, x, &outer);
+            assert_eq!((outer.gap, outer.distance, outer.inside), (1.0, 1.0, true));
+        }
+    }
+
+    #[test]
+    fn the_end_of_a_bar_measures_its_gap_along_the_axis() {
+        let end = face(Kind::Point1, [-1.0, 0.0, 0.0]);
+        let found = project(&end, &[[2.0, 0.0, 0.0]], &[1.5, 0.0, 0.0]);
+        assert_eq!((found.gap, found.distance, found.inside), (0.5, 0.5, true));
+        assert_eq!((found.normal, found.point), (end.axis, [2.0, 0.0, 0.0]));
+        // Pushed into the bar; beside its axis.
+        assert_eq!(
+            project(&end, &[[2.0, 0.0, 0.0]], &[2.25, 0.0, 0.0]).gap,
+            -0.25
+        );
+        let beside = project(&end, &[[2.0, 0.0, 0.0]], &[1.6, 0.3, 0.0]);
+        assert!((beside.gap - 0.4).abs() < 1e-15 && (beside.distance - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn beyond_an_edge_the_closest_point_is_on_the_edge() {
+        let square = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let found = project(&face(Kind::Quad4, [0.0; 3]), &square, &[1.3, 0.25, 0.4]);
+        assert!(!found.inside);
+        assert!((found.distance - 0.5).abs() < 1e-15 && (found.gap - 0.4).abs() < 1e-15);
+        assert_eq!(found.xi, [1.0, -0.5, 0.0]);
+        let found = project(&face(Kind::Tri3, [0.0; 3]), &square[..3], &[2.0, 3.0, 0.0]);
+        assert!(!found.inside);
+        assert_eq!(found.point, [1.0, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn a_point_over_a_shared_edge_is_inside_both_faces() {
+        let mut random = Random::new(4);
+        for _ in 0..200 {
+            let x = random_face(Kind::Quad4, &mut random);
+            let opposite = [0, 1, 2].map(|i| x[0][i] + x[1][i] - x[2][i]);
+            // Two triangles of one plane on either side of the edge from 0 to 1.
+            let t = random.unit();
+            let foot = map::point(&x[..2], &[1.0 - t, t]);
+            let on = |x: &[[f64; 3]]| project(&face(Kind::Tri3, [0.0; 3]), x, &foot).inside;
+            assert!(on(&[x[0], x[1], x[2]]) && on(&[x[1], x[0], opposite]));
+        }
+    }
+}

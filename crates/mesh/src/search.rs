@@ -197,3 +197,77 @@ fn longest_side(boxes: &[Bounds], items: &[u32]) -> usize {
     let side = |i: usize| centres.max[i] - centres.min[i];
     (1..3).fold(0, |best, i| if side(i) > side(best) { i } else { best })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    fn random_boxes(random: &mut Random, n: usize) -> Vec<Bounds> {
+        let boxes = (0..n).map(|_| Bounds::of(&[random.point(1.0)]).widened(0.1 * random.unit()));
+        boxes.collect()
+    }
+
+    fn assert_equals_brute_force(tree: &BoxTree, boxes: &[Bounds], random: &mut Random) {
+        let mut found = vec![7];
+        for _ in 0..50 {
+            let (point, distance) = (random.point(1.5), random.unit());
+            tree.near(&point, distance, &mut found);
+            let near = |b: &Bounds| b.distance_squared(&point) <= distance * distance;
+            assert_eq!(found, brute_force(boxes, near));
+            let query = Bounds::of(&[random.point(1.0), random.point(1.0)]);
+            tree.overlapping(&query, &mut found);
+            assert_eq!(found, brute_force(boxes, |b| b.overlaps(&query)));
+        }
+    }
+
+    fn brute_force(boxes: &[Bounds], test: impl Fn(&Bounds) -> bool) -> Vec<u32> {
+        (0..boxes.len() as u32)
+            .filter(|&i| test(&boxes[i as usize]))
+            .collect()
+    }
+
+    #[test]
+    fn answers_equal_brute_force_before_and_after_motion() {
+        let mut random = Random::new(1);
+        for n in [0, 1, 3, 4, 5, 9, 64, 333] {
+            let boxes = random_boxes(&mut random, n);
+            let mut tree = BoxTree::new(&boxes);
+            assert_eq!((tree.len(), tree.is_empty()), (n, n == 0));
+            assert_equals_brute_force(&tree, &boxes, &mut random);
+            let moved = random_boxes(&mut random, n);
+            tree.refit(&moved);
+            assert_equals_brute_force(&tree, &moved, &mut random);
+        }
+    }
+
+    #[test]
+    fn boxes_with_one_centre_are_all_found() {
+        let boxes = vec![Bounds::of(&[[1.0; 3]]); 100];
+        let tree = BoxTree::new(&boxes);
+        let mut found = Vec::new();
+        tree.near(&[1.0, 1.0, 3.0], 2.0, &mut found);
+        assert_eq!(found, (0..100).collect::<Vec<u32>>());
+        tree.near(&[1.0, 1.0, 3.0], 1.999, &mut found);
+        assert!(found.is_empty());
+    }
+
+    #[test]
+    fn a_search_looks_at_a_small_part_of_the_boxes() {
+        // 32 x 32 unit squares; a point sees the four around it, and the tests it takes grow with the depth of the
+        // tree, not with the number of boxes.
+        let boxes: Vec<Bounds> = (0..1024)
+            .map(|i| [(i % 32) as f64, (i / 32) as f64, 0.0])
+            .map(|x| Bounds::of(&[x, [x[0] + 1.0, x[1] + 1.0, 0.0]]))
+            .collect();
+        let tree = BoxTree::new(&boxes);
+        let (count, mut found) = (std::cell::Cell::new(0), Vec::new());
+        let test = |b: &Bounds| {
+            count.set(count.get() + 1);
+            b.distance_squared(&[16.0, 16.0, 0.0]) <= 0.25
+        };
+        tree.collect(test, &mut found);
+        assert_eq!(found, [495, 496, 527, 528]);
+        assert!(count.get() < 120, "{}", count.get());
+    }
+}

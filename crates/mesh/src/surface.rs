@@ -188,3 +188,101 @@ fn centre(mesh: &Mesh, id: ElementId) -> [f64; 3] {
         sum / nodes.len() as f64
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate::{box_, line, rectangle};
+
+    fn surface(mesh: &Mesh, body: &str, side: &str) -> Result<Surface, Error> {
+        Surface::new(mesh, &mesh.groups[side], &mesh.groups[body].elements)
+    }
+
+    #[test]
+    fn facets_take_orientation_and_parent_from_their_cell() {
+        let mut mesh = box_("a", [0.0; 3], [1.0; 3], [2, 2, 2], false);
+        let id = mesh.groups["a.top"].elements[1];
+        let sound = surface(&mesh, "a", "a.top").unwrap();
+        let block = &mut mesh.blocks[id.block as usize];
+        let first = 4 * id.index as usize;
+        block.nodes[first..first + 4].reverse();
+        assert_eq!(surface(&mesh, "a", "a.top").unwrap(), sound);
+        for face in &sound.faces {
+            let nodes = mesh.element_nodes(face.parent);
+            assert!(face.corners().iter().all(|node| nodes.contains(node)));
+        }
+    }
+
+    #[test]
+    fn node_areas_of_a_grid_are_halves_at_edges_and_quarters_at_corners() {
+        let mesh = box_("a", [0.0; 3], [2.0, 2.0, 1.0], [2, 2, 1], false);
+        let top = surface(&mesh, "a", "a.top").unwrap();
+        let expected = [0.25, 0.5, 0.25, 0.5, 1.0, 0.5, 0.25, 0.5, 0.25];
+        for (area, expected) in top.node_areas(&mesh).iter().zip(expected) {
+            assert!((area - expected).abs() < 1e-15);
+        }
+        assert_eq!(top.index_of(top.nodes[4]), Some(4));
+        assert_eq!(top.index_of(0), None);
+    }
+
+    #[test]
+    fn node_areas_add_up_to_the_area() {
+        let meshes = [
+            (box_("a", [0.0; 3], [1.0, 2.0, 1.5], [3, 2, 2], true), 3.0),
+            (rectangle("a", [0.0; 2], [3.0, 1.0], [4, 2], true), 3.0),
+        ];
+        for (mesh, expected) in meshes {
+            let side = if mesh.dim == 3 { "a.right" } else { "a.top" };
+            let areas = surface(&mesh, "a", side).unwrap().node_areas(&mesh);
+            assert!((areas.iter().sum::<f64>() - expected).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_facet_away_from_the_body_is_on_no_cell() {
+        let mut mesh = rectangle("a", [0.0; 2], [1.0; 2], [2, 2], false);
+        mesh.merge("b", rectangle("b", [2.0, 0.0], [1.0; 2], [1, 1], false))
+            .unwrap();
+        let error = surface(&mesh, "a", "b.left").unwrap_err();
+        let centre = [2.0, 0.5, 0.0];
+        assert!(matches!(&error, Error::FacetOnNoCell { centre: c, .. } if *c == centre));
+    }
+
+    #[test]
+    fn a_facet_inside_the_body_is_on_two_cells() {
+        let mut mesh = rectangle("a", [0.0; 2], [1.0; 2], [2, 1], true);
+        let cut = mesh.push(Kind::Bar2, &[1, 4]);
+        mesh.groups
+            .insert("cut".to_owned(), Group::new(1, vec![cut]));
+        let error = surface(&mesh, "a", "cut").unwrap_err();
+        assert!(matches!(error, Error::FacetOnTwoCells { nodes, cells, .. }
+                if nodes == [1, 4] && cells[0] != cells[1]));
+    }
+
+    #[test]
+    fn the_same_facet_twice_is_an_error() {
+        let mut mesh = line("a", [0.0; 3], [1.0, 0.0, 0.0], 2, 1);
+        let again = mesh.push(Kind::Point1, &[0]);
+        let first = mesh.groups["a.left"].elements[0];
+        mesh.groups
+            .insert("twice".to_owned(), Group::new(0, vec![first, again]));
+        let error = surface(&mesh, "a", "twice").unwrap_err();
+        assert!(matches!(error, Error::FacetTwice { nodes, .. } if nodes == [0]));
+    }
+
+    #[test]
+    fn facets_must_have_one_dimension_less_than_the_cells() {
+        let mut mesh = box_("a", [0.0; 3], [1.0; 3], [1, 1, 1], false);
+        let (facets, cells) = (3, 3);
+        assert_eq!(
+            surface(&mesh, "a", "a"),
+            Err(Error::FacetDimension { facets, cells })
+        );
+        let plate = rectangle("plate", [0.0; 2], [1.0; 2], [1, 1], false);
+        mesh.merge("plate", plate).unwrap();
+        assert!(matches!(
+            surface(&mesh, "plate", "plate.top"),
+            Err(Error::PlaneCellsInSpace { .. })
+        ));
+    }
+}
