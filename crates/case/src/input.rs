@@ -1,0 +1,57 @@
+//! The texts that make up a case: the file, and the overrides of the command line.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::error::Problem;
+
+/// A text with a name to show in messages.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// Path of the file as the user gave it, or `--set`.
+    pub name: String,
+    /// The text, UTF-8.
+    pub text: String,
+}
+
+/// The case file and its overrides, unread as TOML.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Input {
+    /// The case file first, then one source per override.
+    pub sources: Vec<Source>,
+    /// Folder that the paths of the case file start from.
+    pub folder: PathBuf,
+}
+
+impl Input {
+    /// Reads the case file at `path`; each of `overrides` is one `key.path=value`, which replaces the value at that key path.
+    ///
+    /// # Errors
+    /// A [`Problem`] without a place: the file is missing, is a folder, cannot be read, or is not UTF-8.
+    pub fn read(path: &Path, overrides: &[String]) -> Result<Input, Problem> {
+        let name = path.display().to_string();
+        if path.is_dir() {
+            let inside = path.join("case.toml");
+            let problem = Problem::new("", format!("`{name}` is a folder, not a case file"));
+            return Err(if inside.is_file() { problem.note(format!("it holds a case file: {}", inside.display())) } else { problem });
+        }
+        let bytes = fs::read(path).map_err(|cause| Problem::new("", format!("cannot read the case file `{name}`: {cause}")))?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let bytes = error.as_bytes();
+            let at = error.utf8_error().valid_up_to();
+            let line = 1 + bytes[..at].iter().filter(|&&byte| byte == b'\n').count();
+            Problem::new("", format!("the case file `{name}` is not UTF-8 text"))
+                .found(format!("the byte 0x{:02x} on line {line}, at offset {at}", bytes[at]))
+                .accepted(["a TOML file, saved as UTF-8"])
+        })?;
+        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        Ok(Input { folder, ..Input::from_text(&name, &text, overrides) })
+    }
+
+    /// The same from a text: paths in it start from the working folder.
+    pub fn from_text(name: &str, text: &str, overrides: &[String]) -> Input {
+        let file = Source { name: name.to_owned(), text: text.strip_prefix('\u{feff}').unwrap_or(text).to_owned() };
+        let overrides = overrides.iter().map(|text| Source { name: "--set".to_owned(), text: text.clone() });
+        Input { sources: std::iter::once(file).chain(overrides).collect(), folder: PathBuf::new() }
+    }
+}

@@ -1,0 +1,157 @@
+//! `[contact]`: who may touch whom, and by which law.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::quantity::{Coordinate, SurfaceDamping, SurfaceStiffness, Vector};
+
+/// Contact between two surfaces, or between a surface and a rigid obstacle; without friction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("oneOf" = [{ "required": ["primary"] }, { "required": ["obstacle"] }]))]
+pub struct Contact {
+    /// Group of the surface that carries the contact pressure at its nodes.
+    pub secondary: String,
+    /// Group of the surface that gives the normal.
+    pub primary: Option<String>,
+    /// A rigid obstacle in place of a primary surface.
+    pub obstacle: Option<Obstacle>,
+    /// Contact law.
+    pub law: Law,
+    /// Whether the pairing of the two surfaces follows their motion.
+    #[serde(default)]
+    pub sliding: Sliding,
+    /// Where the contact condition is imposed.
+    #[serde(default)]
+    pub integration: Integration,
+}
+
+/// A rigid obstacle that does not move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Obstacle {
+    /// A half space behind a plane.
+    Plane(Plane),
+}
+
+/// A rigid plane.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Plane {
+    /// A point of the plane.
+    pub point: Vector<Coordinate>,
+    /// Normal of the plane out of the obstacle, towards the bodies; of any length but zero.
+    pub normal: NormalVector,
+}
+
+/// One to three numbers, not all zero; those left out are zero.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(inline, extend("minItems" = 1, "maxItems" = 3))]
+pub struct NormalVector(pub Vec<f64>);
+
+impl NormalVector {
+    /// The three components as written, zeros added.
+    pub fn components(&self) -> [f64; 3] {
+        std::array::from_fn(|axis| self.0.get(axis).copied().unwrap_or(0.0))
+    }
+}
+
+/// A contact law. Gap g is positive when open, pressure p positive in compression, gap rate positive when opening.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Law {
+    /// Exact non-penetration: 0 <= g, 0 <= p, p g = 0 at the end of each step.
+    Displacement(DisplacementLaw),
+    /// Compliant with a damper: p = k max(0, -g), less C times the gap rate while the gap is closed.
+    Damped(DampedLaw),
+    /// Exact impenetrability in velocity: where the gap is closed, 0 <= gap rate, 0 <= p, and p times the gap rate = 0 at the end of
+    /// each step.
+    Velocity(VelocityLaw),
+}
+
+/// Exact non-penetration: nothing to give.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct DisplacementLaw {}
+
+/// A compliant law with a damper.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("not" = { "required": ["damping", "damping-factor"] }))]
+pub struct DampedLaw {
+    /// Stiffness per area k. Default: Young's modulus over the element size of the softer side.
+    pub stiffness: Option<SurfaceStiffness>,
+    /// Damping per area C. Default: from `damping-factor`.
+    pub damping: Option<SurfaceDamping>,
+    /// C over the impedance per area of the softer side, times sqrt(k h / E). Default: 0.5.
+    #[schemars(extend("minimum" = 0.0))]
+    pub damping_factor: Option<f64>,
+    /// What becomes of a pressure that the damper makes tensile.
+    #[serde(default)]
+    pub adhesion: Adhesion,
+}
+
+/// What becomes of a tensile pressure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Adhesion {
+    /// It is set to zero.
+    #[default]
+    Clip,
+    /// It stays, as the law is printed; the summary says how much it pulled.
+    AsPrinted,
+}
+
+/// Impenetrability in velocity.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct VelocityLaw {
+    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, `now` otherwise.
+    pub capture: Option<Capture>,
+    /// Which gaps switch the condition on.
+    #[serde(default)]
+    pub sign: Sign,
+}
+
+/// The gap that decides whether a point is closed in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Capture {
+    /// The gap at the beginning of the step.
+    Now,
+    /// The gap predicted for the middle of the step.
+    Half,
+    /// The gap predicted for the end of the step.
+    Full,
+}
+
+/// Which gaps switch the velocity condition on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sign {
+    /// Closed gaps.
+    #[default]
+    Closed,
+    /// Open gaps, as equation (7.d) is printed: bodies pass through each other. For comparison only.
+    AsPrinted,
+}
+
+/// Whether the pairing follows the motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sliding {
+    /// Points keep the partner and the normal of the initial configuration.
+    #[default]
+    Small,
+    /// The closest points are found again at each step.
+    Finite,
+}
+
+/// Where the contact condition is imposed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Integration {
+    /// At the nodes of the secondary surface.
+    #[default]
+    Node,
+}

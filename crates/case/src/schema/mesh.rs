@@ -1,0 +1,116 @@
+//! `[mesh]`: files and generated parts.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Named;
+use super::quantity::{Coordinate, Length, Vector};
+
+/// The mesh: a file, generated parts, or both. Their groups keep their names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("anyOf" = [{ "required": ["file"] }, { "required": ["generate"] }], "dependentRequired" = { "unit": ["file"] }))]
+pub struct Mesh {
+    /// Path of a Gmsh file (MSH 2.2 or 4.1, ASCII or binary), from the folder of the case file. Its physical groups are the names that
+    /// bodies, supports, contacts and probes use.
+    pub file: Option<String>,
+    /// Unit of the coordinates in `file`.
+    #[serde(default)]
+    pub unit: LengthUnit,
+    /// Generated parts. The part `a` has a group `a` of its cells, and groups of its sides: `a.left` and `a.right` (ends in x),
+    /// `a.bottom` and `a.top` (in y in two dimensions, in z in three), `a.front` and `a.back` (in y in three dimensions).
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub generate: Named<Part>,
+}
+
+/// A unit of length, such as `"mm"`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LengthUnit(pub String);
+
+impl Default for LengthUnit {
+    fn default() -> LengthUnit {
+        LengthUnit("m".to_owned())
+    }
+}
+
+impl JsonSchema for LengthUnit {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "LengthUnit".into()
+    }
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({ "type": "string", "x-length-unit": true, "x-example": "mm" })
+    }
+}
+
+/// A generated part: one shape.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Part {
+    /// Bars along a straight line.
+    Line(Line),
+    /// A rectangle in the plane: x to the right, y up.
+    Rectangle(Rectangle),
+    /// A box: x to the right, y to the back, z up.
+    Box(BoxPart),
+}
+
+/// Bars of equal length along a straight line, in as many dimensions as its points have components.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Line {
+    /// First point: the side `left`.
+    pub from: Vector<Coordinate>,
+    /// Last point: the side `right`. As many components as `from`.
+    pub to: Vector<Coordinate>,
+    /// Number of elements.
+    pub elements: Count,
+}
+
+/// A rectangle of quadrilaterals, or of triangles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Rectangle {
+    /// Corner of least x and y.
+    pub origin: [Coordinate; 2],
+    /// Extent in x and y.
+    pub size: [Length; 2],
+    /// Number of quadrilaterals along x and y.
+    pub elements: [Count; 2],
+    /// Cuts every quadrilateral into two triangles.
+    #[serde(default)]
+    pub triangles: bool,
+}
+
+/// A box of hexahedra, or of tetrahedra.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct BoxPart {
+    /// Corner of least x, y and z.
+    pub origin: [Coordinate; 3],
+    /// Extent in x, y and z.
+    pub size: [Length; 3],
+    /// Number of hexahedra along x, y and z.
+    pub elements: [Count; 3],
+    /// Cuts every hexahedron into tetrahedra.
+    #[serde(default)]
+    pub tetrahedra: bool,
+}
+
+/// A number of elements along one direction, 1 or more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Count(pub usize);
+
+impl JsonSchema for Count {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Count".into()
+    }
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({ "type": "integer", "minimum": 1, "maximum": 10_000_000 })
+    }
+}

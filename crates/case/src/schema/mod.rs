@@ -1,0 +1,165 @@
+//! Stage one: exactly what a case file may say, with no look at meshes and no name resolved.
+//!
+//! These types are the one description of the format. Their doc comments, ranges and defaults become the JSON schema
+//! ([`json_schema`]); every file is checked against that schema, with all its errors, before serde fills the types; and the reference
+//! page of the manual is written from it ([`crate::reference_page`]). A choice is an enum with one key for each variant.
+
+mod body;
+mod contact;
+mod mesh;
+mod output;
+mod quantity;
+mod time;
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+pub use body::{
+    AxisymmetricSection, Axis, BarSection, Body, Elastic, Gravity, Initial, Loads, Mass, Material, PlaneSection, Section, Support,
+};
+pub use contact::{
+    Adhesion, Capture, Contact, DampedLaw, DisplacementLaw, Integration, Law, NormalVector, Obstacle, Plane, Sign, Sliding, VelocityLaw,
+};
+pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
+pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};
+pub use quantity::{
+    Acceleration, Area, Coordinate, Density, Duration, Length, Modulus, SurfaceDamping, SurfaceStiffness, Vector, Velocity,
+};
+pub use time::{CentralDifference, Newmark, Scheme, Step, StepRule, Theta, Time};
+
+/// A case: bodies, what joins them, and the time to simulate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(title = "Carom case file")]
+pub struct Case {
+    /// Version of the format: 1.
+    #[schemars(extend("const" = 1))]
+    pub carom: u32,
+    /// Title of the report.
+    pub title: Option<String>,
+    /// Where the mesh comes from.
+    pub mesh: Mesh,
+    /// Materials, by name.
+    pub material: Named<Material>,
+    /// Bodies, by name.
+    pub body: Named<Body>,
+    /// Supports, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub support: Named<Support>,
+    /// Loads.
+    #[serde(default)]
+    pub load: Loads,
+    /// Contacts, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub contact: Named<Contact>,
+    /// Time and scheme.
+    pub time: Time,
+    /// Points whose motion is written at every step, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub probe: Named<Probe>,
+    /// What a run leaves.
+    #[serde(default)]
+    pub output: Output,
+    /// An exact solution to compare with.
+    pub reference: Option<Reference>,
+}
+
+/// Things by name. A name is made of letters, digits, `_` and `-`: it becomes part of file and column names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Named<T>(pub BTreeMap<String, T>);
+
+impl<T> Default for Named<T> {
+    fn default() -> Named<T> {
+        Named(BTreeMap::new())
+    }
+}
+
+impl<T> Named<T> {
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The names, in alphabetical order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+
+    /// Names and things, in alphabetical order of the names.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &T)> {
+        self.0.iter().map(|(name, thing)| (name.as_str(), thing))
+    }
+
+    /// The thing called `name`.
+    pub fn get(&self, name: &str) -> Option<&T> {
+        self.0.get(name)
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Named<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        format!("Named{}", T::schema_name()).into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        schemars::json_schema!({
+            "type": "object",
+            "additionalProperties": generator.subschema_for::<T>(),
+            "propertyNames": { "pattern": NAME_PATTERN },
+            "minProperties": 1,
+        })
+    }
+}
+
+/// Names, as a regular expression for editors.
+const NAME_PATTERN: &str = r"^[\p{L}\p{N}_-]+$";
+
+/// Whether `name` matches the pattern of names.
+pub(crate) fn is_name(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+}
+
+/// The JSON schema of the case file, for editors and for `validate`.
+pub fn json_schema() -> Value {
+    let mut schema = schemars::schema_for!(Case).to_value();
+    drop_null(&mut schema);
+    schema
+}
+
+/// TOML has no null: an option is a key that may be left out, nothing more.
+fn drop_null(schema: &mut Value) {
+    match schema {
+        Value::Object(entries) => {
+            if let Some(Value::Array(types)) = entries.get_mut("type") {
+                types.retain(|name| name != "null");
+                if let [only] = types.as_slice() {
+                    let only = only.clone();
+                    entries.insert("type".to_owned(), only);
+                }
+            }
+            if !entries.contains_key("properties")
+                && let Some(Value::Array(branches)) = entries.get_mut("anyOf")
+            {
+                branches.retain(|branch| branch.get("type") != Some(&Value::from("null")));
+                if let [Value::Object(only)] = branches.as_slice() {
+                    let only = only.clone();
+                    entries.remove("anyOf");
+                    entries.extend(only);
+                }
+            }
+            if entries.get("default") == Some(&Value::Null) {
+                entries.remove("default");
+            }
+            entries.values_mut().for_each(drop_null);
+        }
+        Value::Array(items) => items.iter_mut().for_each(drop_null),
+        _ => {}
+    }
+}

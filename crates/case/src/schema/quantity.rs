@@ -1,0 +1,123 @@
+//! Quantities of the case file: one type for each dimension and range, so that a field says its unit by its type.
+//!
+//! In the file each is a number in SI units or a text with a unit (`"254 mm"`). Reading checks the dimension; the range stands in the
+//! schema and is checked by `validate`.
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize};
+
+use crate::units::{Dimension, parse_quantity};
+
+/// A number or a text with a unit, as it stands in the file.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Written {
+    Number(f64),
+    Text(String),
+}
+
+impl Written {
+    /// The SI value. The dimension is one of `units::NAMED`.
+    fn si(&self, dimension: &str) -> Result<f64, String> {
+        match self {
+            Written::Number(value) => Ok(*value),
+            Written::Text(text) => {
+                let wanted = Dimension::named(dimension).ok_or_else(|| format!("no dimension is called {dimension}"))?;
+                parse_quantity(text, wanted).map_err(|error| error.to_string())
+            }
+        }
+    }
+}
+
+macro_rules! quantity {
+    ($name:ident, $dimension:literal, $unit:literal, $example:literal, $bound:expr, $doc:literal) => {
+        #[doc = $doc]
+        #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize)]
+        pub struct $name(pub f64);
+
+        impl<'de> Deserialize<'de> for $name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let written = Written::deserialize(deserializer)?;
+                written.si($dimension).map($name).map_err(serde::de::Error::custom)
+            }
+        }
+
+        impl JsonSchema for $name {
+            fn inline_schema() -> bool {
+                true
+            }
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($name).into()
+            }
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                let mut schema = json_schema!({
+                    "type": ["number", "string"],
+                    "x-dimension": $dimension,
+                    "x-unit": $unit,
+                    "x-example": $example,
+                });
+                let bound: Option<(&str, f64)> = $bound;
+                if let Some((keyword, value)) = bound {
+                    schema.insert(keyword.to_owned(), value.into());
+                }
+                schema
+            }
+        }
+    };
+}
+
+const POSITIVE: Option<(&str, f64)> = Some(("exclusiveMinimum", 0.0));
+const NOT_NEGATIVE: Option<(&str, f64)> = Some(("minimum", 0.0));
+
+quantity!(Coordinate, "length", "m", "254 mm", None, "A coordinate or a displacement, m.");
+quantity!(Length, "length", "m", "254 mm", POSITIVE, "A length greater than zero, m.");
+quantity!(Area, "area", "m^2", "645 mm^2", POSITIVE, "An area greater than zero, m².");
+quantity!(Duration, "time", "s", "0.25 us", POSITIVE, "A time greater than zero, s.");
+quantity!(Density, "density", "kg/m^3", "7.8 t/m^3", POSITIVE, "A mass density greater than zero, kg/m³.");
+quantity!(Modulus, "stress", "Pa", "210 GPa", POSITIVE, "A modulus greater than zero, Pa.");
+quantity!(Velocity, "velocity", "m/s", "36 km/h", None, "A velocity, m/s.");
+quantity!(Acceleration, "acceleration", "m/s^2", "-9.81 m/s^2", None, "An acceleration, m/s².");
+quantity!(SurfaceStiffness, "stiffness per area", "Pa/m", "1 GPa/mm", POSITIVE, "A stiffness per area greater than zero, Pa/m.");
+quantity!(SurfaceDamping, "damping per area", "Pa*s/m", "20 MPa*s/m", NOT_NEGATIVE, "A damping per area, zero or more, Pa s/m.");
+
+/// One to three components of a vector; those left out are zero.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Vector<Q>(pub Vec<Q>);
+
+impl<Q: JsonSchema> JsonSchema for Vector<Q> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        format!("Vector{}", Q::schema_name()).into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "array", "items": generator.subschema_for::<Q>(), "minItems": 1, "maxItems": 3 })
+    }
+}
+
+impl<Q: Copy + Into<f64>> Vector<Q> {
+    /// The components in SI units, zeros added.
+    pub fn si(&self) -> [f64; 3] {
+        std::array::from_fn(|axis| self.0.get(axis).map_or(0.0, |&component| component.into()))
+    }
+
+    /// How many components the file gives: 1, 2 or 3.
+    pub fn given(&self) -> usize {
+        self.0.len()
+    }
+}
+
+macro_rules! into_si {
+    ($($name:ident)*) => {
+        $(impl From<$name> for f64 {
+            fn from(quantity: $name) -> f64 {
+                quantity.0
+            }
+        })*
+    };
+}
+
+into_si!(Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping);
