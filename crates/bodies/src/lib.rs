@@ -1,1 +1,17 @@
-//! Discretised bodies: mass, forces, tangents, energies.
+//! Discretised bodies: mass, internal forces, stiffness, energies, stresses and their stability limit.
+//!
+//! A body does not know what touches it, nor how time goes on. Vectors of unknowns are those of the whole system:
+//! node `i` of the system owns the entries `dim * i .. dim * i + dim`.
+
+mod bar;
+mod block;
+mod body;
+mod continuum;
+mod error;
+mod size;
+mod stability;
+
+pub use block::Scratch;
+pub use body::{Body, BodySpec, Kinematics, MassKind};
+pub use error::Error;
+pub use size::height;

@@ -1,0 +1,335 @@
+//! A body: elements with one kinematics and one material.
+
+use std::ops::Range;
+
+use carom_algebra::csr::Csr;
+use carom_algebra::tensor::Mat3;
+use carom_elements::Kind;
+use carom_materials::{Elastic, Plane};
+use carom_mesh::{ElementId, Mesh};
+use rayon::prelude::*;
+
+use crate::Error;
+use crate::bar::Bar;
+use crate::block::{Block, Physics, Scratch};
+use crate::continuum::Law;
+use crate::{size, stability};
+
+/// How the displacement of an element is restricted, and what its missing dimensions are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kinematics {
+    /// Axial strain only.
+    Bar {
+        /// Cross-section in m².
+        area: f64,
+    },
+    /// No strain out of the plane.
+    PlaneStrain {
+        /// Thickness in m.
+        thickness: f64,
+    },
+    /// No stress out of the plane.
+    PlaneStress {
+        /// Thickness in m.
+        thickness: f64,
+    },
+    /// Symmetry of revolution about the second axis: x is the radius, forces and masses are those of the full turn.
+    Axisymmetric,
+    /// Three dimensions, no restriction.
+    Solid,
+}
+
+impl Kinematics {
+    /// Dimension of the elements that this kinematics takes.
+    pub fn dim(self) -> usize {
+        match self {
+            Kinematics::Bar { .. } => 1,
+            Kinematics::PlaneStrain { .. } | Kinematics::PlaneStress { .. } | Kinematics::Axisymmetric => 2,
+            Kinematics::Solid => 3,
+        }
+    }
+
+    /// The state of stress beside the elements.
+    pub fn plane(self) -> Plane {
+        match self {
+            Kinematics::Bar { .. } => Plane::Uniaxial,
+            Kinematics::PlaneStress { .. } => Plane::Stress,
+            Kinematics::PlaneStrain { .. } | Kinematics::Axisymmetric | Kinematics::Solid => Plane::Full,
+        }
+    }
+
+    /// Name as in the case file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kinematics::Bar { .. } => "bar",
+            Kinematics::PlaneStrain { .. } => "plane-strain",
+            Kinematics::PlaneStress { .. } => "plane-stress",
+            Kinematics::Axisymmetric => "axisymmetric",
+            Kinematics::Solid => "solid",
+        }
+    }
+
+    /// Area (m²) that a unit of surface measure at `x` stands for: the section of a bar (measure 1 at its end), the
+    /// thickness of a plane body per length, 2πr, or 1.
+    pub fn surface_factor(self, x: &[f64; 3]) -> f64 {
+        match self {
+            Kinematics::Bar { area } => area,
+            Kinematics::PlaneStrain { thickness } | Kinematics::PlaneStress { thickness } => thickness,
+            Kinematics::Axisymmetric => std::f64::consts::TAU * x[0],
+            Kinematics::Solid => 1.0,
+        }
+    }
+}
+
+/// How the mass of an element is spread over its nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MassKind {
+    /// Row sums ∫ ρ N_a dV on the diagonal.
+    Lumped,
+    /// ∫ ρ N_a N_b dV.
+    Consistent,
+}
+
+/// What a body is made of.
+#[derive(Clone, Debug)]
+pub struct BodySpec {
+    /// Name as in the case file.
+    pub name: String,
+    /// Cells of the mesh.
+    pub cells: Vec<ElementId>,
+    /// Kinematics and section.
+    pub kinematics: Kinematics,
+    /// Material.
+    pub material: Elastic,
+}
+
+/// A discretised body at small strain, linear in the displacement.
+#[derive(Debug)]
+pub struct Body {
+    name: String,
+    kinematics: Kinematics,
+    material: Elastic,
+    cells: Vec<ElementId>,
+    blocks: Vec<Block>,
+    dim: usize,
+    smallest: f64,
+}
+
+impl Body {
+    /// Builds a body on a mesh. `number`: system number of each mesh node.
+    ///
+    /// # Errors
+    /// No element, elements of a wrong dimension, a negative radius in axisymmetry.
+    pub fn new(mesh: &Mesh, spec: BodySpec, number: &[u32]) -> Result<Body, Error> {
+        if spec.cells.is_empty() {
+            return Err(Error::Empty { body: spec.name });
+        }
+        check(mesh, &spec)?;
+        let mut x = vec![[0.0; 3]; mesh.nodes.len()];
+        for (node, &system) in number.iter().enumerate() {
+            if system != u32::MAX {
+                x[system as usize] = mesh.nodes[node];
+            }
+        }
+        let physics = match spec.kinematics {
+            Kinematics::Bar { area } => {
+                Physics::Bar(Bar { young: spec.material.young, area, density: spec.material.density })
+            }
+            kinematics => Physics::Continuum(Law::new(kinematics, spec.material, mesh.dim)),
+        };
+        let mut cells = Vec::with_capacity(spec.cells.len());
+        let mut blocks = Vec::new();
+        for kind in Kind::ALL {
+            let of_kind: Vec<ElementId> =
+                spec.cells.iter().copied().filter(|&cell| mesh.kind(cell) == kind).collect();
+            let nodes = of_kind.iter().flat_map(|&cell| mesh.element_nodes(cell));
+            let elements: Vec<u32> = nodes.map(|&node| number[node as usize]).collect();
+            if !elements.is_empty() {
+                blocks.push(Block::new(kind, physics, &elements, &x));
+            }
+            cells.extend(of_kind);
+        }
+        Ok(Body {
+            name: spec.name,
+            kinematics: spec.kinematics,
+            material: spec.material,
+            smallest: cells.iter().map(|&cell| size::smallest(mesh, cell)).fold(f64::INFINITY, f64::min),
+            cells,
+            blocks,
+            dim: mesh.dim,
+        })
+    }
+
+    /// Name as in the case file.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Kinematics and section.
+    pub fn kinematics(&self) -> Kinematics {
+        self.kinematics
+    }
+
+    /// Material.
+    pub fn material(&self) -> &Elastic {
+        &self.material
+    }
+
+    /// Cells of the mesh, in the order of [`Body::stresses`].
+    pub fn cells(&self) -> &[ElementId] {
+        &self.cells
+    }
+
+    /// Speed of compression waves in m/s.
+    pub fn wave_speed(&self) -> f64 {
+        self.material.wave_speed(self.kinematics.plane())
+    }
+
+    /// Smallest size of an element over its faces, in m: the h_e of the Courant number c dt / h_e.
+    pub fn smallest_size(&self) -> f64 {
+        self.smallest
+    }
+
+    /// Adds the internal forces f(u) (N) of this body to `f` and returns its strain energy U(u) (J).
+    ///
+    /// `u`, `f`: system vectors, m and N. The sums run in a fixed order whatever the number of threads.
+    pub fn internal_force(&self, u: &[f64], scratch: &mut Scratch, f: &mut [f64]) -> f64 {
+        let chunks = || self.blocks.iter().flat_map(|block| block.chunks.iter().map(move |chunk| (block, chunk)));
+        if scratch.forces.is_empty() {
+            scratch.forces = chunks().map(|(_, chunk)| vec![[0.0; 3]; chunk.nodes.len()]).collect();
+            scratch.energies = vec![0.0; scratch.forces.len()];
+        }
+        for (block, energies, forces) in split(&self.blocks, &mut scratch.energies, &mut scratch.forces) {
+            if let ([chunk], [force], [energy]) = (&block.chunks[..], &mut *forces, &mut *energies) {
+                *energy = block.force(chunk, self.dim, u, force);
+                continue;
+            }
+            block
+                .chunks
+                .par_iter()
+                .zip(forces.par_iter_mut())
+                .zip(energies.par_iter_mut())
+                .for_each(|((chunk, force), energy)| *energy = block.force(chunk, self.dim, u, force));
+        }
+        for ((_, chunk), force) in chunks().zip(&scratch.forces) {
+            for (&node, f_a) in chunk.nodes.iter().zip(force) {
+                let first = self.dim * node as usize;
+                for i in 0..self.dim {
+                    f[first + i] += f_a[i];
+                }
+            }
+        }
+        scratch.energies.iter().sum()
+    }
+
+    /// Adds the row sums ∫ ρ N_a dV of the mass (kg) to the entries of a system vector.
+    pub fn add_lumped_mass(&self, mass: &mut [f64]) {
+        let dim = self.dim;
+        self.each_matrix(&mut |nodes, _, m| {
+            for (a, &node) in nodes.iter().enumerate() {
+                let row: f64 = m[a * nodes.len()..(a + 1) * nodes.len()].iter().sum();
+                for i in 0..dim {
+                    mass[dim * node as usize + i] += row;
+                }
+            }
+        });
+    }
+
+    /// Adds `stiffness_factor` K + `mass_factor` M (consistent) to the rows of one connected part.
+    ///
+    /// `part`: system numbers of the unknowns that `matrix` holds; elements outside are left out.
+    pub fn assemble(&self, stiffness_factor: f64, mass_factor: f64, part: &Range<usize>, matrix: &mut Csr) {
+        let dim = self.dim;
+        self.each_matrix(&mut |nodes, k, m| {
+            let n = nodes.len();
+            if !part.contains(&(dim * nodes[0] as usize)) {
+                return;
+            }
+            for row in 0..dim * n {
+                let (a, i) = (row / dim, row % dim);
+                let dof = dim * nodes[a] as usize + i;
+                for column in 0..dim * n {
+                    let (b, j) = (column / dim, column % dim);
+                    let other = dim * nodes[b] as usize + j;
+                    let mut value = stiffness_factor * k[row * dim * n + column];
+                    if i == j {
+                        value += mass_factor * m[a * n + b];
+                    }
+                    matrix.add(dof - part.start, other - part.start, value);
+                }
+            }
+        });
+    }
+
+    /// System numbers of the nodes of each element, in the order of [`Body::cells`].
+    pub fn each_element(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.each_matrix(&mut |nodes, _, _| visit(nodes));
+    }
+
+    /// Volume (m³) and mean stress (Pa) of each element, in the order of [`Body::cells`].
+    pub fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
+        let mut out = Vec::with_capacity(self.cells.len());
+        for block in &self.blocks {
+            block.stresses(self.dim, u, &mut out);
+        }
+        out
+    }
+
+    /// Upper bound of the angular frequencies (rad/s) with lumped mass: the largest eigenvalue of M_e⁻¹ K_e over the
+    /// elements bounds that of the body (Irons). An explicit step is stable below 2/ω.
+    pub fn frequency_bound(&self) -> f64 {
+        let mut bound: f64 = 0.0;
+        let dim = self.dim;
+        let mut scaled = Vec::new();
+        self.each_matrix(&mut |nodes, k, m| {
+            stability::scale(dim, nodes.len(), k, m, &mut scaled);
+            bound = bound.max(stability::largest_eigenvalue(&mut scaled));
+        });
+        bound.sqrt()
+    }
+
+    fn each_matrix(&self, visit: &mut dyn FnMut(&[u32], &[f64], &[f64])) {
+        for block in &self.blocks {
+            block.matrices(self.dim, visit);
+        }
+    }
+}
+
+/// Each block with its share of the chunk buffers.
+fn split<'a>(
+    blocks: &'a [Block],
+    mut energies: &'a mut [f64],
+    mut forces: &'a mut [Vec<[f64; 3]>],
+) -> impl Iterator<Item = (&'a Block, &'a mut [f64], &'a mut [Vec<[f64; 3]>])> {
+    blocks.iter().map(move |block| {
+        let (energy, rest) = std::mem::take(&mut energies).split_at_mut(block.chunks.len());
+        energies = rest;
+        let (force, rest) = std::mem::take(&mut forces).split_at_mut(block.chunks.len());
+        forces = rest;
+        (block, energy, force)
+    })
+}
+
+fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
+    let dim = spec.kinematics.dim();
+    for &cell in &spec.cells {
+        let element = mesh.kind(cell).table();
+        if element.dim != dim || (dim > 1 && mesh.dim != dim) {
+            return Err(Error::WrongElement {
+                body: spec.name.clone(),
+                found: element.name,
+                kinematics: spec.kinematics.name(),
+                dim,
+            });
+        }
+        if spec.kinematics == Kinematics::Axisymmetric {
+            for &node in mesh.element_nodes(cell) {
+                let radius = mesh.nodes[node as usize][0];
+                if radius < 0.0 {
+                    return Err(Error::NegativeRadius { body: spec.name.clone(), node, radius });
+                }
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,214 @@
+//! Small-strain kernels of one plane, axisymmetric or solid element.
+//!
+//! Letters are those of the formulas: `H = ∂u/∂x = Σ_a u_a ⊗ dN_a`, `ε = sym H`, `σ(ε)`, and the nodal forces
+//! `f_a = ∫ σ dN_a dV`. In axisymmetry (x, y) is (r, z), the hoop strain `ε_θ = u_r / r` fills the third diagonal
+//! entry and dV carries 2πr.
+
+use carom_algebra::tensor::Mat3;
+use carom_elements::{Kind, MAX_NODES, Rule, map};
+use carom_materials::{Elastic, Plane};
+
+use crate::body::Kinematics;
+
+/// Shape functions and reference gradients at the points of a rule, evaluated once per block.
+#[derive(Debug)]
+pub(crate) struct Points {
+    points: Vec<Point>,
+}
+
+#[derive(Debug)]
+struct Point {
+    weight: f64,
+    n: [f64; MAX_NODES],
+    dn: [[f64; 3]; MAX_NODES],
+}
+
+impl Points {
+    pub(crate) fn new(kind: Kind, rule: &Rule) -> Points {
+        let element = kind.table();
+        let points = rule.points.iter().zip(rule.weights);
+        let points = points.map(|(xi, &weight)| {
+            let mut point = Point { weight, n: [0.0; MAX_NODES], dn: [[0.0; 3]; MAX_NODES] };
+            (element.shape)(xi, &mut point.n[..element.nodes]);
+            (element.gradient)(xi, &mut point.dn[..element.nodes]);
+            point
+        });
+        Points { points: points.collect() }
+    }
+}
+
+/// What a kernel needs to know of its body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Law {
+    material: Elastic,
+    plane: Plane,
+    lame_1: f64,
+    shear_modulus: f64,
+    /// Thickness in m of a plane body; 1 otherwise.
+    thickness: f64,
+    axisymmetric: bool,
+    /// Dimension of the elements, and number of unknowns of a node.
+    pub(crate) dim: usize,
+}
+
+impl Law {
+    pub(crate) fn new(kinematics: Kinematics, material: Elastic, dim: usize) -> Law {
+        let plane = kinematics.plane();
+        let thickness = match kinematics {
+            Kinematics::PlaneStrain { thickness } | Kinematics::PlaneStress { thickness } => thickness,
+            Kinematics::Bar { .. } | Kinematics::Axisymmetric | Kinematics::Solid => 1.0,
+        };
+        Law {
+            material,
+            plane,
+            lame_1: material.lame_1(plane),
+            shear_modulus: material.shear_modulus(),
+            thickness,
+            axisymmetric: matches!(kinematics, Kinematics::Axisymmetric),
+            dim,
+        }
+    }
+}
+
+/// Geometry of one integration point: dN_a/dx, dV in m³ and, in axisymmetry, the radius.
+struct Local<const N: usize> {
+    dn: [[f64; 3]; N],
+    volume: f64,
+    radius: f64,
+}
+
+#[inline]
+fn local<const N: usize>(law: &Law, point: &Point, x: &[[f64; 3]; N]) -> Local<N> {
+    let (jacobian, det) = map::jacobian(x, &point.dn[..N], law.dim);
+    let mut dn = [[0.0; 3]; N];
+    map::physical_gradient(&jacobian, det, &point.dn[..N], &mut dn);
+    let mut volume = det * point.weight * law.thickness;
+    let mut radius = 1.0;
+    if law.axisymmetric {
+        radius = map::point(x, &point.n[..N])[0];
+        volume *= std::f64::consts::TAU * radius;
+    }
+    Local { dn, volume, radius }
+}
+
+#[inline]
+fn strain<const N: usize>(law: &Law, point: &Point, at: &Local<N>, u: &[[f64; 3]; N]) -> [[f64; 3]; 3] {
+    let mut h = [[0.0; 3]; 3];
+    for a in 0..N {
+        for i in 0..3 {
+            for j in 0..3 {
+                h[i][j] += u[a][i] * at.dn[a][j];
+            }
+        }
+    }
+    if law.axisymmetric {
+        h[2][2] = (0..N).map(|a| point.n[a] * u[a][0]).sum::<f64>() / at.radius;
+    }
+    let shear = |i: usize, j: usize| 0.5 * (h[i][j] + h[j][i]);
+    [
+        [h[0][0], shear(0, 1), shear(0, 2)],
+        [shear(0, 1), h[1][1], shear(1, 2)],
+        [shear(0, 2), shear(1, 2), h[2][2]],
+    ]
+}
+
+/// Adds the internal forces of one element to `f` (N) and returns its strain energy ½ ∫ σ:ε dV (J).
+#[inline]
+pub(crate) fn force<const N: usize>(
+    law: &Law,
+    points: &Points,
+    x: &[[f64; 3]; N],
+    u: &[[f64; 3]; N],
+    f: &mut [[f64; 3]; N],
+) -> f64 {
+    let mut energy = 0.0;
+    for point in &points.points {
+        let at = local(law, point, x);
+        let e = strain(law, point, &at, u);
+        let trace = law.lame_1 * (e[0][0] + e[1][1] + e[2][2]);
+        let mut s = e.map(|row| row.map(|e| 2.0 * law.shear_modulus * e));
+        for i in 0..3 {
+            s[i][i] += trace;
+        }
+        let mut density = 0.0;
+        for i in 0..3 {
+            for j in 0..3 {
+                density += s[i][j] * e[i][j];
+                s[i][j] *= at.volume;
+            }
+        }
+        energy += 0.5 * density * at.volume;
+        for a in 0..N {
+            for i in 0..3 {
+                f[a][i] += s[i][0] * at.dn[a][0] + s[i][1] * at.dn[a][1] + s[i][2] * at.dn[a][2];
+            }
+        }
+        if law.axisymmetric {
+            for a in 0..N {
+                f[a][0] += s[2][2] * point.n[a] / at.radius;
+            }
+        }
+    }
+    energy
+}
+
+/// Stiffness of one element, row-major, `dim * N` squared entries in N/m:
+/// K_ab,ij = ∫ λ t_ai t_bj + μ (dN_a,j dN_b,i + δ_ij dN_a · dN_b) dV, with t_a the divergence of N_a, which in
+/// axisymmetry holds N_a/r in its first component, beside the term 2μ N_a N_b / r².
+pub(crate) fn stiffness<const N: usize>(law: &Law, points: &Points, x: &[[f64; 3]; N], k: &mut [f64]) {
+    let dim = law.dim;
+    let n = dim * N;
+    k.fill(0.0);
+    for point in &points.points {
+        let at = local(law, point, x);
+        let mu = law.shear_modulus;
+        let hoop = |a: usize| if law.axisymmetric { point.n[a] / at.radius } else { 0.0 };
+        for a in 0..N {
+            let mut ta = at.dn[a];
+            ta[0] += hoop(a);
+            for b in 0..N {
+                let mut tb = at.dn[b];
+                tb[0] += hoop(b);
+                let (da, db) = (&at.dn[a], &at.dn[b]);
+                let dot = da[0] * db[0] + da[1] * db[1] + da[2] * db[2];
+                for i in 0..dim {
+                    for j in 0..dim {
+                        let mut value = law.lame_1 * ta[i] * tb[j] + mu * da[j] * db[i];
+                        if i == j {
+                            value += mu * dot;
+                        }
+                        k[(dim * a + i) * n + dim * b + j] += value * at.volume;
+                    }
+                }
+                k[dim * a * n + dim * b] += 2.0 * mu * hoop(a) * hoop(b) * at.volume;
+            }
+        }
+    }
+}
+
+/// Scalar consistent mass ∫ ρ N_a N_b dV of one element in kg, row-major N x N.
+pub(crate) fn mass<const N: usize>(law: &Law, points: &Points, x: &[[f64; 3]; N], m: &mut [f64]) {
+    m.fill(0.0);
+    for point in &points.points {
+        let at = local(law, point, x);
+        for a in 0..N {
+            for b in 0..N {
+                m[a * N + b] += law.material.density * point.n[a] * point.n[b] * at.volume;
+            }
+        }
+    }
+}
+
+/// Volume of one element in m³ (a plane element times its thickness, an axisymmetric one over the full turn) and
+/// its mean stress tensor in Pa.
+pub(crate) fn stress<const N: usize>(law: &Law, points: &Points, x: &[[f64; 3]; N], u: &[[f64; 3]; N]) -> (f64, Mat3) {
+    let (mut volume, mut stress) = (0.0, Mat3::zeros());
+    for point in &points.points {
+        let at = local(law, point, x);
+        let e = strain(law, point, &at, u);
+        let e = Mat3::from_fn(|i, j| e[i][j]);
+        stress += law.material.stress(law.plane, &e) * at.volume;
+        volume += at.volume;
+    }
+    (volume, stress / volume)
+}

@@ -1,0 +1,233 @@
+//! One contact: secondary points that carry the forces, what they face, and the law between them.
+
+use carom_elements::Kind;
+use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
+
+use crate::{Law, Plane, Rows};
+
+/// A point of the secondary surface: a node (`integration = "node"`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// System number of the node.
+    pub node: u32,
+    /// Surface that it stands for, ∫ N_a dΓ, in m².
+    pub area: f64,
+}
+
+/// What the secondary points face.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// Faces of deformable bodies, their nodes by system number; normals point out of the bodies.
+    Surface(Vec<Face>),
+    /// A rigid plane.
+    Plane(Plane),
+}
+
+/// How far bodies slide along each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sliding {
+    /// Much less than an element: points are paired once, in the initial configuration, and their responses kept.
+    Small,
+    /// Any distance: points are paired anew at every step.
+    Finite,
+}
+
+/// A frictionless contact by collocation at the secondary nodes.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// Name as in the case file.
+    pub name: String,
+    /// The law.
+    pub law: Law,
+    /// Extent of the sliding.
+    pub sliding: Sliding,
+    /// Secondary points.
+    pub points: Vec<Point>,
+    /// What they face.
+    pub target: Target,
+}
+
+/// Positions of the system's nodes: reference coordinates and a displacement.
+#[derive(Clone, Copy, Debug)]
+pub struct Places<'a> {
+    /// Unknowns per node.
+    pub dim: usize,
+    /// Reference coordinates by system number, m.
+    pub x: &'a [[f64; 3]],
+    /// Displacement, `dim` entries per node, m.
+    pub u: &'a [f64],
+}
+
+impl Places<'_> {
+    /// Current position of a node in m.
+    pub fn of(&self, node: u32) -> [f64; 3] {
+        let mut place = self.x[node as usize];
+        let first = self.dim * node as usize;
+        for (x, u) in place.iter_mut().zip(&self.u[first..first + self.dim]) {
+            *x += u;
+        }
+        place
+    }
+}
+
+/// Memory of the search: the boxes of the primary faces and a tree over them, renewed at each pairing.
+#[derive(Debug, Default)]
+pub struct Search {
+    boxes: Vec<Bounds>,
+    tree: Option<BoxTree>,
+    found: Vec<u32>,
+}
+
+impl Contact {
+    /// Appends the rows of all points at the given configuration.
+    ///
+    /// Against a surface each point is projected on the closest face (the first of equals). It faces nothing, and gets
+    /// an infinite gap, where the foot lies beyond the rim: where the way from the foot to the point runs sideways by
+    /// more than it runs along the normal. What `search` holds from before does not matter to the result.
+    pub fn pair(&self, places: &Places, search: &mut Search, rows: &mut Rows) {
+        if let Target::Surface(faces) = &self.target {
+            search.renew(places, faces);
+        }
+        for point in &self.points {
+            let x = places.of(point.node);
+            match &self.target {
+                Target::Plane(plane) => {
+                    rows.push(plane.gap(&x), plane.normal);
+                    rows.add_node(places.dim, point.node, &plane.normal);
+                }
+                Target::Surface(faces) => match search.closest(places, faces, &x) {
+                    Some((foot, face)) if faces_point(&foot, face) => add_row(places, point, &foot, face, rows),
+                    _ => rows.push(f64::INFINITY, [0.0; 3]),
+                },
+            }
+        }
+    }
+}
+
+impl Search {
+    fn renew(&mut self, places: &Places, faces: &[Face]) {
+        self.boxes.clear();
+        self.boxes.extend(faces.iter().map(|face| {
+            let (positions, n) = positions(places, face);
+            Bounds::of(&positions[..n])
+        }));
+        match &mut self.tree {
+            Some(tree) if tree.len() == faces.len() => tree.refit(&self.boxes),
+            tree => *tree = Some(BoxTree::new(&self.boxes)),
+        }
+    }
+
+    /// Doubles the distance searched until a face is found, then looks once more as far as that face is.
+    fn closest<'a>(&mut self, places: &Places, faces: &'a [Face], x: &[f64; 3]) -> Option<(Projection, &'a Face)> {
+        let tree = self.tree.as_ref()?;
+        let all = self.boxes.iter().fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
+        let diagonal = (0..3).map(|i| (all.max[i] - all.min[i]).powi(2)).sum::<f64>().sqrt();
+        let farthest = all.distance_squared(x).sqrt() + diagonal + f64::MIN_POSITIVE;
+        let mut distance = farthest / (1u64 << 10) as f64;
+        loop {
+            tree.near(x, distance, &mut self.found);
+            let mut best: Option<(Projection, &Face)> = None;
+            for face in self.found.iter().map(|&item| &faces[item as usize]) {
+                let (positions, n) = positions(places, face);
+                let foot = project(face, &positions[..n], x);
+                if best.as_ref().is_none_or(|(closest, _)| foot.distance < closest.distance) {
+                    best = Some((foot, face));
+                }
+            }
+            match &best {
+                Some((foot, _)) if foot.distance <= distance => return best,
+                Some((foot, _)) => distance = foot.distance,
+                None if distance >= farthest => return None,
+                None => distance *= 2.0,
+            }
+        }
+    }
+}
+
+fn positions(places: &Places, face: &Face) -> ([[f64; 3]; 4], usize) {
+    let mut positions = [[0.0; 3]; 4];
+    for (position, &node) in positions.iter_mut().zip(face.corners()) {
+        *position = places.of(node);
+    }
+    (positions, face.corners().len())
+}
+
+fn add_row(places: &Places, point: &Point, foot: &Projection, face: &Face, rows: &mut Rows) {
+    rows.push(foot.gap, foot.normal);
+    rows.add_node(places.dim, point.node, &foot.normal);
+    let corners = face.corners();
+    let mut shape = [0.0; 4];
+    (face.kind.table().shape)(&foot.xi, &mut shape[..corners.len()]);
+    for (&node, n) in corners.iter().zip(shape) {
+        rows.add_node(places.dim, node, &foot.normal.map(|m| -n * m));
+    }
+}
+
+fn faces_point(foot: &Projection, face: &Face) -> bool {
+    if foot.inside || face.kind == Kind::Point1 {
+        return true;
+    }
+    let sideways = (foot.distance.powi(2) - foot.gap.powi(2)).max(0.0).sqrt();
+    // Matching rims coincide only to rounding: a foot that close to the rim counts as inside.
+    let rounding = 1e-9 * foot.point.iter().fold(1e-300_f64, |size, x| size.max(x.abs()));
+    sideways <= foot.gap.abs().max(rounding)
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_mesh::ElementId;
+
+    use super::*;
+    use crate::law::Displacement;
+
+    fn grid() -> (Vec<[f64; 3]>, Vec<Face>) {
+        let mut x: Vec<[f64; 3]> = (0..25).map(|i| [f64::from(i % 5), f64::from(i / 5), 0.0]).collect();
+        x.push([1.3, 2.6, 0.25]);
+        let faces = (0..16u32).map(|i| {
+            let first = i % 4 + 5 * (i / 4);
+            Face {
+                kind: Kind::Quad4,
+                nodes: [first, first + 1, first + 6, first + 5],
+                parent: ElementId { block: 0, index: i },
+                axis: [0.0; 3],
+            }
+        });
+        (x, faces.collect())
+    }
+
+    fn rows_at(point: [f64; 3]) -> Rows {
+        let (mut x, faces) = grid();
+        x[25] = point;
+        let contact = Contact {
+            name: "patch".into(),
+            law: Law::Displacement(Displacement),
+            sliding: Sliding::Finite,
+            points: vec![Point { node: 25, area: 1.0 }],
+            target: Target::Surface(faces),
+        };
+        let mut rows = Rows::default();
+        rows.clear();
+        contact.pair(&Places { dim: 3, x: &x, u: &vec![0.0; 78] }, &mut Search::default(), &mut rows);
+        rows
+    }
+
+    #[test]
+    fn row_is_the_derivative_of_the_gap_and_balances() {
+        let rows = rows_at([1.3, 2.6, 0.25]);
+        assert!((rows.gap(0) - 0.25).abs() < 1e-14);
+        assert_eq!(rows.normal(0), [0.0, 0.0, 1.0]);
+        let (dofs, coefficients) = rows.row(0);
+        assert!(coefficients.iter().sum::<f64>().abs() < 1e-14, "no net force");
+        let node = |n: u32| dofs.iter().position(|&dof| dof == 3 * n + 2).map(|k| coefficients[k]);
+        assert_eq!(node(25), Some(1.0));
+        assert!((node(11).unwrap() + 0.7 * 0.4).abs() < 1e-12);
+        assert!((node(17).unwrap() + 0.3 * 0.6).abs() < 1e-12);
+    }
+
+    #[test]
+    fn point_beside_the_rim_faces_nothing_and_one_on_it_does() {
+        assert_eq!(rows_at([-0.5, 2.0, 0.1]).gap(0), f64::INFINITY);
+        assert!((rows_at([0.0, 2.0, -0.1]).gap(0) + 0.1).abs() < 1e-14);
+        assert!((rows_at([4.0, 4.0, 7.0]).gap(0) - 7.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,75 @@
+//! The damped law: a compliant static part and a viscous one on closed points.
+
+use serde::{Deserialize, Serialize};
+
+use super::{ContactLaw, End, Level, Relation, Status};
+
+/// What becomes of tension in the damper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Adhesion {
+    /// The total pressure is cut off at zero.
+    Clip,
+    /// The damper may pull, as the equation is printed.
+    AsPrinted,
+}
+
+/// Damped law, total pressure `p_t = k_p max(0, -g₊) - S_g C_n ġ₊`, S_g = 1 where g₊ < 0.
+///
+/// The static part is compliant because with an exact multiplier the damper is inert or glues. In a closed point
+/// `k_p g₊ + C_n ġ₊ + P / area = 0`. A 0/1 sign may not exist: if without force the gap would end negative, and with
+/// the law's force positive, the point takes the corner g₊ = 0.
+///
+/// Source: Ben Dhia, Zammali, Voldoire, Lamarche (2003), equation (6), with a compliance instead of its multiplier.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Damped {
+    /// k_p in Pa/m.
+    pub stiffness: f64,
+    /// C_n in Pa s/m.
+    pub damping: f64,
+    /// Whether tension is cut off.
+    pub adhesion: Adhesion,
+}
+
+impl ContactLaw for Damped {
+    fn name(&self) -> &'static str {
+        "damped"
+    }
+
+    fn level(&self) -> Level {
+        Level::GapAndRate
+    }
+
+    fn capture(&self) -> f64 {
+        0.0
+    }
+
+    fn watches(&self, _gap: f64, _tolerance: f64) -> bool {
+        true
+    }
+
+    fn relation(&self, status: Status, area: f64) -> Relation {
+        match status {
+            Status::Corner => Relation { gap: 1.0, rate: 0.0, compliance: 0.0 },
+            Status::Open | Status::Closed => {
+                Relation { gap: self.stiffness * area, rate: self.damping * area, compliance: 1.0 }
+            }
+        }
+    }
+
+    fn status(&self, now: Status, end: &End, reversals: u32) -> Status {
+        match now {
+            Status::Open if end.gap < 0.0 && reversals < 3 => Status::Closed,
+            Status::Open if end.gap < 0.0 => Status::Corner,
+            Status::Open => Status::Open,
+            Status::Closed if end.gap < 0.0 => Status::Closed,
+            Status::Closed if end.gap_released < 0.0 => Status::Corner,
+            Status::Closed => Status::Open,
+            Status::Corner if end.gap_released < 0.0 => Status::Corner,
+            Status::Corner => Status::Open,
+        }
+    }
+
+    fn clips(&self) -> bool {
+        self.adhesion == Adhesion::Clip
+    }
+}

@@ -1,0 +1,46 @@
+//! The hybrid displacement law: exact Signorini conditions in the gap.
+
+use super::{ContactLaw, End, Level, Relation, Status};
+
+/// Hybrid displacement law, `p = S_g (p - r g)` with S_g = 1 where `p - r g > 0`: the gap at the end of the step is
+/// zero where the force is compressive, and positive where there is none. Not a penalty; the result does not depend
+/// on r, which is why r appears nowhere: in a closed point g₊ = 0, so the sign is that of P, in an open one P = 0, so
+/// it is that of -g₊. The sign is strict, else points released at rest stick.
+///
+/// Source: Ben Dhia, Zammali, Voldoire, Lamarche (2003), equations (2)-(4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Displacement;
+
+impl ContactLaw for Displacement {
+    fn name(&self) -> &'static str {
+        "displacement"
+    }
+
+    fn level(&self) -> Level {
+        Level::Gap
+    }
+
+    fn capture(&self) -> f64 {
+        0.0
+    }
+
+    fn watches(&self, _gap: f64, _tolerance: f64) -> bool {
+        true
+    }
+
+    fn relation(&self, _status: Status, _area: f64) -> Relation {
+        Relation { gap: 1.0, rate: 0.0, compliance: 0.0 }
+    }
+
+    fn status(&self, now: Status, end: &End, _reversals: u32) -> Status {
+        let closed = match now {
+            Status::Open => end.gap < 0.0,
+            Status::Closed | Status::Corner => end.force > 0.0,
+        };
+        if closed { Status::Closed } else { Status::Open }
+    }
+
+    fn clips(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,94 @@
+//! The rows of the gap operator N = ∂g/∂u, one per contact point, in one pool.
+
+/// Gaps, normals and derivatives of the gaps of a list of contact points, at one configuration.
+///
+/// `ġ = N v`, and a force P in a point acts on the unknowns as `Nᵀ P`. A point that faces nothing has an infinite gap
+/// and an empty row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rows {
+    offsets: Vec<u32>,
+    dofs: Vec<u32>,
+    coefficients: Vec<f64>,
+    gaps: Vec<f64>,
+    normals: Vec<[f64; 3]>,
+}
+
+impl Rows {
+    /// Empties the pool and keeps its memory.
+    pub fn clear(&mut self) {
+        self.offsets.clear();
+        self.offsets.push(0);
+        self.dofs.clear();
+        self.coefficients.clear();
+        self.gaps.clear();
+        self.normals.clear();
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.gaps.len()
+    }
+
+    /// Whether there is no point.
+    pub fn is_empty(&self) -> bool {
+        self.gaps.is_empty()
+    }
+
+    /// Unknowns and derivatives of the gap of a point by them (dimensionless).
+    pub fn row(&self, point: usize) -> (&[u32], &[f64]) {
+        let range = self.offsets[point] as usize..self.offsets[point + 1] as usize;
+        (&self.dofs[range.clone()], &self.coefficients[range])
+    }
+
+    /// Gap of a point in m, positive when open, infinite where it faces nothing.
+    pub fn gap(&self, point: usize) -> f64 {
+        self.gaps[point]
+    }
+
+    /// Unit normal at a point, from the primary side to the secondary one: the direction of the force on the secondary.
+    pub fn normal(&self, point: usize) -> [f64; 3] {
+        self.normals[point]
+    }
+
+    /// Product (N x) of the row of a point with a system vector.
+    pub fn product(&self, point: usize, x: &[f64]) -> f64 {
+        let (dofs, coefficients) = self.row(point);
+        dofs.iter().zip(coefficients).map(|(&dof, n)| n * x[dof as usize]).sum()
+    }
+
+    /// Adds Nᵀ P of one point to a system vector.
+    pub fn add_force(&self, point: usize, force: f64, f: &mut [f64]) {
+        let (dofs, coefficients) = self.row(point);
+        for (&dof, n) in dofs.iter().zip(coefficients) {
+            f[dof as usize] += n * force;
+        }
+    }
+
+    /// Moves every gap by N u, for points paired once in the initial configuration.
+    pub fn advance(&mut self, initial: &Rows, u: &[f64]) {
+        self.clone_from(initial);
+        for point in 0..self.len() {
+            self.gaps[point] += initial.product(point, u);
+        }
+    }
+
+    /// Begins a point of the given gap and normal.
+    pub(crate) fn push(&mut self, gap: f64, normal: [f64; 3]) {
+        self.gaps.push(gap);
+        self.normals.push(normal);
+        self.offsets.push(self.dofs.len() as u32);
+    }
+
+    /// Adds to the row of the point pushed last the motion of a node along `direction`.
+    pub(crate) fn add_node(&mut self, dim: usize, node: u32, direction: &[f64; 3]) {
+        for (i, &n) in direction.iter().enumerate().take(dim) {
+            if n != 0.0 {
+                self.dofs.push(dim as u32 * node + i as u32);
+                self.coefficients.push(n);
+            }
+        }
+        if let Some(end) = self.offsets.last_mut() {
+            *end = self.dofs.len() as u32;
+        }
+    }
+}
