@@ -27,7 +27,7 @@ impl Input {
     /// Reads the case file at `path`; each of `overrides` is one `key.path=value`, which replaces the value at that key path.
     ///
     /// # Errors
-    /// A [`Problem`] without a place: the file is missing, is a folder, cannot be read, or is not UTF-8.
+    /// A [`Problem`] without a place: the file is missing, is a folder, cannot be read, is not UTF-8, or is empty.
     pub fn read(path: &Path, overrides: &[String]) -> Result<Input, Problem> {
         let name = path.display().to_string();
         if path.is_dir() {
@@ -44,6 +44,9 @@ impl Input {
                 .found(format!("the byte 0x{:02x} on line {line}, at offset {at}", bytes[at]))
                 .accepted(["a TOML file, saved as UTF-8"])
         })?;
+        if text.trim().is_empty() {
+            return Err(Problem::new("", format!("the case file `{name}` is empty")));
+        }
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
         Ok(Input { folder, ..Input::from_text(&name, &text, overrides) })
     }

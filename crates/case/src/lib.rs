@@ -11,6 +11,7 @@ mod describe;
 mod error;
 mod input;
 mod locate;
+mod rules;
 mod tree;
 mod validate;
 
@@ -31,5 +32,6 @@ pub fn parse(input: &Input) -> Result<(schema::Case, Locator), Vec<Problem>> {
     }
     let case = serde_json::from_value(root.to_json())
         .map_err(|cause| vec![Problem::new("", format!("the schema let pass what the reader refuses, a defect of Carom: {cause}"))])?;
-    Ok((case, locator))
+    let problems = rules::check(&case);
+    if problems.is_empty() { Ok((case, locator)) } else { Err(locator.locate_all(problems)) }
 }

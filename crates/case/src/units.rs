@@ -170,7 +170,8 @@ pub fn parse_quantity(text: &str, wanted: Dimension) -> Result<f64, UnitError> {
         return Err(UnitError::WrongDimension { found: unit.dimension, wanted });
     }
     let power = exponent.saturating_add(unit.power);
-    let value = format!("{number}e{power}").parse::<f64>().map_err(|_| UnitError::NoNumber)? * unit.factor;
+    let decimal = |power: i32| format!("{number}e{power}").parse::<f64>().map_err(|_| UnitError::NoNumber);
+    let value = if unit.factor == 1.0 { decimal(power)? } else { decimal(0)? * unit.factor / 10.0_f64.powi(-power) };
     if value.is_finite() { Ok(value) } else { Err(UnitError::TooLarge) }
 }
 

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use crate::describe::{accepted, allows, alternatives, elements, entries, keyed, listed, range, resolve, texts};
-use crate::error::{Place, Problem};
+use crate::error::{Place, Problem, nearest};
 use crate::input::Input;
 use crate::schema::is_name;
 use crate::tree::{Item, Node, join};
@@ -112,12 +112,22 @@ impl<'a> Walker<'a> {
         if others.is_some() && found.is_empty() {
             self.problems.push(Problem::new(path, "empty: one is needed at least").at(item.place()));
         }
-        for key in texts(schema, "required").into_iter().filter(|key| !found.contains_key(*key)) {
-            let problem = Problem::new(path, format!("`{key}` is missing{}", of(path)));
-            let wanted = properties.get(key).map(|schema| accepted(self.schema, schema));
-            self.problems.push(problem.accepted(wanted).at(item.place()));
-        }
+        self.check_required(schema, found, item, path);
         self.check_groups(schema, found, item, path);
+    }
+
+    /// Missing keys, except one that an unknown key was probably meant to be.
+    fn check_required(&mut self, schema: &Value, found: &BTreeMap<String, Item>, item: &Item, path: &str) {
+        let properties: BTreeMap<&str, &Value> = entries(schema, "properties").collect();
+        let unknown = found.keys().filter(|key| !properties.contains_key(key.as_str()));
+        let meant: Vec<&str> = unknown.filter_map(|key| nearest(key, properties.keys().copied())).collect();
+        for key in texts(schema, "required") {
+            if !found.contains_key(key) && !meant.contains(&key) {
+                let wanted = properties.get(key).map(|schema| accepted(self.schema, schema)).filter(|wanted| wanted != "a table");
+                let problem = Problem::new(path, format!("`{key}` is missing{}", of(path)));
+                self.problems.push(problem.accepted(wanted).at(item.place()));
+            }
+        }
     }
 
     /// Keys that need, replace or exclude each other: `oneOf`, `anyOf` and `not` over `required`, `dependentRequired`.
@@ -199,11 +209,11 @@ impl<'a> Walker<'a> {
 
     fn unit_error(&mut self, schema: &Value, error: UnitError, item: &Item, path: &str) {
         let problem = Problem::new(path, error.to_string()).found(self.written(item.value)).accepted([accepted(self.schema, schema)]);
-        let nearest = match error {
+        let meant = match error {
             UnitError::UnknownSymbol { nearest, .. } => nearest,
             _ => None,
         };
-        self.problems.push(Problem { nearest, ..problem }.at(item.value));
+        self.problems.push(Problem { nearest: meant, ..problem }.at(item.value));
     }
 
     fn visit_number(&mut self, schema: &'a Value, value: f64, item: &Item, path: &str) {
@@ -228,7 +238,7 @@ impl<'a> Walker<'a> {
             && bound("maximum").is_none_or(|high| value <= high)
             && bound("exclusiveMaximum").is_none_or(|high| value < high);
         if !inside {
-            let problem = Problem::new(path, format!("not{}", range(schema))).found(self.written(item.value));
+            let problem = Problem::new(path, format!("out of range: it must be{}", range(schema))).found(self.written(item.value));
             self.problems.push(problem.accepted([accepted(self.schema, schema)]).at(item.value));
         }
     }

@@ -1,0 +1,63 @@
+//! Rules between several values of a case, which the schema cannot say; still without a look at any mesh.
+
+use crate::error::Problem;
+use crate::schema::{Case, Contact, Count, Line, Obstacle, Part, Step};
+
+/// Most nodes of a generated part: beyond it a case is a slip of the pen.
+const MOST_NODES: f64 = 1e8;
+
+/// Every rule that `case` breaks.
+pub(crate) fn check(case: &Case) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for (name, part) in case.mesh.generate.iter() {
+        check_part(&format!("mesh.generate.{name}"), part, &mut problems);
+    }
+    for (name, contact) in case.contact.iter() {
+        check_contact(&format!("contact.{name}"), contact, &mut problems);
+    }
+    if let Step::Fixed(step) = case.time.step
+        && step > case.time.end
+    {
+        let problem = Problem::new("time.step", "the step is longer than the time to simulate");
+        problems.push(problem.found(format!("{} s", step.0)).accepted([format!("at most `end`, {} s", case.time.end.0)]));
+    }
+    problems
+}
+
+fn check_part(path: &str, part: &Part, problems: &mut Vec<Problem>) {
+    let (shape, elements): (&str, &[Count]) = match part {
+        Part::Line(line) => {
+            check_line(&format!("{path}.line"), line, problems);
+            ("line", &[line.elements])
+        }
+        Part::Rectangle(rectangle) => ("rectangle", &rectangle.elements),
+        Part::Box(part) => ("box", &part.elements),
+    };
+    let nodes: f64 = elements.iter().map(|count| count.0 as f64 + 1.0).product();
+    if nodes > MOST_NODES {
+        let problem = Problem::new(format!("{path}.{shape}.elements"), "too many elements");
+        problems.push(problem.found(format!("{nodes:e} nodes")).accepted([format!("at most {MOST_NODES:e} nodes")]));
+    }
+}
+
+fn check_line(path: &str, line: &Line, problems: &mut Vec<Problem>) {
+    if line.from.given() != line.to.given() {
+        let problem = Problem::new(format!("{path}.to"), "`from` and `to` have different numbers of components");
+        problems.push(problem.found(line.to.given()).accepted([format!("{}, as in `from`", line.from.given())]));
+    } else if line.from == line.to {
+        problems.push(Problem::new(format!("{path}.to"), "a line of no length: `from` and `to` are the same point"));
+    }
+}
+
+fn check_contact(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
+    if contact.primary.as_ref() == Some(&contact.secondary) {
+        let problem = Problem::new(format!("{path}.primary"), "a surface cannot be its own partner in contact");
+        problems.push(problem.found(&contact.secondary).accepted(["another group than `secondary`"]));
+    }
+    if let Some(Obstacle::Plane(plane)) = &contact.obstacle
+        && plane.normal.components() == [0.0; 3]
+    {
+        let problem = Problem::new(format!("{path}.obstacle.plane.normal"), "a normal of no length");
+        problems.push(problem.accepted(["a vector that is not zero"]));
+    }
+}
