@@ -16,11 +16,12 @@ pub(super) fn entities(cursor: &mut Cursor, entities: &mut Entities) -> Result<(
     const THINGS: [&str; 4] = ["point", "curve", "surface", "volume"];
     let mut counts = [0; 4];
     for count in &mut counts {
-        *count = cursor.size("the number of entities of a dimension")?;
+        let size = cursor.size("the number of entities of a dimension")?;
+        *count = cursor.bounded(size, 5)?;
     }
     cursor.end_record()?;
     for dim in 0..4 {
-        let count = cursor.bounded(counts[dim], 5)?;
+        let count = counts[dim];
         for i in 0..count {
             let entity = entity(cursor, dim as u64, entities);
             entity.map_err(|fault| fault.within(THINGS[dim], i, count))?;
@@ -191,6 +192,6 @@ fn all_read(cursor: &Cursor, things: &str, total: usize, left: usize) -> Result<
     if left == 0 {
         return Ok(());
     }
-    let found = format!("{} {things} in all blocks", total - left);
+    let found = format!("a total of {} {things} in the blocks", total - left);
     Err(cursor.fault(found, format!("{total}, as the head of the section says")))
 }
