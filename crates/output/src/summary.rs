@@ -63,7 +63,7 @@ impl Verdict {
         let failed = checks.iter().filter(|check| !check.holds());
         let sentence = |check: &Check| {
             format!(
-                "{} is {:.3e}, above its bound {:.3e}",
+                "{} is {:.3e}; its bound is {:.1e}",
                 check.quantity, check.value, check.bound
             )
         };

@@ -1,0 +1,273 @@
+//! Drawing of a figure with plotters.
+//!
+//! plotters places everything on whole pixels, so the drawing is made [`FINE`] times too large and shown smaller:
+//! lines are then placed, and are as wide, as they should be.
+
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::scale::{Scale, Shown, extremes, quantity, shown};
+use super::thin::{clip, thin};
+use super::{Curve, Figure, Panel, Role};
+use crate::Error;
+
+/// Units of the drawing per displayed pixel.
+const FINE: i32 = 4;
+
+// Sizes in displayed pixels.
+const WIDTH: i32 = 960;
+const PANEL_HEIGHT: i32 = 310;
+const TITLE_HEIGHT: i32 = 34;
+const HEAD_HEIGHT: i32 = 46;
+const X_LABELS: i32 = 50;
+const Y_LABELS: i32 = 66;
+const RIGHT_MARGIN: i32 = 18;
+
+const PAPER: RGBColor = RGBColor(0xff, 0xff, 0xff);
+const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
+const FAINT_INK: RGBColor = RGBColor(0x66, 0x66, 0x66);
+const GRID: RGBColor = RGBColor(0xe4, 0xe4, 0xe4);
+const EXACT: RGBColor = RGBColor(0xf4, 0xc1, 0x5d);
+/// Colours of computed curves, told apart by every kind of colour vision and on dark paper too.
+const COMPUTED: [RGBColor; 6] = [
+    RGBColor(0x1f, 0x6f, 0xc0),
+    RGBColor(0xc8, 0x3e, 0x1d),
+    RGBColor(0x1e, 0x94, 0x6c),
+    RGBColor(0x9b, 0x5b, 0xb5),
+    RGBColor(0x7a, 0x7a, 0x7a),
+    RGBColor(0xa8, 0x7b, 0x10),
+];
+
+type Area<'a, 'b> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+type Chart<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+/// The figure as an SVG document; its curves are checked already.
+pub fn draw(figure: &Figure) -> Result<String, Error> {
+    let rows = figure.panels.len().div_ceil(figure.columns.max(1)) as i32;
+    let height = TITLE_HEIGHT + rows * PANEL_HEIGHT;
+    let mut svg = String::new();
+    draw_on(figure, rows, &mut svg, height).map_err(|cause| Error::Drawing {
+        figure: figure.title.clone(),
+        cause: cause.to_string(),
+    })?;
+    Ok(shrink(&svg, &figure.title, height))
+}
+
+fn draw_on(figure: &Figure, rows: i32, svg: &mut String, height: i32) -> Outcome {
+    let size = (fine(WIDTH) as u32, fine(height) as u32);
+    let root = SVGBackend::with_string(svg, size).into_drawing_area();
+    root.fill(&PAPER)?;
+    let (title, body) = root.split_vertically(fine(TITLE_HEIGHT));
+    write(
+        &title,
+        &figure.title,
+        (WIDTH / 2, TITLE_HEIGHT / 2 + 2),
+        TITLE,
+    )?;
+    let areas = body.split_evenly((rows as usize, figure.columns.max(1)));
+    let curves = figure.panels.iter().flat_map(|panel| &panel.curves);
+    let (first, last) =
+        extremes(curves.flat_map(|curve| curve.x.iter().copied())).unwrap_or((0.0, 1.0));
+    let x = Scale::new(figure.abscissa, first, last, false);
+    for (panel, area) in figure.panels.iter().zip(&areas) {
+        draw_panel(panel, &x, area)?;
+    }
+    root.present()?;
+    Ok(())
+}
+
+fn draw_panel(panel: &Panel, x: &Scale, area: &Area) -> Outcome {
+    let shown = shown(panel);
+    let y = Scale::new(panel.ordinate, shown.low, shown.high, true);
+    draw_head(panel, &shown, area)?;
+    draw_names(x, &y, area)?;
+    let mut chart = ChartBuilder::on(area)
+        .margin_top(fine(HEAD_HEIGHT))
+        .margin_right(fine(RIGHT_MARGIN))
+        .x_label_area_size(fine(X_LABELS))
+        .y_label_area_size(fine(Y_LABELS))
+        .build_cartesian_2d(x.low..x.high, y.low..y.high)?;
+    draw_axes(&mut chart, x, &y)?;
+    let columns = (area.dim_in_pixel().0 as i32 / FINE * 2) as usize;
+    for (curve, colour) in coloured(panel) {
+        let points: Vec<(f64, f64)> = curve
+            .x
+            .iter()
+            .zip(curve.y)
+            .map(|(t, v)| (t / x.factor, v / y.factor))
+            .collect();
+        let style = line(colour, curve.role);
+        for part in clip(&thin(&points, columns), y.low, y.high) {
+            chart.plotting_area().draw(&PathElement::new(part, style))?;
+        }
+        if let [point] = points[..] {
+            chart
+                .plotting_area()
+                .draw(&Circle::new(point, fine(3), colour.filled()))?;
+        }
+    }
+    Ok(())
+}
+
+/// Title of the panel, what was clipped, and the legend.
+fn draw_head(panel: &Panel, shown: &Shown, area: &Area) -> Outcome {
+    let right = area.dim_in_pixel().0 as i32 / FINE - RIGHT_MARGIN;
+    write(area, &panel.title, (Y_LABELS, 12), HEAD)?;
+    if let Some((count, farthest)) = shown.beyond {
+        let samples = if count == 1 {
+            "1 sample"
+        } else {
+            &format!("{count} samples")
+        };
+        let note = format!(
+            "clipped: {samples}, to {}",
+            quantity(farthest, panel.ordinate.unit)
+        );
+        write(area, &note, (right, 12), NOTE)?;
+    }
+    let mut left = Y_LABELS;
+    let mut named: Vec<&str> = Vec::new();
+    // Computed curves first: the legend is read in the order of importance, the drawing is made in the reverse one.
+    let (computed, exact): (Vec<_>, Vec<_>) = coloured(panel)
+        .into_iter()
+        .partition(|(curve, _)| curve.role == Role::Computed);
+    for (curve, colour) in computed.into_iter().chain(exact) {
+        if named.contains(&curve.name) {
+            continue;
+        }
+        named.push(curve.name);
+        let ends = vec![(fine(left), fine(33)), (fine(left + 22), fine(33))];
+        area.draw(&PathElement::new(ends, line(colour, curve.role)))?;
+        write(area, curve.name, (left + 28, 33), LEGEND)?;
+        left += 28 + 7 * curve.name.chars().count() as i32 + 18;
+    }
+    Ok(())
+}
+
+/// Names of the axes, with their units. (plotters would put them at the very edge.)
+fn draw_names(x: &Scale, y: &Scale, area: &Area) -> Outcome {
+    let width = area.dim_in_pixel().0 as i32 / FINE;
+    let middle = (Y_LABELS + width - RIGHT_MARGIN) / 2;
+    write(area, &x.label, (middle, PANEL_HEIGHT - X_LABELS + 33), NAME)?;
+    let half_height = (HEAD_HEIGHT + PANEL_HEIGHT - X_LABELS) / 2;
+    write(
+        area,
+        &y.label,
+        (14, half_height),
+        Font {
+            upright: true,
+            ..NAME
+        },
+    )
+}
+
+fn draw_axes(chart: &mut Chart, x: &Scale, y: &Scale) -> Outcome {
+    let label = ("sans-serif", font_size(11.0)).into_font().color(&INK);
+    chart
+        .configure_mesh()
+        .x_labels(9)
+        .y_labels(7)
+        .max_light_lines(0)
+        .bold_line_style(GRID.stroke_width(fine(1) as u32))
+        .axis_style(INK.stroke_width(fine(1) as u32))
+        .label_style(label)
+        .set_all_tick_mark_size(fine(4))
+        .x_label_formatter(&|value| x.tick(*value))
+        .y_label_formatter(&|value| y.tick(*value))
+        .draw()?;
+    Ok(())
+}
+
+/// The curves in the order of drawing, exact ones first, each with its colour.
+fn coloured<'a, 'b>(panel: &'b Panel<'a>) -> Vec<(&'b Curve<'a>, RGBColor)> {
+    let of = |role| panel.curves.iter().filter(move |curve| curve.role == role);
+    let exact = of(Role::Exact).map(|curve| (curve, EXACT));
+    exact
+        .chain(of(Role::Computed).zip(COMPUTED.into_iter().cycle()))
+        .collect()
+}
+
+fn line(colour: RGBColor, role: Role) -> ShapeStyle {
+    match role {
+        Role::Computed => colour.stroke_width((3 * FINE / 2) as u32),
+        Role::Exact => colour.stroke_width((5 * FINE) as u32),
+    }
+}
+
+/// How a text is set.
+#[derive(Clone, Copy)]
+struct Font {
+    size: f64,
+    weight: FontStyle,
+    colour: RGBColor,
+    anchor: HPos,
+    upright: bool,
+}
+
+/// Name of an axis, and the pattern of the other texts.
+const NAME: Font = Font {
+    size: 12.0,
+    weight: FontStyle::Normal,
+    colour: INK,
+    anchor: HPos::Center,
+    upright: false,
+};
+const TITLE: Font = Font {
+    size: 16.0,
+    weight: FontStyle::Bold,
+    ..NAME
+};
+const HEAD: Font = Font {
+    size: 13.0,
+    weight: FontStyle::Bold,
+    anchor: HPos::Left,
+    ..NAME
+};
+const LEGEND: Font = Font {
+    anchor: HPos::Left,
+    ..NAME
+};
+const NOTE: Font = Font {
+    size: 11.0,
+    colour: FAINT_INK,
+    anchor: HPos::Right,
+    ..NAME
+};
+
+/// Writes a text with its left end, middle or right end, at half height, at a place in displayed pixels.
+fn write(area: &Area, text: &str, at: (i32, i32), font: Font) -> Outcome {
+    let turn = if font.upright {
+        FontTransform::Rotate270
+    } else {
+        FontTransform::None
+    };
+    let style = ("sans-serif", font_size(font.size), font.weight)
+        .into_font()
+        .transform(turn)
+        .color(&font.colour)
+        .pos(Pos::new(font.anchor, VPos::Center));
+    area.draw_text(text, &style, (fine(at.0), fine(at.1)))?;
+    Ok(())
+}
+
+/// The size to ask plotters for, which divides it by 1.24 in the SVG.
+fn font_size(pixels: f64) -> f64 {
+    1.24 * pixels * f64::from(FINE)
+}
+
+fn fine(pixels: i32) -> i32 {
+    pixels * FINE
+}
+
+/// Shows the drawing at its size instead of [`FINE`] times that, scaling down to narrower pages, and names it.
+fn shrink(svg: &str, title: &str, height: i32) -> String {
+    let body = svg.split_once('>').map_or("", |(_, body)| body);
+    let (fine_width, fine_height) = (fine(WIDTH), fine(height));
+    let title = crate::vtu::escape(title);
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{height}\" \
+         viewBox=\"0 0 {fine_width} {fine_height}\" role=\"img\" aria-label=\"{title}\" stroke-linejoin=\"round\">{body}"
+    )
+}

@@ -1,0 +1,101 @@
+//! The report: one page for people, in one file that needs no network.
+//!
+//! The page is `templates/report.html`; this file fills it with the summary, the impacts, the figures (inline, so that
+//! they follow the light or dark theme of the reader) and the text of the case.
+
+use std::path::Path;
+
+use minijinja::value::Serde;
+use minijinja::{Environment, Value, context};
+
+use crate::plot::{digits, quantity, scientific};
+use crate::summary::{Check, Summary};
+use crate::{Error, ImpactRow, atomic};
+
+/// What stands for a value that does not exist.
+const NOTHING: &str = "–";
+
+/// What the page shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Report<'a> {
+    /// The summary.
+    pub summary: &'a Summary,
+    /// The impacts, in their order.
+    pub impacts: &'a [ImpactRow],
+    /// Figures as SVG documents ([`crate::plot::Figure::svg`]).
+    pub figures: &'a [String],
+    /// The text of the case file.
+    pub case: &'a str,
+}
+
+impl Report<'_> {
+    /// The page as HTML.
+    ///
+    /// # Errors
+    /// [`Error::Template`], which would be a fault of the template.
+    pub fn html(&self) -> Result<String, Error> {
+        let mut environment = Environment::new();
+        environment.add_filter("quantity", |value: Value, unit: &str| {
+            show(&value, |x| quantity(x, unit))
+        });
+        environment.add_filter("exact", |value: Value| show(&value, exact));
+        environment.add_filter("percent", |value: Value| {
+            show(&value, |x| format!("{:.2} %", 100.0 * x))
+        });
+        environment.add_filter("bytes", |value: Value| show(&value, bytes));
+        environment.add_template("report.html", include_str!("../templates/report.html"))?;
+        let holding: Vec<bool> = self
+            .summary
+            .verdict
+            .checks
+            .iter()
+            .map(Check::holds)
+            .collect();
+        let figures: Vec<Value> = self
+            .figures
+            .iter()
+            .cloned()
+            .map(Value::from_safe_string)
+            .collect();
+        let page = environment.get_template("report.html")?.render(context! {
+            summary => Serde(self.summary),
+            impacts => Serde(self.impacts),
+            figures,
+            holding,
+            case => self.case,
+        })?;
+        Ok(page)
+    }
+
+    /// Writes the page as one file, whole or not at all.
+    ///
+    /// # Errors
+    /// As [`Report::html`], and [`Error::File`].
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        atomic::write_text(path, &self.html()?)
+    }
+}
+
+fn show(value: &Value, text: impl Fn(f64) -> String) -> String {
+    f64::try_from(value.clone()).map_or_else(|_| NOTHING.to_owned(), text)
+}
+
+/// A number of a balance: seven digits, or a power of ten where it is very small or very large.
+fn exact(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        size if (1e-3..1e6).contains(&size) => digits(value, 7),
+        size if size.is_finite() => scientific(value, 3),
+        _ => value.to_string(),
+    }
+}
+
+/// A number of bytes with the prefix that people expect.
+fn bytes(count: f64) -> String {
+    match count {
+        count if count >= 1e9 => format!("{:.2} GB", count / 1e9),
+        count if count >= 1e6 => format!("{:.1} MB", count / 1e6),
+        count if count >= 1e3 => format!("{:.1} kB", count / 1e3),
+        _ => format!("{count} B"),
+    }
+}
