@@ -145,10 +145,8 @@ fn the_head_is_checked() {
         "line 3: found \"$Nodes\", expected $EndMeshFormat",
     );
     let twice = format!("{V22}{V22}");
-    refused(
-        twice.as_bytes(),
-        "line 21: found a second $MeshFormat, expected one mesh in the file",
-    );
+    let message = "line 31: found a second node with the tag 1, expected a tag not used before";
+    refused(twice.as_bytes(), message);
 }
 
 #[test]

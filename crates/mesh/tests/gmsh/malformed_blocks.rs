@@ -98,7 +98,7 @@ fn blocks_of_version_4_are_checked() {
         V41,
         "1 0 0 1 1 2",
         "1 0 0 99 1 2",
-        "line 12: found the count 99, expected at most 64, which is what the rest of the file can hold (curve 1 of 1)",
+        "line 12: found the count 99, expected at most 71, which is what the rest of the file can hold (curve 1 of 1)",
     );
     edited(
         V41,

@@ -4,7 +4,7 @@ use carom_elements::{Kind, MAX_NODES, map};
 use carom_mesh::{Group, Mesh, Surface, gather, generate, read::read};
 
 use super::writer::{ENCODINGS, write_22, write_41};
-use super::{FORMATS, MESHES, fixture, parse};
+use super::{FORMATS, MESHES, bytes_of, fixture, parse};
 
 fn load(mesh: &str) -> Mesh {
     read(&fixture(mesh, FORMATS[0])).unwrap()
@@ -255,6 +255,18 @@ fn sections_may_repeat_and_unknown_ones_are_skipped() {
     assert_eq!(mesh.nodes, [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
     assert_eq!(mesh.blocks[0].nodes, [0, 1, 1, 2]);
     assert_eq!(mesh.groups["1:3"].elements.len(), 2);
+}
+
+/// Gmsh's `view.write` with `append` does so.
+#[test]
+fn a_view_may_be_appended_with_a_format_of_its_own() {
+    for format in FORMATS {
+        let mut content = bytes_of("box", format);
+        let first_section = content.windows(14).position(|it| it == b"$PhysicalNames");
+        content.extend_from_within(..first_section.unwrap());
+        content.extend_from_slice(b"$NodeData\n\0\xff$EndNodeData\n");
+        assert_eq!(parse(&content).unwrap(), load("box"), "{format}");
+    }
 }
 
 #[test]

@@ -120,8 +120,12 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Reads the integer 1 that tells the byte order; numbers are binary from here on.
-    pub(super) fn set_byte_order(&mut self) -> Result<(), Fault> {
+    /// Takes numbers as text from here on; or as binary, in the byte order that the integer 1 tells, which it reads.
+    pub(super) fn set_encoding(&mut self, binary: bool) -> Result<(), Fault> {
+        if !binary {
+            self.encoding = Encoding::Text;
+            return Ok(());
+        }
         self.encoding = Encoding::LittleEndian;
         let expected = "the integer 1 in 4 bytes, which tells the byte order";
         self.encoding = match self.take(expected)? {

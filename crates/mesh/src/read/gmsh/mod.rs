@@ -15,10 +15,10 @@
 //! flat in z = 0 is plane and one flat in z = 1 is in space; and at least the dimension of the elements.
 //! Beyond it coordinates below 1e-12 of the largest one become zero.
 //!
-//! **Sections.** They may come several times; `$Nodes` comes before the `$Elements` that use it, `$Entities` too.
-//! Sections with other names (`$Periodic`, `$NodeData`, ...) are skipped. Partitioned meshes of version 4.1 are
-//! refused; the partition numbers of version 2.2 are dropped, since there every element is listed once whatever its
-//! partitions.
+//! **Sections.** They may come several times, `$MeshFormat` too (Gmsh writes another when it appends a view);
+//! `$Nodes` and `$Entities` come before the `$Elements` that use them. Sections with other names (`$Periodic`,
+//! `$NodeData`, ...) are skipped. Partitioned meshes of version 4.1 are refused; the partition numbers of version 2.2
+//! are dropped, since there every element is listed once whatever its partitions.
 //!
 //! Numbers of one record of a text file stand on one line, as the manual has it and Gmsh writes it: a missing number
 //! is then found in its own line. Reference: Gmsh 4.15 reference manual, chapter *Gmsh file formats*.
@@ -46,7 +46,7 @@ enum Version {
 /// Reads the mesh in the content of an MSH file; `path` is only for messages.
 ///
 /// Fails at the first thing that is malformed or of a sort that is not read, with its line in a text file and its
-/// byte in a binary one. Never allocates more than a small multiple of the size of the content.
+/// byte in a binary one. A count is believed only as far as the rest of the content can hold what it counts.
 pub fn parse(path: &Path, content: &[u8]) -> Result<Mesh, ReadError> {
     let mut cursor = Cursor::new(content);
     sections(&mut cursor).map_err(|fault| cursor.error(path, fault))
@@ -60,7 +60,9 @@ fn sections(cursor: &mut Cursor) -> Result<Mesh, Fault> {
         let found = format!("a file of {} bytes", cursor.end());
         return Err(cursor.unsupported(found, format!("at most {MOST_BYTES} bytes")));
     }
-    let version = header(cursor)?;
+    cursor.marker("$MeshFormat")?;
+    let mut version = format(cursor)?;
+    cursor.marker("$EndMeshFormat")?;
     let mut builder = Builder::default();
     let mut entities = None;
     while let Some(name) = cursor.section()? {
@@ -71,9 +73,7 @@ fn sections(cursor: &mut Cursor) -> Result<Mesh, Fault> {
             ("Elements", Version::V22) => msh2::elements(cursor, &mut builder)?,
             ("Elements", Version::V41) => msh4::elements(cursor, &mut builder, entities.as_ref())?,
             ("Entities", Version::V41) => msh4::entities(cursor, entities.get_or_insert_default())?,
-            ("MeshFormat", _) => {
-                return Err(cursor.fault("a second $MeshFormat", "one mesh in the file"));
-            }
+            ("MeshFormat", _) => version = format(cursor)?,
             ("ParametricNodes", _) => {
                 let accepted = "$Nodes (write the file with Mesh.SaveParametric = 0)";
                 return Err(cursor.unsupported("the section $ParametricNodes", accepted));
@@ -93,9 +93,8 @@ fn sections(cursor: &mut Cursor) -> Result<Mesh, Fault> {
     builder.finish(cursor.end())
 }
 
-/// Reads `$MeshFormat` and sets the encoding of what follows.
-fn header(cursor: &mut Cursor) -> Result<Version, Fault> {
-    cursor.marker("$MeshFormat")?;
+/// Reads the section `$MeshFormat` behind its mark and sets the encoding of what follows.
+fn format(cursor: &mut Cursor) -> Result<Version, Fault> {
     let number = cursor.word("the version of the format")?;
     let version = match number {
         b"2.2" => Version::V22,
@@ -116,10 +115,7 @@ fn header(cursor: &mut Cursor) -> Result<Version, Fault> {
         return Err(cursor.unsupported(format!("real numbers of {size} bytes"), "8 bytes"));
     }
     cursor.end_line()?;
-    if binary {
-        cursor.set_byte_order()?;
-    }
-    cursor.marker("$EndMeshFormat")?;
+    cursor.set_encoding(binary)?;
     Ok(version)
 }
 
