@@ -4,23 +4,43 @@ use serde_json::{Map, Value};
 
 /// The schema with its `$ref`, if it is one, replaced by what it refers to.
 pub(crate) fn resolve<'a>(root: &'a Value, schema: &'a Value) -> &'a Value {
-    let target = schema.get("$ref").and_then(Value::as_str).and_then(|name| root.pointer(name.trim_start_matches('#')));
+    let target = schema
+        .get("$ref")
+        .and_then(Value::as_str)
+        .and_then(|name| root.pointer(name.trim_start_matches('#')));
     target.unwrap_or(schema)
 }
 
 /// Entries of an object inside a schema; none where there is no such object.
-pub(crate) fn entries<'a>(schema: &'a Value, keyword: &str) -> impl Iterator<Item = (&'a str, &'a Value)> + use<'a> {
-    schema.get(keyword).and_then(Value::as_object).into_iter().flat_map(Map::iter).map(|(key, value)| (key.as_str(), value))
+pub(crate) fn entries<'a>(
+    schema: &'a Value,
+    keyword: &str,
+) -> impl Iterator<Item = (&'a str, &'a Value)> + use<'a> {
+    schema
+        .get(keyword)
+        .and_then(Value::as_object)
+        .into_iter()
+        .flat_map(Map::iter)
+        .map(|(key, value)| (key.as_str(), value))
 }
 
 /// Elements of an array inside a schema; none where there is no such array.
-pub(crate) fn elements<'a>(schema: &'a Value, keyword: &str) -> impl Iterator<Item = &'a Value> + use<'a> {
-    schema.get(keyword).and_then(Value::as_array).into_iter().flatten()
+pub(crate) fn elements<'a>(
+    schema: &'a Value,
+    keyword: &str,
+) -> impl Iterator<Item = &'a Value> + use<'a> {
+    schema
+        .get(keyword)
+        .and_then(Value::as_array)
+        .into_iter()
+        .flatten()
 }
 
 /// Texts of an array inside a schema.
 pub(crate) fn texts<'a>(schema: &'a Value, keyword: &str) -> Vec<&'a str> {
-    elements(schema, keyword).filter_map(Value::as_str).collect()
+    elements(schema, keyword)
+        .filter_map(Value::as_str)
+        .collect()
 }
 
 /// The alternatives of a schema that is a choice, nested ones spread out; none if it is no choice.
@@ -55,8 +75,15 @@ pub(crate) fn keyed(branch: &Value) -> Option<(&str, &Value)> {
 
 /// The texts that a schema lists, of all its alternatives.
 pub(crate) fn listed<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a str> {
-    let own = texts(schema, "enum").into_iter().chain(schema.get("const").and_then(Value::as_str));
-    own.chain(alternatives(root, schema).into_iter().flat_map(|branch| listed(root, branch))).collect()
+    let own = texts(schema, "enum")
+        .into_iter()
+        .chain(schema.get("const").and_then(Value::as_str));
+    own.chain(
+        alternatives(root, schema)
+            .into_iter()
+            .flat_map(|branch| listed(root, branch)),
+    )
+    .collect()
 }
 
 /// Whether the schema allows the JSON type `name`.
@@ -77,16 +104,28 @@ pub(crate) fn accepted(root: &Value, schema: &Value) -> String {
     }
     let names = listed(root, schema);
     if !names.is_empty() {
-        return names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ");
+        return names
+            .iter()
+            .map(|name| format!("{name:?}"))
+            .collect::<Vec<_>>()
+            .join(", ");
     }
     if let Some(value) = schema.get("const") {
         return value.to_string();
     }
-    let text = |keyword: &str| schema.get(keyword).and_then(Value::as_str).unwrap_or_default();
+    let text = |keyword: &str| {
+        schema
+            .get(keyword)
+            .and_then(Value::as_str)
+            .unwrap_or_default()
+    };
     let range = range(schema);
     if schema.get("x-dimension").is_some() {
         let (name, unit, example) = (text("x-dimension"), text("x-unit"), text("x-example"));
-        return format!("{}{range}: a number in {unit}, or a text such as {example:?}", article(name));
+        return format!(
+            "{}{range}: a number in {unit}, or a text such as {example:?}",
+            article(name)
+        );
     }
     if schema.get("x-length-unit").is_some() {
         return format!("a unit of length such as {:?}", text("x-example"));
@@ -102,26 +141,47 @@ pub(crate) fn accepted(root: &Value, schema: &Value) -> String {
 }
 
 fn accepted_choice(root: &Value, schema: &Value, alternatives: &[&Value]) -> String {
-    let keys: Vec<&str> = alternatives.iter().filter_map(|branch| keyed(branch)).map(|(key, _)| key).collect();
-    let mut parts: Vec<String> = listed(root, schema).into_iter().map(|name| format!("{name:?}")).collect();
-    let plain = alternatives.iter().filter(|branch| keyed(branch).is_none() && listed(root, branch).is_empty());
+    let keys: Vec<&str> = alternatives
+        .iter()
+        .filter_map(|branch| keyed(branch))
+        .map(|(key, _)| key)
+        .collect();
+    let names: Vec<String> = listed(root, schema)
+        .into_iter()
+        .map(|name| format!("{name:?}"))
+        .collect();
+    let mut parts: Vec<String> = if names.is_empty() {
+        Vec::new()
+    } else {
+        vec![names.join(", ")]
+    };
+    let plain = alternatives
+        .iter()
+        .filter(|branch| keyed(branch).is_none() && listed(root, branch).is_empty());
     parts.extend(plain.map(|branch| accepted(root, branch)));
-    if !keys.is_empty() {
-        parts.push(format!("a table with one of the keys {}", keys.join(", ")));
+    match keys.as_slice() {
+        [] => {}
+        [key] => parts.push(format!("a table with the key {key}")),
+        keys => parts.push(format!("a table with one of the keys {}", keys.join(", "))),
     }
     parts.join(", or ")
 }
 
 fn accepted_array(root: &Value, schema: &Value) -> String {
-    let items = schema.get("items").map(|items| accepted(root, items)).unwrap_or_default();
+    let items = schema
+        .get("items")
+        .map(|items| accepted(root, items))
+        .unwrap_or_default();
     let bound = |keyword: &str| schema.get(keyword).and_then(Value::as_u64);
     let count = match (bound("minItems"), bound("maxItems")) {
         (Some(least), Some(most)) if least == most => format!("{least} values"),
         (Some(least), Some(most)) => format!("{least} to {most} values"),
-        (Some(least), None) => format!("{least} value{} or more", if least == 1 { "" } else { "s" }),
+        (Some(least), None) => {
+            format!("{least} value{} or more", if least == 1 { "" } else { "s" })
+        }
         _ => "values".to_owned(),
     };
-    format!("an array of {count}, each {items}")
+    format!("an array of {count}, each of them {items}")
 }
 
 /// ` greater than 0`, ` from 0.5 to 1`: the range of a number, with a leading blank, or nothing.
@@ -139,11 +199,20 @@ pub(crate) fn range(schema: &Value) -> String {
     };
     match (low, high) {
         (Some((low, _, from)), Some((high, _, to))) => format!(" {from} {low} {to} {high}"),
-        (Some((value, words, _)), None) | (None, Some((value, words, _))) => format!(" {words} {value}"),
+        (Some((value, words, _)), None) | (None, Some((value, words, _))) => {
+            format!(" {words} {value}")
+        }
         (None, None) => String::new(),
     }
 }
 
 fn article(noun: &str) -> String {
-    format!("{} {noun}", if noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
+    format!(
+        "{} {noun}",
+        if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
+            "an"
+        } else {
+            "a"
+        }
+    )
 }

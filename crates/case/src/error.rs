@@ -72,7 +72,10 @@ impl Problem {
     pub fn unknown<'a>(self, name: &str, names: impl IntoIterator<Item = &'a str>) -> Problem {
         let names: Vec<&str> = names.into_iter().collect();
         let nearest = nearest(name, names.iter().copied()).map(str::to_owned);
-        Problem { nearest, ..self.found(name).accepted(names) }
+        Problem {
+            nearest,
+            ..self.found(name).accepted(names)
+        }
     }
 
     /// Adds a fact.
@@ -85,16 +88,28 @@ impl Problem {
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.path.is_empty() { f.write_str(&self.message) } else { write!(f, "{}: {}", self.path, self.message) }
+        if self.path.is_empty() {
+            f.write_str(&self.message)
+        } else {
+            write!(f, "{}: {}", self.path, self.message)
+        }
     }
 }
 
 /// The name nearest to `found`, when it is near enough to be what was meant: at most one third of its letters differ (one of two or three).
-pub(crate) fn nearest<'a>(found: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(
+    found: &str,
+    names: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
     let lower = found.to_lowercase();
     names
         .into_iter()
-        .map(|name| (strsim::damerau_levenshtein(&lower, &name.to_lowercase()), name))
+        .map(|name| {
+            (
+                strsim::damerau_levenshtein(&lower, &name.to_lowercase()),
+                name,
+            )
+        })
         .filter(|&(edits, name)| {
             let letters = found.chars().count().max(name.chars().count());
             edits <= (letters / 3).max(1) && edits < name.chars().count()

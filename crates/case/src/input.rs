@@ -27,34 +27,65 @@ impl Input {
     /// Reads the case file at `path`; each of `overrides` is one `key.path=value`, which replaces the value at that key path.
     ///
     /// # Errors
-    /// A [`Problem`] without a place: the file is missing, is a folder, cannot be read, is not UTF-8, or is empty.
-    pub fn read(path: &Path, overrides: &[String]) -> Result<Input, Problem> {
+    /// One [`Problem`] without a place: the file is missing, is a folder, cannot be read, is not UTF-8, or is empty.
+    pub fn read(path: &Path, overrides: &[String]) -> Result<Input, Vec<Problem>> {
         let name = path.display().to_string();
         if path.is_dir() {
             let inside = path.join("case.toml");
             let problem = Problem::new("", format!("`{name}` is a folder, not a case file"));
-            return Err(if inside.is_file() { problem.note(format!("it holds a case file: {}", inside.display())) } else { problem });
+            return Err(vec![if inside.is_file() {
+                problem.note(format!("it holds a case file: {}", inside.display()))
+            } else {
+                problem
+            }]);
         }
-        let bytes = fs::read(path).map_err(|cause| Problem::new("", format!("cannot read the case file `{name}`: {cause}")))?;
+        let bytes = fs::read(path).map_err(|cause| {
+            vec![Problem::new(
+                "",
+                format!("cannot read the case file `{name}`: {cause}"),
+            )]
+        })?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let bytes = error.as_bytes();
             let at = error.utf8_error().valid_up_to();
             let line = 1 + bytes[..at].iter().filter(|&&byte| byte == b'\n').count();
-            Problem::new("", format!("the case file `{name}` is not UTF-8 text"))
-                .found(format!("the byte 0x{:02x} on line {line}, at offset {at}", bytes[at]))
-                .accepted(["a TOML file, saved as UTF-8"])
+            let problem = Problem::new("", format!("the case file `{name}` is not UTF-8 text"));
+            let found = format!(
+                "the byte 0x{:02x} on line {line}, at offset {at}",
+                bytes[at]
+            );
+            vec![
+                problem
+                    .found(found)
+                    .accepted(["a TOML file, saved as UTF-8"]),
+            ]
         })?;
         if text.trim().is_empty() {
-            return Err(Problem::new("", format!("the case file `{name}` is empty")));
+            return Err(vec![Problem::new(
+                "",
+                format!("the case file `{name}` is empty"),
+            )]);
         }
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        Ok(Input { folder, ..Input::from_text(&name, &text, overrides) })
+        Ok(Input {
+            folder,
+            ..Input::from_text(&name, &text, overrides)
+        })
     }
 
     /// The same from a text: paths in it start from the working folder.
     pub fn from_text(name: &str, text: &str, overrides: &[String]) -> Input {
-        let file = Source { name: name.to_owned(), text: text.strip_prefix('\u{feff}').unwrap_or(text).to_owned() };
-        let overrides = overrides.iter().map(|text| Source { name: "--set".to_owned(), text: text.clone() });
-        Input { sources: std::iter::once(file).chain(overrides).collect(), folder: PathBuf::new() }
+        let file = Source {
+            name: name.to_owned(),
+            text: text.strip_prefix('\u{feff}').unwrap_or(text).to_owned(),
+        };
+        let overrides = overrides.iter().map(|text| Source {
+            name: "--set".to_owned(),
+            text: text.clone(),
+        });
+        Input {
+            sources: std::iter::once(file).chain(overrides).collect(),
+            folder: PathBuf::new(),
+        }
     }
 }

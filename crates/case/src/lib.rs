@@ -11,6 +11,7 @@ mod describe;
 mod error;
 mod input;
 mod locate;
+mod reference;
 mod rules;
 mod tree;
 mod validate;
@@ -18,6 +19,7 @@ mod validate;
 pub use error::{Place, Problem};
 pub use input::{Input, Source};
 pub use locate::Locator;
+pub use reference::reference_page;
 
 /// Reads a case: syntax, overrides, schema.
 ///
@@ -30,8 +32,16 @@ pub fn parse(input: &Input) -> Result<(schema::Case, Locator), Vec<Problem>> {
     if !problems.is_empty() {
         return Err(locator.locate_all(problems));
     }
-    let case = serde_json::from_value(root.to_json())
-        .map_err(|cause| vec![Problem::new("", format!("the schema let pass what the reader refuses, a defect of Carom: {cause}"))])?;
+    let case = serde_json::from_value(root.to_json()).map_err(|cause| {
+        vec![Problem::new(
+            "",
+            format!("the schema let pass what the reader refuses, a defect of Carom: {cause}"),
+        )]
+    })?;
     let problems = rules::check(&case);
-    if problems.is_empty() { Ok((case, locator)) } else { Err(locator.locate_all(problems)) }
+    if problems.is_empty() {
+        Ok((case, locator))
+    } else {
+        Err(locator.locate_all(problems))
+    }
 }

@@ -19,16 +19,29 @@ struct Entry {
 
 impl Locator {
     pub(crate) fn new(root: &Item) -> Locator {
-        let mut locator = Locator { entries: BTreeMap::new() };
+        let mut locator = Locator {
+            entries: BTreeMap::new(),
+        };
         locator.enter("", root);
         locator
     }
 
     fn enter(&mut self, path: &str, item: &Item) {
-        self.entries.insert(path.to_owned(), Entry { key: item.key, place: item.place() });
+        self.entries.insert(
+            path.to_owned(),
+            Entry {
+                key: item.key,
+                place: item.place(),
+            },
+        );
         match &item.node {
-            Node::Table(entries) => entries.iter().for_each(|(key, item)| self.enter(&join(path, key), item)),
-            Node::Array(items) => items.iter().enumerate().for_each(|(at, item)| self.enter(&format!("{path}[{at}]"), item)),
+            Node::Table(entries) => entries
+                .iter()
+                .for_each(|(key, item)| self.enter(&join(path, key), item)),
+            Node::Array(items) => items
+                .iter()
+                .enumerate()
+                .for_each(|(at, item)| self.enter(&format!("{path}[{at}]"), item)),
             _ => {}
         }
     }
@@ -45,7 +58,8 @@ impl Locator {
 
     /// Place of the key at `path`, otherwise as [`Locator::value`].
     pub fn key(&self, path: &str) -> Option<Place> {
-        self.nearest(path).map(|entry| entry.key.unwrap_or(entry.place))
+        self.nearest(path)
+            .map(|entry| entry.key.unwrap_or(entry.place))
     }
 
     /// The problem with its place, unless it has one.
@@ -58,7 +72,10 @@ impl Locator {
     /// All problems with their places, in the order of the sources.
     #[must_use]
     pub fn locate_all(&self, problems: Vec<Problem>) -> Vec<Problem> {
-        let mut problems: Vec<Problem> = problems.into_iter().map(|problem| self.locate(problem)).collect();
+        let mut problems: Vec<Problem> = problems
+            .into_iter()
+            .map(|problem| self.locate(problem))
+            .collect();
         problems.sort_by_key(|problem| problem.place);
         problems
     }

@@ -19,7 +19,11 @@ pub(crate) fn check(case: &Case) -> Vec<Problem> {
         && step > case.time.end
     {
         let problem = Problem::new("time.step", "the step is longer than the time to simulate");
-        problems.push(problem.found(format!("{} s", step.0)).accepted([format!("at most `end`, {} s", case.time.end.0)]));
+        problems.push(
+            problem
+                .found(format!("{} s", step.0))
+                .accepted([format!("at most `end`, {} s", case.time.end.0)]),
+        );
     }
     problems
 }
@@ -36,28 +40,52 @@ fn check_part(path: &str, part: &Part, problems: &mut Vec<Problem>) {
     let nodes: f64 = elements.iter().map(|count| count.0 as f64 + 1.0).product();
     if nodes > MOST_NODES {
         let problem = Problem::new(format!("{path}.{shape}.elements"), "too many elements");
-        problems.push(problem.found(format!("{nodes:e} nodes")).accepted([format!("at most {MOST_NODES:e} nodes")]));
+        problems.push(
+            problem
+                .found(format!("{nodes:e} nodes"))
+                .accepted([format!("at most {MOST_NODES:e} nodes")]),
+        );
     }
 }
 
 fn check_line(path: &str, line: &Line, problems: &mut Vec<Problem>) {
     if line.from.given() != line.to.given() {
-        let problem = Problem::new(format!("{path}.to"), "`from` and `to` have different numbers of components");
-        problems.push(problem.found(line.to.given()).accepted([format!("{}, as in `from`", line.from.given())]));
+        let problem = Problem::new(
+            format!("{path}.to"),
+            "`from` and `to` have different numbers of components",
+        );
+        problems.push(
+            problem
+                .found(line.to.given())
+                .accepted([format!("{}, as in `from`", line.from.given())]),
+        );
     } else if line.from == line.to {
-        problems.push(Problem::new(format!("{path}.to"), "a line of no length: `from` and `to` are the same point"));
+        problems.push(Problem::new(
+            format!("{path}.to"),
+            "a line of no length: `from` and `to` are the same point",
+        ));
     }
 }
 
 fn check_contact(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
     if contact.primary.as_ref() == Some(&contact.secondary) {
-        let problem = Problem::new(format!("{path}.primary"), "a surface cannot be its own partner in contact");
-        problems.push(problem.found(&contact.secondary).accepted(["another group than `secondary`"]));
+        let problem = Problem::new(
+            format!("{path}.primary"),
+            "a surface cannot be its own partner in contact",
+        );
+        problems.push(
+            problem
+                .found(&contact.secondary)
+                .accepted(["another group than `secondary`"]),
+        );
     }
     if let Some(Obstacle::Plane(plane)) = &contact.obstacle
         && plane.normal.components() == [0.0; 3]
     {
-        let problem = Problem::new(format!("{path}.obstacle.plane.normal"), "a normal of no length");
+        let problem = Problem::new(
+            format!("{path}.obstacle.plane.normal"),
+            "a normal of no length",
+        );
         problems.push(problem.accepted(["a vector that is not zero"]));
     }
 }

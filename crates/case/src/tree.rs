@@ -49,16 +49,30 @@ impl Item {
             Node::Boolean(value) => json!(value),
             Node::Date => serde_json::Value::Null,
             Node::Array(items) => items.iter().map(Item::to_json).collect(),
-            Node::Table(entries) => entries.iter().map(|(key, item)| (key.clone(), item.to_json())).collect(),
+            Node::Table(entries) => entries
+                .iter()
+                .map(|(key, item)| (key.clone(), item.to_json()))
+                .collect(),
         }
     }
 }
 
 /// The key path of `key` in the table at `path`: keys that are not bare are quoted.
 pub(crate) fn join(path: &str, key: &str) -> String {
-    let bare = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    let key = if bare { key.to_owned() } else { format!("{key:?}") };
-    if path.is_empty() { key } else { format!("{path}.{key}") }
+    let bare = !key.is_empty()
+        && key
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    let key = if bare {
+        key.to_owned()
+    } else {
+        format!("{key:?}")
+    };
+    if path.is_empty() {
+        key
+    } else {
+        format!("{path}.{key}")
+    }
 }
 
 /// Parses the file and every override, and puts the overrides in.
@@ -72,7 +86,9 @@ pub(crate) fn read(input: &Input) -> Result<Item, Vec<Problem>> {
         let text = text.text.as_str();
         if source == 0 {
             root = Some(parse(source, text, 0, &mut problems));
-        } else if let (Some(change), Some(root)) = (parse_override(source, text, &mut problems), root.as_mut()) {
+        } else if let (Some(change), Some(root)) =
+            (parse_override(source, text, &mut problems), root.as_mut())
+        {
             replace(root, change);
         }
     }
@@ -89,11 +105,19 @@ fn parse(source: usize, text: &str, offset: usize, problems: &mut Vec<Problem>) 
         problems.push(Problem::new("", error.message()).at(place(source, &span, offset)));
     }
     let value = place(source, &table.span(), offset);
-    Item { key: None, value, node: table_node(source, table.get_ref(), offset) }
+    Item {
+        key: None,
+        value,
+        node: table_node(source, table.get_ref(), offset),
+    }
 }
 
 fn place(source: usize, span: &Range<usize>, offset: usize) -> Place {
-    Place { source, start: span.start + offset, end: span.end + offset }
+    Place {
+        source,
+        start: span.start + offset,
+        end: span.end + offset,
+    }
 }
 
 fn table_node(source: usize, table: &DeTable<'_>, offset: usize) -> Node {
@@ -102,7 +126,10 @@ fn table_node(source: usize, table: &DeTable<'_>, offset: usize) -> Node {
             .iter()
             .map(|(key, value)| {
                 let key_place = place(source, &key.span(), offset);
-                (key.get_ref().to_string(), item(source, Some(key_place), value, offset))
+                (
+                    key.get_ref().to_string(),
+                    item(source, Some(key_place), value, offset),
+                )
             })
             .collect(),
     )
@@ -118,10 +145,19 @@ fn item(source: usize, key: Option<Place>, value: &Spanned<DeValue<'_>>, offset:
         DeValue::Float(number) => Node::Float(number.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(value) => Node::Boolean(*value),
         DeValue::Datetime(_) => Node::Date,
-        DeValue::Array(values) => Node::Array(values.iter().map(|value| item(source, None, value, offset)).collect()),
+        DeValue::Array(values) => Node::Array(
+            values
+                .iter()
+                .map(|value| item(source, None, value, offset))
+                .collect(),
+        ),
         DeValue::Table(table) => table_node(source, table, offset),
     };
-    Item { key, value: place(source, &value.span(), offset), node }
+    Item {
+        key,
+        value: place(source, &value.span(), offset),
+        node,
+    }
 }
 
 /// An override: the keys that lead to the value, each with its place, and the value.
@@ -132,40 +168,69 @@ struct Override {
 
 /// Reads `key.path=value`. A value that is no TOML and does not look like some is a text, since a shell takes the quotes away.
 fn parse_override(source: usize, text: &str, problems: &mut Vec<Problem>) -> Option<Override> {
-    let all = Place { source, start: 0, end: text.len() };
+    let all = Place {
+        source,
+        start: 0,
+        end: text.len(),
+    };
     let Some(at) = text.find('=') else {
         let message = "an override has no `=`";
-        problems.push(Problem::new("", message).at(all).accepted(["key.path=value, for example time.end=1e-3"]));
+        problems.push(
+            Problem::new("", message)
+                .at(all)
+                .accepted(["key.path=value, for example time.end=1e-3"]),
+        );
         return None;
     };
-    let mut errors = Vec::new();
+    let keys = parse_keys(source, &text[..at]);
+    if keys.is_none() {
+        let message = "the left side of an override is not a key path";
+        problems.push(
+            Problem::new("", message)
+                .at(Place { end: at, ..all })
+                .accepted(["keys joined by points, as in time.end=1e-3"]),
+        );
+    }
     let mut value = match DeValue::parse(&text[at + 1..]) {
         Ok(value) => item(source, None, &value, at + 1),
-        Err(error) if text[at + 1..].trim_start().starts_with(['[', '{', '"', '\'']) => {
+        Err(error)
+            if text[at + 1..]
+                .trim_start()
+                .starts_with(['[', '{', '"', '\'']) =>
+        {
             let span = error.span().unwrap_or(0..0);
             problems.push(Problem::new("", error.message()).at(place(source, &span, at + 1)));
             return None;
         }
         Err(_) => {
             let text = text[at + 1..].trim().to_owned();
-            Item { key: None, value: Place { start: at + 1, ..all }, node: Node::Text(text) }
+            Item {
+                key: None,
+                value: Place {
+                    start: at + 1,
+                    ..all
+                },
+                node: Node::Text(text),
+            }
         }
     };
-    // The key alone, as the keys of a table: `a.b = 0` is read for its places.
-    let mut next = parse(source, &format!("{}= 0", &text[..at]), 0, &mut errors).node;
-    let mut keys = Vec::new();
-    while let Node::Table(entries) = next {
-        let Some((key, inner)) = entries.into_iter().next() else { return None };
-        keys.push((key, inner.key.unwrap_or(all)));
-        next = inner.node;
-    }
-    if !errors.is_empty() || keys.is_empty() || !matches!(next, Node::Integer(0)) {
-        let message = "the left side of an override is not a key path";
-        problems.push(Problem::new("", message).at(Place { end: at, ..all }).accepted(["keys joined by points, as in time.end=1e-3"]));
-        return None;
-    }
+    let keys = keys?;
     value.key = keys.last().map(|key| key.1);
     Some(Override { keys, value })
+}
+
+/// The keys of a key path with their places, read as TOML reads `a.b = 0`; none if that is not what it is.
+fn parse_keys(source: usize, text: &str) -> Option<Vec<(String, Place)>> {
+    let mut problems = Vec::new();
+    let mut next = parse(source, &format!("{text}= 0"), 0, &mut problems).node;
+    let mut keys = Vec::new();
+    while let Node::Table(entries) = next {
+        let (key, inner) = entries.into_iter().next()?;
+        keys.push((key, inner.key?));
+        next = inner.node;
+    }
+    (problems.is_empty() && !text.contains('\n') && matches!(next, Node::Integer(0)))
+        .then_some(keys)
 }
 
 /// Puts the value of an override in the place of whatever stands at its key path.
@@ -174,13 +239,23 @@ fn replace(root: &mut Item, change: Override) {
     let last = change.keys.len() - 1;
     for (depth, (key, key_place)) in change.keys.into_iter().enumerate() {
         if !matches!(table.node, Node::Table(_)) {
-            *table = Item { key: Some(key_place), value: key_place, node: Node::Table(BTreeMap::new()) };
+            *table = Item {
+                key: Some(key_place),
+                value: key_place,
+                node: Node::Table(BTreeMap::new()),
+            };
         }
-        let Node::Table(entries) = &mut table.node else { return };
+        let Node::Table(entries) = &mut table.node else {
+            return;
+        };
         if depth == last {
             entries.insert(key, change.value);
             return;
         }
-        table = entries.entry(key).or_insert(Item { key: Some(key_place), value: key_place, node: Node::Table(BTreeMap::new()) });
+        table = entries.entry(key).or_insert(Item {
+            key: Some(key_place),
+            value: key_place,
+            node: Node::Table(BTreeMap::new()),
+        });
     }
 }

@@ -46,7 +46,10 @@ const fn dimension(length: i32, mass: i32, time: i32) -> Dimension {
 impl Dimension {
     /// The dimension called `name` (`"length"`, `"stiffness per area"` ...), if there is one.
     pub fn named(name: &str) -> Option<Dimension> {
-        NAMED.iter().find(|entry| entry.0 == name).map(|entry| entry.2)
+        NAMED
+            .iter()
+            .find(|entry| entry.0 == name)
+            .map(|entry| entry.2)
     }
 
     /// The SI unit of this dimension, as a user would write it.
@@ -134,7 +137,13 @@ const SYMBOLS: &[(&str, bool, f64, i32, Dimension)] = &[
     ("in", false, 254.0, -4, dimension(1, 0, 0)),
     ("ft", false, 3048.0, -4, dimension(1, 0, 0)),
     ("rad", false, 1.0, 0, dimension(0, 0, 0)),
-    ("deg", false, std::f64::consts::PI / 180.0, 0, dimension(0, 0, 0)),
+    (
+        "deg",
+        false,
+        std::f64::consts::PI / 180.0,
+        0,
+        dimension(0, 0, 0),
+    ),
 ];
 
 /// SI prefixes and their powers of ten. `µ` is both the micro sign and the Greek letter.
@@ -167,12 +176,27 @@ pub fn parse_quantity(text: &str, wanted: Dimension) -> Result<f64, UnitError> {
     }
     let unit = parse_unit(unit)?;
     if unit.dimension != wanted {
-        return Err(UnitError::WrongDimension { found: unit.dimension, wanted });
+        return Err(UnitError::WrongDimension {
+            found: unit.dimension,
+            wanted,
+        });
     }
     let power = exponent.saturating_add(unit.power);
-    let decimal = |power: i32| format!("{number}e{power}").parse::<f64>().map_err(|_| UnitError::NoNumber);
-    let value = if unit.factor == 1.0 { decimal(power)? } else { decimal(0)? * unit.factor / 10.0_f64.powi(-power) };
-    if value.is_finite() { Ok(value) } else { Err(UnitError::TooLarge) }
+    let decimal = |power: i32| {
+        format!("{number}e{power}")
+            .parse::<f64>()
+            .map_err(|_| UnitError::NoNumber)
+    };
+    let value = if unit.factor == 1.0 {
+        decimal(power)?
+    } else {
+        decimal(0)? * unit.factor / 10.0_f64.powi(-power)
+    };
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(UnitError::TooLarge)
+    }
 }
 
 /// The SI value of one `text`, a unit of length such as `"mm"`.
@@ -211,7 +235,11 @@ fn split_number(text: &str) -> Option<(&str, i32, &str)> {
 
 /// Reads `N*s/m^3`: factors joined by `*`, `.`, `·`, a space (products) or `/` (quotient by the next factor alone).
 fn parse_unit(text: &str) -> Result<Unit, UnitError> {
-    let mut unit = Unit { factor: 1.0, power: 0, dimension: dimension(0, 0, 0) };
+    let mut unit = Unit {
+        factor: 1.0,
+        power: 0,
+        dimension: dimension(0, 0, 0),
+    };
     let mut sign = 1;
     let mut rest = text;
     loop {
@@ -238,36 +266,67 @@ fn parse_unit(text: &str) -> Result<Unit, UnitError> {
 fn split_exponent(factor: &str) -> Result<(&str, i32), UnitError> {
     let (symbol, exponent) = match factor.find(['^', '²', '³']) {
         Some(at) => factor.split_at(at),
-        None => factor.split_at(factor.find(|c: char| c.is_ascii_digit() || c == '-').unwrap_or(factor.len())),
+        None => factor.split_at(
+            factor
+                .find(|c: char| c.is_ascii_digit() || c == '-')
+                .unwrap_or(factor.len()),
+        ),
     };
-    let bad = || UnitError::BadExponent { exponent: exponent.to_owned() };
+    let bad = || UnitError::BadExponent {
+        exponent: exponent.to_owned(),
+    };
     let value = match exponent {
         "" => 1,
         "²" => 2,
         "³" => 3,
-        _ => exponent.trim_start_matches('^').parse::<i32>().map_err(|_| bad())?,
+        _ => exponent
+            .trim_start_matches('^')
+            .parse::<i32>()
+            .map_err(|_| bad())?,
     };
-    if value == 0 || value.abs() > 9 { Err(bad()) } else { Ok((symbol, value)) }
+    if value == 0 || value.abs() > 9 {
+        Err(bad())
+    } else {
+        Ok((symbol, value))
+    }
 }
 
 /// The symbol itself if it is one (so `min` is a minute), else a prefix and a symbol.
 fn find_symbol(symbol: &str) -> Result<Unit, UnitError> {
-    let exact = SYMBOLS.iter().find(|entry| entry.0 == symbol).map(|entry| (entry, 0));
+    let exact = SYMBOLS
+        .iter()
+        .find(|entry| entry.0 == symbol)
+        .map(|entry| (entry, 0));
     let prefixed = || {
         PREFIXES.iter().find_map(|&(prefix, power)| {
             let rest = symbol.strip_prefix(prefix)?;
-            SYMBOLS.iter().find(|entry| entry.1 && entry.0 == rest).map(|entry| (entry, power))
+            SYMBOLS
+                .iter()
+                .find(|entry| entry.1 && entry.0 == rest)
+                .map(|entry| (entry, power))
         })
     };
     match exact.or_else(prefixed) {
-        Some((&(_, _, factor, power, dimension), prefix)) => Ok(Unit { factor, power: power + prefix, dimension }),
-        None => Err(UnitError::UnknownSymbol { symbol: symbol.to_owned(), nearest: nearest_symbol(symbol) }),
+        Some((&(_, _, factor, power, dimension), prefix)) => Ok(Unit {
+            factor,
+            power: power + prefix,
+            dimension,
+        }),
+        None => Err(UnitError::UnknownSymbol {
+            symbol: symbol.to_owned(),
+            nearest: nearest_symbol(symbol),
+        }),
     }
 }
 
 fn nearest_symbol(symbol: &str) -> Option<String> {
-    const USUAL: &[&str] = &["mm", "cm", "km", "kg", "ms", "us", "kN", "MN", "kPa", "MPa", "GPa", "kJ"];
-    let names = SYMBOLS.iter().map(|entry| entry.0).chain(USUAL.iter().copied());
+    const USUAL: &[&str] = &[
+        "mm", "cm", "km", "kg", "ms", "us", "kN", "MN", "kPa", "MPa", "GPa", "kJ",
+    ];
+    let names = SYMBOLS
+        .iter()
+        .map(|entry| entry.0)
+        .chain(USUAL.iter().copied());
     crate::error::nearest(symbol, names).map(str::to_owned)
 }
 
@@ -318,11 +377,22 @@ mod tests {
         assert_eq!(wrong.to_string(), "a time instead of a length");
         assert_eq!(
             si("3 Mpa", "stress"),
-            Err(UnitError::UnknownSymbol { symbol: "Mpa".into(), nearest: Some("MPa".into()) })
+            Err(UnitError::UnknownSymbol {
+                symbol: "Mpa".into(),
+                nearest: Some("MPa".into())
+            })
         );
-        assert!(matches!(si("3 m^x", "length"), Err(UnitError::BadExponent { .. })));
-        assert!(matches!(si("3 m^0", "length"), Err(UnitError::BadExponent { .. })));
-        for text in ["1 /m", "1 m/", "1 m//s", "1 (m)", "2,5 mm", "1 m*", "1 ^2", "1 ²", "é", "1 é"] {
+        assert!(matches!(
+            si("3 m^x", "length"),
+            Err(UnitError::BadExponent { .. })
+        ));
+        assert!(matches!(
+            si("3 m^0", "length"),
+            Err(UnitError::BadExponent { .. })
+        ));
+        for text in [
+            "1 /m", "1 m/", "1 m//s", "1 (m)", "2,5 mm", "1 m*", "1 ^2", "1 ²", "é", "1 é",
+        ] {
             assert!(si(text, "length").is_err(), "{text}");
         }
     }

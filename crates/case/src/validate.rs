@@ -7,7 +7,9 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::describe::{accepted, allows, alternatives, elements, entries, keyed, listed, range, resolve, texts};
+use crate::describe::{
+    accepted, allows, alternatives, elements, entries, keyed, listed, range, resolve, texts,
+};
 use crate::error::{Place, Problem, nearest};
 use crate::input::Input;
 use crate::schema::is_name;
@@ -19,7 +21,11 @@ const SHOWN: usize = 60;
 
 /// Every problem of the case `root` against `schema`.
 pub(crate) fn validate(schema: &Value, root: &Item, input: &Input) -> Vec<Problem> {
-    let mut walker = Walker { schema, input, problems: Vec::new() };
+    let mut walker = Walker {
+        schema,
+        input,
+        problems: Vec::new(),
+    };
     walker.visit(schema, root, "");
     walker.problems
 }
@@ -38,13 +44,21 @@ impl<'a> Walker<'a> {
             return self.visit_choice(schema, &branches, item, path);
         }
         match &item.node {
-            Node::Table(entries) if allows(schema, "object") => self.visit_table(schema, entries, item, path),
-            Node::Array(items) if allows(schema, "array") => self.visit_array(schema, items, item, path),
-            Node::Text(text) if allows(schema, "string") => self.visit_text(schema, text, item, path),
+            Node::Table(entries) if allows(schema, "object") => {
+                self.visit_table(schema, entries, item, path)
+            }
+            Node::Array(items) if allows(schema, "array") => {
+                self.visit_array(schema, items, item, path)
+            }
+            Node::Text(text) if allows(schema, "string") => {
+                self.visit_text(schema, text, item, path)
+            }
             Node::Integer(value) if allows(schema, "integer") || allows(schema, "number") => {
                 self.visit_number(schema, *value as f64, item, path);
             }
-            Node::Float(value) if allows(schema, "number") => self.visit_number(schema, *value, item, path),
+            Node::Float(value) if allows(schema, "number") => {
+                self.visit_number(schema, *value, item, path)
+            }
             Node::Boolean(_) if allows(schema, "boolean") => {}
             _ => self.wrong_type(schema, item, path),
         }
@@ -52,18 +66,27 @@ impl<'a> Walker<'a> {
 
     /// A value of one of several kinds: a listed text, a number, or a table with one of several keys.
     fn visit_choice(&mut self, schema: &'a Value, branches: &[&'a Value], item: &Item, path: &str) {
-        let choices: BTreeMap<&str, &Value> = branches.iter().filter_map(|branch| keyed(branch)).collect();
+        let choices: BTreeMap<&str, &Value> =
+            branches.iter().filter_map(|branch| keyed(branch)).collect();
         let names = listed(self.schema, schema);
         match &item.node {
             Node::Text(text) if names.contains(&text.as_str()) => {}
-            Node::Table(entries) if !choices.is_empty() => self.visit_keyed(&choices, entries, item, path),
+            Node::Table(entries) if !choices.is_empty() => {
+                self.visit_keyed(&choices, entries, item, path)
+            }
             node => {
                 let kind = json_type(node);
-                let plain = branches.iter().find(|branch| allows(branch, kind) && listed(self.schema, branch).is_empty());
+                let plain = branches
+                    .iter()
+                    .find(|branch| allows(branch, kind) && listed(self.schema, branch).is_empty());
                 match (plain, node) {
                     (Some(branch), _) if keyed(branch).is_none() => self.visit(branch, item, path),
                     (_, Node::Text(text)) if !names.is_empty() => {
-                        self.problems.push(Problem::new(path, "unknown name").unknown(text, names).at(item.value));
+                        self.problems.push(
+                            Problem::new(path, "unknown name")
+                                .unknown(text, names)
+                                .at(item.value),
+                        );
                     }
                     _ => self.wrong_type(schema, item, path),
                 }
@@ -72,7 +95,13 @@ impl<'a> Walker<'a> {
     }
 
     /// A table that is a choice: exactly one of its keys.
-    fn visit_keyed(&mut self, choices: &BTreeMap<&str, &'a Value>, entries: &BTreeMap<String, Item>, item: &Item, path: &str) {
+    fn visit_keyed(
+        &mut self,
+        choices: &BTreeMap<&str, &'a Value>,
+        entries: &BTreeMap<String, Item>,
+        item: &Item,
+        path: &str,
+    ) {
         let mut chosen: Vec<(&str, &Item)> = Vec::new();
         for (key, inner) in entries {
             match choices.get(key.as_str()) {
@@ -86,23 +115,44 @@ impl<'a> Walker<'a> {
         chosen.sort_by_key(|(_, inner)| inner.place());
         if let [(first, _), (second, inner), ..] = chosen.as_slice() {
             let message = format!("`{second}` beside `{first}`: only one of them can stand");
-            self.problems.push(Problem::new(join(path, second), message).accepted(choices.keys().copied()).at(key_place(inner)));
+            self.problems.push(
+                Problem::new(join(path, second), message)
+                    .accepted(choices.keys().copied())
+                    .at(key_place(inner)),
+            );
         } else if entries.is_empty() {
-            self.problems.push(Problem::new(path, "empty: one key is needed").accepted(choices.keys().copied()).at(item.place()));
+            self.problems.push(
+                Problem::new(path, "empty: one key is needed")
+                    .accepted(choices.keys().copied())
+                    .at(item.place()),
+            );
         }
     }
 
-    fn visit_table(&mut self, schema: &'a Value, found: &BTreeMap<String, Item>, item: &Item, path: &str) {
+    fn visit_table(
+        &mut self,
+        schema: &'a Value,
+        found: &BTreeMap<String, Item>,
+        item: &Item,
+        path: &str,
+    ) {
         let properties: BTreeMap<&str, &Value> = entries(schema, "properties").collect();
-        let others = schema.get("additionalProperties").filter(|others| others.is_object());
+        let others = schema
+            .get("additionalProperties")
+            .filter(|others| others.is_object());
         for (key, inner) in found {
             let inner_path = join(path, key);
             match (properties.get(key.as_str()), others) {
                 (Some(schema), _) => self.visit(schema, inner, &inner_path),
                 (None, Some(schema)) => {
                     if !is_name(key) {
-                        let problem = Problem::new(&inner_path, "not a name").found(format!("{key:?}"));
-                        self.problems.push(problem.accepted(["letters, digits, `_` and `-`"]).at(key_place(inner)));
+                        let problem =
+                            Problem::new(&inner_path, "not a name").found(format!("{key:?}"));
+                        self.problems.push(
+                            problem
+                                .accepted(["letters, digits, `_` and `-`"])
+                                .at(key_place(inner)),
+                        );
                     }
                     self.visit(schema, inner, &inner_path);
                 }
@@ -110,67 +160,119 @@ impl<'a> Walker<'a> {
             }
         }
         if others.is_some() && found.is_empty() {
-            self.problems.push(Problem::new(path, "empty: one is needed at least").at(item.place()));
+            self.problems
+                .push(Problem::new(path, "empty: one is needed at least").at(item.place()));
         }
         self.check_required(schema, found, item, path);
         self.check_groups(schema, found, item, path);
     }
 
     /// Missing keys, except one that an unknown key was probably meant to be.
-    fn check_required(&mut self, schema: &Value, found: &BTreeMap<String, Item>, item: &Item, path: &str) {
+    fn check_required(
+        &mut self,
+        schema: &Value,
+        found: &BTreeMap<String, Item>,
+        item: &Item,
+        path: &str,
+    ) {
         let properties: BTreeMap<&str, &Value> = entries(schema, "properties").collect();
-        let unknown = found.keys().filter(|key| !properties.contains_key(key.as_str()));
-        let meant: Vec<&str> = unknown.filter_map(|key| nearest(key, properties.keys().copied())).collect();
+        let unknown = found
+            .keys()
+            .filter(|key| !properties.contains_key(key.as_str()));
+        let meant: Vec<&str> = unknown
+            .filter_map(|key| nearest(key, properties.keys().copied()))
+            .collect();
         for key in texts(schema, "required") {
             if !found.contains_key(key) && !meant.contains(&key) {
-                let wanted = properties.get(key).map(|schema| accepted(self.schema, schema)).filter(|wanted| wanted != "a table");
+                let wanted = properties
+                    .get(key)
+                    .map(|schema| accepted(self.schema, schema))
+                    .filter(|wanted| wanted != "a table");
                 let problem = Problem::new(path, format!("`{key}` is missing{}", of(path)));
-                self.problems.push(problem.accepted(wanted).at(item.place()));
+                self.problems
+                    .push(problem.accepted(wanted).at(item.place()));
             }
         }
     }
 
     /// Keys that need, replace or exclude each other: `oneOf`, `anyOf` and `not` over `required`, `dependentRequired`.
-    fn check_groups(&mut self, schema: &Value, found: &BTreeMap<String, Item>, item: &Item, path: &str) {
+    fn check_groups(
+        &mut self,
+        schema: &Value,
+        found: &BTreeMap<String, Item>,
+        item: &Item,
+        path: &str,
+    ) {
         for (keyword, exclusive) in [("oneOf", true), ("anyOf", false)] {
-            let keys: Vec<&str> = elements(schema, keyword).flat_map(|branch| texts(branch, "required")).collect();
-            let given: Vec<&str> = keys.iter().copied().filter(|key| found.contains_key(*key)).collect();
+            let keys: Vec<&str> = elements(schema, keyword)
+                .flat_map(|branch| texts(branch, "required"))
+                .collect();
+            let given: Vec<&str> = keys
+                .iter()
+                .copied()
+                .filter(|key| found.contains_key(*key))
+                .collect();
             if !keys.is_empty() && given.is_empty() {
                 let message = format!("one of {} is missing{}", quoted(&keys), of(path));
-                self.problems.push(Problem::new(path, message).at(item.place()));
+                self.problems
+                    .push(Problem::new(path, message).at(item.place()));
             }
             if exclusive && given.len() > 1 {
                 self.exclude(&given, found, path);
             }
         }
-        let excluded: Vec<&str> = schema.get("not").map(|not| texts(not, "required")).unwrap_or_default();
+        let excluded: Vec<&str> = schema
+            .get("not")
+            .map(|not| texts(not, "required"))
+            .unwrap_or_default();
         if excluded.len() > 1 && excluded.iter().all(|key| found.contains_key(*key)) {
             self.exclude(&excluded, found, path);
         }
         for (key, needs) in entries(schema, "dependentRequired") {
-            let missing = needs.as_array().into_iter().flatten().filter_map(Value::as_str).find(|need| !found.contains_key(*need));
+            let missing = needs
+                .as_array()
+                .into_iter()
+                .flatten()
+                .filter_map(Value::as_str)
+                .find(|need| !found.contains_key(*need));
             if let (Some(inner), Some(need)) = (found.get(key), missing) {
                 let message = format!("`{key}` without `{need}`, which it belongs to");
-                self.problems.push(Problem::new(join(path, key), message).at(key_place(inner)));
+                self.problems
+                    .push(Problem::new(join(path, key), message).at(key_place(inner)));
             }
         }
     }
 
     fn exclude(&mut self, keys: &[&str], found: &BTreeMap<String, Item>, path: &str) {
-        let last = keys.iter().filter_map(|key| Some((key, found.get(*key)?))).max_by_key(|(_, item)| item.place());
+        let last = keys
+            .iter()
+            .filter_map(|key| Some((key, found.get(*key)?)))
+            .max_by_key(|(_, item)| item.place());
         if let Some((key, inner)) = last {
             let message = format!("{} exclude each other", quoted(keys));
-            self.problems.push(Problem::new(join(path, key), message).at(key_place(inner)));
+            self.problems
+                .push(Problem::new(join(path, key), message).at(key_place(inner)));
         }
     }
 
     fn visit_array(&mut self, schema: &'a Value, items: &[Item], item: &Item, path: &str) {
         let bound = |keyword: &str, default: usize| {
-            schema.get(keyword).and_then(Value::as_u64).map_or(default, |value| usize::try_from(value).unwrap_or(default))
+            schema
+                .get(keyword)
+                .and_then(Value::as_u64)
+                .map_or(default, |value| usize::try_from(value).unwrap_or(default))
         };
         if items.len() < bound("minItems", 0) || items.len() > bound("maxItems", usize::MAX) {
-            let message = if items.is_empty() { "an empty array".to_owned() } else { format!("an array of {}", items.len()) };
-            self.problems.push(Problem::new(path, message).accepted([accepted(self.schema, schema)]).at(item.value));
+            let message = if items.is_empty() {
+                "an empty array".to_owned()
+            } else {
+                format!("an array of {}", items.len())
+            };
+            self.problems.push(
+                Problem::new(path, message)
+                    .accepted([accepted(self.schema, schema)])
+                    .at(item.value),
+            );
         }
         if let Some(schema) = schema.get("items") {
             for (at, inner) in items.iter().enumerate() {
@@ -181,7 +283,8 @@ impl<'a> Walker<'a> {
             let values: Vec<Value> = items.iter().map(Item::to_json).collect();
             for at in (1..values.len()).filter(|&at| values[..at].contains(&values[at])) {
                 let message = format!("{} stands here twice", values[at]);
-                self.problems.push(Problem::new(format!("{path}[{at}]"), message).at(items[at].value));
+                self.problems
+                    .push(Problem::new(format!("{path}[{at}]"), message).at(items[at].value));
             }
         }
     }
@@ -190,42 +293,63 @@ impl<'a> Walker<'a> {
         let names = listed(self.schema, schema);
         if !names.is_empty() {
             if !names.contains(&text) {
-                self.problems.push(Problem::new(path, "unknown name").unknown(text, names).at(item.value));
+                self.problems.push(
+                    Problem::new(path, "unknown name")
+                        .unknown(text, names)
+                        .at(item.value),
+                );
             }
         } else if schema.get("x-length-unit").is_some() {
             if let Err(error) = length_of_unit(text) {
                 self.unit_error(schema, error, item, path);
             }
         } else if let Some(name) = schema.get("x-dimension").and_then(Value::as_str) {
-            let Some(dimension) = Dimension::named(name) else { return };
+            let Some(dimension) = Dimension::named(name) else {
+                return;
+            };
             match parse_quantity(text, dimension) {
                 Ok(value) => self.check_range(schema, value, item, path),
                 Err(error) => self.unit_error(schema, error, item, path),
             }
         } else if text.trim().is_empty() {
-            self.problems.push(Problem::new(path, "an empty text").at(item.value));
+            self.problems
+                .push(Problem::new(path, "an empty text").at(item.value));
         }
     }
 
     fn unit_error(&mut self, schema: &Value, error: UnitError, item: &Item, path: &str) {
-        let problem = Problem::new(path, error.to_string()).found(self.written(item.value)).accepted([accepted(self.schema, schema)]);
+        let problem = Problem::new(path, error.to_string())
+            .found(self.written(item.value))
+            .accepted([accepted(self.schema, schema)]);
         let meant = match error {
             UnitError::UnknownSymbol { nearest, .. } => nearest,
             _ => None,
         };
-        self.problems.push(Problem { nearest: meant, ..problem }.at(item.value));
+        self.problems.push(
+            Problem {
+                nearest: meant,
+                ..problem
+            }
+            .at(item.value),
+        );
     }
 
     fn visit_number(&mut self, schema: &'a Value, value: f64, item: &Item, path: &str) {
         if !value.is_finite() {
             let problem = Problem::new(path, "not a finite number").found(self.written(item.value));
-            self.problems.push(problem.accepted([accepted(self.schema, schema)]).at(item.value));
+            self.problems.push(
+                problem
+                    .accepted([accepted(self.schema, schema)])
+                    .at(item.value),
+            );
             return;
         }
         match schema.get("const").and_then(Value::as_f64) {
             Some(only) if only != value => {
-                let problem = Problem::new(path, "this value is not known").found(self.written(item.value));
-                self.problems.push(problem.accepted([only.to_string()]).at(item.value));
+                let problem =
+                    Problem::new(path, "this value is not known").found(self.written(item.value));
+                self.problems
+                    .push(problem.accepted([only.to_string()]).at(item.value));
             }
             _ => self.check_range(schema, value, item, path),
         }
@@ -238,14 +362,28 @@ impl<'a> Walker<'a> {
             && bound("maximum").is_none_or(|high| value <= high)
             && bound("exclusiveMaximum").is_none_or(|high| value < high);
         if !inside {
-            let problem = Problem::new(path, format!("out of range: it must be{}", range(schema))).found(self.written(item.value));
-            self.problems.push(problem.accepted([accepted(self.schema, schema)]).at(item.value));
+            let problem = Problem::new(path, format!("out of range: it must be{}", range(schema)))
+                .found(self.written(item.value));
+            self.problems.push(
+                problem
+                    .accepted([accepted(self.schema, schema)])
+                    .at(item.value),
+            );
         }
     }
 
-    fn unknown_key<'n>(&mut self, key: &str, item: &Item, path: &str, names: impl Iterator<Item = &'n str>) {
+    fn unknown_key<'n>(
+        &mut self,
+        key: &str,
+        item: &Item,
+        path: &str,
+        names: impl Iterator<Item = &'n str>,
+    ) {
         let message = format!("unknown key `{key}`{}", of(path));
-        let problem = Problem { found: None, ..Problem::new(join(path, key), message).unknown(key, names) };
+        let problem = Problem {
+            found: None,
+            ..Problem::new(join(path, key), message).unknown(key, names)
+        };
         self.problems.push(problem.at(key_place(item)));
     }
 
@@ -257,12 +395,21 @@ impl<'a> Walker<'a> {
             _ => self.written(item.value),
         };
         let problem = Problem::new(path, "a value of the wrong kind").found(found);
-        self.problems.push(problem.accepted([accepted(self.schema, schema)]).at(item.place()));
+        self.problems.push(
+            problem
+                .accepted([accepted(self.schema, schema)])
+                .at(item.place()),
+        );
     }
 
     /// The value as it is written, shortened where it is long.
     fn written(&self, place: Place) -> String {
-        let text = self.input.sources.get(place.source).and_then(|source| source.text.get(place.start..place.end)).unwrap_or_default();
+        let text = self
+            .input
+            .sources
+            .get(place.source)
+            .and_then(|source| source.text.get(place.start..place.end))
+            .unwrap_or_default();
         let line = text.lines().next().unwrap_or_default();
         match line.char_indices().nth(SHOWN) {
             Some((end, _)) => format!("{} ...", &line[..end]),
@@ -273,11 +420,18 @@ impl<'a> Walker<'a> {
 
 /// ` in [path]`, or nothing for the file as a whole.
 fn of(path: &str) -> String {
-    if path.is_empty() { String::new() } else { format!(" in `{path}`") }
+    if path.is_empty() {
+        String::new()
+    } else {
+        format!(" in `{path}`")
+    }
 }
 
 fn quoted(keys: &[&str]) -> String {
-    keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and ")
+    keys.iter()
+        .map(|key| format!("`{key}`"))
+        .collect::<Vec<_>>()
+        .join(" and ")
 }
 
 fn key_place(item: &Item) -> Place {

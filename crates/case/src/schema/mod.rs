@@ -19,15 +19,18 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 pub use body::{
-    AxisymmetricSection, Axis, BarSection, Body, Elastic, Gravity, Initial, Loads, Mass, Material, PlaneSection, Section, Support,
+    Axis, AxisymmetricSection, BarSection, Body, Elastic, Gravity, Initial, Loads, Mass, Material,
+    PlaneSection, Section, Support,
 };
 pub use contact::{
-    Adhesion, Capture, Contact, DampedLaw, DisplacementLaw, Integration, Law, NormalVector, Obstacle, Plane, Sign, Sliding, VelocityLaw,
+    Adhesion, Capture, Contact, DampedLaw, DisplacementLaw, Integration, Law, NormalVector,
+    Obstacle, Plane, Sign, Sliding, VelocityLaw,
 };
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};
 pub use quantity::{
-    Acceleration, Area, Coordinate, Density, Duration, Length, Modulus, SurfaceDamping, SurfaceStiffness, Vector, Velocity,
+    Acceleration, Area, Coordinate, Density, Duration, Length, Modulus, SurfaceDamping,
+    SurfaceStiffness, Vector, Velocity,
 };
 pub use time::{CentralDifference, Newmark, Scheme, Step, StepRule, Theta, Time};
 
@@ -123,7 +126,10 @@ const NAME_PATTERN: &str = r"^[\p{L}\p{N}_-]+$";
 
 /// Whether `name` matches the pattern of names.
 pub(crate) fn is_name(name: &str) -> bool {
-    !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+    !name.is_empty()
+        && name
+            .chars()
+            .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
 }
 
 /// The JSON schema of the case file, for editors and for `validate`.

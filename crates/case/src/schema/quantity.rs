@@ -24,7 +24,8 @@ impl Written {
         match self {
             Written::Number(value) => Ok(*value),
             Written::Text(text) => {
-                let wanted = Dimension::named(dimension).ok_or_else(|| format!("no dimension is called {dimension}"))?;
+                let wanted = Dimension::named(dimension)
+                    .ok_or_else(|| format!("no dimension is called {dimension}"))?;
                 parse_quantity(text, wanted).map_err(|error| error.to_string())
             }
         }
@@ -71,16 +72,86 @@ macro_rules! quantity {
 const POSITIVE: Option<(&str, f64)> = Some(("exclusiveMinimum", 0.0));
 const NOT_NEGATIVE: Option<(&str, f64)> = Some(("minimum", 0.0));
 
-quantity!(Coordinate, "length", "m", "254 mm", None, "A coordinate or a displacement, m.");
-quantity!(Length, "length", "m", "254 mm", POSITIVE, "A length greater than zero, m.");
-quantity!(Area, "area", "m^2", "645 mm^2", POSITIVE, "An area greater than zero, m².");
-quantity!(Duration, "time", "s", "0.25 us", POSITIVE, "A time greater than zero, s.");
-quantity!(Density, "density", "kg/m^3", "7.8 t/m^3", POSITIVE, "A mass density greater than zero, kg/m³.");
-quantity!(Modulus, "stress", "Pa", "210 GPa", POSITIVE, "A modulus greater than zero, Pa.");
-quantity!(Velocity, "velocity", "m/s", "36 km/h", None, "A velocity, m/s.");
-quantity!(Acceleration, "acceleration", "m/s^2", "-9.81 m/s^2", None, "An acceleration, m/s².");
-quantity!(SurfaceStiffness, "stiffness per area", "Pa/m", "1 GPa/mm", POSITIVE, "A stiffness per area greater than zero, Pa/m.");
-quantity!(SurfaceDamping, "damping per area", "Pa*s/m", "20 MPa*s/m", NOT_NEGATIVE, "A damping per area, zero or more, Pa s/m.");
+quantity!(
+    Coordinate,
+    "length",
+    "m",
+    "254 mm",
+    None,
+    "A coordinate or a displacement, m."
+);
+quantity!(
+    Length,
+    "length",
+    "m",
+    "254 mm",
+    POSITIVE,
+    "A length greater than zero, m."
+);
+quantity!(
+    Area,
+    "area",
+    "m^2",
+    "645 mm^2",
+    POSITIVE,
+    "An area greater than zero, m²."
+);
+quantity!(
+    Duration,
+    "time",
+    "s",
+    "0.25 us",
+    POSITIVE,
+    "A time greater than zero, s."
+);
+quantity!(
+    Density,
+    "density",
+    "kg/m^3",
+    "7.8 t/m^3",
+    POSITIVE,
+    "A mass density greater than zero, kg/m³."
+);
+quantity!(
+    Modulus,
+    "stress",
+    "Pa",
+    "210 GPa",
+    POSITIVE,
+    "A modulus greater than zero, Pa."
+);
+quantity!(
+    Velocity,
+    "velocity",
+    "m/s",
+    "36 km/h",
+    None,
+    "A velocity, m/s."
+);
+quantity!(
+    Acceleration,
+    "acceleration",
+    "m/s^2",
+    "-9.81 m/s^2",
+    None,
+    "An acceleration, m/s²."
+);
+quantity!(
+    SurfaceStiffness,
+    "stiffness per area",
+    "Pa/m",
+    "1 GPa/mm",
+    POSITIVE,
+    "A stiffness per area greater than zero, Pa/m."
+);
+quantity!(
+    SurfaceDamping,
+    "damping per area",
+    "Pa*s/m",
+    "20 MPa*s/m",
+    NOT_NEGATIVE,
+    "A damping per area, zero or more, Pa s/m."
+);
 
 /// One to three components of a vector; those left out are zero.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,0 +1,6 @@
+//! Stage one, from texts to cases or to problems.
+
+// Helpers of tests panic as the tests themselves do.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod stage_one;
