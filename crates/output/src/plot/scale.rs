@@ -167,6 +167,8 @@ pub fn engineering(unit: &str, largest: f64) -> (f64, String) {
         _ if thousands == 0 => plain,
         // Nobody writes kiloseconds, and metres and metres per second beyond a thousand stay what they are.
         _ if thousands > 0 && matches!(unit, "s" | "m" | "m/s") => plain,
+        // A power of ten reads worse than a few zeros.
+        _ if !bare && (1e-2..1e4).contains(&largest) => plain,
         Some(prefix) if bare => (1000_f64.powi(thousands), format!("{prefix}{unit}")),
         _ => {
             let power = superscript(&(3 * thousands).to_string());
