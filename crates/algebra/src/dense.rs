@@ -84,9 +84,9 @@ impl WithSimd for Solve<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let DenseCholesky { n, values } = self.0;
         solver::forward::<S>(values, *n, *n, self.1);
-        solver::backward::<S>(values, *n, *n, self.1);
+        solver::backward(simd, values, *n, *n, self.1);
     }
 }

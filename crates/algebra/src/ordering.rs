@@ -320,3 +320,120 @@ fn elimination_tree(matrix: &Csr, order: &[u32]) -> Vec<u32> {
     }
     parent
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pattern::Cliques;
+
+    /// Grid of cells with `dofs` unknowns per node; every third cell leaves its last node's first unknown out.
+    fn grid(cells: [usize; 3], dofs: usize) -> (Csr, Vec<u32>) {
+        let [nx, ny, nz] = cells;
+        let node = |x: usize, y: usize, z: usize| x + (nx + 1) * (y + (ny + 1) * z);
+        let mut cliques = Cliques::new();
+        for c in 0..nx * ny * nz.max(1) {
+            let (x, y, z) = (c % nx, c / nx % ny, c / (nx * ny));
+            let depth = if nz == 0 { 0..1 } else { 0..2 };
+            let nodes = depth.flat_map(|k| {
+                [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| node(x + i, y + j, z + k))
+            });
+            let list: Vec<u32> = nodes
+                .flat_map(|a| (0..dofs).map(move |d| (dofs * a + d) as u32))
+                .collect();
+            cliques.push(&list[usize::from(c % 3 == 0)..]);
+        }
+        let n = dofs * (nx + 1) * (ny + 1) * (nz + 1);
+        (
+            Csr::from_cliques(n, &cliques),
+            (0..n).map(|i| (i / dofs) as u32).collect(),
+        )
+    }
+
+    fn cases() -> Vec<(Csr, Vec<u32>)> {
+        let mut fixed = grid([6, 5, 4], 3);
+        let marks: Vec<bool> = (0..fixed.0.n).map(|i| i % 4 == 1 || i < 50).collect();
+        fixed.0 = fixed.0.with_identity(&marks);
+        vec![
+            grid([1, 1, 0], 1),
+            grid([40, 3, 0], 2),
+            grid([7, 6, 5], 3),
+            grid([15, 15, 15], 3),
+            fixed,
+        ]
+    }
+
+    /// Entries of the factor of the matrix eliminated in that order, from the patterns of its rows.
+    fn entries(matrix: &Csr, permutation: &[u32]) -> f64 {
+        let unknowns: Vec<u32> = (0..matrix.n as u32).collect();
+        let groups = Groups::new(&unknowns, &unknowns);
+        Graph::new(matrix, &groups).work(permutation).entries
+    }
+
+    #[test]
+    fn orders_are_permutations_with_the_isolated_unknowns_last() {
+        for (matrix, nodes) in cases() {
+            let ordering = order(&matrix, &nodes).unwrap();
+            assert_eq!(ordering.permutation.len(), matrix.n);
+            assert!(is_permutation(&ordering.permutation));
+            for (k, &i) in ordering.permutation.iter().enumerate() {
+                assert_eq!(matrix.row(i as usize).0.len() > 1, k < ordering.connected);
+            }
+        }
+    }
+
+    #[test]
+    fn the_elimination_tree_is_postordered() {
+        for (matrix, nodes) in cases() {
+            let ordering = order(&matrix, &nodes).unwrap();
+            let parent = elimination_tree(&matrix, &ordering.permutation[..ordering.connected]);
+            // In a postorder a subtree is a run of positions that ends with its root.
+            let mut first: Vec<usize> = (0..parent.len()).collect();
+            let mut size = vec![1; parent.len()];
+            for k in 0..parent.len() {
+                assert_eq!(k + 1 - first[k], size[k]);
+                if parent[k] != ROOT {
+                    let p = parent[k] as usize;
+                    assert!(p > k);
+                    first[p] = first[p].min(first[k]);
+                    size[p] += size[k];
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn postordering_keeps_the_fill() {
+        let (matrix, nodes) = grid([7, 6, 5], 3);
+        let groups = Groups::new(&(0..matrix.n as u32).collect::<Vec<_>>(), &nodes);
+        let degree = Graph::new(&matrix, &groups)
+            .minimum_degree(matrix.n)
+            .unwrap();
+        let expanded: Vec<u32> = degree
+            .iter()
+            .flat_map(|&g| groups.members(g))
+            .copied()
+            .collect();
+        let before = entries(&matrix, &expanded);
+        assert_eq!(entries(&matrix, &postordered(&matrix, expanded)), before);
+    }
+
+    #[test]
+    fn nested_dissection_is_kept_in_three_dimensions_only() {
+        let name = |cells| {
+            let (matrix, nodes) = grid(cells, 3);
+            order(&matrix, &nodes).unwrap().name
+        };
+        assert_eq!(name([15, 15, 15]), "nested dissection");
+        assert_eq!(name([8, 8, 8]), "minimum degree");
+        assert_eq!(name([80, 80, 0]), "minimum degree");
+        assert_eq!(name([2000, 1, 1]), "minimum degree");
+    }
+
+    #[test]
+    fn what_is_no_permutation_is_recognised() {
+        assert!(is_permutation(&[2, 0, 1]));
+        assert!(is_permutation(&[]));
+        assert!(!is_permutation(&[0, 0, 1]));
+        assert!(!is_permutation(&[0, 1, 3]));
+    }
+}

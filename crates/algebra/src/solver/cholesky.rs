@@ -6,18 +6,10 @@
 
 use super::panel::{LANES, Lanes};
 use super::response::{Response, SparseRow};
+use super::supernodal::{Lower, Symbolic, analyse, factorise};
 use super::sweep::{Backward, Forward, ForwardLanes, Panels};
 use crate::{Error, csr::Csr, ordering};
-use faer::{
-    Par,
-    dyn_stack::{MemBuffer, MemStack, StackReq},
-    linalg::cholesky::llt::factor::{LltError, LltRegularization},
-    sparse::linalg::{
-        SymbolicSupernodalParams,
-        cholesky::{simplicial, supernodal},
-    },
-    sparse::{SparseColMatRef, SymbolicSparseColMatRef},
-};
+use faer::linalg::cholesky::llt::factor::LltError;
 use pulp::Arch;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -52,7 +44,7 @@ pub struct Cholesky {
     connected: usize,
     /// Fingerprint of the analysed pattern.
     pattern: Pattern,
-    symbolic: supernodal::SymbolicSupernodalCholesky<usize>,
+    symbolic: Symbolic,
     panels: Panels,
     /// Panels of L, column-major.
     values: Vec<f64>,
@@ -67,8 +59,8 @@ pub struct Cholesky {
 impl Cholesky {
     /// Analyses and factorises `matrix`, which must be symmetric: one entry of each symmetric pair is read.
     ///
-    /// `group_of[i]`: node of unknown i; unknowns of one node are eliminated together. Errors: the matrix is not positive
-    /// definite or not finite; `group_of` has the wrong length; memory is short.
+    /// `group_of[i]`: node of unknown i; unknowns of one node are eliminated together (without nodes, `group_of[i] = i`).
+    /// Errors: the matrix is not positive definite or not finite; `group_of` has the wrong length; memory is short.
     pub fn new(matrix: &Csr, group_of: &[u32]) -> Result<Self, Error> {
         if group_of.len() != matrix.n {
             return Err(Error::WrongLength {
@@ -371,42 +363,6 @@ impl Pattern {
     }
 }
 
-/// Lower triangle of the permuted matrix by columns.
-struct Lower {
-    col_ptr: Vec<usize>,
-    row: Vec<usize>,
-    values: Vec<f64>,
-}
-
-impl Lower {
-    fn new(matrix: &Csr, connected: &[u32], position: &[u32]) -> Result<Self, Error> {
-        let mut lower = Self {
-            col_ptr: vec![0],
-            row: vec![],
-            values: vec![],
-        };
-        for (k, &unknown) in connected.iter().enumerate() {
-            let (columns, values) = matrix.row(unknown as usize);
-            for (&j, &value) in columns.iter().zip(values) {
-                if !value.is_finite() {
-                    return Err(Error::NotFinite {
-                        row: unknown as usize,
-                        column: j as usize,
-                        value,
-                    });
-                }
-                let i = position[j as usize] as usize;
-                if i >= k {
-                    lower.row.push(i);
-                    lower.values.push(value);
-                }
-            }
-            lower.col_ptr.push(lower.row.len());
-        }
-        Ok(lower)
-    }
-}
-
 /// Square root of the diagonal entry of an unknown without neighbours.
 fn isolated_root(matrix: &Csr, i: usize) -> Result<f64, Error> {
     let diagonal = matrix.get(i, i);
@@ -422,75 +378,4 @@ fn isolated_root(matrix: &Csr, i: usize) -> Result<f64, Error> {
             diagonal,
         }),
     }
-}
-
-/// Supernodes of the factor of the permuted matrix.
-fn analyse(
-    matrix: &Csr,
-    connected: &[u32],
-    position: &[u32],
-) -> Result<supernodal::SymbolicSupernodalCholesky<usize>, Error> {
-    let n = connected.len();
-    let (mut col_ptr, mut row) = (vec![0], vec![]);
-    for (k, &unknown) in connected.iter().enumerate() {
-        let columns = matrix.row(unknown as usize).0.iter();
-        row.extend(
-            columns
-                .map(|&j| position[j as usize] as usize)
-                .filter(|&i| i <= k),
-        );
-        col_ptr.push(row.len());
-    }
-    let upper = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &col_ptr, None, &row);
-    let requirement = StackReq::any_of(&[
-        simplicial::prefactorize_symbolic_cholesky_scratch::<usize>(n, row.len()),
-        supernodal::factorize_supernodal_symbolic_cholesky_scratch::<usize>(n),
-    ]);
-    let failed = |reason: &dyn std::fmt::Display| Error::Analysis {
-        unknowns: n,
-        reason: reason.to_string(),
-    };
-    let mut memory = MemBuffer::try_new(requirement).map_err(|_| failed(&"out of memory"))?;
-    let stack = MemStack::new(&mut memory);
-    let (mut tree, mut counts) = (vec![0isize; n], vec![0usize; n]);
-    let tree = simplicial::prefactorize_symbolic_cholesky(&mut tree, &mut counts, upper, stack);
-    supernodal::factorize_supernodal_symbolic_cholesky(
-        upper,
-        tree,
-        &counts,
-        stack,
-        SymbolicSupernodalParams::default(),
-    )
-    .map_err(|error| failed(&error))
-}
-
-/// Computes the panels of L. The outer error is a lack of memory, the inner one a pivot that is not positive.
-fn factorise(
-    values: &mut [f64],
-    lower: &Lower,
-    symbolic: &supernodal::SymbolicSupernodalCholesky<usize>,
-) -> Result<Result<(), LltError>, Error> {
-    let n = symbolic.ncols();
-    let pattern =
-        SymbolicSparseColMatRef::new_unsorted_checked(n, n, &lower.col_ptr, None, &lower.row);
-    let matrix = SparseColMatRef::new(pattern, &lower.values[..]);
-    let requirement = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(
-        symbolic,
-        Par::Seq,
-        Default::default(),
-    );
-    let mut memory = MemBuffer::try_new(requirement).map_err(|_| Error::Analysis {
-        unknowns: n,
-        reason: "out of memory".into(),
-    })?;
-    Ok(supernodal::factorize_supernodal_numeric_llt(
-        values,
-        matrix,
-        LltRegularization::default(),
-        symbolic,
-        Par::Seq,
-        MemStack::new(&mut memory),
-        Default::default(),
-    )
-    .map(|_| ()))
 }

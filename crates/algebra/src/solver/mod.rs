@@ -7,6 +7,7 @@
 mod cholesky;
 mod panel;
 mod response;
+mod supernodal;
 mod sweep;
 
 pub use cholesky::{Cholesky, FactorStats};

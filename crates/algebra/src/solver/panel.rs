@@ -23,21 +23,27 @@ fn multiply_add<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
     }
 }
 
-/// Dot product in sixteen lanes that are added in order.
+/// Dot product, in the lanes of two registers.
 #[inline(always)]
-pub(crate) fn dot<S: Simd>(x: &[f64], y: &[f64]) -> f64 {
-    let (xs, x_tail) = x.as_chunks::<16>();
-    let (ys, y_tail) = y.as_chunks::<16>();
-    let mut lanes = [0.0; 16];
-    for (a, b) in xs.iter().zip(ys) {
-        for k in 0..16 {
-            lanes[k] = multiply_add::<S>(a[k], b[k], lanes[k]);
+pub(crate) fn dot<S: Simd>(simd: S, x: &[f64], y: &[f64]) -> f64 {
+    let (xs, x_tail) = S::as_simd_f64s(x);
+    let (ys, y_tail) = S::as_simd_f64s(y);
+    let (x_pairs, x_last) = xs.as_chunks::<2>();
+    let (y_pairs, y_last) = ys.as_chunks::<2>();
+    let mut sums = [simd.splat_f64s(0.0); 2];
+    for (a, b) in x_pairs.iter().zip(y_pairs) {
+        for k in 0..2 {
+            sums[k] = simd.mul_add_e_f64s(a[k], b[k], sums[k]);
         }
     }
-    for (k, (a, b)) in x_tail.iter().zip(y_tail).enumerate() {
-        lanes[k] = multiply_add::<S>(*a, *b, lanes[k]);
+    for (a, b) in x_last.iter().zip(y_last) {
+        sums[0] = simd.mul_add_e_f64s(*a, *b, sums[0]);
     }
-    lanes.iter().sum()
+    let (a, b) = (
+        simd.partial_load_f64s(x_tail),
+        simd.partial_load_f64s(y_tail),
+    );
+    simd.reduce_sum_f64s(simd.mul_add_e_f64s(a, b, simd.add_f64s(sums[0], sums[1])))
 }
 
 /// y += alpha x.
@@ -152,31 +158,43 @@ fn subtract_scaled<S: Simd>(a: f64, z: &Lanes, y: &mut Lanes) {
 
 /// Solves with the transposed trapezoid: on return the first `columns` entries of `x` hold z of Tᵀ z = x - Rᵀ (rows below).
 #[inline(always)]
-pub(crate) fn backward<S: Simd>(panel: &[f64], rows: usize, columns: usize, x: &mut [f64]) {
+pub(crate) fn backward<S: Simd>(
+    simd: S,
+    panel: &[f64],
+    rows: usize,
+    columns: usize,
+    x: &mut [f64],
+) {
     let mut j = columns;
     if columns & 1 != 0 {
         j -= 1;
-        backward_block::<S, 1>(panel, rows, j, x);
+        backward_block::<S, 1>(simd, panel, rows, j, x);
     }
     if columns & 2 != 0 {
         j -= 2;
-        backward_block::<S, 2>(panel, rows, j, x);
+        backward_block::<S, 2>(simd, panel, rows, j, x);
     }
     if columns & 4 != 0 {
         j -= 4;
-        backward_block::<S, 4>(panel, rows, j, x);
+        backward_block::<S, 4>(simd, panel, rows, j, x);
     }
     while j > 0 {
         j -= 8;
-        backward_block::<S, 8>(panel, rows, j, x);
+        backward_block::<S, 8>(simd, panel, rows, j, x);
     }
 }
 
 #[inline(always)]
-fn backward_block<S: Simd, const B: usize>(panel: &[f64], rows: usize, j: usize, x: &mut [f64]) {
+fn backward_block<S: Simd, const B: usize>(
+    simd: S,
+    panel: &[f64],
+    rows: usize,
+    j: usize,
+    x: &mut [f64],
+) {
     let (head, tail) = x[j..rows].split_at_mut(B);
     let columns = below::<B>(panel, rows, j);
-    let sums = dots::<S, B>(&columns, tail);
+    let sums = dots(simd, &columns, tail);
     for b in (0..B).rev() {
         let column = &panel[(j + b) * rows + j..][..B];
         let mut sum = head[b] - sums[b];
@@ -187,26 +205,21 @@ fn backward_block<S: Simd, const B: usize>(panel: &[f64], rows: usize, j: usize,
     }
 }
 
-/// Dot products of `x` with several columns, each in eight lanes that are added in order.
+/// Dot products of `x` with several columns, each in the lanes of one register.
 #[inline(always)]
-fn dots<S: Simd, const B: usize>(columns: &[&[f64]; B], x: &[f64]) -> [f64; B] {
-    let (xs, x_tail) = x.as_chunks::<LANES>();
-    let chunks: [&[Lanes]; B] = from_fn(|b| columns[b].as_chunks::<LANES>().0);
-    let mut lanes = [[0.0; LANES]; B];
+fn dots<S: Simd, const B: usize>(simd: S, columns: &[&[f64]; B], x: &[f64]) -> [f64; B] {
+    let (xs, x_tail) = S::as_simd_f64s(x);
+    let wide: [&[S::f64s]; B] = from_fn(|b| &S::as_simd_f64s(columns[b]).0[..xs.len()]);
+    let mut sums = [simd.splat_f64s(0.0); B];
     for i in 0..xs.len() {
         for b in 0..B {
-            for k in 0..LANES {
-                lanes[b][k] = multiply_add::<S>(chunks[b][i][k], xs[i][k], lanes[b][k]);
-            }
+            sums[b] = simd.mul_add_e_f64s(wide[b][i], xs[i], sums[b]);
         }
     }
-    let whole = xs.len() * LANES;
+    let last = simd.partial_load_f64s(x_tail);
     from_fn(|b| {
-        let mut sum = lanes[b].iter().sum();
-        for (a, x) in columns[b][whole..].iter().zip(x_tail) {
-            sum = multiply_add::<S>(*a, *x, sum);
-        }
-        sum
+        let tail = simd.partial_load_f64s(S::as_simd_f64s(columns[b]).1);
+        simd.reduce_sum_f64s(simd.mul_add_e_f64s(tail, last, sums[b]))
     })
 }
 
@@ -214,4 +227,96 @@ fn dots<S: Simd, const B: usize>(columns: &[&[f64]; B], x: &[f64]) -> [f64; B] {
 #[inline(always)]
 fn below<const B: usize>(panel: &[f64], rows: usize, j: usize) -> [&[f64]; B] {
     from_fn(|b| &panel[(j + b) * rows + j + B..(j + b + 1) * rows])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pulp::{Arch, Scalar, WithSimd};
+
+    /// One trapezoid of each shape, with a diagonal that dominates.
+    fn panel(rows: usize, columns: usize) -> Vec<f64> {
+        (0..rows * columns)
+            .map(|k| {
+                let (i, j) = (k % rows, k / rows);
+                if i == j {
+                    3.0 + j as f64
+                } else {
+                    ((7 * i + 3 * j) % 11) as f64 / 11.0 - 0.4
+                }
+            })
+            .collect()
+    }
+
+    /// Forward, then backward, then forward in lanes, of x_i = 1 + i / 7.
+    struct Sweeps(usize, usize);
+
+    impl WithSimd for Sweeps {
+        type Output = [Vec<f64>; 3];
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let Self(rows, columns) = self;
+            let panel = panel(rows, columns);
+            let x: Vec<f64> = (0..rows).map(|i| 1.0 + i as f64 / 7.0).collect();
+            let (mut down, mut up) = (x.clone(), x.clone());
+            let mut lanes: Vec<Lanes> = x
+                .iter()
+                .map(|x| from_fn(|k| x * (k == 5) as u8 as f64))
+                .collect();
+            forward::<S>(&panel, rows, columns, &mut down);
+            backward(simd, &panel, rows, columns, &mut up);
+            forward_lanes::<S>(&panel, rows, columns, &mut lanes);
+            [down, up, lanes.iter().map(|x| x[5]).collect()]
+        }
+    }
+
+    /// The definitions: L z = x with the rows below reduced, and the transposed solve.
+    fn by_definition(rows: usize, columns: usize) -> [Vec<f64>; 2] {
+        let panel = panel(rows, columns);
+        let x: Vec<f64> = (0..rows).map(|i| 1.0 + i as f64 / 7.0).collect();
+        let (mut down, mut up) = (x.clone(), x);
+        for j in 0..columns {
+            down[j] /= panel[j * rows + j];
+            for i in j + 1..rows {
+                down[i] -= panel[j * rows + i] * down[j];
+            }
+        }
+        for j in (0..columns).rev() {
+            for i in j + 1..rows {
+                up[j] -= panel[j * rows + i] * up[i];
+            }
+            up[j] /= panel[j * rows + j];
+        }
+        [down, up]
+    }
+
+    #[test]
+    fn every_instruction_set_solves_what_the_definition_solves() {
+        for (rows, columns) in [
+            (1, 1),
+            (3, 2),
+            (7, 7),
+            (8, 3),
+            (33, 15),
+            (40, 16),
+            (65, 29),
+            (100, 1),
+        ] {
+            let [down, up] = by_definition(rows, columns);
+            for results in [
+                Arch::new().dispatch(Sweeps(rows, columns)),
+                Scalar.vectorize(Sweeps(rows, columns)),
+            ] {
+                for (result, reference) in results.iter().zip([&down, &up, &down]) {
+                    let error = result
+                        .iter()
+                        .zip(reference)
+                        .map(|(a, b)| (a - b).abs())
+                        .fold(0.0, f64::max);
+                    assert!(error < 1e-13, "{rows} x {columns}: {error}");
+                }
+            }
+        }
+    }
 }

@@ -108,14 +108,15 @@ impl WithSimd for Dot<'_> {
     type Output = f64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> f64 {
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let (mut xs, mut ys) = (self.0.pieces(), self.1.pieces());
         let (mut x, mut y) = (xs.next(), ys.next());
         let mut sum = 0.0;
         while let (Some((p, a)), Some((q, b))) = (&x, &y) {
             let (begin, end) = (p.start.max(q.start), p.end.min(q.end));
             if begin < end {
-                sum += panel::dot::<S>(
+                sum += panel::dot(
+                    simd,
                     &a[begin - p.start..end - p.start],
                     &b[begin - q.start..end - q.start],
                 );
@@ -139,10 +140,10 @@ impl WithSimd for DotDense<'_> {
     type Output = f64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> f64 {
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let mut sum = 0.0;
         for (range, values) in self.0.pieces() {
-            sum += panel::dot::<S>(values, &self.1[range]);
+            sum += panel::dot(simd, values, &self.1[range]);
         }
         sum
     }

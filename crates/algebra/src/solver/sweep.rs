@@ -5,7 +5,7 @@
 //! on the paths of the elimination tree from their entries to the roots, the others being zero (Gilbert and Peierls 1988).
 
 use super::panel::{self, Lanes};
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+use super::supernodal::Symbolic;
 use pulp::{Simd, WithSimd};
 
 /// Where the panels of a factor lie.
@@ -43,7 +43,7 @@ impl Panel {
 }
 
 impl Panels {
-    pub fn new(symbolic: &SymbolicSupernodalCholesky<usize>) -> Self {
+    pub fn new(symbolic: &Symbolic) -> Self {
         let count = symbolic.n_supernodes();
         let mut panels = Self {
             list: Vec::with_capacity(count),
@@ -175,7 +175,7 @@ impl WithSimd for Backward<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         for p in self.panels.list.iter().rev() {
             let rows = self.panels.rows_below(p);
             let x = &mut self.scratch[..p.rows()];
@@ -184,7 +184,7 @@ impl WithSimd for Backward<'_> {
             for (x, &i) in bottom.iter_mut().zip(rows) {
                 *x = self.y[i as usize];
             }
-            panel::backward::<S>(p.values(self.values), p.rows(), p.columns, x);
+            panel::backward(simd, p.values(self.values), p.rows(), p.columns, x);
             self.y[p.begin..p.begin + p.columns].copy_from_slice(&x[..p.columns]);
         }
     }

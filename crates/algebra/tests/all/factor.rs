@@ -1,6 +1,7 @@
 //! Factor, solve, sweeps, errors, counts.
 
-use crate::block::{Random, System, block, dense, distance, random};
+use crate::block::{System, block};
+use crate::numbers::{Random, dense, distance, random};
 use carom_algebra::{Error, csr::Csr, dense::DenseCholesky, solver::Cholesky};
 
 fn factor(system: &System) -> Cholesky {
@@ -9,10 +10,18 @@ fn factor(system: &System) -> Cholesky {
 
 fn systems() -> Vec<System> {
     let mut numbers = Random(11);
-    let mut systems: Vec<System> = [(1, 0), (2, 1), (10, 2), (57, 3), (300, 4), (301, 9), (500, 40)]
-        .into_iter()
-        .map(|(n, degree)| random(n, degree, &mut numbers))
-        .collect();
+    let mut systems: Vec<System> = [
+        (1, 0),
+        (2, 1),
+        (10, 2),
+        (57, 3),
+        (300, 4),
+        (301, 9),
+        (500, 40),
+    ]
+    .into_iter()
+    .map(|(n, degree)| random(n, degree, &mut numbers))
+    .collect();
     systems.extend([block(1, 0.1), block(3, 0.1), block(6, 1e-3)]);
     systems
 }
@@ -25,8 +34,14 @@ fn solutions_equal_those_of_the_dense_factor() {
         let b = numbers.vector(n);
         let (mut x, mut reference) = (b.clone(), b);
         factor(&system).solve(&mut x);
-        DenseCholesky::new(n, &dense(&system.matrix)).unwrap().solve(&mut reference);
-        assert!(distance(&x, &reference) < 1e-11, "{n} unknowns: {}", distance(&x, &reference));
+        DenseCholesky::new(n, &dense(&system.matrix))
+            .unwrap()
+            .solve(&mut reference);
+        assert!(
+            distance(&x, &reference) < 1e-11,
+            "{n} unknowns: {}",
+            distance(&x, &reference)
+        );
     }
 }
 
@@ -80,7 +95,10 @@ fn refactoring_gives_the_bits_of_a_new_factor() {
 fn fixed_unknowns_cost_nothing() {
     let free = block(8, 0.5);
     let fixed: Vec<bool> = (0..free.matrix.n).map(|i| i % 3 != 2).collect();
-    let held = System { matrix: free.matrix.with_identity(&fixed), node: free.node.clone() };
+    let held = System {
+        matrix: free.matrix.with_identity(&fixed),
+        node: free.node.clone(),
+    };
     let mut solver = factor(&held);
     let alone = held.matrix.n / 3 * 2;
     assert!(solver.stats().nnz_factor - alone < factor(&free).stats().nnz_factor / 8);
@@ -112,15 +130,34 @@ fn an_empty_matrix_is_solved() {
 
 #[test]
 fn an_indefinite_matrix_is_refused_with_the_unknown() {
-    // A negative diagonal entry makes its own pivot negative if it comes first, a later one otherwise: with a single spoilt
-    // unknown that is coupled to nothing of weight, it is the culprit.
-    let mut system = block(4, 1.0);
-    system.matrix.add(100, 100, -1e6);
-    let error = Cholesky::new(&system.matrix, &vec![0; system.matrix.n]).err();
-    let Some(Error::NotPositiveDefinite { unknown, diagonal }) = error else { panic!("{error:?}") };
-    assert_eq!(unknown, 100);
-    assert_eq!(diagonal, system.matrix.get(100, 100));
-    assert!(error.unwrap().to_string().contains("pivot of unknown 100"));
+    // Whatever the order: the pivots before the spoilt one are those of a positive definite matrix, its own is negative.
+    for spoilt in [0, 17, 100, 186, 374] {
+        let mut system = block(4, 1.0);
+        system.matrix.add(spoilt, spoilt, -1e6);
+        let error = Cholesky::new(&system.matrix, &system.node).err();
+        let diagonal = system.matrix.get(spoilt, spoilt);
+        assert_eq!(
+            error,
+            Some(Error::NotPositiveDefinite {
+                unknown: spoilt,
+                diagonal
+            })
+        );
+        let message = error.unwrap().to_string();
+        assert!(
+            message.contains(&format!("pivot of unknown {spoilt} is not positive")),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn a_floating_body_is_refused() {
+    let error = Cholesky::new(&block(3, -1e-9).matrix, &block(3, 0.0).node).err();
+    assert!(
+        matches!(error, Some(Error::NotPositiveDefinite { .. })),
+        "{error:?}"
+    );
 }
 
 #[test]
@@ -128,7 +165,13 @@ fn a_singular_diagonal_is_refused() {
     let mut matrix = block(1, 1.0).matrix.with_identity(&[true; 24]);
     matrix.add(7, 7, -1.0);
     let error = Cholesky::new(&matrix, &[0; 24]).err();
-    assert_eq!(error, Some(Error::NotPositiveDefinite { unknown: 7, diagonal: 0.0 }));
+    assert_eq!(
+        error,
+        Some(Error::NotPositiveDefinite {
+            unknown: 7,
+            diagonal: 0.0
+        })
+    );
 }
 
 #[test]
@@ -136,18 +179,41 @@ fn entries_that_are_not_finite_are_named() {
     let mut system = block(2, 1.0);
     system.matrix.add(5, 4, f64::NAN);
     let error = Cholesky::new(&system.matrix, &system.node).err();
-    assert!(matches!(error, Some(Error::NotFinite { row: 5, column: 4, .. })), "{error:?}");
+    assert!(
+        matches!(
+            error,
+            Some(Error::NotFinite {
+                row: 5,
+                column: 4,
+                ..
+            })
+        ),
+        "{error:?}"
+    );
 }
 
 #[test]
 fn wrong_sizes_and_other_patterns_are_refused() {
     let system = block(2, 1.0);
     let error = Cholesky::new(&system.matrix, &[0, 1]).err();
-    assert_eq!(error, Some(Error::WrongLength { what: "groups of unknowns", expected: 81, found: 2 }));
+    assert_eq!(
+        error,
+        Some(Error::WrongLength {
+            what: "groups of unknowns",
+            expected: 81,
+            found: 2
+        })
+    );
     let mut solver = factor(&system);
     let held = system.matrix.with_identity(&[true; 81]);
     let error = solver.refactor(&held).err();
-    assert_eq!(error, Some(Error::PatternChanged { expected: system.matrix.nnz(), found: 81 }));
+    assert_eq!(
+        error,
+        Some(Error::PatternChanged {
+            expected: system.matrix.nnz(),
+            found: 81
+        })
+    );
 }
 
 #[test]
@@ -202,14 +268,58 @@ mod dense_factor {
     #[test]
     fn refuses_what_it_cannot_factorise() {
         let error = DenseCholesky::new(2, &[1.0, 2.0, 2.0, 1.0]).err();
-        assert_eq!(error, Some(Error::NotPositiveDefinite { unknown: 1, diagonal: 1.0 }));
+        assert_eq!(
+            error,
+            Some(Error::NotPositiveDefinite {
+                unknown: 1,
+                diagonal: 1.0
+            })
+        );
         let error = DenseCholesky::new(2, &[1.0, 0.0, f64::INFINITY, 1.0]).err();
-        assert_eq!(error, Some(Error::NotFinite { row: 1, column: 0, value: f64::INFINITY }));
-        assert!(matches!(DenseCholesky::new(2, &[1.0]), Err(Error::WrongLength { .. })));
+        assert_eq!(
+            error,
+            Some(Error::NotFinite {
+                row: 1,
+                column: 0,
+                value: f64::INFINITY
+            })
+        );
+        assert!(matches!(
+            DenseCholesky::new(2, &[1.0]),
+            Err(Error::WrongLength { .. })
+        ));
     }
 
     #[test]
     fn of_no_unknowns_solves_nothing() {
         DenseCholesky::new(0, &[]).unwrap().solve(&mut []);
+    }
+}
+
+mod allocations {
+    use super::*;
+    use crate::counter::allocations;
+    use carom_algebra::solver::SparseRow;
+
+    #[test]
+    fn sweeps_and_products_allocate_nothing() {
+        let system = block(5, 1.0);
+        let mut solver = factor(&system);
+        let row = SparseRow {
+            dofs: vec![4],
+            coefficients: vec![1.0],
+        };
+        let response = solver.respond(&[row]).remove(0);
+        let small = DenseCholesky::new(2, &[2.0, 1.0, 1.0, 2.0]).unwrap();
+        let r = vec![1.0; system.matrix.n];
+        let (mut y, mut x) = (r.clone(), r.clone());
+        let before = allocations();
+        solver.forward(&r, &mut y);
+        response.add_scaled(response.dot_dense(&y) / response.dot(&response), &mut y);
+        solver.backward(&mut y, &mut x);
+        solver.solve(&mut x);
+        small.solve(&mut x[..2]);
+        system.matrix.multiply(&x, &mut y);
+        assert_eq!(allocations() - before, 0);
     }
 }

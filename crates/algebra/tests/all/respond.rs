@@ -1,6 +1,7 @@
 //! Sparse responses Y = L⁻¹ P Nᵀ.
 
-use crate::block::{Random, System, block, distance, random};
+use crate::block::{System, block};
+use crate::numbers::{Random, distance, random};
 use carom_algebra::solver::{Cholesky, Response, SparseRow, gram};
 
 /// `count` rows of `width` unknowns each, with a repeated and an isolated unknown among them where there is one.
@@ -20,12 +21,20 @@ fn rows(system: &System, count: usize, width: usize) -> Vec<SparseRow> {
 
 fn systems() -> [System; 4] {
     let mut numbers = Random(22);
-    [block(5, 0.3), random(400, 3, &mut numbers), random(60, 12, &mut numbers), random(30, 0, &mut numbers)]
+    [
+        block(5, 0.3),
+        random(400, 3, &mut numbers),
+        random(60, 12, &mut numbers),
+        random(30, 0, &mut numbers),
+    ]
 }
 
 fn scatter(row: &SparseRow, n: usize) -> Vec<f64> {
     let mut x = vec![0.0; n];
-    row.dofs.iter().zip(&row.coefficients).for_each(|(&i, c)| x[i as usize] += c);
+    row.dofs
+        .iter()
+        .zip(&row.coefficients)
+        .for_each(|(&i, c)| x[i as usize] += c);
     x
 }
 
@@ -46,8 +55,12 @@ fn products_of_responses_are_entries_of_the_compliance() {
             let mut x = scatter(row, n);
             solver.solve(&mut x);
             for (i, row) in rows.iter().enumerate() {
-                exact[i * 13 + j] =
-                    row.dofs.iter().zip(&row.coefficients).map(|(&i, c)| c * x[i as usize]).sum();
+                exact[i * 13 + j] = row
+                    .dofs
+                    .iter()
+                    .zip(&row.coefficients)
+                    .map(|(&i, c)| c * x[i as usize])
+                    .sum();
             }
         }
         assert!(distance(&w, &exact) < 1e-12, "{}", distance(&w, &exact));
@@ -69,15 +82,42 @@ fn a_column_has_the_same_bits_alone_among_five_and_among_eight() {
         let together = solver.respond(&rows);
         for company in [1, 5, 8] {
             for (k, group) in rows.chunks(company).enumerate() {
-                for (response, reference) in solver.respond(group).iter().zip(&together[k * company..]) {
+                for (response, reference) in
+                    solver.respond(group).iter().zip(&together[k * company..])
+                {
                     assert!(same_bits(response, reference));
                 }
             }
         }
         let reversed: Vec<SparseRow> = rows.iter().rev().cloned().collect();
         let backwards = solver.respond(&reversed);
-        assert!(backwards.iter().rev().zip(&together).all(|(a, b)| same_bits(a, b)));
+        assert!(
+            backwards
+                .iter()
+                .rev()
+                .zip(&together)
+                .all(|(a, b)| same_bits(a, b))
+        );
     }
+}
+
+#[test]
+fn responses_have_the_same_bits_on_any_number_of_threads() {
+    let system = block(6, 0.3);
+    let rows = rows(&system, 40, 2);
+    let mut solver = Cholesky::new(&system.matrix, &system.node).unwrap();
+    let mut on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let responses = solver.respond(&rows);
+            let w = gram(&responses.iter().collect::<Vec<_>>());
+            (responses, w)
+        })
+    };
+    assert!(on(1) == on(3));
 }
 
 #[test]
@@ -102,26 +142,47 @@ fn two_sweeps_make_a_step_with_contact() {
     // x = A⁻¹ (r + Nᵀ p), with N x = 0: the condensed form against a solve with the multipliers found.
     let system = block(4, 0.3);
     let n = system.matrix.n;
-    let rows: Vec<SparseRow> =
-        (0..2).map(|k| SparseRow { dofs: vec![3 * k + 2, 200], coefficients: vec![1.0, -0.5] }).collect();
+    let rows: Vec<SparseRow> = (0..2)
+        .map(|k| SparseRow {
+            dofs: vec![3 * k + 2, 200],
+            coefficients: vec![1.0, -0.5],
+        })
+        .collect();
     let mut solver = Cholesky::new(&system.matrix, &system.node).unwrap();
     let responses = solver.respond(&rows);
     let r = Random(23).vector(n);
     let (mut y, mut x) = (vec![0.0; n], vec![0.0; n]);
     solver.forward(&r, &mut y);
     let w = gram(&[&responses[0], &responses[1]]);
-    let free: Vec<f64> = responses.iter().map(|response| response.dot_dense(&y)).collect();
+    let free: Vec<f64> = responses
+        .iter()
+        .map(|response| response.dot_dense(&y))
+        .collect();
     let determinant = w[0] * w[3] - w[1] * w[2];
-    let p = [(w[1] * free[1] - w[3] * free[0]) / determinant, (w[2] * free[0] - w[0] * free[1]) / determinant];
-    responses.iter().zip(p).for_each(|(response, p)| response.add_scaled(p, &mut y));
+    let p = [
+        (w[1] * free[1] - w[3] * free[0]) / determinant,
+        (w[2] * free[0] - w[0] * free[1]) / determinant,
+    ];
+    responses
+        .iter()
+        .zip(p)
+        .for_each(|(response, p)| response.add_scaled(p, &mut y));
     solver.backward(&mut y, &mut x);
     for row in &rows {
-        let gap: f64 = row.dofs.iter().zip(&row.coefficients).map(|(&i, c)| c * x[i as usize]).sum();
+        let gap: f64 = row
+            .dofs
+            .iter()
+            .zip(&row.coefficients)
+            .map(|(&i, c)| c * x[i as usize])
+            .sum();
         assert!(gap.abs() < 1e-13);
     }
     let mut loaded = r;
     for (row, p) in rows.iter().zip(p) {
-        row.dofs.iter().zip(&row.coefficients).for_each(|(&i, c)| loaded[i as usize] += c * p);
+        row.dofs
+            .iter()
+            .zip(&row.coefficients)
+            .for_each(|(&i, c)| loaded[i as usize] += c * p);
     }
     solver.solve(&mut loaded);
     assert!(distance(&x, &loaded) < 1e-12);
@@ -131,7 +192,10 @@ fn two_sweeps_make_a_step_with_contact() {
 fn a_response_keeps_its_tree_path_and_nothing_else() {
     let system = block(12, 0.3);
     let mut solver = Cholesky::new(&system.matrix, &system.node).unwrap();
-    let row = SparseRow { dofs: vec![2], coefficients: vec![1.0] };
+    let row = SparseRow {
+        dofs: vec![2],
+        coefficients: vec![1.0],
+    };
     let bytes = solver.respond(&[row])[0].bytes();
     assert!(bytes < 8 * system.matrix.n / 3, "{bytes}");
 }
