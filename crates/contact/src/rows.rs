@@ -64,11 +64,15 @@ impl Rows {
         }
     }
 
-    /// Moves every gap by N u, for points paired once in the initial configuration.
-    pub fn advance(&mut self, initial: &Rows, u: &[f64]) {
-        self.clone_from(initial);
-        for point in 0..self.len() {
-            self.gaps[point] += initial.product(point, u);
+    /// Appends the points of `initial`, paired once at zero displacement, with gaps moved by N u.
+    pub fn append_moved(&mut self, initial: &Rows, u: &[f64]) {
+        for point in 0..initial.len() {
+            let (dofs, coefficients) = initial.row(point);
+            self.gaps.push(initial.gap(point) + initial.product(point, u));
+            self.normals.push(initial.normal(point));
+            self.dofs.extend_from_slice(dofs);
+            self.coefficients.extend_from_slice(coefficients);
+            self.offsets.push(self.dofs.len() as u32);
         }
     }
 

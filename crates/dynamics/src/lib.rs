@@ -1,1 +1,28 @@
-//! From a state to the next one.
+//! From a state to the next one: the place where bodies, contacts and time schemes meet.
+//!
+//! [`System`] never changes, [`State`] holds everything that influences the next step or the results, and the
+//! [`Driver`] owns factors and scratch. [`march`] is the loop; observers see accepted states only. No files, no
+//! printing.
+
+mod compliance;
+mod driver;
+mod error;
+mod interface;
+mod ledger;
+mod march;
+mod operator;
+mod records;
+pub mod scheme;
+mod state;
+mod step_map;
+mod system;
+
+pub use driver::{Costs, Driver, Phases};
+pub use error::Error;
+pub use ledger::{Balance, Ledger, Resultant};
+pub use march::{Observer, Outcome, march, step_count};
+pub use records::{ContactRecord, Impact, Records};
+pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
+pub use state::{ContactReport, InterfaceState, Motion, State, StepReport};
+pub use step_map::{Row, StepMap};
+pub use system::{Mass, Model, ModelBody, ModelContact, ModelTarget, Support, System};

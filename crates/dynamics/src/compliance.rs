@@ -1,0 +1,146 @@
+//! The condensed compliance (Delassus operator) D = N A⁻¹ Nᵀ of the contact points within reach.
+//!
+//! A column is computed when its point first comes within reach and kept as long as its row of N keeps its bits. An
+//! entry is a function of two columns only, taken in the order of the points, so that it does not depend on when a
+//! point was met first.
+
+use carom_algebra::Error;
+use carom_algebra::solver::SparseRow;
+use carom_contact::Rows;
+
+use crate::operator::{Column, Operators};
+
+/// The response of one contact point, in the parts that it touches.
+struct Kept {
+    dofs: Vec<u32>,
+    coefficients: Vec<f64>,
+    columns: Vec<(usize, Column)>,
+}
+
+/// Columns of the points met so far, and D over the current candidates.
+#[derive(Default)]
+pub(crate) struct Compliance {
+    /// By contact point.
+    kept: Vec<Option<Kept>>,
+    /// Candidates of the current matrix, ascending.
+    pub(crate) candidates: Vec<u32>,
+    /// D over the candidates, row-major; x per N.
+    pub(crate) matrix: Vec<f64>,
+    /// Counts the changes of `matrix`.
+    pub(crate) version: u64,
+    /// Columns computed so far.
+    pub(crate) columns_computed: usize,
+}
+
+impl Compliance {
+    pub(crate) fn new(points: usize) -> Compliance {
+        Compliance { kept: (0..points).map(|_| None).collect(), ..Compliance::default() }
+    }
+
+    /// Brings the columns and D up to date for these candidates (ascending). `fixed`: held unknowns, which no force
+    /// moves.
+    pub(crate) fn update(&mut self, candidates: &[u32], rows: &Rows, fixed: &[bool], operators: &mut Operators) -> Result<(), Error> {
+        let stale: Vec<u32> = candidates.iter().copied().filter(|&point| !self.is_current(point, rows)).collect();
+        if stale.is_empty() && self.candidates == candidates {
+            return Ok(());
+        }
+        self.compute(&stale, rows, fixed, operators);
+        let n = candidates.len();
+        let before = std::mem::take(&mut self.candidates);
+        let matrix = std::mem::take(&mut self.matrix);
+        // places of the entries that still stand in the old matrix
+        let place = |point: u32| match stale.binary_search(&point) {
+            Ok(_) => None,
+            Err(_) => before.binary_search(&point).ok(),
+        };
+        let places: Vec<Option<usize>> = candidates.iter().map(|&point| place(point)).collect();
+        let mut next = vec![0.0; n * n];
+        for row in 0..n {
+            for column in 0..=row {
+                let entry = match (places[row], places[column]) {
+                    (Some(i), Some(j)) => matrix[i * before.len() + j],
+                    _ => self.entry(candidates[column], candidates[row], operators),
+                };
+                next[row * n + column] = entry;
+                next[column * n + row] = entry;
+            }
+        }
+        self.matrix = next;
+        self.candidates = candidates.to_vec();
+        self.version += 1;
+        Ok(())
+    }
+
+    fn is_current(&self, point: u32, rows: &Rows) -> bool {
+        let (dofs, coefficients) = rows.row(point as usize);
+        let kept = &self.kept[point as usize];
+        kept.as_ref().is_some_and(|kept| kept.dofs == dofs && kept.coefficients == coefficients)
+    }
+
+    fn compute(&mut self, points: &[u32], rows: &Rows, fixed: &[bool], operators: &mut Operators) {
+        let mut by_part: Vec<(Vec<u32>, Vec<SparseRow>)> = vec![Default::default(); operators.parts.len()];
+        for &point in points {
+            let (dofs, coefficients) = rows.row(point as usize);
+            self.kept[point as usize] =
+                Some(Kept { dofs: dofs.to_vec(), coefficients: coefficients.to_vec(), columns: Vec::new() });
+            for (&dof, &n) in dofs.iter().zip(coefficients).filter(|(dof, _)| !fixed[**dof as usize]) {
+                let part = operators.part_of(dof as usize);
+                let (owners, sparse) = &mut by_part[part];
+                if owners.last() != Some(&point) {
+                    owners.push(point);
+                    sparse.push(SparseRow::default());
+                }
+                if let Some(row) = sparse.last_mut() {
+                    row.dofs.push(dof - operators.parts[part].start as u32);
+                    row.coefficients.push(n);
+                }
+            }
+        }
+        for (part, (owners, sparse)) in by_part.into_iter().enumerate() {
+            self.columns_computed += sparse.len();
+            let columns = operators.operators[part].respond(sparse);
+            for (point, column) in owners.into_iter().zip(columns) {
+                if let Some(kept) = &mut self.kept[point as usize] {
+                    kept.columns.push((part, column));
+                }
+            }
+        }
+    }
+
+    fn columns(&self, point: u32) -> &[(usize, Column)] {
+        self.kept[point as usize].as_ref().map_or(&[], |kept| &kept.columns)
+    }
+
+    fn entry(&self, one: u32, other: u32, operators: &Operators) -> f64 {
+        let mut sum = 0.0;
+        for (part, column) in self.columns(one) {
+            for (_, second) in self.columns(other).iter().filter(|(second, _)| second == part) {
+                sum += operators.operators[*part].dot(column, second);
+            }
+        }
+        sum
+    }
+
+    /// N x of a point for the free motion, from the y of `begin`.
+    pub(crate) fn free(&self, point: u32, operators: &Operators, y: &[f64]) -> f64 {
+        let columns = self.columns(point).iter();
+        columns.map(|(part, column)| operators.operators[*part].free(column, &y[operators.parts[*part].clone()])).sum()
+    }
+
+    /// Adds the force of a point to y, before `end`.
+    pub(crate) fn add(&self, point: u32, force: f64, operators: &Operators, y: &mut [f64]) {
+        for (part, column) in self.columns(point) {
+            operators.operators[*part].add(column, force, &mut y[operators.parts[*part].clone()]);
+        }
+    }
+
+    /// Bytes held by the columns and the matrix.
+    pub(crate) fn bytes(&self) -> usize {
+        let columns = self.kept.iter().flatten().flat_map(|kept| &kept.columns);
+        let bytes = columns.map(|(_, column)| match column {
+            Column::Diagonal(row) => 12 * row.dofs.len(),
+            Column::Factored(response) => response.bytes(),
+        });
+        bytes.sum::<usize>() + 8 * self.matrix.len()
+    }
+}

@@ -1,0 +1,88 @@
+//! Why a system could not be built or a step not be taken.
+
+use thiserror::Error as ThisError;
+
+/// Errors of this crate.
+#[derive(Debug, ThisError)]
+pub enum Error {
+    /// A body could not be built.
+    #[error(transparent)]
+    Body(#[from] carom_bodies::Error),
+    /// A matrix could not be factorised.
+    #[error("the {matrix} of the part that holds node {node} of the mesh: {cause}")]
+    Factor {
+        /// Which matrix.
+        matrix: &'static str,
+        /// A node of the mesh in the part, from 0.
+        node: u32,
+        /// Cause.
+        cause: carom_algebra::Error,
+    },
+    /// The small factor of the interface problem failed: its rows are redundant.
+    #[error("step {step}: the contact problem of {points} points is singular: {cause}")]
+    Interface {
+        /// Number of the step.
+        step: u64,
+        /// Closed points.
+        points: usize,
+        /// Cause.
+        cause: carom_algebra::Error,
+    },
+    /// The statuses of the contact points did not settle.
+    #[error("step {step}: contact statuses did not settle in {passes} passes; point {point} of contact '{contact}' still changes")]
+    Statuses {
+        /// Number of the step.
+        step: u64,
+        /// Passes made.
+        passes: usize,
+        /// Name of the contact.
+        contact: String,
+        /// A point that still changes.
+        point: usize,
+    },
+    /// A displacement, velocity or force is infinite or not a number.
+    #[error("step {step}, t = {time:e} s: the {quantity} is not finite; the step is too large for the scheme, or the model is not supported")]
+    NotFinite {
+        /// Number of the step.
+        step: u64,
+        /// Time at its end, s.
+        time: f64,
+        /// What is not finite.
+        quantity: &'static str,
+    },
+    /// A fixed step that cannot be: not positive or not finite.
+    #[error("the step must be positive and finite, not {dt:e} s")]
+    Step {
+        /// The step given, s.
+        dt: f64,
+    },
+    /// An explicit step beyond the stability limit.
+    #[error("the step {dt:e} s is above the critical step {critical:e} s of the scheme")]
+    Unstable {
+        /// The step given, s.
+        dt: f64,
+        /// The critical step 2/ω, s.
+        critical: f64,
+    },
+    /// A scheme that needs a diagonal mass meets a consistent one.
+    #[error("the explicit scheme needs lumped mass, but body '{body}' has consistent mass")]
+    ConsistentMass {
+        /// Name of the body.
+        body: String,
+    },
+    /// A displacement law on a scheme whose end displacement does not depend on the forces of the step.
+    #[error("contact '{contact}': with an explicit scheme the displacement at the end of the step does not depend on the contact force, so the displacement law cannot hold")]
+    DisplacementLaw {
+        /// Name of the contact.
+        contact: String,
+    },
+    /// A saved state that does not belong to this system.
+    #[error("the saved state cannot be read: {cause}")]
+    State {
+        /// Cause.
+        cause: String,
+    },
+    /// An observer failed: the results could not be written.
+    #[error("{0}")]
+    Observer(#[source] Box<dyn std::error::Error + Send + Sync>),
+}

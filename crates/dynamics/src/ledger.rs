@@ -1,0 +1,256 @@
+//! The balance of energy and momentum.
+//!
+//! Each term comes from its own formula, the dissipation of the scheme from its exact identity
+//! ([`EnergyIdentity`](crate::EnergyIdentity)); the residual is what is left, and tests look at it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::scheme::EnergyIdentity;
+use crate::state::Motion;
+use crate::step_map::StepMap;
+use crate::system::System;
+
+/// Sum with compensation of the rounding (Neumaier).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Sum {
+    value: f64,
+    lost: f64,
+}
+
+impl Sum {
+    pub(crate) fn add(&mut self, term: f64) {
+        let sum = self.value + term;
+        self.lost += if self.value.abs() >= term.abs() { (self.value - sum) + term } else { (term - sum) + self.value };
+        self.value = sum;
+    }
+
+    pub(crate) fn get(&self) -> f64 {
+        self.value + self.lost
+    }
+}
+
+/// Force and moment about the origin in the reference configuration; or momentum and angular momentum; or their
+/// impulses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Resultant {
+    /// Force in N, or momentum in N s.
+    pub linear: [f64; 3],
+    /// Moment in N m, or angular momentum in N m s.
+    pub angular: [f64; 3],
+}
+
+impl Resultant {
+    /// Resultant of a system vector of nodal forces.
+    pub(crate) fn of(system: &System, f: &[f64]) -> Resultant {
+        let mut sum = Resultant::default();
+        for (x, f) in system.x.iter().zip(f.chunks_exact(system.dim)) {
+            let mut force = [0.0; 3];
+            force[..system.dim].copy_from_slice(f);
+            for i in 0..3 {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                sum.linear[i] += force[i];
+                sum.angular[i] += x[j] * force[k] - x[k] * force[j];
+            }
+        }
+        sum
+    }
+
+    fn combine(&self, factor: f64, other: &Resultant, other_factor: f64) -> Resultant {
+        let mix = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| factor * a[i] + other_factor * b[i]);
+        Resultant { linear: mix(self.linear, other.linear), angular: mix(self.angular, other.angular) }
+    }
+
+    /// Largest absolute component of the linear part.
+    pub fn largest(&self) -> f64 {
+        self.linear.iter().fold(0.0, |m, x| m.max(x.abs()))
+    }
+}
+
+/// What the ledger shows at an instant; works and dissipations since the start, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Balance {
+    /// ½ v·M v.
+    pub kinetic: f64,
+    /// Strain energy U(u).
+    pub strain: f64,
+    /// The term `inertia |a|²_M` that the scheme adds to the energy it balances.
+    pub scheme_energy: f64,
+    /// Work of the loads.
+    pub work_loads: f64,
+    /// Work of the contact forces; minus the energy lost in impact.
+    pub work_contact: f64,
+    /// Dissipation of the scheme.
+    pub dissipation_scheme: f64,
+    /// What the terms leave over: change of the three energies - works + dissipation.
+    pub energy_residual: f64,
+    /// Momentum, N s and N m s.
+    pub momentum: Resultant,
+    /// Impulse of the loads.
+    pub impulse_loads: Resultant,
+    /// Impulse of the contact forces: only obstacles leave one.
+    pub impulse_contact: Resultant,
+    /// Impulse of the supports.
+    pub impulse_supports: Resultant,
+    /// Change of the momentum - impulses.
+    pub momentum_residual: Resultant,
+}
+
+impl Balance {
+    /// Kinetic and strain energy, J.
+    pub fn energy(&self) -> f64 {
+        self.kinetic + self.strain
+    }
+}
+
+/// The balance with the memory that it needs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ledger {
+    /// The balance at the start.
+    pub initial: Balance,
+    /// The balance now.
+    pub balance: Balance,
+    /// Largest kinetic and strain energy so far, J: the size that residuals are compared with.
+    pub largest_energy: f64,
+    /// Largest component of the momentum, or of the impulse of loads, contacts or supports so far, N s.
+    pub largest_momentum: f64,
+    /// Largest absolute energy residual so far, J.
+    pub largest_energy_residual: f64,
+    /// Largest absolute component of the linear momentum residual so far, N s.
+    pub largest_momentum_residual: f64,
+    work_loads: Sum,
+    work_contact: Sum,
+    dissipation: Sum,
+    impulses: [[Sum; 6]; 3],
+    forces: [Resultant; 3],
+}
+
+/// Energies of a state, J.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Energies {
+    pub(crate) kinetic: f64,
+    pub(crate) strain: f64,
+    /// |a|²_M.
+    pub(crate) acceleration: f64,
+    /// Momentum.
+    pub(crate) momentum: Resultant,
+}
+
+/// What changed in a step: |Δv|²_M, |Δu|²_K, |Δa|²_M.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Squares {
+    pub(crate) velocity: f64,
+    pub(crate) displacement: f64,
+    pub(crate) acceleration: f64,
+}
+
+impl Ledger {
+    /// The balance at the start. `forces`: resultants of loads, contacts and supports there.
+    pub(crate) fn start(energies: &Energies, identity: &EnergyIdentity, forces: [Resultant; 3]) -> Ledger {
+        let balance = Balance {
+            kinetic: energies.kinetic,
+            strain: energies.strain,
+            scheme_energy: identity.inertia * energies.acceleration,
+            momentum: energies.momentum,
+            ..Balance::default()
+        };
+        Ledger {
+            initial: balance,
+            balance,
+            largest_energy: balance.energy(),
+            largest_momentum: energies.momentum.largest(),
+            forces,
+            ..Ledger::default()
+        }
+    }
+
+    /// Adds a step of length `dt`: works on Δu, squares of the scheme's dissipation, resultants of the forces.
+    pub(crate) fn add(
+        &mut self,
+        (dt, identity): (f64, &EnergyIdentity),
+        energies: &Energies,
+        works: [f64; 2],
+        squares: &Squares,
+        forces: [Resultant; 3],
+    ) {
+        self.work_loads.add(works[0]);
+        self.work_contact.add(works[1]);
+        self.dissipation.add(
+            identity.velocity * squares.velocity
+                + identity.displacement * squares.displacement
+                + identity.acceleration * squares.acceleration,
+        );
+        for (k, force) in forces.iter().enumerate() {
+            let mean = self.forces[k].combine(dt * identity.old, force, dt * identity.new);
+            for i in 0..3 {
+                self.impulses[k][i].add(mean.linear[i]);
+                self.impulses[k][3 + i].add(mean.angular[i]);
+            }
+        }
+        self.forces = forces;
+        self.balance = self.closed(energies, identity);
+        self.largest_energy = self.largest_energy.max(self.balance.energy());
+        self.largest_energy_residual = self.largest_energy_residual.max(self.balance.energy_residual.abs());
+        let balance = &self.balance;
+        let impulses = [balance.momentum, balance.impulse_loads, balance.impulse_contact, balance.impulse_supports];
+        self.largest_momentum = impulses.iter().map(Resultant::largest).fold(self.largest_momentum, f64::max);
+        self.largest_momentum_residual = self.largest_momentum_residual.max(balance.momentum_residual.largest());
+    }
+
+    fn closed(&self, energies: &Energies, identity: &EnergyIdentity) -> Balance {
+        let impulse = |k: usize| {
+            let sums: [f64; 6] = self.impulses[k].map(|sum| sum.get());
+            Resultant { linear: [sums[0], sums[1], sums[2]], angular: [sums[3], sums[4], sums[5]] }
+        };
+        let (work_loads, work_contact) = (self.work_loads.get(), self.work_contact.get());
+        let dissipation_scheme = self.dissipation.get();
+        let scheme_energy = identity.inertia * energies.acceleration;
+        let start = &self.initial;
+        let change = (energies.kinetic - start.kinetic)
+            + (energies.strain - start.strain)
+            + (scheme_energy - start.scheme_energy);
+        let [impulse_loads, impulse_contact, impulse_supports] = [impulse(0), impulse(1), impulse(2)];
+        let impulses = impulse_loads.combine(1.0, &impulse_contact, 1.0).combine(1.0, &impulse_supports, 1.0);
+        let change_of_momentum = energies.momentum.combine(1.0, &start.momentum, -1.0);
+        Balance {
+            kinetic: energies.kinetic,
+            strain: energies.strain,
+            scheme_energy,
+            work_loads,
+            work_contact,
+            dissipation_scheme,
+            energy_residual: change - work_loads - work_contact + dissipation_scheme,
+            momentum: energies.momentum,
+            impulse_loads,
+            impulse_contact,
+            impulse_supports,
+            momentum_residual: change_of_momentum.combine(1.0, &impulses, -1.0),
+        }
+    }
+}
+
+/// Forces of the supports, N: what the momentum balance of the step leaves at the held unknowns; zero elsewhere.
+pub(crate) fn reactions(system: &System, map: &StepMap, old: &Motion, new: &Motion, inertia: &[f64], out: &mut [f64]) {
+    let fraction = map.force_fraction;
+    for (i, out) in out.iter_mut().enumerate() {
+        *out = if system.fixed[i] {
+            let internal = (1.0 - fraction) * old.internal_force[i] + fraction * new.internal_force[i];
+            inertia[i] + internal - system.load[i] - new.contact_force[i]
+        } else {
+            0.0
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Sum;
+
+    #[test]
+    fn compensated_sum_keeps_what_rounding_drops() {
+        let mut sum = Sum::default();
+        sum.add(1e16);
+        (0..1000).for_each(|_| sum.add(0.1));
+        sum.add(-1e16);
+        assert!((sum.get() - 100.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,69 @@
+//! Newmark's family.
+
+use serde::{Deserialize, Serialize};
+
+use super::{EnergyIdentity, TimeScheme};
+use crate::step_map::{Row, StepMap};
+
+/// Newmark's scheme with the acceleration at the end of the step as unknown:
+///
+/// `u₊ = u + dt v + dt² ((½ - β) a + β a₊)`, `v₊ = v + dt ((1 - γ) a + γ a₊)`, balance at the end of the step.
+///
+/// β > 0 here; β = 0, γ = ½ is [`CentralDifference`](super::CentralDifference), which takes the contact rate half a step
+/// later. Unconditionally stable without contact for 2β >= γ >= ½. The paper's sets are (¼, ½), (½, ½), (0.49, 0.9).
+///
+/// Energy identity with b = β - γ/2: `Δ(E + b dt²/2 |a|²_M) = Δu · ((1 - γ) F_k + γ F_{k+1}) - (γ - ½)(|Δu|²_K + b dt² |Δa|²_M)`.
+///
+/// Source: Newmark (1959); Ben Dhia et al. (2003), equation (5), whose (α, β) are our (β, γ).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Newmark {
+    /// β, positive.
+    pub beta: f64,
+    /// γ, at least ½ for stability.
+    pub gamma: f64,
+}
+
+impl TimeScheme for Newmark {
+    fn name(&self) -> &'static str {
+        "newmark"
+    }
+
+    fn step_map(&self, dt: f64) -> StepMap {
+        let (beta, gamma) = (self.beta, self.gamma);
+        let displacement = Row { u: 1.0, v: dt, a: dt * dt * (0.5 - beta), x: dt * dt * beta };
+        let velocity = Row { u: 0.0, v: 1.0, a: dt * (1.0 - gamma), x: dt * gamma };
+        let acceleration = Row { x: 1.0, ..Row::default() };
+        StepMap {
+            inertia: acceleration,
+            force: displacement,
+            force_fraction: 1.0,
+            displacement,
+            velocity,
+            acceleration,
+            placed: Row { u: 1.0, ..Row::default() },
+            rate: velocity,
+            force_span: [0.0, 1.0],
+        }
+    }
+
+    fn energy_identity(&self, dt: f64) -> EnergyIdentity {
+        let b = self.beta - 0.5 * self.gamma;
+        let excess = self.gamma - 0.5;
+        EnergyIdentity {
+            inertia: 0.5 * b * dt * dt,
+            old: 1.0 - self.gamma,
+            new: self.gamma,
+            velocity: 0.0,
+            displacement: excess,
+            acceleration: excess * b * dt * dt,
+        }
+    }
+
+    fn keeps_acceleration(&self) -> bool {
+        true
+    }
+
+    fn is_explicit(&self) -> bool {
+        false
+    }
+}

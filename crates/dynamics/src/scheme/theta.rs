@@ -1,0 +1,64 @@
+//! The theta scheme in velocities.
+
+use serde::{Deserialize, Serialize};
+
+use super::{EnergyIdentity, TimeScheme};
+use crate::step_map::{Row, StepMap};
+
+/// Theta scheme with the velocity at the end of the step as unknown (Moreau-Jean without restitution when joined to the
+/// velocity law):
+///
+/// `M (v₊ - v)/dt + f(u_θ) = p_ext + Nᵀ P`, `v_θ = (1 - θ) v + θ v₊`, `u_θ = u + θ dt v_θ`, `u₊ = u + dt v_θ`.
+///
+/// Energy identity: `ΔE = Δu · F - (θ - ½)(|Δv|²_M + |Δu|²_K)`. The acceleration reported is the mean of the step,
+/// (v₊ - v)/dt.
+///
+/// Source: Ben Dhia et al. (2003), equation (7) and Remark 2; Moreau (1988), Jean (1999).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Theta {
+    /// θ in [½, 1].
+    pub theta: f64,
+}
+
+impl TimeScheme for Theta {
+    fn name(&self) -> &'static str {
+        "theta"
+    }
+
+    fn step_map(&self, dt: f64) -> StepMap {
+        let theta = self.theta;
+        let acceleration = Row { v: -1.0 / dt, x: 1.0 / dt, ..Row::default() };
+        let velocity = Row { x: 1.0, ..Row::default() };
+        StepMap {
+            inertia: acceleration,
+            force: Row { u: 1.0, v: theta * (1.0 - theta) * dt, a: 0.0, x: theta * theta * dt },
+            force_fraction: theta,
+            displacement: Row { u: 1.0, v: (1.0 - theta) * dt, a: 0.0, x: theta * dt },
+            velocity,
+            acceleration,
+            placed: Row { u: 1.0, ..Row::default() },
+            rate: velocity,
+            force_span: [0.0, 1.0],
+        }
+    }
+
+    fn energy_identity(&self, _dt: f64) -> EnergyIdentity {
+        let excess = self.theta - 0.5;
+        EnergyIdentity {
+            inertia: 0.0,
+            old: 0.0,
+            new: 1.0,
+            velocity: excess,
+            displacement: excess,
+            acceleration: 0.0,
+        }
+    }
+
+    fn keeps_acceleration(&self) -> bool {
+        false
+    }
+
+    fn is_explicit(&self) -> bool {
+        false
+    }
+}

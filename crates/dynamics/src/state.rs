@@ -1,0 +1,117 @@
+//! Everything that influences the next step or the results: the state is the checkpoint.
+
+use carom_contact::law::Status;
+use serde::{Deserialize, Serialize};
+
+use crate::ledger::{Balance, Ledger};
+use crate::records::Records;
+use crate::{Error, System};
+
+/// State at an accepted instant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Steps taken.
+    pub step: u64,
+    /// Time in s, `step * dt`.
+    pub time: f64,
+    /// Motion of the nodes and the forces that belong to it.
+    pub motion: Motion,
+    /// Contact forces and statuses.
+    pub interface: InterfaceState,
+    /// Energy and momentum balance since the start.
+    pub ledger: Ledger,
+    /// Extrema, impulses and impacts since the start.
+    pub records: Records,
+}
+
+/// Vectors of the system, one entry per unknown.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Motion {
+    /// Displacement, m.
+    pub u: Vec<f64>,
+    /// Velocity, m/s.
+    pub v: Vec<f64>,
+    /// Acceleration, m/s²: in balance, or the mean of the step, as the scheme has it.
+    pub a: Vec<f64>,
+    /// Internal force f(u), N.
+    pub internal_force: Vec<f64>,
+    /// Contact force Nᵀ P of the last step, N.
+    pub contact_force: Vec<f64>,
+}
+
+/// Arrays over all contact points.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct InterfaceState {
+    /// Contact force P of the last step, N, compressive positive.
+    pub force: Vec<f64>,
+    /// Gap at the end of the step, m, open positive; infinite where a point faces nothing.
+    pub gap: Vec<f64>,
+    /// Gap rate that a law in the rate constrains, m/s, opening positive.
+    pub rate: Vec<f64>,
+    /// Status: the sign S_g of laws in the gap, S_v of laws in the rate.
+    pub status: Vec<Status>,
+    /// S_d: the point took part in the last step.
+    pub watched: Vec<bool>,
+}
+
+impl State {
+    /// Bytes from which [`State::from_bytes`] makes the same state.
+    ///
+    /// # Errors
+    /// None is known; the encoder's own error is passed on.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
+        postcard::to_stdvec(self).map_err(|cause| Error::State { cause: cause.to_string() })
+    }
+
+    /// The state in these bytes, which must belong to `system`.
+    ///
+    /// # Errors
+    /// The bytes are no state, or one of another size.
+    pub fn from_bytes(system: &System, bytes: &[u8]) -> Result<State, Error> {
+        let state: State = postcard::from_bytes(bytes).map_err(|cause| Error::State { cause: cause.to_string() })?;
+        let (n, points) = (system.unknowns(), system.points());
+        let motion = &state.motion;
+        let vectors = [&motion.u, &motion.v, &motion.a, &motion.internal_force, &motion.contact_force];
+        if vectors.iter().any(|vector| vector.len() != n) || state.interface.force.len() != points {
+            let cause = format!("it belongs to another model than this one of {n} unknowns and {points} contact points");
+            return Err(Error::State { cause });
+        }
+        Ok(state)
+    }
+}
+
+/// What one contact did in a step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactReport {
+    /// Sum of the normal forces of its points, N, compressive positive.
+    pub force: f64,
+    /// Force on the secondary body, N.
+    pub resultant: [f64; 3],
+    /// Least gap at the end of the step, m; infinite where nothing faces anything.
+    pub gap: f64,
+    /// Gap rate at the point of the least gap, m/s.
+    pub rate: f64,
+    /// Points with a force.
+    pub closed: usize,
+    /// Points whose force began or ended in this step.
+    pub status_changes: usize,
+    /// Σ |P ġ₊| dt, J: zero when forces act on closed points only.
+    pub persistency_defect: f64,
+}
+
+/// What a step did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// Number of the step, from 1; 0 for the initial state.
+    pub step: u64,
+    /// Time at the end of the step, s.
+    pub time: f64,
+    /// Interval over which the contact forces of the step act, s.
+    pub force_span: [f64; 2],
+    /// By contact.
+    pub contacts: Vec<ContactReport>,
+    /// Energies, works and momentum at the end of the step.
+    pub balance: Balance,
+    /// Passes of the status loop.
+    pub passes: usize,
+}

@@ -1,0 +1,398 @@
+//! What never changes during a run: bodies, numbering, masses, supports, loads, contacts, scheme.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use carom_algebra::csr::Csr;
+use carom_algebra::pattern::Cliques;
+use carom_bodies::{Body, BodySpec, MassKind};
+use carom_contact::law::Level;
+use carom_contact::{Contact, Law, Plane, Point, Sliding, Target};
+use carom_mesh::{ElementId, Face, Mesh, Surface};
+
+use crate::{Error, Scheme};
+
+/// Everything from which a system is built; names are those of the case file.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The mesh, in m.
+    pub mesh: Mesh,
+    /// Bodies.
+    pub bodies: Vec<ModelBody>,
+    /// Supports.
+    pub supports: Vec<Support>,
+    /// Acceleration of gravity, m/s².
+    pub gravity: [f64; 3],
+    /// Contacts.
+    pub contacts: Vec<ModelContact>,
+    /// Time scheme.
+    pub scheme: Scheme,
+    /// Step in s.
+    pub dt: f64,
+}
+
+/// A body and its initial state.
+#[derive(Clone, Debug)]
+pub struct ModelBody {
+    /// Elements, kinematics, material.
+    pub spec: BodySpec,
+    /// Lumped or consistent mass.
+    pub mass: MassKind,
+    /// Initial velocity of all its nodes, m/s.
+    pub velocity: [f64; 3],
+    /// Initial displacement of all its nodes, m.
+    pub displacement: [f64; 3],
+}
+
+/// Nodes that cannot move in some directions.
+#[derive(Clone, Debug)]
+pub struct Support {
+    /// Nodes of the mesh.
+    pub nodes: Vec<u32>,
+    /// Directions held.
+    pub fix: [bool; 3],
+}
+
+/// A contact before numbering.
+#[derive(Clone, Debug)]
+pub struct ModelContact {
+    /// Name as in the case file.
+    pub name: String,
+    /// Surface whose nodes carry the contact forces.
+    pub secondary: Surface,
+    /// What it faces.
+    pub primary: ModelTarget,
+    /// The law.
+    pub law: Law,
+    /// Extent of the sliding.
+    pub sliding: Sliding,
+}
+
+/// What a secondary surface faces.
+#[derive(Clone, Debug)]
+pub enum ModelTarget {
+    /// A surface of deformable bodies.
+    Surface(Surface),
+    /// A rigid plane.
+    Plane(Plane),
+}
+
+/// Mass of the system: a diagonal, and the consistent part where there is one.
+#[derive(Debug)]
+pub struct Mass {
+    /// Row sums of the lumped bodies, kg, one entry per unknown.
+    pub lumped: Vec<f64>,
+    /// Consistent mass of the other bodies.
+    pub consistent: Option<Csr>,
+}
+
+impl Mass {
+    /// y = M x.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        match &self.consistent {
+            Some(matrix) => matrix.multiply(x, y),
+            None => y.fill(0.0),
+        }
+        for i in 0..y.len() {
+            y[i] += self.lumped[i] * x[i];
+        }
+    }
+}
+
+/// The immutable side of a run.
+#[derive(Debug)]
+pub struct System {
+    /// The mesh, in m.
+    pub mesh: Mesh,
+    /// Unknowns per node.
+    pub dim: usize,
+    /// Reference coordinates by system number, m.
+    pub x: Vec<[f64; 3]>,
+    /// Mesh node of each system node. Nodes of one connected part follow each other.
+    pub mesh_node: Vec<u32>,
+    /// System number of each mesh node; `u32::MAX` where no body uses it.
+    pub number: Vec<u32>,
+    /// Unknowns of each connected part: bodies that touch only by contact are different parts.
+    pub parts: Vec<Range<usize>>,
+    /// Bodies.
+    pub bodies: Vec<Body>,
+    /// Lumped masses of the nodes of each body (system number, kg), for mean velocities.
+    pub body_masses: Vec<Vec<(u32, f64)>>,
+    /// Mass matrix.
+    pub mass: Mass,
+    /// Whether an unknown is held at zero.
+    pub fixed: Vec<bool>,
+    /// Dead load, N.
+    pub load: Vec<f64>,
+    /// Contacts.
+    pub contacts: Vec<Contact>,
+    /// Bodies of each contact: the secondary's, and the primary's unless it is rigid.
+    pub sides: Vec<(usize, Option<usize>)>,
+    /// First contact point of each contact in the arrays over all points, and one end more.
+    pub first_point: Vec<usize>,
+    /// Gap below which a point counts as closed, m: 1e-12 of the size of the mesh.
+    pub tolerance: f64,
+    /// Time scheme.
+    pub scheme: Scheme,
+    /// Step, s.
+    pub dt: f64,
+    /// Initial displacement, m.
+    pub initial_displacement: Vec<f64>,
+    /// Initial velocity, m/s; zero where an unknown is held.
+    pub initial_velocity: Vec<f64>,
+}
+
+impl System {
+    /// Numbers the nodes by connected part and builds bodies, masses and contacts.
+    ///
+    /// # Errors
+    /// A step that is not positive; a body that cannot be built; a scheme that cannot take the mass, the step or the
+    /// contact law.
+    pub fn new(model: Model) -> Result<Arc<System>, Error> {
+        if !(model.dt > 0.0 && model.dt.is_finite()) {
+            return Err(Error::Step { dt: model.dt });
+        }
+        let dim = model.mesh.dim;
+        let (number, mesh_node, parts) = numbering(&model);
+        let x: Vec<[f64; 3]> = mesh_node.iter().map(|&node| model.mesh.nodes[node as usize]).collect();
+        let body = |body: &ModelBody| Body::new(&model.mesh, body.spec.clone(), &number);
+        let bodies = model.bodies.iter().map(body).collect::<Result<Vec<_>, _>>()?;
+        let mut fixed = vec![false; dim * x.len()];
+        for support in &model.supports {
+            for &node in support.nodes.iter().filter(|&&node| number[node as usize] != u32::MAX) {
+                for i in 0..dim {
+                    fixed[dim * number[node as usize] as usize + i] |= support.fix[i];
+                }
+            }
+        }
+        let mass = mass(&bodies, &model.bodies, dim, x.len());
+        let body_masses: Vec<_> = bodies.iter().map(|body| node_masses(body, dim, x.len())).collect();
+        let mut load = vec![0.0; dim * x.len()];
+        for &(node, m) in body_masses.iter().flatten() {
+            for i in 0..dim {
+                load[dim * node as usize + i] += m * model.gravity[i];
+            }
+        }
+        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
+        let contacts: Vec<Contact> = model.contacts.iter().map(|contact| numbered(contact, &model, &number)).collect();
+        let mut first_point = vec![0];
+        for contact in &contacts {
+            first_point.push(first_point[first_point.len() - 1] + contact.points.len());
+        }
+        let sides = model.contacts.iter().map(|contact| sides(contact, &model)).collect();
+        let system = System {
+            tolerance: 1e-12 * model.mesh.size(),
+            dim,
+            x,
+            mesh_node,
+            number,
+            parts: parts.into_iter().map(|part| dim * part.start..dim * part.end).collect(),
+            bodies,
+            body_masses,
+            mass,
+            fixed,
+            load,
+            contacts,
+            sides,
+            first_point,
+            scheme: model.scheme,
+            dt: model.dt,
+            initial_displacement,
+            initial_velocity,
+            mesh: model.mesh,
+        };
+        system.check_scheme(&model.bodies)?;
+        Ok(Arc::new(system))
+    }
+
+    fn check_scheme(&self, bodies: &[ModelBody]) -> Result<(), Error> {
+        if !self.scheme.get().is_explicit() {
+            return Ok(());
+        }
+        if let Some(body) = bodies.iter().find(|body| body.mass == MassKind::Consistent) {
+            return Err(Error::ConsistentMass { body: body.spec.name.clone() });
+        }
+        if let Some(contact) = self.contacts.iter().find(|contact| contact.law.get().level() == Level::Gap) {
+            return Err(Error::DisplacementLaw { contact: contact.name.clone() });
+        }
+        let critical = self.critical_step();
+        if self.dt > critical { Err(Error::Unstable { dt: self.dt, critical }) } else { Ok(()) }
+    }
+
+    /// Critical step 2/ω of an explicit scheme from element eigenvalues, s: a lower bound.
+    pub fn critical_step(&self) -> f64 {
+        let bound = self.bodies.iter().map(Body::frequency_bound).fold(0.0, f64::max);
+        2.0 / bound
+    }
+
+    /// Number of unknowns, held ones included.
+    pub fn unknowns(&self) -> usize {
+        self.fixed.len()
+    }
+
+    /// Number of contact points over all contacts.
+    pub fn points(&self) -> usize {
+        self.first_point[self.contacts.len()]
+    }
+
+    /// The contact and the place in it of a contact point.
+    pub fn point(&self, point: usize) -> (&Contact, usize) {
+        let contact = self.first_point.partition_point(|&first| first <= point) - 1;
+        (&self.contacts[contact], point - self.first_point[contact])
+    }
+
+    /// Mean velocity of a body, Σ m v / Σ m over its nodes, m/s.
+    pub fn mean_velocity(&self, body: usize, v: &[f64]) -> [f64; 3] {
+        let (mut momentum, mut total) = ([0.0; 3], 0.0);
+        for &(node, m) in &self.body_masses[body] {
+            total += m;
+            for i in 0..self.dim {
+                momentum[i] += m * v[self.dim * node as usize + i];
+            }
+        }
+        momentum.map(|p| p / total)
+    }
+
+    /// Mass of a body, kg.
+    pub fn body_mass(&self, body: usize) -> f64 {
+        self.body_masses[body].iter().map(|(_, m)| m).sum()
+    }
+}
+
+/// System numbers of the mesh nodes, mesh nodes of the system numbers, and node ranges of the connected parts.
+fn numbering(model: &Model) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
+    let count = model.mesh.nodes.len();
+    let mut root: Vec<u32> = (0..count as u32).collect();
+    let mut used = vec![false; count];
+    for &cell in model.bodies.iter().flat_map(|body| &body.spec.cells) {
+        let nodes = model.mesh.element_nodes(cell);
+        for &node in nodes {
+            used[node as usize] = true;
+            let (a, b) = (find(&mut root, nodes[0]), find(&mut root, node));
+            // the smaller number leads, so parts come in the order of their first node
+            root[a.max(b) as usize] = a.min(b);
+        }
+    }
+    let mut nodes: Vec<(u32, u32)> =
+        (0..count as u32).filter(|&node| used[node as usize]).map(|node| (find(&mut root, node), node)).collect();
+    nodes.sort_unstable();
+    let mut number = vec![u32::MAX; count];
+    let mut parts: Vec<Range<usize>> = Vec::new();
+    for (system, &(leader, node)) in nodes.iter().enumerate() {
+        number[node as usize] = system as u32;
+        match parts.last_mut() {
+            Some(part) if nodes[part.start].0 == leader => part.end = system + 1,
+            _ => parts.push(system..system + 1),
+        }
+    }
+    (number, nodes.into_iter().map(|(_, node)| node).collect(), parts)
+}
+
+fn find(root: &mut [u32], mut node: u32) -> u32 {
+    while root[node as usize] != node {
+        root[node as usize] = root[root[node as usize] as usize];
+        node = root[node as usize];
+    }
+    node
+}
+
+fn node_masses(body: &Body, dim: usize, nodes: usize) -> Vec<(u32, f64)> {
+    let mut mass = vec![0.0; dim * nodes];
+    body.add_lumped_mass(&mut mass);
+    (0..nodes).filter(|&node| mass[dim * node] > 0.0).map(|node| (node as u32, mass[dim * node])).collect()
+}
+
+fn mass(bodies: &[Body], specs: &[ModelBody], dim: usize, nodes: usize) -> Mass {
+    let mut lumped = vec![0.0; dim * nodes];
+    let mut cliques = Cliques::new();
+    let mut consistent = Vec::new();
+    for (body, spec) in bodies.iter().zip(specs) {
+        match spec.mass {
+            MassKind::Lumped => body.add_lumped_mass(&mut lumped),
+            MassKind::Consistent => {
+                push_cliques(body, dim, &(0..dim * nodes), &mut cliques);
+                consistent.push(body);
+            }
+        }
+    }
+    if consistent.is_empty() {
+        return Mass { lumped, consistent: None };
+    }
+    let mut matrix = Csr::from_cliques(dim * nodes, &cliques);
+    for body in consistent {
+        body.assemble(0.0, 1.0, &(0..dim * nodes), &mut matrix);
+    }
+    Mass { lumped, consistent: Some(matrix) }
+}
+
+/// Adds the unknowns of each element of a body that lies in a part, counted from the first of the part.
+pub(crate) fn push_cliques(body: &Body, dim: usize, part: &Range<usize>, cliques: &mut Cliques) {
+    let mut unknowns = Vec::new();
+    body.each_element(&mut |nodes| {
+        if part.contains(&(dim * nodes[0] as usize)) {
+            let of_node = |&node: &u32| (0..dim).map(move |i| (dim * node as usize + i - part.start) as u32);
+            unknowns.clear();
+            unknowns.extend(nodes.iter().flat_map(of_node));
+            cliques.push(&unknowns);
+        }
+    });
+}
+
+fn initial(model: &Model, masses: &[Vec<(u32, f64)>], fixed: &[bool], dim: usize) -> (Vec<f64>, Vec<f64>) {
+    let (mut u, mut v) = (vec![0.0; fixed.len()], vec![0.0; fixed.len()]);
+    for (body, masses) in model.bodies.iter().zip(masses) {
+        for &(node, _) in masses {
+            for i in 0..dim {
+                let dof = dim * node as usize + i;
+                if !fixed[dof] {
+                    u[dof] = body.displacement[i];
+                    v[dof] = body.velocity[i];
+                }
+            }
+        }
+    }
+    (u, v)
+}
+
+fn owner(model: &Model, cell: ElementId) -> Option<usize> {
+    model.bodies.iter().position(|body| body.spec.cells.contains(&cell))
+}
+
+fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usize>) {
+    let body = |surface: &Surface| surface.faces.first().and_then(|face| owner(model, face.parent));
+    let primary = match &contact.primary {
+        ModelTarget::Surface(surface) => body(surface),
+        ModelTarget::Plane(_) => None,
+    };
+    (body(&contact.secondary).unwrap_or(0), primary)
+}
+
+fn numbered(contact: &ModelContact, model: &Model, number: &[u32]) -> Contact {
+    let surface = &contact.secondary;
+    let kinematics = surface.faces.first().and_then(|face| owner(model, face.parent));
+    let kinematics = kinematics.map(|body| model.bodies[body].spec.kinematics);
+    let areas = surface.node_areas(&model.mesh);
+    let points = surface.nodes.iter().zip(areas).map(|(&node, area)| {
+        let factor = kinematics.map_or(1.0, |k| k.surface_factor(&model.mesh.nodes[node as usize]));
+        Point { node: number[node as usize], area: area * factor }
+    });
+    let target = match &contact.primary {
+        ModelTarget::Plane(plane) => Target::Plane(*plane),
+        ModelTarget::Surface(surface) => Target::Surface(surface.faces.iter().map(|face| renumbered(face, number)).collect()),
+    };
+    Contact {
+        name: contact.name.clone(),
+        law: contact.law,
+        sliding: contact.sliding,
+        points: points.collect(),
+        target,
+    }
+}
+
+fn renumbered(face: &Face, number: &[u32]) -> Face {
+    let mut face = *face;
+    for k in 0..face.corners().len() {
+        face.nodes[k] = number[face.nodes[k] as usize];
+    }
+    face
+}
