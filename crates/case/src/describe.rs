@@ -2,6 +2,8 @@
 
 use serde_json::{Map, Value};
 
+use crate::units::with_article;
+
 /// The schema with its `$ref`, if it is one, replaced by what it refers to.
 pub(crate) fn resolve<'a>(root: &'a Value, schema: &'a Value) -> &'a Value {
     let target = schema
@@ -124,7 +126,7 @@ pub(crate) fn accepted(root: &Value, schema: &Value) -> String {
         let (name, unit, example) = (text("x-dimension"), text("x-unit"), text("x-example"));
         return format!(
             "{}{range}: a number in {unit}, or a text such as {example:?}",
-            article(name)
+            with_article(name)
         );
     }
     if schema.get("x-length-unit").is_some() {
@@ -204,15 +206,4 @@ pub(crate) fn range(schema: &Value) -> String {
         }
         (None, None) => String::new(),
     }
-}
-
-fn article(noun: &str) -> String {
-    format!(
-        "{} {noun}",
-        if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
-            "an"
-        } else {
-            "a"
-        }
-    )
 }

@@ -10,6 +10,7 @@ pub mod units;
 mod describe;
 mod error;
 mod input;
+mod keys;
 mod locate;
 mod reference;
 mod rules;

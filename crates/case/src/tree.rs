@@ -102,13 +102,24 @@ fn parse(source: usize, text: &str, offset: usize, problems: &mut Vec<Problem>) 
     let (table, errors) = DeTable::parse_recoverable(text);
     for error in errors {
         let span = error.span().unwrap_or(0..0);
-        problems.push(Problem::new("", error.message()).at(place(source, &span, offset)));
+        problems.push(Problem::new("", syntax_message(&error)).at(place(source, &span, offset)));
     }
     let value = place(source, &table.span(), offset);
     Item {
         key: None,
         value,
         node: table_node(source, table.get_ref(), offset),
+    }
+}
+
+/// What the TOML reader says, except where it takes nothing at all for a text without quotes.
+fn syntax_message(error: &toml::de::Error) -> String {
+    let nothing = error.span().is_none_or(|span| span.is_empty());
+    match error.message() {
+        message if nothing && message.starts_with("string values must be quoted") => {
+            "not TOML: a value is missing".to_owned()
+        }
+        message => format!("not TOML: {message}"),
     }
 }
 
@@ -199,7 +210,11 @@ fn parse_override(source: usize, text: &str, problems: &mut Vec<Problem>) -> Opt
                 .starts_with(['[', '{', '"', '\'']) =>
         {
             let span = error.span().unwrap_or(0..0);
-            problems.push(Problem::new("", error.message()).at(place(source, &span, at + 1)));
+            problems.push(Problem::new("", syntax_message(&error)).at(place(
+                source,
+                &span,
+                at + 1,
+            )));
             return None;
         }
         Err(_) => {

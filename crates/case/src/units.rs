@@ -103,13 +103,23 @@ pub enum UnitError {
         exponent: String,
     },
     /// A unit that is well formed, of another dimension.
-    #[error("a {found} instead of a {wanted}")]
+    #[error("{} instead of {}", with_article(&.found.to_string()), with_article(&.wanted.to_string()))]
     WrongDimension {
         /// Dimension of the text.
         found: Dimension,
         /// Dimension that the key takes.
         wanted: Dimension,
     },
+}
+
+/// `an area`, `a length`.
+pub(crate) fn with_article(noun: &str) -> String {
+    let article = if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {noun}")
 }
 
 /// A unit: the SI value of one of it is `factor` 10^`power`.

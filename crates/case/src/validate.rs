@@ -7,11 +7,10 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::describe::{
-    accepted, allows, alternatives, elements, entries, keyed, listed, range, resolve, texts,
-};
-use crate::error::{Place, Problem, nearest};
+use crate::describe::{accepted, allows, alternatives, entries, keyed, listed, range, resolve};
+use crate::error::{Place, Problem};
 use crate::input::Input;
+use crate::keys::{Keys, of};
 use crate::schema::is_name;
 use crate::tree::{Item, Node, join};
 use crate::units::{Dimension, UnitError, length_of_unit, parse_quantity};
@@ -83,7 +82,7 @@ impl<'a> Walker<'a> {
                     (Some(branch), _) if keyed(branch).is_none() => self.visit(branch, item, path),
                     (_, Node::Text(text)) if !names.is_empty() => {
                         self.problems.push(
-                            Problem::new(path, "unknown name")
+                            Problem::new(path, format!("unknown name `{text}`"))
                                 .unknown(text, names)
                                 .at(item.value),
                         );
@@ -163,96 +162,8 @@ impl<'a> Walker<'a> {
             self.problems
                 .push(Problem::new(path, "empty: one is needed at least").at(item.place()));
         }
-        self.check_required(schema, found, item, path);
-        self.check_groups(schema, found, item, path);
-    }
-
-    /// Missing keys, except one that an unknown key was probably meant to be.
-    fn check_required(
-        &mut self,
-        schema: &Value,
-        found: &BTreeMap<String, Item>,
-        item: &Item,
-        path: &str,
-    ) {
-        let properties: BTreeMap<&str, &Value> = entries(schema, "properties").collect();
-        let unknown = found
-            .keys()
-            .filter(|key| !properties.contains_key(key.as_str()));
-        let meant: Vec<&str> = unknown
-            .filter_map(|key| nearest(key, properties.keys().copied()))
-            .collect();
-        for key in texts(schema, "required") {
-            if !found.contains_key(key) && !meant.contains(&key) {
-                let wanted = properties
-                    .get(key)
-                    .map(|schema| accepted(self.schema, schema))
-                    .filter(|wanted| wanted != "a table");
-                let problem = Problem::new(path, format!("`{key}` is missing{}", of(path)));
-                self.problems
-                    .push(problem.accepted(wanted).at(item.place()));
-            }
-        }
-    }
-
-    /// Keys that need, replace or exclude each other: `oneOf`, `anyOf` and `not` over `required`, `dependentRequired`.
-    fn check_groups(
-        &mut self,
-        schema: &Value,
-        found: &BTreeMap<String, Item>,
-        item: &Item,
-        path: &str,
-    ) {
-        for (keyword, exclusive) in [("oneOf", true), ("anyOf", false)] {
-            let keys: Vec<&str> = elements(schema, keyword)
-                .flat_map(|branch| texts(branch, "required"))
-                .collect();
-            let given: Vec<&str> = keys
-                .iter()
-                .copied()
-                .filter(|key| found.contains_key(*key))
-                .collect();
-            if !keys.is_empty() && given.is_empty() {
-                let message = format!("one of {} is missing{}", quoted(&keys), of(path));
-                self.problems
-                    .push(Problem::new(path, message).at(item.place()));
-            }
-            if exclusive && given.len() > 1 {
-                self.exclude(&given, found, path);
-            }
-        }
-        let excluded: Vec<&str> = schema
-            .get("not")
-            .map(|not| texts(not, "required"))
-            .unwrap_or_default();
-        if excluded.len() > 1 && excluded.iter().all(|key| found.contains_key(*key)) {
-            self.exclude(&excluded, found, path);
-        }
-        for (key, needs) in entries(schema, "dependentRequired") {
-            let missing = needs
-                .as_array()
-                .into_iter()
-                .flatten()
-                .filter_map(Value::as_str)
-                .find(|need| !found.contains_key(*need));
-            if let (Some(inner), Some(need)) = (found.get(key), missing) {
-                let message = format!("`{key}` without `{need}`, which it belongs to");
-                self.problems
-                    .push(Problem::new(join(path, key), message).at(key_place(inner)));
-            }
-        }
-    }
-
-    fn exclude(&mut self, keys: &[&str], found: &BTreeMap<String, Item>, path: &str) {
-        let last = keys
-            .iter()
-            .filter_map(|key| Some((key, found.get(*key)?)))
-            .max_by_key(|(_, item)| item.place());
-        if let Some((key, inner)) = last {
-            let message = format!("{} exclude each other", quoted(keys));
-            self.problems
-                .push(Problem::new(join(path, key), message).at(key_place(inner)));
-        }
+        self.problems
+            .extend(Keys::new(self.schema, schema, found).problems(item.place(), path));
     }
 
     fn visit_array(&mut self, schema: &'a Value, items: &[Item], item: &Item, path: &str) {
@@ -266,7 +177,7 @@ impl<'a> Walker<'a> {
             let message = if items.is_empty() {
                 "an empty array".to_owned()
             } else {
-                format!("an array of {}", items.len())
+                format!("an array of {} values", items.len())
             };
             self.problems.push(
                 Problem::new(path, message)
@@ -294,7 +205,7 @@ impl<'a> Walker<'a> {
         if !names.is_empty() {
             if !names.contains(&text) {
                 self.problems.push(
-                    Problem::new(path, "unknown name")
+                    Problem::new(path, format!("unknown name `{text}`"))
                         .unknown(text, names)
                         .at(item.value),
                 );
@@ -416,22 +327,6 @@ impl<'a> Walker<'a> {
             None => line.to_owned(),
         }
     }
-}
-
-/// ` in [path]`, or nothing for the file as a whole.
-fn of(path: &str) -> String {
-    if path.is_empty() {
-        String::new()
-    } else {
-        format!(" in `{path}`")
-    }
-}
-
-fn quoted(keys: &[&str]) -> String {
-    keys.iter()
-        .map(|key| format!("`{key}`"))
-        .collect::<Vec<_>>()
-        .join(" and ")
 }
 
 fn key_place(item: &Item) -> Place {

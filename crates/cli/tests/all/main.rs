@@ -1,0 +1,6 @@
+//! The program as a user meets it.
+
+// Helpers of tests panic as the tests themselves do.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod bad_input;
