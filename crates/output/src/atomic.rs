@@ -25,7 +25,7 @@ pub fn write(
 /// Writes text as a whole file.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_text(path: &Path, text: &str) -> Result<(), Error> {
     write(path, |to| to.write_all(text.as_bytes()))
 }

@@ -15,7 +15,7 @@ pub struct History {
 }
 
 impl History {
-    /// Creates the file with its line of column names; make the names with [`column`].
+    /// Creates the file with its line of column names; make the names with [`column()`].
     ///
     /// # Errors
     /// [`Error::File`]; [`Error::TwinColumns`] if a name occurs twice.
@@ -55,7 +55,7 @@ impl History {
 
 /// The name of a column: `path` in snake case joined by dots, then the unit (`""` for a pure number).
 ///
-/// `column(&["contact", "Shock 1", "force"], "N")` is `contact.shock_1.force_n`; the unit `m/s` becomes `m_s`, `m/s2`
+/// `column(&["contact", "Shock 1", "force"], "N")` is `contact.shock_1.force_n`; the unit `m/s` becomes `m_s`, `m/s²`
 /// becomes `m_s2`, `N s` becomes `n_s`.
 pub fn column(path: &[&str], unit: &str) -> String {
     let mut name = path
@@ -74,6 +74,11 @@ pub fn column(path: &[&str], unit: &str) -> String {
 fn snake_case(text: &str) -> String {
     let mut name = String::new();
     for letter in text.chars() {
+        let letter = match letter {
+            '²' => '2',
+            '³' => '3',
+            other => other,
+        };
         if letter.is_alphanumeric() {
             name.extend(letter.to_lowercase());
         } else if !name.is_empty() && !name.ends_with('_') {

@@ -32,9 +32,10 @@ pub struct ImpactRow {
     pub rebound_speed: Option<f64>,
     /// `rebound_speed / approach_speed`; `None` while still closed or if there was no approach.
     pub restitution: Option<f64>,
-    /// Work that the contact did on the secondary body, J.
+    /// Kinetic energy of the approach, ½ m w² with w the approach speed and m the reduced mass of the two bodies
+    /// (the mass of the one on an obstacle), J.
     pub energy_given: f64,
-    /// Energy that the contact took from both bodies together, J, positive when lost.
+    /// Energy lost in the contact, minus the work of its forces, J, positive when lost.
     pub energy_lost: f64,
 }
 

@@ -16,6 +16,7 @@ pub mod report;
 pub mod rows;
 pub mod summary;
 pub mod vtu;
+pub mod window;
 
 mod error;
 

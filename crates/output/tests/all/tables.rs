@@ -29,7 +29,7 @@ fn columns_are_paths_in_snake_case_with_the_unit() {
     );
     assert_eq!(
         column(&["probe", "A", "acceleration", "x"], "m/s²"),
-        "probe.a.acceleration.x_m_s²"
+        "probe.a.acceleration.x_m_s2"
     );
     assert_eq!(
         column(&["contact", " Shock--1 ", "impulse"], "N s"),
