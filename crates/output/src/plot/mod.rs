@@ -1,7 +1,7 @@
 //! Figures as SVG: curves over time in one or more panels.
 //!
 //! A figure is plain data ([`Figure`]); [`Figure::svg`] checks it and draws it. Nothing in a curve is lost to its
-//! length (samples are thinned to the extremes of each column of pixels, [`thin`]) and nothing is hidden by a spike
+//! length (samples are thinned to the extremes of each column of pixels) and nothing is hidden by a spike
 //! (a panel may clip to percentiles, and then says so). Text is drawn by the viewer: no font is needed here.
 
 mod draw;
