@@ -37,7 +37,7 @@ pub fn contact_figure<'a>(title: &str, curves: ContactCurves<'a>) -> Figure<'a> 
             curves.displacement,
             false,
         ),
-        panel("Velocity", "velocity", "m/s", curves.velocity, true),
+        panel("Velocity", "velocity", "m/s", curves.velocity, false),
         panel("Contact force", "force", "N", curves.force, false),
         panel(
             "Acceleration",
