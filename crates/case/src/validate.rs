@@ -149,7 +149,7 @@ impl<'a> Walker<'a> {
                             Problem::new(&inner_path, "not a name").found(format!("{key:?}"));
                         self.problems.push(
                             problem
-                                .accepted(["letters, digits, `_` and `-`"])
+                                .accepted(["letters from a to z, digits, `_` and `-`"])
                                 .at(key_place(inner)),
                         );
                     }

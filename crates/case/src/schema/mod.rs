@@ -71,7 +71,7 @@ pub struct Case {
     pub reference: Option<Reference>,
 }
 
-/// Things by name. A name is made of letters, digits, `_` and `-`: it becomes part of file and column names.
+/// Things by name. A name is made of ASCII letters, digits, `_` and `-`: it becomes part of file and column names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Named<T>(pub BTreeMap<String, T>);
@@ -122,14 +122,14 @@ impl<T: JsonSchema> JsonSchema for Named<T> {
 }
 
 /// Names, as a regular expression for editors.
-const NAME_PATTERN: &str = r"^[\p{L}\p{N}_-]+$";
+const NAME_PATTERN: &str = "^[A-Za-z0-9_-]+$";
 
 /// Whether `name` matches the pattern of names.
 pub(crate) fn is_name(name: &str) -> bool {
     !name.is_empty()
         && name
             .chars()
-            .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
 }
 
 /// The JSON schema of the case file, for editors and for `validate`.
