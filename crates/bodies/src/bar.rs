@@ -48,7 +48,8 @@ impl Bar {
                 let sign = if a == b { 1.0 } else { -1.0 };
                 for i in 0..dim {
                     for j in 0..dim {
-                        k[(dim * a + i) * 2 * dim + dim * b + j] = sign * stiffness * axis[i] * axis[j];
+                        k[(dim * a + i) * 2 * dim + dim * b + j] =
+                            sign * stiffness * axis[i] * axis[j];
                     }
                 }
             }
@@ -65,6 +66,9 @@ impl Bar {
     pub(crate) fn stress(&self, x: &[[f64; 3]], u: &[[f64; 3]]) -> (f64, Mat3) {
         let (axis, length) = Bar::axis(x);
         let stress = self.young * Bar::strain(&axis, length, u);
-        (self.area * length, Mat3::from_fn(|i, j| stress * axis[i] * axis[j]))
+        (
+            self.area * length,
+            Mat3::from_fn(|i, j| stress * axis[i] * axis[j]),
+        )
     }
 }

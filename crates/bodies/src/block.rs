@@ -84,7 +84,13 @@ impl Block {
         }
     }
 
-    fn sweep<const N: usize>(&self, chunk: &Chunk, dim: usize, u: &[f64], f: &mut [[f64; 3]]) -> f64 {
+    fn sweep<const N: usize>(
+        &self,
+        chunk: &Chunk,
+        dim: usize,
+        u: &[f64],
+        f: &mut [[f64; 3]],
+    ) -> f64 {
         let mut energy = 0.0;
         for element in chunk.connectivity.chunks_exact(N) {
             let (x, u_e) = chunk.gather::<N>(element, dim, u);
@@ -131,7 +137,11 @@ impl Block {
                         continuum::mass(law, &self.mass_points, &x, &mut m);
                     }
                 }
-                visit(&element_nodes::<N, _>(element, |node| chunk.nodes[node]), &k, &m);
+                visit(
+                    &element_nodes::<N, _>(element, |node| chunk.nodes[node]),
+                    &k,
+                    &m,
+                );
             }
         }
     }
@@ -153,7 +163,9 @@ impl Block {
                 let (x, u_e) = chunk.gather::<N>(element, dim, u);
                 out.push(match &self.physics {
                     Physics::Bar(bar) => bar.stress(&x, &u_e),
-                    Physics::Continuum(law) => continuum::stress(law, &self.stiffness_points, &x, &u_e),
+                    Physics::Continuum(law) => {
+                        continuum::stress(law, &self.stiffness_points, &x, &u_e)
+                    }
                 });
             }
         }
@@ -161,7 +173,12 @@ impl Block {
 }
 
 impl Chunk {
-    fn gather<const N: usize>(&self, element: &[u32], dim: usize, u: &[f64]) -> ([[f64; 3]; N], [[f64; 3]; N]) {
+    fn gather<const N: usize>(
+        &self,
+        element: &[u32],
+        dim: usize,
+        u: &[f64],
+    ) -> ([[f64; 3]; N], [[f64; 3]; N]) {
         let x = element_nodes::<N, _>(element, |node| self.x[node]);
         let u = element_nodes::<N, _>(element, |node| {
             let first = dim * self.nodes[node] as usize;

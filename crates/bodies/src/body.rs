@@ -44,7 +44,9 @@ impl Kinematics {
     pub fn dim(self) -> usize {
         match self {
             Kinematics::Bar { .. } => 1,
-            Kinematics::PlaneStrain { .. } | Kinematics::PlaneStress { .. } | Kinematics::Axisymmetric => 2,
+            Kinematics::PlaneStrain { .. }
+            | Kinematics::PlaneStress { .. }
+            | Kinematics::Axisymmetric => 2,
             Kinematics::Solid => 3,
         }
     }
@@ -54,7 +56,9 @@ impl Kinematics {
         match self {
             Kinematics::Bar { .. } => Plane::Uniaxial,
             Kinematics::PlaneStress { .. } => Plane::Stress,
-            Kinematics::PlaneStrain { .. } | Kinematics::Axisymmetric | Kinematics::Solid => Plane::Full,
+            Kinematics::PlaneStrain { .. } | Kinematics::Axisymmetric | Kinematics::Solid => {
+                Plane::Full
+            }
         }
     }
 
@@ -74,7 +78,9 @@ impl Kinematics {
     pub fn surface_factor(self, x: &[f64; 3]) -> f64 {
         match self {
             Kinematics::Bar { area } => area,
-            Kinematics::PlaneStrain { thickness } | Kinematics::PlaneStress { thickness } => thickness,
+            Kinematics::PlaneStrain { thickness } | Kinematics::PlaneStress { thickness } => {
+                thickness
+            }
             Kinematics::Axisymmetric => std::f64::consts::TAU * x[0],
             Kinematics::Solid => 1.0,
         }
@@ -132,16 +138,22 @@ impl Body {
             }
         }
         let physics = match spec.kinematics {
-            Kinematics::Bar { area } => {
-                Physics::Bar(Bar { young: spec.material.young, area, density: spec.material.density })
-            }
+            Kinematics::Bar { area } => Physics::Bar(Bar {
+                young: spec.material.young,
+                area,
+                density: spec.material.density,
+            }),
             kinematics => Physics::Continuum(Law::new(kinematics, spec.material, mesh.dim)),
         };
         let mut cells = Vec::with_capacity(spec.cells.len());
         let mut blocks = Vec::new();
         for kind in Kind::ALL {
-            let of_kind: Vec<ElementId> =
-                spec.cells.iter().copied().filter(|&cell| mesh.kind(cell) == kind).collect();
+            let of_kind: Vec<ElementId> = spec
+                .cells
+                .iter()
+                .copied()
+                .filter(|&cell| mesh.kind(cell) == kind)
+                .collect();
             let nodes = of_kind.iter().flat_map(|&cell| mesh.element_nodes(cell));
             let elements: Vec<u32> = nodes.map(|&node| number[node as usize]).collect();
             if !elements.is_empty() {
@@ -153,7 +165,10 @@ impl Body {
             name: spec.name,
             kinematics: spec.kinematics,
             material: spec.material,
-            smallest: cells.iter().map(|&cell| size::smallest(mesh, cell)).fold(f64::INFINITY, f64::min),
+            smallest: cells
+                .iter()
+                .map(|&cell| size::smallest(mesh, cell))
+                .fold(f64::INFINITY, f64::min),
             cells,
             blocks,
             dim: mesh.dim,
@@ -194,13 +209,22 @@ impl Body {
     ///
     /// `u`, `f`: system vectors, m and N. The sums run in a fixed order whatever the number of threads.
     pub fn internal_force(&self, u: &[f64], scratch: &mut Scratch, f: &mut [f64]) -> f64 {
-        let chunks = || self.blocks.iter().flat_map(|block| block.chunks.iter().map(move |chunk| (block, chunk)));
+        let chunks = || {
+            self.blocks
+                .iter()
+                .flat_map(|block| block.chunks.iter().map(move |chunk| (block, chunk)))
+        };
         if scratch.forces.is_empty() {
-            scratch.forces = chunks().map(|(_, chunk)| vec![[0.0; 3]; chunk.nodes.len()]).collect();
+            scratch.forces = chunks()
+                .map(|(_, chunk)| vec![[0.0; 3]; chunk.nodes.len()])
+                .collect();
             scratch.energies = vec![0.0; scratch.forces.len()];
         }
-        for (block, energies, forces) in split(&self.blocks, &mut scratch.energies, &mut scratch.forces) {
-            if let ([chunk], [force], [energy]) = (&block.chunks[..], &mut *forces, &mut *energies) {
+        for (block, energies, forces) in
+            split(&self.blocks, &mut scratch.energies, &mut scratch.forces)
+        {
+            if let ([chunk], [force], [energy]) = (&block.chunks[..], &mut *forces, &mut *energies)
+            {
                 *energy = block.force(chunk, self.dim, u, force);
                 continue;
             }
@@ -209,7 +233,9 @@ impl Body {
                 .par_iter()
                 .zip(forces.par_iter_mut())
                 .zip(energies.par_iter_mut())
-                .for_each(|((chunk, force), energy)| *energy = block.force(chunk, self.dim, u, force));
+                .for_each(|((chunk, force), energy)| {
+                    *energy = block.force(chunk, self.dim, u, force)
+                });
         }
         for ((_, chunk), force) in chunks().zip(&scratch.forces) {
             for (&node, f_a) in chunk.nodes.iter().zip(force) {
@@ -238,7 +264,13 @@ impl Body {
     /// Adds `stiffness_factor` K + `mass_factor` M (consistent) to the rows of one connected part.
     ///
     /// `part`: system numbers of the unknowns that `matrix` holds; elements outside are left out.
-    pub fn assemble(&self, stiffness_factor: f64, mass_factor: f64, part: &Range<usize>, matrix: &mut Csr) {
+    pub fn assemble(
+        &self,
+        stiffness_factor: f64,
+        mass_factor: f64,
+        part: &Range<usize>,
+        matrix: &mut Csr,
+    ) {
         let dim = self.dim;
         self.each_matrix(&mut |nodes, k, m| {
             let n = nodes.len();
@@ -326,7 +358,11 @@ fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
             for &node in mesh.element_nodes(cell) {
                 let radius = mesh.nodes[node as usize][0];
                 if radius < 0.0 {
-                    return Err(Error::NegativeRadius { body: spec.name.clone(), node, radius });
+                    return Err(Error::NegativeRadius {
+                        body: spec.name.clone(),
+                        node,
+                        radius,
+                    });
                 }
             }
         }

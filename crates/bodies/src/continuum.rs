@@ -28,12 +28,18 @@ impl Points {
         let element = kind.table();
         let points = rule.points.iter().zip(rule.weights);
         let points = points.map(|(xi, &weight)| {
-            let mut point = Point { weight, n: [0.0; MAX_NODES], dn: [[0.0; 3]; MAX_NODES] };
+            let mut point = Point {
+                weight,
+                n: [0.0; MAX_NODES],
+                dn: [[0.0; 3]; MAX_NODES],
+            };
             (element.shape)(xi, &mut point.n[..element.nodes]);
             (element.gradient)(xi, &mut point.dn[..element.nodes]);
             point
         });
-        Points { points: points.collect() }
+        Points {
+            points: points.collect(),
+        }
     }
 }
 
@@ -55,7 +61,9 @@ impl Law {
     pub(crate) fn new(kinematics: Kinematics, material: Elastic, dim: usize) -> Law {
         let plane = kinematics.plane();
         let thickness = match kinematics {
-            Kinematics::PlaneStrain { thickness } | Kinematics::PlaneStress { thickness } => thickness,
+            Kinematics::PlaneStrain { thickness } | Kinematics::PlaneStress { thickness } => {
+                thickness
+            }
             Kinematics::Bar { .. } | Kinematics::Axisymmetric | Kinematics::Solid => 1.0,
         };
         Law {
@@ -92,7 +100,12 @@ fn local<const N: usize>(law: &Law, point: &Point, x: &[[f64; 3]; N]) -> Local<N
 }
 
 #[inline]
-fn strain<const N: usize>(law: &Law, point: &Point, at: &Local<N>, u: &[[f64; 3]; N]) -> [[f64; 3]; 3] {
+fn strain<const N: usize>(
+    law: &Law,
+    point: &Point,
+    at: &Local<N>,
+    u: &[[f64; 3]; N],
+) -> [[f64; 3]; 3] {
     let mut h = [[0.0; 3]; 3];
     for a in 0..N {
         for i in 0..3 {
@@ -155,14 +168,25 @@ pub(crate) fn force<const N: usize>(
 /// Stiffness of one element, row-major, `dim * N` squared entries in N/m:
 /// K_ab,ij = ∫ λ t_ai t_bj + μ (dN_a,j dN_b,i + δ_ij dN_a · dN_b) dV, with t_a the divergence of N_a, which in
 /// axisymmetry holds N_a/r in its first component, beside the term 2μ N_a N_b / r².
-pub(crate) fn stiffness<const N: usize>(law: &Law, points: &Points, x: &[[f64; 3]; N], k: &mut [f64]) {
+pub(crate) fn stiffness<const N: usize>(
+    law: &Law,
+    points: &Points,
+    x: &[[f64; 3]; N],
+    k: &mut [f64],
+) {
     let dim = law.dim;
     let n = dim * N;
     k.fill(0.0);
     for point in &points.points {
         let at = local(law, point, x);
         let mu = law.shear_modulus;
-        let hoop = |a: usize| if law.axisymmetric { point.n[a] / at.radius } else { 0.0 };
+        let hoop = |a: usize| {
+            if law.axisymmetric {
+                point.n[a] / at.radius
+            } else {
+                0.0
+            }
+        };
         for a in 0..N {
             let mut ta = at.dn[a];
             ta[0] += hoop(a);
@@ -201,7 +225,12 @@ pub(crate) fn mass<const N: usize>(law: &Law, points: &Points, x: &[[f64; 3]; N]
 
 /// Volume of one element in m³ (a plane element times its thickness, an axisymmetric one over the full turn) and
 /// its mean stress tensor in Pa.
-pub(crate) fn stress<const N: usize>(law: &Law, points: &Points, x: &[[f64; 3]; N], u: &[[f64; 3]; N]) -> (f64, Mat3) {
+pub(crate) fn stress<const N: usize>(
+    law: &Law,
+    points: &Points,
+    x: &[[f64; 3]; N],
+    u: &[[f64; 3]; N],
+) -> (f64, Mat3) {
     let (mut volume, mut stress) = (0.0, Mat3::zeros());
     for point in &points.points {
         let at = local(law, point, x);

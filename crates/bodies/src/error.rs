@@ -26,7 +26,9 @@ pub enum Error {
         dim: usize,
     },
     /// An axisymmetric model lies partly at negative radius.
-    #[error("body '{body}': node {node} has the radius {radius:e} m, negative in an axisymmetric model")]
+    #[error(
+        "body '{body}': node {node} has the radius {radius:e} m, negative in an axisymmetric model"
+    )]
     NegativeRadius {
         /// Name of the body.
         body: String,

@@ -16,7 +16,11 @@ fn measure(kind: Kind, x: &[[f64; 3]]) -> f64 {
     points
         .map(|(xi, weight)| {
             (element.gradient)(xi, dn);
-            let factor = if element.dim == 3 { map::jacobian(x, dn, 3).1 } else { map::measure(x, dn, element.dim).0 };
+            let factor = if element.dim == 3 {
+                map::jacobian(x, dn, 3).1
+            } else {
+                map::measure(x, dn, element.dim).0
+            };
             weight * factor
         })
         .sum()
@@ -26,7 +30,12 @@ fn measure(kind: Kind, x: &[[f64; 3]]) -> f64 {
 /// dimension for simplices, whose altitude it is. `face`: nodes of the face.
 pub fn height(mesh: &Mesh, cell: ElementId, face: Kind, face_nodes: &[u32]) -> f64 {
     let kind = mesh.kind(cell);
-    let gather = |nodes: &[u32]| nodes.iter().map(|&node| mesh.nodes[node as usize]).collect::<Vec<_>>();
+    let gather = |nodes: &[u32]| {
+        nodes
+            .iter()
+            .map(|&node| mesh.nodes[node as usize])
+            .collect::<Vec<_>>()
+    };
     let factor = match kind {
         Kind::Point1 | Kind::Bar2 | Kind::Quad4 | Kind::Hex8 => 1.0,
         Kind::Tri3 | Kind::Tet4 => kind.table().dim as f64,

@@ -29,8 +29,11 @@ pub(crate) fn largest_eigenvalue(b: &mut Vec<f64>) -> f64 {
         for row in 0..n {
             for column in 0..n {
                 // symmetric: the column is a row
-                square[row * n + column] =
-                    b[row * n..][..n].iter().zip(&b[column * n..][..n]).map(|(x, y)| x * y).sum();
+                square[row * n + column] = b[row * n..][..n]
+                    .iter()
+                    .zip(&b[column * n..][..n])
+                    .map(|(x, y)| x * y)
+                    .sum();
             }
         }
         std::mem::swap(b, &mut square);
@@ -47,11 +50,19 @@ mod tests {
     fn eigenvalue_of_a_bar_element_is_four_c_squared_over_h_squared() {
         let mut scaled = Vec::new();
         let (ea, half_mass) = (3.0, 0.5);
-        let m = [2.0 * half_mass / 3.0, half_mass / 3.0, half_mass / 3.0, 2.0 * half_mass / 3.0];
+        let m = [
+            2.0 * half_mass / 3.0,
+            half_mass / 3.0,
+            half_mass / 3.0,
+            2.0 * half_mass / 3.0,
+        ];
         scale(1, 2, &[ea, -ea, -ea, ea], &m, &mut scaled);
         let value = largest_eigenvalue(&mut scaled);
         let exact = 2.0 * ea / half_mass;
-        assert!(value >= exact * (1.0 - 1e-12) && value < exact * 1.001, "{value} {exact}");
+        assert!(
+            value >= exact * (1.0 - 1e-12) && value < exact * 1.001,
+            "{value} {exact}"
+        );
     }
 
     #[test]

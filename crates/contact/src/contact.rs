@@ -96,7 +96,9 @@ impl Contact {
                     rows.add_node(places.dim, point.node, &plane.normal);
                 }
                 Target::Surface(faces) => match search.closest(places, faces, &x) {
-                    Some((foot, face)) if faces_point(&foot, face) => add_row(places, point, &foot, face, rows),
+                    Some((foot, face)) if faces_point(&foot, face) => {
+                        add_row(places, point, &foot, face, rows)
+                    }
                     _ => rows.push(f64::INFINITY, [0.0; 3]),
                 },
             }
@@ -118,10 +120,21 @@ impl Search {
     }
 
     /// Doubles the distance searched until a face is found, then looks once more as far as that face is.
-    fn closest<'a>(&mut self, places: &Places, faces: &'a [Face], x: &[f64; 3]) -> Option<(Projection, &'a Face)> {
+    fn closest<'a>(
+        &mut self,
+        places: &Places,
+        faces: &'a [Face],
+        x: &[f64; 3],
+    ) -> Option<(Projection, &'a Face)> {
         let tree = self.tree.as_ref()?;
-        let all = self.boxes.iter().fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
-        let diagonal = (0..3).map(|i| (all.max[i] - all.min[i]).powi(2)).sum::<f64>().sqrt();
+        let all = self
+            .boxes
+            .iter()
+            .fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
+        let diagonal = (0..3)
+            .map(|i| (all.max[i] - all.min[i]).powi(2))
+            .sum::<f64>()
+            .sqrt();
         let farthest = all.distance_squared(x).sqrt() + diagonal + f64::MIN_POSITIVE;
         let mut distance = farthest / (1u64 << 10) as f64;
         loop {
@@ -130,7 +143,10 @@ impl Search {
             for face in self.found.iter().map(|&item| &faces[item as usize]) {
                 let (positions, n) = positions(places, face);
                 let foot = project(face, &positions[..n], x);
-                if best.as_ref().is_none_or(|(closest, _)| foot.distance < closest.distance) {
+                if best
+                    .as_ref()
+                    .is_none_or(|(closest, _)| foot.distance < closest.distance)
+                {
                     best = Some((foot, face));
                 }
             }
@@ -169,7 +185,11 @@ fn faces_point(foot: &Projection, face: &Face) -> bool {
     }
     let sideways = (foot.distance.powi(2) - foot.gap.powi(2)).max(0.0).sqrt();
     // Matching rims coincide only to rounding: a foot that close to the rim counts as inside.
-    let rounding = 1e-9 * foot.point.iter().fold(1e-300_f64, |size, x| size.max(x.abs()));
+    let rounding = 1e-9
+        * foot
+            .point
+            .iter()
+            .fold(1e-300_f64, |size, x| size.max(x.abs()));
     sideways <= foot.gap.abs().max(rounding)
 }
 
@@ -181,7 +201,9 @@ mod tests {
     use crate::law::Displacement;
 
     fn grid() -> (Vec<[f64; 3]>, Vec<Face>) {
-        let mut x: Vec<[f64; 3]> = (0..25).map(|i| [f64::from(i % 5), f64::from(i / 5), 0.0]).collect();
+        let mut x: Vec<[f64; 3]> = (0..25)
+            .map(|i| [f64::from(i % 5), f64::from(i / 5), 0.0])
+            .collect();
         x.push([1.3, 2.6, 0.25]);
         let faces = (0..16u32).map(|i| {
             let first = i % 4 + 5 * (i / 4);
@@ -202,12 +224,23 @@ mod tests {
             name: "patch".into(),
             law: Law::Displacement(Displacement),
             sliding: Sliding::Finite,
-            points: vec![Point { node: 25, area: 1.0 }],
+            points: vec![Point {
+                node: 25,
+                area: 1.0,
+            }],
             target: Target::Surface(faces),
         };
         let mut rows = Rows::default();
         rows.clear();
-        contact.pair(&Places { dim: 3, x: &x, u: &vec![0.0; 78] }, &mut Search::default(), &mut rows);
+        contact.pair(
+            &Places {
+                dim: 3,
+                x: &x,
+                u: &vec![0.0; 78],
+            },
+            &mut Search::default(),
+            &mut rows,
+        );
         rows
     }
 
@@ -217,8 +250,15 @@ mod tests {
         assert!((rows.gap(0) - 0.25).abs() < 1e-14);
         assert_eq!(rows.normal(0), [0.0, 0.0, 1.0]);
         let (dofs, coefficients) = rows.row(0);
-        assert!(coefficients.iter().sum::<f64>().abs() < 1e-14, "no net force");
-        let node = |n: u32| dofs.iter().position(|&dof| dof == 3 * n + 2).map(|k| coefficients[k]);
+        assert!(
+            coefficients.iter().sum::<f64>().abs() < 1e-14,
+            "no net force"
+        );
+        let node = |n: u32| {
+            dofs.iter()
+                .position(|&dof| dof == 3 * n + 2)
+                .map(|k| coefficients[k])
+        };
         assert_eq!(node(25), Some(1.0));
         assert!((node(11).unwrap() + 0.7 * 0.4).abs() < 1e-12);
         assert!((node(17).unwrap() + 0.3 * 0.6).abs() < 1e-12);

@@ -12,6 +12,8 @@ pub struct Plane {
 impl Plane {
     /// Gap of a place x in m: n · (x - point), open when positive.
     pub fn gap(&self, x: &[f64; 3]) -> f64 {
-        (0..3).map(|i| self.normal[i] * (x[i] - self.point[i])).sum()
+        (0..3)
+            .map(|i| self.normal[i] * (x[i] - self.point[i]))
+            .sum()
     }
 }

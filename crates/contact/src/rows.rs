@@ -53,7 +53,10 @@ impl Rows {
     /// Product (N x) of the row of a point with a system vector.
     pub fn product(&self, point: usize, x: &[f64]) -> f64 {
         let (dofs, coefficients) = self.row(point);
-        dofs.iter().zip(coefficients).map(|(&dof, n)| n * x[dof as usize]).sum()
+        dofs.iter()
+            .zip(coefficients)
+            .map(|(&dof, n)| n * x[dof as usize])
+            .sum()
     }
 
     /// Adds Nᵀ P of one point to a system vector.
@@ -68,7 +71,8 @@ impl Rows {
     pub fn append_moved(&mut self, initial: &Rows, u: &[f64]) {
         for point in 0..initial.len() {
             let (dofs, coefficients) = initial.row(point);
-            self.gaps.push(initial.gap(point) + initial.product(point, u));
+            self.gaps
+                .push(initial.gap(point) + initial.product(point, u));
             self.normals.push(initial.normal(point));
             self.dofs.extend_from_slice(dofs);
             self.coefficients.extend_from_slice(coefficients);

@@ -34,13 +34,26 @@ pub(crate) struct Compliance {
 
 impl Compliance {
     pub(crate) fn new(points: usize) -> Compliance {
-        Compliance { kept: (0..points).map(|_| None).collect(), ..Compliance::default() }
+        Compliance {
+            kept: (0..points).map(|_| None).collect(),
+            ..Compliance::default()
+        }
     }
 
     /// Brings the columns and D up to date for these candidates (ascending). `fixed`: held unknowns, which no force
     /// moves.
-    pub(crate) fn update(&mut self, candidates: &[u32], rows: &Rows, fixed: &[bool], operators: &mut Operators) -> Result<(), Error> {
-        let stale: Vec<u32> = candidates.iter().copied().filter(|&point| !self.is_current(point, rows)).collect();
+    pub(crate) fn update(
+        &mut self,
+        candidates: &[u32],
+        rows: &Rows,
+        fixed: &[bool],
+        operators: &mut Operators,
+    ) -> Result<(), Error> {
+        let stale: Vec<u32> = candidates
+            .iter()
+            .copied()
+            .filter(|&point| !self.is_current(point, rows))
+            .collect();
         if stale.is_empty() && self.candidates == candidates {
             return Ok(());
         }
@@ -74,16 +87,25 @@ impl Compliance {
     fn is_current(&self, point: u32, rows: &Rows) -> bool {
         let (dofs, coefficients) = rows.row(point as usize);
         let kept = &self.kept[point as usize];
-        kept.as_ref().is_some_and(|kept| kept.dofs == dofs && kept.coefficients == coefficients)
+        kept.as_ref()
+            .is_some_and(|kept| kept.dofs == dofs && kept.coefficients == coefficients)
     }
 
     fn compute(&mut self, points: &[u32], rows: &Rows, fixed: &[bool], operators: &mut Operators) {
-        let mut by_part: Vec<(Vec<u32>, Vec<SparseRow>)> = vec![Default::default(); operators.parts.len()];
+        let mut by_part: Vec<(Vec<u32>, Vec<SparseRow>)> =
+            vec![Default::default(); operators.parts.len()];
         for &point in points {
             let (dofs, coefficients) = rows.row(point as usize);
-            self.kept[point as usize] =
-                Some(Kept { dofs: dofs.to_vec(), coefficients: coefficients.to_vec(), columns: Vec::new() });
-            for (&dof, &n) in dofs.iter().zip(coefficients).filter(|(dof, _)| !fixed[**dof as usize]) {
+            self.kept[point as usize] = Some(Kept {
+                dofs: dofs.to_vec(),
+                coefficients: coefficients.to_vec(),
+                columns: Vec::new(),
+            });
+            for (&dof, &n) in dofs
+                .iter()
+                .zip(coefficients)
+                .filter(|(dof, _)| !fixed[**dof as usize])
+            {
                 let part = operators.part_of(dof as usize);
                 let (owners, sparse) = &mut by_part[part];
                 if owners.last() != Some(&point) {
@@ -108,13 +130,19 @@ impl Compliance {
     }
 
     fn columns(&self, point: u32) -> &[(usize, Column)] {
-        self.kept[point as usize].as_ref().map_or(&[], |kept| &kept.columns)
+        self.kept[point as usize]
+            .as_ref()
+            .map_or(&[], |kept| &kept.columns)
     }
 
     fn entry(&self, one: u32, other: u32, operators: &Operators) -> f64 {
         let mut sum = 0.0;
         for (part, column) in self.columns(one) {
-            for (_, second) in self.columns(other).iter().filter(|(second, _)| second == part) {
+            for (_, second) in self
+                .columns(other)
+                .iter()
+                .filter(|(second, _)| second == part)
+            {
                 sum += operators.operators[*part].dot(column, second);
             }
         }
@@ -124,7 +152,11 @@ impl Compliance {
     /// N x of a point for the free motion, from the y of `begin`.
     pub(crate) fn free(&self, point: u32, operators: &Operators, y: &[f64]) -> f64 {
         let columns = self.columns(point).iter();
-        columns.map(|(part, column)| operators.operators[*part].free(column, &y[operators.parts[*part].clone()])).sum()
+        columns
+            .map(|(part, column)| {
+                operators.operators[*part].free(column, &y[operators.parts[*part].clone()])
+            })
+            .sum()
     }
 
     /// Adds the force of a point to y, before `end`.

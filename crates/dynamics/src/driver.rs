@@ -61,7 +61,9 @@ impl Forces {
         f.fill(0.0);
         self.sweeps += 1;
         let bodies = system.bodies.iter().zip(&mut self.scratch);
-        bodies.map(|(body, scratch)| body.internal_force(u, scratch, f)).sum()
+        bodies
+            .map(|(body, scratch)| body.internal_force(u, scratch, f))
+            .sum()
     }
 }
 
@@ -112,7 +114,10 @@ impl Driver {
     /// A matrix that is not positive definite.
     pub fn new(system: Arc<System>) -> Result<Driver, Error> {
         let scheme = system.scheme.get();
-        let (map, identity) = (scheme.step_map(system.dt), scheme.energy_identity(system.dt));
+        let (map, identity) = (
+            scheme.step_map(system.dt),
+            scheme.energy_identity(system.dt),
+        );
         let begin = Instant::now();
         let operators = operators(&system, map.inertia.x, map.force.x, "effective matrix")?;
         let factorisation = begin.elapsed();
@@ -124,7 +129,10 @@ impl Driver {
             operators,
             compliance: Compliance::new(points),
             interface: Interface::default(),
-            forces: Forces { scratch: system.bodies.iter().map(|_| Scratch::default()).collect(), sweeps: 0 },
+            forces: Forces {
+                scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
+                sweeps: 0,
+            },
             initial_rows: Vec::new(),
             search: system.contacts.iter().map(|_| Search::default()).collect(),
             rows: Rows::default(),
@@ -133,9 +141,22 @@ impl Driver {
             candidate_data: Vec::new(),
             state: empty_state(&system),
             next: empty_state(&system),
-            report: StepReport { contacts: vec![ContactReport::default(); system.contacts.len()], ..StepReport::default() },
-            vectors: Vectors { residual: zeros(), half: zeros(), x: zeros(), known: zeros(), work: zeros(), inertia: zeros() },
-            phases: Phases { factorisation, ..Phases::default() },
+            report: StepReport {
+                contacts: vec![ContactReport::default(); system.contacts.len()],
+                ..StepReport::default()
+            },
+            vectors: Vectors {
+                residual: zeros(),
+                half: zeros(),
+                x: zeros(),
+                known: zeros(),
+                work: zeros(),
+                inertia: zeros(),
+            },
+            phases: Phases {
+                factorisation,
+                ..Phases::default()
+            },
             system,
         };
         driver.pair_initially();
@@ -172,7 +193,12 @@ impl Driver {
     /// What the run cost so far.
     pub fn costs(&self) -> Costs {
         Costs {
-            factors: self.operators.operators.iter().filter_map(|operator| operator.stats().cloned()).collect(),
+            factors: self
+                .operators
+                .operators
+                .iter()
+                .filter_map(|operator| operator.stats().cloned())
+                .collect(),
             columns: self.compliance.columns_computed,
             compliance_bytes: self.compliance.bytes(),
             force_sweeps: self.forces.sweeps,
@@ -182,16 +208,24 @@ impl Driver {
 
     fn pair_initially(&mut self) {
         let system = Arc::clone(&self.system);
-        let places = Places { dim: system.dim, x: &system.x, u: &self.vectors.work };
-        let rows = system.contacts.iter().zip(&mut self.search).map(|(contact, search)| match contact.sliding {
-            Sliding::Finite => None,
-            Sliding::Small => {
-                let mut rows = Rows::default();
-                rows.clear();
-                contact.pair(&places, search, &mut rows);
-                Some(rows)
-            }
-        });
+        let places = Places {
+            dim: system.dim,
+            x: &system.x,
+            u: &self.vectors.work,
+        };
+        let rows = system
+            .contacts
+            .iter()
+            .zip(&mut self.search)
+            .map(|(contact, search)| match contact.sliding {
+                Sliding::Finite => None,
+                Sliding::Small => {
+                    let mut rows = Rows::default();
+                    rows.clear();
+                    contact.pair(&places, search, &mut rows);
+                    Some(rows)
+                }
+            });
         self.initial_rows = rows.collect();
     }
 
@@ -201,7 +235,9 @@ impl Driver {
         let motion = &mut self.state.motion;
         motion.u.copy_from_slice(&system.initial_displacement);
         motion.v.copy_from_slice(&system.initial_velocity);
-        let strain = self.forces.evaluate(&system, &motion.u, &mut motion.internal_force);
+        let strain = self
+            .forces
+            .evaluate(&system, &motion.u, &mut motion.internal_force);
         if system.scheme.get().keeps_acceleration() {
             let mut mass = operators(&system, 1.0, 0.0, "mass matrix")?;
             for i in 0..system.unknowns() {
@@ -211,13 +247,30 @@ impl Driver {
             mass.begin(&self.vectors.residual, &mut self.vectors.half);
             mass.end(&mut self.vectors.half, &mut motion.a);
         }
-        let energies = energies(&system, motion, strain, &mut self.vectors.work, self.identity.inertia != 0.0);
+        let energies = energies(
+            &system,
+            motion,
+            strain,
+            &mut self.vectors.work,
+            self.identity.inertia != 0.0,
+        );
         system.mass.multiply(&motion.a, &mut self.vectors.inertia);
         let motion = &self.state.motion;
-        reactions(&system, &self.map, motion, motion, &self.vectors.inertia, &mut self.vectors.work);
+        reactions(
+            &system,
+            &self.map,
+            motion,
+            motion,
+            &self.vectors.inertia,
+            &mut self.vectors.work,
+        );
         let supports = Resultant::of(&system, &self.vectors.work);
         let loads = Resultant::of(&system, &system.load);
-        self.state.ledger = Ledger::start(&energies, &self.identity, [loads, Resultant::default(), supports]);
+        self.state.ledger = Ledger::start(
+            &energies,
+            &self.identity,
+            [loads, Resultant::default(), supports],
+        );
         self.state.records = Records {
             contacts: vec![ContactRecord::default(); system.contacts.len()],
             impacts: Vec::new(),
@@ -228,7 +281,7 @@ impl Driver {
             self.state.interface.rate[point] = self.rows.product(point, &self.state.motion.v);
         }
         self.next.clone_from(&self.state);
-        self.tell(0.0);
+        self.tell();
         Ok(())
     }
 
@@ -245,11 +298,13 @@ impl Driver {
         let mut sweeps = Duration::ZERO;
         loop {
             let begin = Instant::now();
-            self.operators.begin(&self.vectors.residual, &mut self.vectors.half);
+            self.operators
+                .begin(&self.vectors.residual, &mut self.vectors.half);
             sweeps += begin.elapsed();
             self.solve_interface()?;
             let begin = Instant::now();
-            self.operators.end(&mut self.vectors.half, &mut self.vectors.x);
+            self.operators
+                .end(&mut self.vectors.half, &mut self.vectors.x);
             sweeps += begin.elapsed();
             if !self.add_missed() {
                 break;
@@ -266,22 +321,33 @@ impl Driver {
         self.phases.contact += (solved - forces).saturating_sub(sweeps);
         self.phases.balance += ended.elapsed();
         std::mem::swap(&mut self.state, &mut self.next);
-        self.tell(self.next.time);
+        self.tell();
         Ok(())
     }
 
     /// Residual of the momentum balance with x = 0; returns the strain energy at the place of the internal forces.
     fn residual(&mut self) -> f64 {
         let (system, motion) = (&*self.system, &self.state.motion);
-        let Vectors { residual, known, work, .. } = &mut self.vectors;
+        let Vectors {
+            residual,
+            known,
+            work,
+            ..
+        } = &mut self.vectors;
         self.map.force.known(&motion.u, &motion.v, &motion.a, known);
         let energy = self.forces.evaluate(system, known, residual);
-        self.map.inertia.known(&motion.u, &motion.v, &motion.a, known);
+        self.map
+            .inertia
+            .known(&motion.u, &motion.v, &motion.a, known);
         system.mass.multiply(known, work);
         // the internal forces are needed again at the end of an explicit step
         self.next.motion.internal_force.copy_from_slice(residual);
         for i in 0..residual.len() {
-            residual[i] = if system.fixed[i] { 0.0 } else { system.load[i] - work[i] - residual[i] };
+            residual[i] = if system.fixed[i] {
+                0.0
+            } else {
+                system.load[i] - work[i] - residual[i]
+            };
         }
         energy
     }
@@ -295,8 +361,14 @@ impl Driver {
         let mut capture = f64::NAN;
         for (k, contact) in system.contacts.iter().enumerate() {
             let place = match now {
-                true => Row { u: 1.0, ..Row::default() },
-                false => Row { v: map.placed.v + contact.law.get().capture() * dt, ..map.placed },
+                true => Row {
+                    u: 1.0,
+                    ..Row::default()
+                },
+                false => Row {
+                    v: map.placed.v + contact.law.get().capture() * dt,
+                    ..map.placed
+                },
             };
             if capture != place.v {
                 place.known(&motion.u, &motion.v, &motion.a, &mut self.vectors.known);
@@ -306,12 +378,21 @@ impl Driver {
             match &self.initial_rows[k] {
                 Some(initial) => self.rows.append_moved(initial, u),
                 None => {
-                    let places = Places { dim: system.dim, x: &system.x, u };
+                    let places = Places {
+                        dim: system.dim,
+                        x: &system.x,
+                        u,
+                    };
                     contact.pair(&places, &mut self.search[k], &mut self.rows);
                 }
             }
             let end = map.displacement;
-            let ahead = Row { u: end.u - place.u, v: end.v - place.v, a: end.a - place.a, x: end.x };
+            let ahead = Row {
+                u: end.u - place.u,
+                v: end.v - place.v,
+                a: end.a - place.a,
+                x: end.x,
+            };
             self.ahead.resize(self.rows.len(), ahead);
         }
     }
@@ -327,7 +408,8 @@ impl Driver {
             let watched = gap < f64::INFINITY && law.get().watches(gap, system.tolerance);
             let within = law.get().level() == Level::Rate
                 || self.state.interface.status[point] != Status::Open
-                || gap + 2.0 * system.dt * self.rows.product(point, &self.state.motion.v).min(0.0) <= system.tolerance;
+                || gap + 2.0 * system.dt * self.rows.product(point, &self.state.motion.v).min(0.0)
+                    <= system.tolerance;
             self.next.interface.watched[point] = watched;
             if watched && within {
                 self.candidates.push(point as u32);
@@ -338,16 +420,28 @@ impl Driver {
     fn solve_interface(&mut self) -> Result<(), Error> {
         let system = &*self.system;
         let motion = &self.state.motion;
-        let interface_error = |cause, points| Error::Interface { step: self.state.step + 1, points, cause };
+        let interface_error = |cause, points| Error::Interface {
+            step: self.state.step + 1,
+            points,
+            cause,
+        };
         self.compliance
-            .update(&self.candidates, &self.rows, &system.fixed, &mut self.operators)
+            .update(
+                &self.candidates,
+                &self.rows,
+                &system.fixed,
+                &mut self.operators,
+            )
             .map_err(|cause| interface_error(cause, self.candidates.len()))?;
         self.candidate_data.clear();
         for &point in &self.candidates {
             let at = point as usize;
             let (contact, place) = system.point(at);
-            let free = self.compliance.free(point, &self.operators, &self.vectors.half);
-            let [nu, nv, na] = [&motion.u, &motion.v, &motion.a].map(|vector| self.rows.product(at, vector));
+            let free = self
+                .compliance
+                .free(point, &self.operators, &self.vectors.half);
+            let [nu, nv, na] =
+                [&motion.u, &motion.v, &motion.a].map(|vector| self.rows.product(at, vector));
             let value = |row: &Row| row.u * nu + row.v * nv + row.a * na + row.x * free;
             self.candidate_data.push(Candidate {
                 law: contact.law,
@@ -358,20 +452,29 @@ impl Driver {
             });
         }
         let factors = [self.map.displacement.x, self.map.rate.x];
-        let solved =
-            self.interface.solve(&self.candidate_data, (&self.compliance.matrix, self.compliance.version), factors);
+        let solved = self.interface.solve(
+            &self.candidate_data,
+            (&self.compliance.matrix, self.compliance.version),
+            factors,
+        );
         if let Err(failure) = solved {
             return Err(match failure {
                 Failure::Singular { points, cause } => interface_error(cause, points),
                 Failure::Cycling { passes, candidate } => {
                     let (contact, point) = system.point(self.candidates[candidate] as usize);
-                    Error::Statuses { step: self.state.step + 1, passes, contact: contact.name.clone(), point }
+                    Error::Statuses {
+                        step: self.state.step + 1,
+                        passes,
+                        contact: contact.name.clone(),
+                        point,
+                    }
                 }
             });
         }
         for (&point, &force) in self.candidates.iter().zip(&self.interface.forces) {
             if force != 0.0 {
-                self.compliance.add(point, force, &self.operators, &mut self.vectors.half);
+                self.compliance
+                    .add(point, force, &self.operators, &mut self.vectors.half);
             }
         }
         Ok(())
@@ -386,10 +489,22 @@ impl Driver {
             if level == Level::Rate || self.rows.gap(point) == f64::INFINITY {
                 continue;
             }
-            if self.candidates[..before].binary_search(&(point as u32)).is_ok() {
+            if self.candidates[..before]
+                .binary_search(&(point as u32))
+                .is_ok()
+            {
                 continue;
             }
-            if self.rows.gap(point) + on_row(&self.rows, point, &self.ahead[point], motion, &self.vectors.x) < 0.0 {
+            if self.rows.gap(point)
+                + on_row(
+                    &self.rows,
+                    point,
+                    &self.ahead[point],
+                    motion,
+                    &self.vectors.x,
+                )
+                < 0.0
+            {
                 self.candidates.push(point as u32);
             }
         }
@@ -402,9 +517,11 @@ impl Driver {
         let system = &*self.system;
         let (old, map, x) = (&self.state.motion, &self.map, &self.vectors.x);
         let new = &mut self.next.motion;
-        map.displacement.whole(&old.u, &old.v, &old.a, x, &mut new.u);
+        map.displacement
+            .whole(&old.u, &old.v, &old.a, x, &mut new.u);
         map.velocity.whole(&old.u, &old.v, &old.a, x, &mut new.v);
-        map.acceleration.whole(&old.u, &old.v, &old.a, x, &mut new.a);
+        map.acceleration
+            .whole(&old.u, &old.v, &old.a, x, &mut new.a);
         new.contact_force.fill(0.0);
         let interface = &mut self.next.interface;
         interface.force.fill(0.0);
@@ -412,10 +529,15 @@ impl Driver {
         for (k, &point) in self.candidates.iter().enumerate() {
             interface.force[point as usize] = self.interface.forces[k];
             interface.status[point as usize] = self.interface.statuses[k];
-            self.rows.add_force(point as usize, self.interface.forces[k], &mut new.contact_force);
+            self.rows.add_force(
+                point as usize,
+                self.interface.forces[k],
+                &mut new.contact_force,
+            );
         }
         for point in 0..system.points() {
-            interface.gap[point] = self.rows.gap(point) + on_row(&self.rows, point, &self.ahead[point], old, x);
+            interface.gap[point] =
+                self.rows.gap(point) + on_row(&self.rows, point, &self.ahead[point], old, x);
             interface.rate[point] = on_row(&self.rows, point, &map.rate, old, x);
         }
         self.next.step = self.state.step + 1;
@@ -428,7 +550,8 @@ impl Driver {
             return predicted;
         }
         let motion = &mut self.next.motion;
-        self.forces.evaluate(&self.system, &motion.u, &mut motion.internal_force)
+        self.forces
+            .evaluate(&self.system, &motion.u, &mut motion.internal_force)
     }
 
     /// Energy and momentum of the step, then the records of the contacts.
@@ -436,7 +559,13 @@ impl Driver {
         let system = Arc::clone(&self.system);
         let (dt, identity) = (system.dt, self.identity);
         let (old, new) = (&self.state.motion, &self.next.motion);
-        let Vectors { x, known, work, inertia, .. } = &mut self.vectors;
+        let Vectors {
+            x,
+            known,
+            work,
+            inertia,
+            ..
+        } = &mut self.vectors;
         let energies = energies(&system, new, strain, work, identity.inertia != 0.0);
         let mut squares = Squares::default();
         if identity.velocity != 0.0 {
@@ -456,12 +585,20 @@ impl Driver {
         }
         if identity.displacement != 0.0 {
             // K is linear and symmetric: |Δu|²_K = Δu · Δf
-            squares.displacement = dot(known, &new.internal_force) - dot(known, &old.internal_force);
+            squares.displacement =
+                dot(known, &new.internal_force) - dot(known, &old.internal_force);
         }
-        let work_contact = identity.old * dot(known, &old.contact_force) + identity.new * dot(known, &new.contact_force);
+        let work_contact = identity.old * dot(known, &old.contact_force)
+            + identity.new * dot(known, &new.contact_force);
         let work_loads = dot(known, &system.load);
         self.next.ledger.clone_from(&self.state.ledger);
-        self.next.ledger.add((dt, &identity), &energies, [work_loads, work_contact], &squares, [loads, contact, supports]);
+        self.next.ledger.add(
+            (dt, &identity),
+            &energies,
+            [work_loads, work_contact],
+            &squares,
+            [loads, contact, supports],
+        );
         self.record();
     }
 
@@ -469,7 +606,13 @@ impl Driver {
         let system = Arc::clone(&self.system);
         self.next.records.clone_from(&self.state.records);
         for k in 0..system.contacts.len() {
-            let report = contact_report(&system, k, &self.rows, &self.state.interface, &self.next.interface);
+            let report = contact_report(
+                &system,
+                k,
+                &self.rows,
+                &self.state.interface,
+                &self.next.interface,
+            );
             let weights = [self.identity.old, self.identity.new];
             let step = Step {
                 span: [self.state.time, self.next.time],
@@ -477,7 +620,9 @@ impl Driver {
                 report: &report,
                 work: contact_work(&system, k, &self.rows, weights, (&self.state, &self.next)),
             };
-            let State { motion, records, .. } = &mut self.next;
+            let State {
+                motion, records, ..
+            } = &mut self.next;
             records.add(&system, k, &step, &self.state, &motion.v);
             self.report.contacts[k] = report;
         }
@@ -485,26 +630,43 @@ impl Driver {
 
     fn finite(&self) -> Result<(), Error> {
         let motion = &self.next.motion;
-        let bad = [("displacement", &motion.u), ("velocity", &motion.v), ("contact force", &motion.contact_force)]
-            .into_iter()
-            .find(|(_, vector)| !vector.iter().sum::<f64>().is_finite());
+        let bad = [
+            ("displacement", &motion.u),
+            ("velocity", &motion.v),
+            ("contact force", &motion.contact_force),
+        ]
+        .into_iter()
+        .find(|(_, vector)| !vector.iter().sum::<f64>().is_finite());
         match bad {
             None => Ok(()),
-            Some((quantity, _)) => Err(Error::NotFinite { step: self.next.step, time: self.next.time, quantity }),
+            Some((quantity, _)) => Err(Error::NotFinite {
+                step: self.next.step,
+                time: self.next.time,
+                quantity,
+            }),
         }
     }
 
-    /// Completes the report of the state just accepted, which began at `start`.
-    fn tell(&mut self, start: f64) {
-        let (state, span) = (&self.state, self.map.force_span);
+    /// Completes the report of the state just accepted.
+    fn tell(&mut self) {
+        let state = &self.state;
         self.report.step = state.step;
         self.report.time = state.time;
-        self.report.force_span = span.map(|fraction| start + fraction * self.system.dt);
         self.report.balance = state.ledger.balance;
-        self.report.passes = if self.candidates.is_empty() { 0 } else { self.interface.passes };
+        self.report.passes = if self.candidates.is_empty() {
+            0
+        } else {
+            self.interface.passes
+        };
         if state.step == 0 {
             for (k, report) in self.report.contacts.iter_mut().enumerate() {
-                *report = contact_report(&self.system, k, &self.rows, &state.interface, &state.interface);
+                *report = contact_report(
+                    &self.system,
+                    k,
+                    &self.rows,
+                    &state.interface,
+                    &state.interface,
+                );
             }
         }
     }
@@ -535,9 +697,16 @@ fn empty_state(system: &System) -> State {
 }
 
 /// `mass_factor` M + `stiffness_factor` K of every part, ready to solve with.
-fn operators(system: &System, mass_factor: f64, stiffness_factor: f64, matrix: &'static str) -> Result<Operators, Error> {
+fn operators(
+    system: &System,
+    mass_factor: f64,
+    stiffness_factor: f64,
+    matrix: &'static str,
+) -> Result<Operators, Error> {
     let operator = |part: &std::ops::Range<usize>| {
-        let lumped = system.mass.lumped[part.clone()].iter().map(|m| mass_factor * m);
+        let lumped = system.mass.lumped[part.clone()]
+            .iter()
+            .map(|m| mass_factor * m);
         let fixed = &system.fixed[part.clone()];
         if stiffness_factor == 0.0 && system.mass.consistent.is_none() {
             return Ok(Operator::diagonal(&lumped.collect::<Vec<_>>(), fixed));
@@ -562,13 +731,30 @@ fn operators(system: &System, mass_factor: f64, stiffness_factor: f64, matrix: &
             }
         }
         let node = system.mesh_node[part.start / system.dim];
-        Operator::factored(&a, fixed, system.dim).map_err(|cause| Error::Factor { matrix, node, cause })
+        Operator::factored(&a, fixed, system.dim).map_err(|cause| Error::Factor {
+            matrix,
+            node,
+            cause,
+        })
     };
-    let operators = system.parts.iter().map(operator).collect::<Result<_, _>>()?;
-    Ok(Operators { parts: system.parts.clone(), operators })
+    let operators = system
+        .parts
+        .iter()
+        .map(operator)
+        .collect::<Result<_, _>>()?;
+    Ok(Operators {
+        parts: system.parts.clone(),
+        operators,
+    })
 }
 
-fn energies(system: &System, motion: &Motion, strain: f64, work: &mut [f64], with_acceleration: bool) -> Energies {
+fn energies(
+    system: &System,
+    motion: &Motion,
+    strain: f64,
+    work: &mut [f64],
+    with_acceleration: bool,
+) -> Energies {
     system.mass.multiply(&motion.v, work);
     let (kinetic, momentum) = (0.5 * dot(&motion.v, work), Resultant::of(system, work));
     let mut acceleration = 0.0;
@@ -576,11 +762,22 @@ fn energies(system: &System, motion: &Motion, strain: f64, work: &mut [f64], wit
         system.mass.multiply(&motion.a, work);
         acceleration = dot(&motion.a, work);
     }
-    Energies { kinetic, strain, acceleration, momentum }
+    Energies {
+        kinetic,
+        strain,
+        acceleration,
+        momentum,
+    }
 }
 
 /// |new - old|²_M.
-fn change_squared(system: &System, old: &[f64], new: &[f64], change: &mut [f64], work: &mut [f64]) -> f64 {
+fn change_squared(
+    system: &System,
+    old: &[f64],
+    new: &[f64],
+    change: &mut [f64],
+    work: &mut [f64],
+) -> f64 {
     for i in 0..change.len() {
         change[i] = new[i] - old[i];
     }
@@ -596,8 +793,17 @@ fn on_row(rows: &Rows, point: usize, row: &Row, motion: &Motion, x: &[f64]) -> f
         + row.x * rows.product(point, x)
 }
 
-fn contact_report(system: &System, contact: usize, rows: &Rows, old: &InterfaceState, new: &InterfaceState) -> ContactReport {
-    let mut report = ContactReport { gap: f64::INFINITY, ..ContactReport::default() };
+fn contact_report(
+    system: &System,
+    contact: usize,
+    rows: &Rows,
+    old: &InterfaceState,
+    new: &InterfaceState,
+) -> ContactReport {
+    let mut report = ContactReport {
+        gap: f64::INFINITY,
+        ..ContactReport::default()
+    };
     for point in system.first_point[contact]..system.first_point[contact + 1] {
         let force = new.force[point];
         report.force += force;
@@ -615,11 +821,18 @@ fn contact_report(system: &System, contact: usize, rows: &Rows, old: &InterfaceS
 }
 
 /// Work of the forces of one contact on the motion of the step, J. `states`: at its start and end.
-fn contact_work(system: &System, contact: usize, rows: &Rows, weights: [f64; 2], (old, new): (&State, &State)) -> f64 {
+fn contact_work(
+    system: &System,
+    contact: usize,
+    rows: &Rows,
+    weights: [f64; 2],
+    (old, new): (&State, &State),
+) -> f64 {
     let points = system.first_point[contact]..system.first_point[contact + 1];
     points
         .map(|point| {
-            let force = weights[0] * old.interface.force[point] + weights[1] * new.interface.force[point];
+            let force =
+                weights[0] * old.interface.force[point] + weights[1] * new.interface.force[point];
             force * (rows.product(point, &new.motion.u) - rows.product(point, &old.motion.u))
         })
         .sum()

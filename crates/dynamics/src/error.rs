@@ -29,7 +29,9 @@ pub enum Error {
         cause: carom_algebra::Error,
     },
     /// The statuses of the contact points did not settle.
-    #[error("step {step}: contact statuses did not settle in {passes} passes; point {point} of contact '{contact}' still changes")]
+    #[error(
+        "step {step}: contact statuses did not settle in {passes} passes; point {point} of contact '{contact}' still changes"
+    )]
     Statuses {
         /// Number of the step.
         step: u64,
@@ -41,7 +43,9 @@ pub enum Error {
         point: usize,
     },
     /// A displacement, velocity or force is infinite or not a number.
-    #[error("step {step}, t = {time:e} s: the {quantity} is not finite; the step is too large for the scheme, or the model is not supported")]
+    #[error(
+        "step {step}, t = {time:e} s: the {quantity} is not finite; the step is too large for the scheme, or the model is not supported"
+    )]
     NotFinite {
         /// Number of the step.
         step: u64,
@@ -71,7 +75,9 @@ pub enum Error {
         body: String,
     },
     /// A displacement law on a scheme whose end displacement does not depend on the forces of the step.
-    #[error("contact '{contact}': with an explicit scheme the displacement at the end of the step does not depend on the contact force, so the displacement law cannot hold")]
+    #[error(
+        "contact '{contact}': with an explicit scheme the displacement at the end of the step does not depend on the contact force, so the displacement law cannot hold"
+    )]
     DisplacementLaw {
         /// Name of the contact.
         contact: String,

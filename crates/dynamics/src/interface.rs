@@ -30,7 +30,10 @@ pub(crate) struct Candidate {
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// The closed points' matrix is not positive definite.
-    Singular { points: usize, cause: carom_algebra::Error },
+    Singular {
+        points: usize,
+        cause: carom_algebra::Error,
+    },
     /// A candidate still changes after the given number of passes.
     Cycling { passes: usize, candidate: usize },
 }
@@ -61,10 +64,20 @@ impl Interface {
     ///
     /// `compliance`: D over the candidates, row-major, and its version; `s`: [s_g, s_v], the factors of x in the gap and
     /// in the rate.
-    pub(crate) fn solve(&mut self, candidates: &[Candidate], compliance: (&[f64], u64), s: [f64; 2]) -> Result<(), Failure> {
+    pub(crate) fn solve(
+        &mut self,
+        candidates: &[Candidate],
+        compliance: (&[f64], u64),
+        s: [f64; 2],
+    ) -> Result<(), Failure> {
         let n = candidates.len();
         self.statuses.clear();
-        self.statuses.extend(candidates.iter().map(|candidate| candidate.status));
+        // a corner is found anew in each step, from a closed point that opens
+        self.statuses
+            .extend(candidates.iter().map(|candidate| match candidate.status {
+                Status::Open => Status::Open,
+                Status::Closed | Status::Corner => Status::Closed,
+            }));
         self.reversals.clear();
         self.reversals.resize(n, 0);
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
@@ -87,48 +100,86 @@ impl Interface {
             }
             for &i in &self.changes {
                 let i = i as usize;
-                let end = end(&candidates[i], i, compliance.0, s, &self.forces, &self.product);
-                self.statuses[i] = candidates[i].law.get().status(self.statuses[i], &end, self.reversals[i]);
+                let end = end(
+                    &candidates[i],
+                    i,
+                    compliance.0,
+                    s,
+                    &self.forces,
+                    &self.product,
+                );
+                self.statuses[i] =
+                    candidates[i]
+                        .law
+                        .get()
+                        .status(self.statuses[i], &end, self.reversals[i]);
                 self.reversals[i] += 1;
             }
             if pass == limit {
-                return Err(Failure::Cycling { passes: pass, candidate: last as usize });
+                return Err(Failure::Cycling {
+                    passes: pass,
+                    candidate: last as usize,
+                });
             }
         }
         Ok(())
     }
 
     /// Forces for the frozen statuses, and D P.
-    fn equalities(&mut self, candidates: &[Candidate], (d, version): (&[f64], u64), s: [f64; 2]) -> Result<(), Failure> {
+    fn equalities(
+        &mut self,
+        candidates: &[Candidate],
+        (d, version): (&[f64], u64),
+        s: [f64; 2],
+    ) -> Result<(), Failure> {
         let n = candidates.len();
         self.closed.clear();
         let statuses = self.statuses.iter().enumerate();
-        self.closed.extend(statuses.filter(|(_, status)| **status != Status::Open).map(|(i, &status)| (i as u32, status)));
+        self.closed.extend(
+            statuses
+                .filter(|(_, status)| **status != Status::Open)
+                .map(|(i, &status)| (i as u32, status)),
+        );
         self.forces.clear();
         self.forces.resize(n, 0.0);
         self.product.clear();
         self.product.resize(n, 0.0);
-        let relation = |i: u32, status: Status| candidates[i as usize].law.get().relation(status, candidates[i as usize].area);
+        let relation = |i: u32, status: Status| {
+            candidates[i as usize]
+                .law
+                .get()
+                .relation(status, candidates[i as usize].area)
+        };
         if self.factor.is_none() || self.factor_of.0 != version || self.factor_of.1 != self.closed {
             let mut matrix = Vec::with_capacity(self.closed.len().pow(2));
             for &(i, status) in &self.closed {
                 matrix.extend(self.closed.iter().map(|&(j, _)| {
-                    let own = if i == j { relation(i, status).compliance / scale(&relation(i, status), s) } else { 0.0 };
+                    let own = if i == j {
+                        relation(i, status).compliance / scale(&relation(i, status), s)
+                    } else {
+                        0.0
+                    };
                     d[i as usize * n + j as usize] + own
                 }));
             }
             let points = self.closed.len();
             self.factor = match points {
                 0 => None,
-                _ => Some(DenseCholesky::new(points, &matrix).map_err(|cause| Failure::Singular { points, cause })?),
+                _ => Some(
+                    DenseCholesky::new(points, &matrix)
+                        .map_err(|cause| Failure::Singular { points, cause })?,
+                ),
             };
             self.factor_of = (version, self.closed.clone());
         }
-        let Some(factor) = &self.factor else { return Ok(()) };
+        let Some(factor) = &self.factor else {
+            return Ok(());
+        };
         self.rhs.clear();
         self.rhs.extend(self.closed.iter().map(|&(i, status)| {
             let (relation, candidate) = (relation(i, status), &candidates[i as usize]);
-            -(relation.gap * candidate.gap_free + relation.rate * candidate.rate_free) / scale(&relation, s)
+            -(relation.gap * candidate.gap_free + relation.rate * candidate.rate_free)
+                / scale(&relation, s)
         }));
         factor.solve(&mut self.rhs);
         for (&(i, _), &force) in self.closed.iter().zip(&self.rhs) {
@@ -141,7 +192,11 @@ impl Interface {
     fn multiply(&mut self, d: &[f64]) {
         let n = self.forces.len();
         for (i, product) in self.product.iter_mut().enumerate() {
-            *product = self.closed.iter().map(|&(j, _)| d[i * n + j as usize] * self.forces[j as usize]).sum();
+            *product = self
+                .closed
+                .iter()
+                .map(|&(j, _)| d[i * n + j as usize] * self.forces[j as usize])
+                .sum();
         }
     }
 
@@ -150,7 +205,12 @@ impl Interface {
         self.changes.clear();
         for (i, candidate) in candidates.iter().enumerate() {
             let end = end(candidate, i, d, s, &self.forces, &self.product);
-            if candidate.law.get().status(self.statuses[i], &end, self.reversals[i]) != self.statuses[i] {
+            if candidate
+                .law
+                .get()
+                .status(self.statuses[i], &end, self.reversals[i])
+                != self.statuses[i]
+            {
                 self.changes.push(i as u32);
             }
         }
@@ -175,7 +235,14 @@ fn scale(relation: &Relation, s: [f64; 2]) -> f64 {
     relation.gap * s[0] + relation.rate * s[1]
 }
 
-fn end(candidate: &Candidate, i: usize, d: &[f64], s: [f64; 2], forces: &[f64], product: &[f64]) -> End {
+fn end(
+    candidate: &Candidate,
+    i: usize,
+    d: &[f64],
+    s: [f64; 2],
+    forces: &[f64],
+    product: &[f64],
+) -> End {
     let own = d[i * forces.len() + i] * forces[i];
     // In a closed point of an exact law the gap or the rate is zero by construction, and its sign but rounding: the
     // laws look at the force there.
@@ -194,13 +261,21 @@ mod tests {
     use super::*;
 
     fn candidate(law: Law, gap_free: f64) -> Candidate {
-        Candidate { law, area: 1.0, gap_free, rate_free: 0.0, status: Status::Open }
+        Candidate {
+            law,
+            area: 1.0,
+            gap_free,
+            rate_free: 0.0,
+            status: Status::Open,
+        }
     }
 
     /// Random positive definite matrices B Bᵀ + small I from a linear congruential generator.
     fn random_problem(n: usize, seed: &mut u64) -> (Vec<f64>, Vec<f64>) {
         let mut next = || {
-            *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            *seed = seed
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
             (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
         };
         let b: Vec<f64> = (0..n * n).map(|_| next()).collect();
@@ -208,7 +283,8 @@ mod tests {
         let mut d = vec![0.0; n * n];
         for i in 0..n {
             for j in 0..n {
-                d[i * n + j] = (0..n).map(|k| b[i * n + k] * b[j * n + k]).sum::<f64>() + if i == j { 1e-3 } else { 0.0 };
+                d[i * n + j] = (0..n).map(|k| b[i * n + k] * b[j * n + k]).sum::<f64>()
+                    + if i == j { 1e-3 } else { 0.0 };
             }
         }
         (d, q)
@@ -220,30 +296,51 @@ mod tests {
         for trial in 0..300 {
             let n = 1 + trial % 40;
             let (d, q) = random_problem(n, &mut seed);
-            let candidates: Vec<_> = q.iter().map(|&q| candidate(Law::Displacement(Displacement), q)).collect();
+            let candidates: Vec<_> = q
+                .iter()
+                .map(|&q| candidate(Law::Displacement(Displacement), q))
+                .collect();
             let mut interface = Interface::default();
             interface.solve(&candidates, (&d, 0), [1.0, 0.0]).unwrap();
             for i in 0..n {
-                let gap = q[i] + (0..n).map(|j| d[i * n + j] * interface.forces[j]).sum::<f64>();
+                let gap = q[i]
+                    + (0..n)
+                        .map(|j| d[i * n + j] * interface.forces[j])
+                        .sum::<f64>();
                 let force = interface.forces[i];
                 let size = 1.0 + interface.forces.iter().fold(0.0_f64, |m, p| m.max(*p));
-                assert!(gap > -1e-10 * size && force >= 0.0 && (gap * force).abs() < 1e-9 * size * size, "{gap} {force}");
+                assert!(
+                    gap > -1e-10 * size && force >= 0.0 && (gap * force).abs() < 1e-9 * size * size,
+                    "{gap} {force}"
+                );
             }
         }
     }
 
     #[test]
     fn damped_point_obeys_its_law_or_its_corner() {
-        let law = |stiffness, damping| Law::Damped(Damped { stiffness, damping, adhesion: Adhesion::AsPrinted });
+        let law = |stiffness, damping| {
+            Law::Damped(Damped {
+                stiffness,
+                damping,
+                adhesion: Adhesion::AsPrinted,
+            })
+        };
         let mut interface = Interface::default();
         // g₊ = -1 + 0.5 P, ġ₊ = -4 + P; P = -(2 g₊ + 3 ġ₊)
-        let soft = Candidate { rate_free: -4.0, ..candidate(law(2.0, 3.0), -10.0) };
+        let soft = Candidate {
+            rate_free: -4.0,
+            ..candidate(law(2.0, 3.0), -10.0)
+        };
         interface.solve(&[soft], (&[1.0], 0), [0.5, 1.0]).unwrap();
         let p = interface.forces[0];
         assert!((p + 2.0 * (-10.0 + 0.5 * p) + 3.0 * (-4.0 + p)).abs() < 1e-12);
         assert_eq!(interface.statuses, [Status::Closed]);
         // a strong damper on a shallow penetration would throw the point open: corner, g₊ = 0
-        let strong = Candidate { rate_free: -4.0, ..candidate(law(2.0, 300.0), -0.1) };
+        let strong = Candidate {
+            rate_free: -4.0,
+            ..candidate(law(2.0, 300.0), -0.1)
+        };
         interface.solve(&[strong], (&[1.0], 1), [0.5, 1.0]).unwrap();
         assert_eq!(interface.statuses, [Status::Corner]);
         assert!((interface.forces[0] - 0.2).abs() < 1e-12);

@@ -20,7 +20,11 @@ pub(crate) struct Sum {
 impl Sum {
     pub(crate) fn add(&mut self, term: f64) {
         let sum = self.value + term;
-        self.lost += if self.value.abs() >= term.abs() { (self.value - sum) + term } else { (term - sum) + self.value };
+        self.lost += if self.value.abs() >= term.abs() {
+            (self.value - sum) + term
+        } else {
+            (term - sum) + self.value
+        };
         self.value = sum;
     }
 
@@ -57,7 +61,10 @@ impl Resultant {
 
     fn combine(&self, factor: f64, other: &Resultant, other_factor: f64) -> Resultant {
         let mix = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| factor * a[i] + other_factor * b[i]);
-        Resultant { linear: mix(self.linear, other.linear), angular: mix(self.angular, other.angular) }
+        Resultant {
+            linear: mix(self.linear, other.linear),
+            angular: mix(self.angular, other.angular),
+        }
     }
 
     /// Largest absolute component of the linear part.
@@ -145,7 +152,11 @@ pub(crate) struct Squares {
 
 impl Ledger {
     /// The balance at the start. `forces`: resultants of loads, contacts and supports there.
-    pub(crate) fn start(energies: &Energies, identity: &EnergyIdentity, forces: [Resultant; 3]) -> Ledger {
+    pub(crate) fn start(
+        energies: &Energies,
+        identity: &EnergyIdentity,
+        forces: [Resultant; 3],
+    ) -> Ledger {
         let balance = Balance {
             kinetic: energies.kinetic,
             strain: energies.strain,
@@ -189,17 +200,32 @@ impl Ledger {
         self.forces = forces;
         self.balance = self.closed(energies, identity);
         self.largest_energy = self.largest_energy.max(self.balance.energy());
-        self.largest_energy_residual = self.largest_energy_residual.max(self.balance.energy_residual.abs());
+        self.largest_energy_residual = self
+            .largest_energy_residual
+            .max(self.balance.energy_residual.abs());
         let balance = &self.balance;
-        let impulses = [balance.momentum, balance.impulse_loads, balance.impulse_contact, balance.impulse_supports];
-        self.largest_momentum = impulses.iter().map(Resultant::largest).fold(self.largest_momentum, f64::max);
-        self.largest_momentum_residual = self.largest_momentum_residual.max(balance.momentum_residual.largest());
+        let impulses = [
+            balance.momentum,
+            balance.impulse_loads,
+            balance.impulse_contact,
+            balance.impulse_supports,
+        ];
+        self.largest_momentum = impulses
+            .iter()
+            .map(Resultant::largest)
+            .fold(self.largest_momentum, f64::max);
+        self.largest_momentum_residual = self
+            .largest_momentum_residual
+            .max(balance.momentum_residual.largest());
     }
 
     fn closed(&self, energies: &Energies, identity: &EnergyIdentity) -> Balance {
         let impulse = |k: usize| {
             let sums: [f64; 6] = self.impulses[k].map(|sum| sum.get());
-            Resultant { linear: [sums[0], sums[1], sums[2]], angular: [sums[3], sums[4], sums[5]] }
+            Resultant {
+                linear: [sums[0], sums[1], sums[2]],
+                angular: [sums[3], sums[4], sums[5]],
+            }
         };
         let (work_loads, work_contact) = (self.work_loads.get(), self.work_contact.get());
         let dissipation_scheme = self.dissipation.get();
@@ -208,8 +234,12 @@ impl Ledger {
         let change = (energies.kinetic - start.kinetic)
             + (energies.strain - start.strain)
             + (scheme_energy - start.scheme_energy);
-        let [impulse_loads, impulse_contact, impulse_supports] = [impulse(0), impulse(1), impulse(2)];
-        let impulses = impulse_loads.combine(1.0, &impulse_contact, 1.0).combine(1.0, &impulse_supports, 1.0);
+        let [impulse_loads, impulse_contact, impulse_supports] =
+            [impulse(0), impulse(1), impulse(2)];
+        let impulses =
+            impulse_loads
+                .combine(1.0, &impulse_contact, 1.0)
+                .combine(1.0, &impulse_supports, 1.0);
         let change_of_momentum = energies.momentum.combine(1.0, &start.momentum, -1.0);
         Balance {
             kinetic: energies.kinetic,
@@ -229,11 +259,19 @@ impl Ledger {
 }
 
 /// Forces of the supports, N: what the momentum balance of the step leaves at the held unknowns; zero elsewhere.
-pub(crate) fn reactions(system: &System, map: &StepMap, old: &Motion, new: &Motion, inertia: &[f64], out: &mut [f64]) {
+pub(crate) fn reactions(
+    system: &System,
+    map: &StepMap,
+    old: &Motion,
+    new: &Motion,
+    inertia: &[f64],
+    out: &mut [f64],
+) {
     let fraction = map.force_fraction;
     for (i, out) in out.iter_mut().enumerate() {
         *out = if system.fixed[i] {
-            let internal = (1.0 - fraction) * old.internal_force[i] + fraction * new.internal_force[i];
+            let internal =
+                (1.0 - fraction) * old.internal_force[i] + fraction * new.internal_force[i];
             inertia[i] + internal - system.load[i] - new.contact_force[i]
         } else {
             0.0

@@ -11,7 +11,12 @@ pub trait Observer {
     ///
     /// # Errors
     /// Whatever keeps it from its work; the run ends.
-    fn accepted(&mut self, system: &System, state: &State, report: &StepReport) -> Result<(), Error>;
+    fn accepted(
+        &mut self,
+        system: &System,
+        state: &State,
+        report: &StepReport,
+    ) -> Result<(), Error>;
     /// Called once at the end, after a failed run too. `state` is the last good one.
     ///
     /// # Errors
@@ -49,7 +54,12 @@ pub fn march(
     Ok(outcome)
 }
 
-fn steps(driver: &mut Driver, end: f64, observers: &mut [&mut dyn Observer], stop: &dyn Fn() -> bool) -> Result<Outcome, Error> {
+fn steps(
+    driver: &mut Driver,
+    end: f64,
+    observers: &mut [&mut dyn Observer],
+    stop: &dyn Fn() -> bool,
+) -> Result<Outcome, Error> {
     let last = step_count(end, driver.system().dt);
     if driver.state().step == 0 {
         tell(driver, observers)?;
@@ -70,5 +80,7 @@ pub fn step_count(end: f64, dt: f64) -> u64 {
 }
 
 fn tell(driver: &Driver, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
-    observers.iter_mut().try_for_each(|observer| observer.accepted(driver.system(), driver.state(), driver.report()))
+    observers.iter_mut().try_for_each(|observer| {
+        observer.accepted(driver.system(), driver.state(), driver.report())
+    })
 }

@@ -30,7 +30,9 @@ pub(crate) enum Column {
 impl Operator {
     /// Factorises a symmetric positive definite matrix; unknowns marked `fixed` are taken out.
     pub(crate) fn factored(matrix: &Csr, fixed: &[bool], dim: usize) -> Result<Operator, Error> {
-        let groups: Vec<u32> = (0..matrix.n as u32).map(|unknown| unknown / dim as u32).collect();
+        let groups: Vec<u32> = (0..matrix.n as u32)
+            .map(|unknown| unknown / dim as u32)
+            .collect();
         let factor = Cholesky::new(&matrix.with_identity(fixed), &groups)?;
         Ok(Operator::Factored(Box::new(factor)))
     }
@@ -38,7 +40,11 @@ impl Operator {
     /// The inverse of a diagonal matrix; unknowns marked `fixed` do not move.
     pub(crate) fn diagonal(diagonal: &[f64], fixed: &[bool]) -> Operator {
         let entries = diagonal.iter().zip(fixed);
-        Operator::Diagonal(entries.map(|(&a, &fixed)| if fixed { f64::INFINITY } else { a }).collect())
+        Operator::Diagonal(
+            entries
+                .map(|(&a, &fixed)| if fixed { f64::INFINITY } else { a })
+                .collect(),
+        )
     }
 
     /// y from r.
@@ -57,7 +63,11 @@ impl Operator {
     pub(crate) fn respond(&mut self, rows: Vec<SparseRow>) -> Vec<Column> {
         match self {
             Operator::Diagonal(_) => rows.into_iter().map(Column::Diagonal).collect(),
-            Operator::Factored(factor) => factor.respond(&rows).into_iter().map(Column::Factored).collect(),
+            Operator::Factored(factor) => factor
+                .respond(&rows)
+                .into_iter()
+                .map(Column::Factored)
+                .collect(),
         }
     }
 
@@ -75,7 +85,9 @@ impl Operator {
                 }
                 sum
             }
-            (Operator::Factored(_), Column::Factored(one), Column::Factored(other)) => one.dot(other),
+            (Operator::Factored(_), Column::Factored(one), Column::Factored(other)) => {
+                one.dot(other)
+            }
             _ => unreachable!("columns are made by their own operator"),
         }
     }
@@ -83,9 +95,12 @@ impl Operator {
     /// N A⁻¹ r from the y of `begin`.
     pub(crate) fn free(&self, column: &Column, y: &[f64]) -> f64 {
         match column {
-            Column::Diagonal(row) => {
-                row.dofs.iter().zip(&row.coefficients).map(|(&i, n)| n * y[i as usize]).sum()
-            }
+            Column::Diagonal(row) => row
+                .dofs
+                .iter()
+                .zip(&row.coefficients)
+                .map(|(&i, n)| n * y[i as usize])
+                .sum(),
             Column::Factored(response) => response.dot_dense(y),
         }
     }

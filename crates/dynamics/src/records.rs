@@ -105,7 +105,14 @@ pub(crate) struct Step<'a> {
 
 impl Records {
     /// Adds a step of one contact. `old`, `new`: the states around it.
-    pub(crate) fn add(&mut self, system: &System, contact: usize, step: &Step, old: &State, new_velocity: &[f64]) {
+    pub(crate) fn add(
+        &mut self,
+        system: &System,
+        contact: usize,
+        step: &Step,
+        old: &State,
+        new_velocity: &[f64],
+    ) {
         let (report, dt) = (step.report, step.span[1] - step.span[0]);
         let record = &mut self.contacts[contact];
         let mean = |before: f64, now: f64| dt * (step.weights[0] * before + step.weights[1] * now);
@@ -145,10 +152,17 @@ impl Records {
 
     /// All impacts, those that still go on at the end of the run included.
     pub fn all_impacts(&self, system: &System, state: &State) -> Vec<Impact> {
-        let open = self.contacts.iter().enumerate().filter_map(|(contact, record)| {
-            let open = record.open.as_ref()?;
-            Some(Impact { unfinished: true, ..open.finished(system, contact, state.time, &state.motion.v) })
-        });
+        let open = self
+            .contacts
+            .iter()
+            .enumerate()
+            .filter_map(|(contact, record)| {
+                let open = record.open.as_ref()?;
+                Some(Impact {
+                    unfinished: true,
+                    ..open.finished(system, contact, state.time, &state.motion.v)
+                })
+            });
         self.impacts.iter().cloned().chain(open).collect()
     }
 }
@@ -165,7 +179,8 @@ impl OpenImpact {
         };
         let approach = -along(self.velocity);
         let (secondary, primary) = system.sides[contact];
-        let inverse = 1.0 / system.body_mass(secondary) + primary.map_or(0.0, |body| 1.0 / system.body_mass(body));
+        let inverse = 1.0 / system.body_mass(secondary)
+            + primary.map_or(0.0, |body| 1.0 / system.body_mass(body));
         Impact {
             contact: contact as u32,
             start: self.start,

@@ -60,7 +60,9 @@ impl State {
     /// # Errors
     /// None is known; the encoder's own error is passed on.
     pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
-        postcard::to_stdvec(self).map_err(|cause| Error::State { cause: cause.to_string() })
+        postcard::to_stdvec(self).map_err(|cause| Error::State {
+            cause: cause.to_string(),
+        })
     }
 
     /// The state in these bytes, which must belong to `system`.
@@ -68,12 +70,22 @@ impl State {
     /// # Errors
     /// The bytes are no state, or one of another size.
     pub fn from_bytes(system: &System, bytes: &[u8]) -> Result<State, Error> {
-        let state: State = postcard::from_bytes(bytes).map_err(|cause| Error::State { cause: cause.to_string() })?;
+        let state: State = postcard::from_bytes(bytes).map_err(|cause| Error::State {
+            cause: cause.to_string(),
+        })?;
         let (n, points) = (system.unknowns(), system.points());
         let motion = &state.motion;
-        let vectors = [&motion.u, &motion.v, &motion.a, &motion.internal_force, &motion.contact_force];
+        let vectors = [
+            &motion.u,
+            &motion.v,
+            &motion.a,
+            &motion.internal_force,
+            &motion.contact_force,
+        ];
         if vectors.iter().any(|vector| vector.len() != n) || state.interface.force.len() != points {
-            let cause = format!("it belongs to another model than this one of {n} unknowns and {points} contact points");
+            let cause = format!(
+                "it belongs to another model than this one of {n} unknowns and {points} contact points"
+            );
             return Err(Error::State { cause });
         }
         Ok(state)
@@ -106,8 +118,6 @@ pub struct StepReport {
     pub step: u64,
     /// Time at the end of the step, s.
     pub time: f64,
-    /// Interval over which the contact forces of the step act, s.
-    pub force_span: [f64; 2],
     /// By contact.
     pub contacts: Vec<ContactReport>,
     /// Energies, works and momentum at the end of the step.

@@ -51,6 +51,4 @@ pub struct StepMap {
     pub placed: Row,
     /// The velocity that a contact law in the rate constrains.
     pub rate: Row,
-    /// The interval of time over which the contact force of the step acts, as fractions of dt from t_k.
-    pub force_span: [f64; 2],
 }

@@ -154,19 +154,33 @@ impl System {
         }
         let dim = model.mesh.dim;
         let (number, mesh_node, parts) = numbering(&model);
-        let x: Vec<[f64; 3]> = mesh_node.iter().map(|&node| model.mesh.nodes[node as usize]).collect();
+        let x: Vec<[f64; 3]> = mesh_node
+            .iter()
+            .map(|&node| model.mesh.nodes[node as usize])
+            .collect();
         let body = |body: &ModelBody| Body::new(&model.mesh, body.spec.clone(), &number);
-        let bodies = model.bodies.iter().map(body).collect::<Result<Vec<_>, _>>()?;
+        let bodies = model
+            .bodies
+            .iter()
+            .map(body)
+            .collect::<Result<Vec<_>, _>>()?;
         let mut fixed = vec![false; dim * x.len()];
         for support in &model.supports {
-            for &node in support.nodes.iter().filter(|&&node| number[node as usize] != u32::MAX) {
+            for &node in support
+                .nodes
+                .iter()
+                .filter(|&&node| number[node as usize] != u32::MAX)
+            {
                 for i in 0..dim {
                     fixed[dim * number[node as usize] as usize + i] |= support.fix[i];
                 }
             }
         }
         let mass = mass(&bodies, &model.bodies, dim, x.len());
-        let body_masses: Vec<_> = bodies.iter().map(|body| node_masses(body, dim, x.len())).collect();
+        let body_masses: Vec<_> = bodies
+            .iter()
+            .map(|body| node_masses(body, dim, x.len()))
+            .collect();
         let mut load = vec![0.0; dim * x.len()];
         for &(node, m) in body_masses.iter().flatten() {
             for i in 0..dim {
@@ -174,19 +188,30 @@ impl System {
             }
         }
         let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
-        let contacts: Vec<Contact> = model.contacts.iter().map(|contact| numbered(contact, &model, &number)).collect();
+        let contacts: Vec<Contact> = model
+            .contacts
+            .iter()
+            .map(|contact| numbered(contact, &model, &number))
+            .collect();
         let mut first_point = vec![0];
         for contact in &contacts {
             first_point.push(first_point[first_point.len() - 1] + contact.points.len());
         }
-        let sides = model.contacts.iter().map(|contact| sides(contact, &model)).collect();
+        let sides = model
+            .contacts
+            .iter()
+            .map(|contact| sides(contact, &model))
+            .collect();
         let system = System {
             tolerance: 1e-12 * model.mesh.size(),
             dim,
             x,
             mesh_node,
             number,
-            parts: parts.into_iter().map(|part| dim * part.start..dim * part.end).collect(),
+            parts: parts
+                .into_iter()
+                .map(|part| dim * part.start..dim * part.end)
+                .collect(),
             bodies,
             body_masses,
             mass,
@@ -210,18 +235,37 @@ impl System {
             return Ok(());
         }
         if let Some(body) = bodies.iter().find(|body| body.mass == MassKind::Consistent) {
-            return Err(Error::ConsistentMass { body: body.spec.name.clone() });
+            return Err(Error::ConsistentMass {
+                body: body.spec.name.clone(),
+            });
         }
-        if let Some(contact) = self.contacts.iter().find(|contact| contact.law.get().level() == Level::Gap) {
-            return Err(Error::DisplacementLaw { contact: contact.name.clone() });
+        if let Some(contact) = self
+            .contacts
+            .iter()
+            .find(|contact| contact.law.get().level() == Level::Gap)
+        {
+            return Err(Error::DisplacementLaw {
+                contact: contact.name.clone(),
+            });
         }
         let critical = self.critical_step();
-        if self.dt > critical { Err(Error::Unstable { dt: self.dt, critical }) } else { Ok(()) }
+        if self.dt > critical {
+            Err(Error::Unstable {
+                dt: self.dt,
+                critical,
+            })
+        } else {
+            Ok(())
+        }
     }
 
     /// Critical step 2/ω of an explicit scheme from element eigenvalues, s: a lower bound.
     pub fn critical_step(&self) -> f64 {
-        let bound = self.bodies.iter().map(Body::frequency_bound).fold(0.0, f64::max);
+        let bound = self
+            .bodies
+            .iter()
+            .map(Body::frequency_bound)
+            .fold(0.0, f64::max);
         2.0 / bound
     }
 
@@ -273,8 +317,10 @@ fn numbering(model: &Model) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
             root[a.max(b) as usize] = a.min(b);
         }
     }
-    let mut nodes: Vec<(u32, u32)> =
-        (0..count as u32).filter(|&node| used[node as usize]).map(|node| (find(&mut root, node), node)).collect();
+    let mut nodes: Vec<(u32, u32)> = (0..count as u32)
+        .filter(|&node| used[node as usize])
+        .map(|node| (find(&mut root, node), node))
+        .collect();
     nodes.sort_unstable();
     let mut number = vec![u32::MAX; count];
     let mut parts: Vec<Range<usize>> = Vec::new();
@@ -285,7 +331,11 @@ fn numbering(model: &Model) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
             _ => parts.push(system..system + 1),
         }
     }
-    (number, nodes.into_iter().map(|(_, node)| node).collect(), parts)
+    (
+        number,
+        nodes.into_iter().map(|(_, node)| node).collect(),
+        parts,
+    )
 }
 
 fn find(root: &mut [u32], mut node: u32) -> u32 {
@@ -299,7 +349,10 @@ fn find(root: &mut [u32], mut node: u32) -> u32 {
 fn node_masses(body: &Body, dim: usize, nodes: usize) -> Vec<(u32, f64)> {
     let mut mass = vec![0.0; dim * nodes];
     body.add_lumped_mass(&mut mass);
-    (0..nodes).filter(|&node| mass[dim * node] > 0.0).map(|node| (node as u32, mass[dim * node])).collect()
+    (0..nodes)
+        .filter(|&node| mass[dim * node] > 0.0)
+        .map(|node| (node as u32, mass[dim * node]))
+        .collect()
 }
 
 fn mass(bodies: &[Body], specs: &[ModelBody], dim: usize, nodes: usize) -> Mass {
@@ -316,13 +369,19 @@ fn mass(bodies: &[Body], specs: &[ModelBody], dim: usize, nodes: usize) -> Mass 
         }
     }
     if consistent.is_empty() {
-        return Mass { lumped, consistent: None };
+        return Mass {
+            lumped,
+            consistent: None,
+        };
     }
     let mut matrix = Csr::from_cliques(dim * nodes, &cliques);
     for body in consistent {
         body.assemble(0.0, 1.0, &(0..dim * nodes), &mut matrix);
     }
-    Mass { lumped, consistent: Some(matrix) }
+    Mass {
+        lumped,
+        consistent: Some(matrix),
+    }
 }
 
 /// Adds the unknowns of each element of a body that lies in a part, counted from the first of the part.
@@ -330,7 +389,8 @@ pub(crate) fn push_cliques(body: &Body, dim: usize, part: &Range<usize>, cliques
     let mut unknowns = Vec::new();
     body.each_element(&mut |nodes| {
         if part.contains(&(dim * nodes[0] as usize)) {
-            let of_node = |&node: &u32| (0..dim).map(move |i| (dim * node as usize + i - part.start) as u32);
+            let of_node =
+                |&node: &u32| (0..dim).map(move |i| (dim * node as usize + i - part.start) as u32);
             unknowns.clear();
             unknowns.extend(nodes.iter().flat_map(of_node));
             cliques.push(&unknowns);
@@ -338,7 +398,12 @@ pub(crate) fn push_cliques(body: &Body, dim: usize, part: &Range<usize>, cliques
     });
 }
 
-fn initial(model: &Model, masses: &[Vec<(u32, f64)>], fixed: &[bool], dim: usize) -> (Vec<f64>, Vec<f64>) {
+fn initial(
+    model: &Model,
+    masses: &[Vec<(u32, f64)>],
+    fixed: &[bool],
+    dim: usize,
+) -> (Vec<f64>, Vec<f64>) {
     let (mut u, mut v) = (vec![0.0; fixed.len()], vec![0.0; fixed.len()]);
     for (body, masses) in model.bodies.iter().zip(masses) {
         for &(node, _) in masses {
@@ -355,11 +420,19 @@ fn initial(model: &Model, masses: &[Vec<(u32, f64)>], fixed: &[bool], dim: usize
 }
 
 fn owner(model: &Model, cell: ElementId) -> Option<usize> {
-    model.bodies.iter().position(|body| body.spec.cells.contains(&cell))
+    model
+        .bodies
+        .iter()
+        .position(|body| body.spec.cells.contains(&cell))
 }
 
 fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usize>) {
-    let body = |surface: &Surface| surface.faces.first().and_then(|face| owner(model, face.parent));
+    let body = |surface: &Surface| {
+        surface
+            .faces
+            .first()
+            .and_then(|face| owner(model, face.parent))
+    };
     let primary = match &contact.primary {
         ModelTarget::Surface(surface) => body(surface),
         ModelTarget::Plane(_) => None,
@@ -369,16 +442,28 @@ fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usize>) {
 
 fn numbered(contact: &ModelContact, model: &Model, number: &[u32]) -> Contact {
     let surface = &contact.secondary;
-    let kinematics = surface.faces.first().and_then(|face| owner(model, face.parent));
+    let kinematics = surface
+        .faces
+        .first()
+        .and_then(|face| owner(model, face.parent));
     let kinematics = kinematics.map(|body| model.bodies[body].spec.kinematics);
     let areas = surface.node_areas(&model.mesh);
     let points = surface.nodes.iter().zip(areas).map(|(&node, area)| {
         let factor = kinematics.map_or(1.0, |k| k.surface_factor(&model.mesh.nodes[node as usize]));
-        Point { node: number[node as usize], area: area * factor }
+        Point {
+            node: number[node as usize],
+            area: area * factor,
+        }
     });
     let target = match &contact.primary {
         ModelTarget::Plane(plane) => Target::Plane(*plane),
-        ModelTarget::Surface(surface) => Target::Surface(surface.faces.iter().map(|face| renumbered(face, number)).collect()),
+        ModelTarget::Surface(surface) => Target::Surface(
+            surface
+                .faces
+                .iter()
+                .map(|face| renumbered(face, number))
+                .collect(),
+        ),
     };
     Contact {
         name: contact.name.clone(),

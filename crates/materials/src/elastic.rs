@@ -58,7 +58,9 @@ impl Elastic {
     pub fn stress(&self, plane: Plane, strain: &Mat3) -> Mat3 {
         let two_mu = 2.0 * self.shear_modulus();
         match plane {
-            Plane::Full => strain * two_mu + Mat3::identity() * (self.lame_1(plane) * strain.trace()),
+            Plane::Full => {
+                strain * two_mu + Mat3::identity() * (self.lame_1(plane) * strain.trace())
+            }
             Plane::Stress => {
                 let trace = strain[(0, 0)] + strain[(1, 1)];
                 let mut stress = strain * two_mu + Mat3::identity() * (self.lame_1(plane) * trace);
@@ -78,7 +80,11 @@ impl Elastic {
 mod tests {
     use super::*;
 
-    const STEEL: Elastic = Elastic { density: 7800.0, young: 2e11, poisson: 0.3 };
+    const STEEL: Elastic = Elastic {
+        density: 7800.0,
+        young: 2e11,
+        poisson: 0.3,
+    };
 
     #[test]
     fn uniaxial_stress_in_three_dimensions_gives_young_and_poisson() {

@@ -1,1 +1,3 @@
 //! Cases with an analytic or published answer.
+
+pub mod bars;

@@ -49,10 +49,16 @@ impl ContactLaw for Damped {
 
     fn relation(&self, status: Status, area: f64) -> Relation {
         match status {
-            Status::Corner => Relation { gap: 1.0, rate: 0.0, compliance: 0.0 },
-            Status::Open | Status::Closed => {
-                Relation { gap: self.stiffness * area, rate: self.damping * area, compliance: 1.0 }
-            }
+            Status::Corner => Relation {
+                gap: 1.0,
+                rate: 0.0,
+                compliance: 0.0,
+            },
+            Status::Open | Status::Closed => Relation {
+                gap: self.stiffness * area,
+                rate: self.damping * area,
+                compliance: 1.0,
+            },
         }
     }
 

@@ -29,7 +29,11 @@ impl ContactLaw for Displacement {
     }
 
     fn relation(&self, _status: Status, _area: f64) -> Relation {
-        Relation { gap: 1.0, rate: 0.0, compliance: 0.0 }
+        Relation {
+            gap: 1.0,
+            rate: 0.0,
+            compliance: 0.0,
+        }
     }
 
     fn status(&self, now: Status, end: &End, _reversals: u32) -> Status {

@@ -111,41 +111,103 @@ mod tests {
     use super::*;
 
     fn end(gap: f64, rate: f64, force: f64) -> End {
-        End { gap_released: gap, gap, rate, force }
+        End {
+            gap_released: gap,
+            gap,
+            rate,
+            force,
+        }
     }
 
     #[test]
     fn displacement_signs_close_on_penetration_and_open_on_tension() {
         let law = Displacement;
-        assert_eq!(law.status(Status::Open, &end(1e-3, -1.0, 0.0), 0), Status::Open);
-        assert_eq!(law.status(Status::Open, &end(-1e-3, -1.0, 0.0), 0), Status::Closed);
-        assert_eq!(law.status(Status::Closed, &end(0.0, 0.0, 5.0), 0), Status::Closed);
-        assert_eq!(law.status(Status::Closed, &end(0.0, 0.0, -5.0), 0), Status::Open);
+        assert_eq!(
+            law.status(Status::Open, &end(1e-3, -1.0, 0.0), 0),
+            Status::Open
+        );
+        assert_eq!(
+            law.status(Status::Open, &end(-1e-3, -1.0, 0.0), 0),
+            Status::Closed
+        );
+        assert_eq!(
+            law.status(Status::Closed, &end(0.0, 0.0, 5.0), 0),
+            Status::Closed
+        );
+        assert_eq!(
+            law.status(Status::Closed, &end(0.0, 0.0, -5.0), 0),
+            Status::Open
+        );
         // at rest on the surface without force: the strict sign leaves it free
-        assert_eq!(law.status(Status::Closed, &end(0.0, 0.0, 0.0), 0), Status::Open);
+        assert_eq!(
+            law.status(Status::Closed, &end(0.0, 0.0, 0.0), 0),
+            Status::Open
+        );
     }
 
     #[test]
     fn velocity_signs_watch_the_closed_gap_and_the_approach() {
-        let law = Velocity { capture: Capture::Half, reading: Reading::Closed };
+        let law = Velocity {
+            capture: Capture::Half,
+            reading: Reading::Closed,
+        };
         assert!(law.watches(-1e-6, 1e-12) && law.watches(0.0, 1e-12));
         assert!(!law.watches(1e-6, 1e-12));
-        assert_eq!(law.status(Status::Open, &end(0.0, -1.0, 0.0), 0), Status::Closed);
-        assert_eq!(law.status(Status::Open, &end(0.0, 1.0, 0.0), 0), Status::Open);
-        assert_eq!(law.status(Status::Closed, &end(0.0, 0.0, 5.0), 0), Status::Closed);
-        assert_eq!(law.status(Status::Closed, &end(0.0, 0.0, -5.0), 0), Status::Open);
-        let printed = Velocity { reading: Reading::AsPrinted, ..law };
+        assert_eq!(
+            law.status(Status::Open, &end(0.0, -1.0, 0.0), 0),
+            Status::Closed
+        );
+        assert_eq!(
+            law.status(Status::Open, &end(0.0, 1.0, 0.0), 0),
+            Status::Open
+        );
+        assert_eq!(
+            law.status(Status::Closed, &end(0.0, 0.0, 5.0), 0),
+            Status::Closed
+        );
+        assert_eq!(
+            law.status(Status::Closed, &end(0.0, 0.0, -5.0), 0),
+            Status::Open
+        );
+        let printed = Velocity {
+            reading: Reading::AsPrinted,
+            ..law
+        };
         assert!(printed.watches(1e-6, 1e-12) && !printed.watches(-1e-6, 1e-12));
     }
 
     #[test]
     fn damped_law_takes_the_corner_when_closing_would_open() {
-        let law = Damped { stiffness: 2.0, damping: 3.0, adhesion: Adhesion::Clip };
-        assert_eq!(law.relation(Status::Closed, 0.5), Relation { gap: 1.0, rate: 1.5, compliance: 1.0 });
-        assert_eq!(law.status(Status::Open, &end(-1.0, 0.0, 0.0), 0), Status::Closed);
-        let opened = End { gap_released: -1.0, gap: 0.1, rate: 0.0, force: 4.0 };
+        let law = Damped {
+            stiffness: 2.0,
+            damping: 3.0,
+            adhesion: Adhesion::Clip,
+        };
+        assert_eq!(
+            law.relation(Status::Closed, 0.5),
+            Relation {
+                gap: 1.0,
+                rate: 1.5,
+                compliance: 1.0
+            }
+        );
+        assert_eq!(
+            law.status(Status::Open, &end(-1.0, 0.0, 0.0), 0),
+            Status::Closed
+        );
+        let opened = End {
+            gap_released: -1.0,
+            gap: 0.1,
+            rate: 0.0,
+            force: 4.0,
+        };
         assert_eq!(law.status(Status::Closed, &opened, 1), Status::Corner);
-        let free = End { gap_released: 1.0, gap: 1.1, rate: 0.0, force: 4.0 };
+        let free = End {
+            gap_released: 1.0,
+            gap: 1.1,
+            rate: 0.0,
+            force: 4.0,
+        };
         assert_eq!(law.status(Status::Closed, &free, 1), Status::Open);
     }
 }

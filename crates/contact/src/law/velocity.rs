@@ -62,7 +62,11 @@ impl ContactLaw for Velocity {
     }
 
     fn relation(&self, _status: Status, _area: f64) -> Relation {
-        Relation { gap: 0.0, rate: 1.0, compliance: 0.0 }
+        Relation {
+            gap: 0.0,
+            rate: 1.0,
+            compliance: 0.0,
+        }
     }
 
     fn status(&self, now: Status, end: &End, _reversals: u32) -> Status {

@@ -23,18 +23,35 @@ impl TimeScheme for CentralDifference {
     }
 
     fn step_map(&self, dt: f64) -> StepMap {
-        let displacement = Row { u: 1.0, v: dt, a: 0.5 * dt * dt, x: 0.0 };
-        let acceleration = Row { x: 1.0, ..Row::default() };
+        let displacement = Row {
+            u: 1.0,
+            v: dt,
+            a: 0.5 * dt * dt,
+            x: 0.0,
+        };
+        let acceleration = Row {
+            x: 1.0,
+            ..Row::default()
+        };
         StepMap {
             inertia: acceleration,
             force: displacement,
             force_fraction: 1.0,
             displacement,
-            velocity: Row { u: 0.0, v: 1.0, a: 0.5 * dt, x: 0.5 * dt },
+            velocity: Row {
+                u: 0.0,
+                v: 1.0,
+                a: 0.5 * dt,
+                x: 0.5 * dt,
+            },
             acceleration,
             placed: displacement,
-            rate: Row { u: 0.0, v: 1.0, a: 0.5 * dt, x: dt },
-            force_span: [0.5, 1.5],
+            rate: Row {
+                u: 0.0,
+                v: 1.0,
+                a: 0.5 * dt,
+                x: dt,
+            },
         }
     }
 

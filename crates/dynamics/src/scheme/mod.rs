@@ -75,8 +75,14 @@ impl Scheme {
     /// One of each, with usual parameters: what the batteries run over.
     pub fn registered() -> Vec<Scheme> {
         vec![
-            Scheme::Newmark(Newmark { beta: 0.25, gamma: 0.5 }),
-            Scheme::Newmark(Newmark { beta: 0.49, gamma: 0.9 }),
+            Scheme::Newmark(Newmark {
+                beta: 0.25,
+                gamma: 0.5,
+            }),
+            Scheme::Newmark(Newmark {
+                beta: 0.49,
+                gamma: 0.9,
+            }),
             Scheme::Theta(Theta { theta: 0.5 }),
             Scheme::Theta(Theta { theta: 0.75 }),
             Scheme::CentralDifference(CentralDifference),

@@ -30,9 +30,22 @@ impl TimeScheme for Newmark {
 
     fn step_map(&self, dt: f64) -> StepMap {
         let (beta, gamma) = (self.beta, self.gamma);
-        let displacement = Row { u: 1.0, v: dt, a: dt * dt * (0.5 - beta), x: dt * dt * beta };
-        let velocity = Row { u: 0.0, v: 1.0, a: dt * (1.0 - gamma), x: dt * gamma };
-        let acceleration = Row { x: 1.0, ..Row::default() };
+        let displacement = Row {
+            u: 1.0,
+            v: dt,
+            a: dt * dt * (0.5 - beta),
+            x: dt * dt * beta,
+        };
+        let velocity = Row {
+            u: 0.0,
+            v: 1.0,
+            a: dt * (1.0 - gamma),
+            x: dt * gamma,
+        };
+        let acceleration = Row {
+            x: 1.0,
+            ..Row::default()
+        };
         StepMap {
             inertia: acceleration,
             force: displacement,
@@ -40,9 +53,11 @@ impl TimeScheme for Newmark {
             displacement,
             velocity,
             acceleration,
-            placed: Row { u: 1.0, ..Row::default() },
+            placed: Row {
+                u: 1.0,
+                ..Row::default()
+            },
             rate: velocity,
-            force_span: [0.0, 1.0],
         }
     }
 

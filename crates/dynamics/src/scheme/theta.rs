@@ -27,18 +27,37 @@ impl TimeScheme for Theta {
 
     fn step_map(&self, dt: f64) -> StepMap {
         let theta = self.theta;
-        let acceleration = Row { v: -1.0 / dt, x: 1.0 / dt, ..Row::default() };
-        let velocity = Row { x: 1.0, ..Row::default() };
+        let acceleration = Row {
+            v: -1.0 / dt,
+            x: 1.0 / dt,
+            ..Row::default()
+        };
+        let velocity = Row {
+            x: 1.0,
+            ..Row::default()
+        };
         StepMap {
             inertia: acceleration,
-            force: Row { u: 1.0, v: theta * (1.0 - theta) * dt, a: 0.0, x: theta * theta * dt },
+            force: Row {
+                u: 1.0,
+                v: theta * (1.0 - theta) * dt,
+                a: 0.0,
+                x: theta * theta * dt,
+            },
             force_fraction: theta,
-            displacement: Row { u: 1.0, v: (1.0 - theta) * dt, a: 0.0, x: theta * dt },
+            displacement: Row {
+                u: 1.0,
+                v: (1.0 - theta) * dt,
+                a: 0.0,
+                x: theta * dt,
+            },
             velocity,
             acceleration,
-            placed: Row { u: 1.0, ..Row::default() },
+            placed: Row {
+                u: 1.0,
+                ..Row::default()
+            },
             rate: velocity,
-            force_span: [0.0, 1.0],
         }
     }
 
