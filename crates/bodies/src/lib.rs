@@ -14,4 +14,4 @@ mod stability;
 pub use block::Scratch;
 pub use body::{Body, BodySpec, Kinematics, MassKind};
 pub use error::Error;
-pub use size::height;
+pub use size::{height, smallest as smallest_size};

@@ -44,7 +44,7 @@ pub fn height(mesh: &Mesh, cell: ElementId, face: Kind, face_nodes: &[u32]) -> f
 }
 
 /// Smallest size of a cell over its faces, in m.
-pub(crate) fn smallest(mesh: &Mesh, cell: ElementId) -> f64 {
+pub fn smallest(mesh: &Mesh, cell: ElementId) -> f64 {
     let nodes = mesh.element_nodes(cell);
     let faces = mesh.kind(cell).table().faces.iter();
     let heights = faces.map(|face| {

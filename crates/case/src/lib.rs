@@ -7,6 +7,7 @@
 pub mod schema;
 pub mod units;
 
+mod build;
 mod describe;
 mod error;
 mod input;
@@ -17,6 +18,7 @@ mod rules;
 mod tree;
 mod validate;
 
+pub use build::{Built, BuiltProbe, ExactReference, build};
 pub use error::{Place, Problem};
 pub use input::{Input, Source};
 pub use locate::Locator;

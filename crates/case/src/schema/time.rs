@@ -33,6 +33,8 @@ pub enum Step {
 pub enum StepRule {
     /// This fraction of the least time in which a wave crosses an element.
     Courant(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+    /// This fraction of the critical step of an explicit scheme, which comes from the eigenvalues of the elements.
+    Critical(#[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))] f64),
 }
 
 /// A time scheme. Any contact law may be named with it; a pair that makes no sense is refused with the reason.

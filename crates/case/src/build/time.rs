@@ -1,0 +1,106 @@
+//! Step and scheme, and what the scheme refuses.
+
+use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
+use carom_dynamics::{Error, ModelBody, Scheme, step_count};
+use carom_mesh::Mesh;
+
+use super::Builder;
+use crate::error::Problem;
+use crate::schema::{self, Law, Mass, Step, StepRule};
+
+/// Most steps of a run: beyond it a case is a slip of the pen.
+const MOST_STEPS: u64 = 1_000_000_000;
+
+impl Builder<'_> {
+    pub(super) fn scheme(&self) -> Scheme {
+        match self.case.time.scheme {
+            schema::Scheme::Newmark(newmark) => Scheme::Newmark(Newmark { beta: newmark.beta, gamma: newmark.gamma }),
+            schema::Scheme::Theta(theta) => Scheme::Theta(Theta { theta: theta.theta }),
+            schema::Scheme::CentralDifference(_) => Scheme::CentralDifference(CentralDifference),
+        }
+    }
+
+    /// Refuses what the scheme cannot take, one problem a reason.
+    pub(super) fn scheme_and_laws(&mut self) {
+        if !self.scheme().get().is_explicit() {
+            if let Step::FromMesh(StepRule::Critical(_)) = self.case.time.step {
+                let problem = Problem::new("time.step.critical", "only an explicit scheme has a critical step");
+                self.problems.push(problem.found(self.scheme().get().name()).accepted(["step = { courant = ... }", "a fixed step"]));
+            }
+            return;
+        }
+        for (name, contact) in self.case.contact.iter() {
+            if let Law::Displacement(_) = contact.law {
+                let message = "an explicit scheme knows the displacement at the end of the step before the contact force, so this law cannot hold";
+                let problem = Problem::new(format!("contact.{name}.law.displacement"), message);
+                self.problems.push(problem.found("displacement with central-difference").accepted(["velocity", "damped"]));
+            }
+        }
+        for (name, body) in self.case.body.iter() {
+            if body.mass == Mass::Consistent {
+                let message = "an explicit scheme divides by the mass: it must be diagonal";
+                let problem = Problem::new(format!("body.{name}.mass"), message);
+                self.problems.push(problem.found("consistent with central-difference").accepted(["lumped"]));
+            }
+        }
+    }
+
+    /// The step in seconds.
+    pub(super) fn step(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Option<f64> {
+        let end = self.case.time.end.0;
+        let (path, dt) = match self.case.time.step {
+            Step::Fixed(step) => ("time.step", step.0),
+            Step::FromMesh(StepRule::Courant(courant)) => ("time.step.courant", courant * crossing(mesh, bodies)),
+            Step::FromMesh(StepRule::Critical(fraction)) => ("time.step.critical", fraction * critical(mesh, bodies)),
+        };
+        let steps = step_count(end, dt);
+        if !(dt > 0.0 && dt.is_finite()) || steps > MOST_STEPS {
+            let problem = Problem::new(path, "the run would never end").found(format!("{:e} steps of {dt:e} s", end / dt));
+            self.problems.push(problem.accepted([format!("at most {MOST_STEPS:e} steps")]));
+            return None;
+        }
+        if steps == 0 {
+            let problem = Problem::new("time.end", "the run ends before its first step").found(format!("{end:e} s"));
+            self.problems.push(problem.accepted([format!("at least one step of {dt:e} s")]));
+            return None;
+        }
+        Some(dt)
+    }
+
+    /// The problem behind an error of the system.
+    pub(super) fn refused(&self, error: &Error) -> Problem {
+        match error {
+            Error::Body(cause) => {
+                let name = match cause {
+                    carom_bodies::Error::Empty { body }
+                    | carom_bodies::Error::WrongElement { body, .. }
+                    | carom_bodies::Error::NegativeRadius { body, .. } => body,
+                };
+                Problem::new(format!("body.{name}.region"), cause.to_string())
+            }
+            Error::Unstable { dt, critical } => {
+                let problem = Problem::new("time.step", "the step is above the critical step of the explicit scheme");
+                problem.found(format!("{dt:e} s")).accepted([format!("at most {critical:e} s"), "step = { critical = 0.9 }".to_string()])
+            }
+            other => Problem::new("time", other.to_string()),
+        }
+    }
+}
+
+/// Least time in which a wave crosses an element, h_e / c, in s.
+fn crossing(mesh: &Mesh, bodies: &[ModelBody]) -> f64 {
+    let time = |body: &ModelBody| {
+        let speed = body.spec.material.wave_speed(body.spec.kinematics.plane());
+        body.spec.cells.iter().map(|&cell| carom_bodies::smallest_size(mesh, cell) / speed).fold(f64::INFINITY, f64::min)
+    };
+    bodies.iter().map(time).fold(f64::INFINITY, f64::min)
+}
+
+/// Critical step 2/ω from element eigenvalues, in s.
+fn critical(mesh: &Mesh, bodies: &[ModelBody]) -> f64 {
+    let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
+    let bound = |body: &ModelBody| {
+        carom_bodies::Body::new(mesh, body.spec.clone(), &number).map_or(0.0, |body| body.frequency_bound())
+    };
+    2.0 / bodies.iter().map(bound).fold(0.0, f64::max)
+}
