@@ -1,0 +1,88 @@
+//! The README's two commands and the lints share one build of the dependencies.
+//!
+//! If a test dependency switches on a feature that faer sees, `cargo test` compiles faer and all below it a second time.
+//! A file of a compiled crate carries a hash of its features: the same crate in two files is the same crate built twice.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// The crate that is dear to build; all below it is built with it.
+const DEAR: &str = "faer";
+
+/// Compiled files by name of the crate.
+type Compiled = BTreeMap<String, BTreeSet<String>>;
+
+/// Whether the tests compile again what the program has compiled.
+pub fn check(root: &Path) -> Vec<String> {
+    let built = compiled(root, "cargo build --release");
+    let tested = compiled(root, "cargo test --release --workspace --no-run");
+    let (built, tested) = match (built, tested) {
+        (Ok(built), Ok(tested)) => (built, tested),
+        (Err(problem), _) | (_, Err(problem)) => return vec![problem],
+    };
+    let Some(first) = built.get(DEAR) else {
+        return vec![format!(
+            "`cargo build` did not name {DEAR}: has cargo changed its messages?"
+        )];
+    };
+    match tested.get(DEAR) {
+        Some(second) if second.is_subset(first) => Vec::new(),
+        _ => vec![format!(
+            "{DEAR} is compiled twice, for `cargo build` and for `cargo test`: a test dependency switches on a feature \
+             of it or of a crate below it (docs/src/developer/build.md)"
+        )],
+    }
+}
+
+/// Libraries that a command compiles or finds compiled.
+fn compiled(root: &Path, line: &str) -> Result<Compiled, String> {
+    let output = Command::new("cargo")
+        .args(line.split(' ').skip(1))
+        .arg("--message-format=json-render-diagnostics")
+        .current_dir(root)
+        .stderr(Stdio::inherit())
+        .output()
+        .map_err(|cause| format!("`{line}` could not be started: {cause}"))?;
+    if !output.status.success() {
+        return Err(format!("`{line}` failed: {}", output.status));
+    }
+    let mut compiled = Compiled::new();
+    for message in String::from_utf8_lossy(&output.stdout).lines() {
+        if let Some((name, file)) = artifact(message) {
+            compiled.entry(name).or_default().insert(file);
+        }
+    }
+    Ok(compiled)
+}
+
+/// Name and file of the library that a line of cargo's messages is about. Cargo writes one compact JSON object a line.
+fn artifact(message: &str) -> Option<(String, String)> {
+    if !message.contains(r#""reason":"compiler-artifact""#) || message.contains(r#""test":true"#) {
+        return None;
+    }
+    let target = message.split(r#""target":"#).nth(1)?;
+    let name = target.split(r#""name":""#).nth(1)?.split('"').next()?;
+    let files = message
+        .split(r#""filenames":["#)
+        .nth(1)?
+        .split(']')
+        .next()?;
+    let library = files.split('"').find(|file| file.ends_with(".rlib"))?;
+    Some((name.to_owned(), library.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::artifact;
+
+    #[test]
+    fn libraries_are_found_in_the_messages_of_cargo() {
+        let message = r#"{"reason":"compiler-artifact","package_id":"x#faer@0.24.0","target":{"kind":["lib"],"name":"faer"},"profile":{"test":false},"features":["std"],"filenames":["/t/libfaer-1.rlib","/t/libfaer-1.rmeta"],"fresh":true}"#;
+        assert_eq!(
+            artifact(message),
+            Some(("faer".to_owned(), "/t/libfaer-1.rlib".to_owned()))
+        );
+        assert_eq!(artifact(r#"{"reason":"build-finished"}"#), None);
+    }
+}
