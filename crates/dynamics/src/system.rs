@@ -126,6 +126,8 @@ pub struct System {
     pub load: Vec<f64>,
     /// Contacts.
     pub contacts: Vec<Contact>,
+    /// Faces of the secondary surface of each contact, their nodes by system number.
+    pub secondary_faces: Vec<Vec<Face>>,
     /// Bodies of each contact: the secondary's, and the primary's unless it is rigid.
     pub sides: Vec<(usize, Option<usize>)>,
     /// First contact point of each contact in the arrays over all points, and one end more.
@@ -202,6 +204,11 @@ impl System {
             .iter()
             .map(|contact| sides(contact, &model))
             .collect();
+        let faces_of = |contact: &ModelContact| {
+            let faces = contact.secondary.faces.iter();
+            faces.map(|face| renumbered(face, &number)).collect()
+        };
+        let secondary_faces = model.contacts.iter().map(faces_of).collect();
         let system = System {
             tolerance: 1e-12 * model.mesh.size(),
             dim,
@@ -218,6 +225,7 @@ impl System {
             fixed,
             load,
             contacts,
+            secondary_faces,
             sides,
             first_point,
             scheme: model.scheme,
