@@ -1,3 +1,63 @@
 //! Cases with an analytic or published answer.
+//!
+//! One file per case: its header states the problem, the closed solution, where the reference comes from, and why the
+//! tolerance is what it is. A case is a [`Check`] that computes rows (quantity, value, what it must be) at two sizes:
+//! the tests of this crate run all quick ones, [`verify`] the size that it is asked for.
+//!
+//! Adding a case: one file, its `mod` line, its name in the list below.
 
-pub mod bars;
+mod bars;
+mod build;
+mod check;
+mod error;
+mod figures;
+
+mod bars_theta;
+
+use std::io::{self, Write};
+
+pub use check::{Check, Expected, Row, Size, Verdict};
+pub use error::Error;
+
+/// Makes of one list of case modules the registry and one test per case at its quick size.
+macro_rules! registry {
+    ($($case:ident)*) => {
+        /// All cases.
+        pub fn checks() -> Vec<Check> {
+            vec![$($case::CHECK),*]
+        }
+
+        #[cfg(test)]
+        mod quick {
+            $(
+                #[test]
+                fn $case() {
+                    super::assert_quick(&super::$case::CHECK);
+                }
+            )*
+        }
+    };
+}
+
+registry! {
+    bars_theta
+}
+
+/// Runs all cases, or those whose name contains `filter`, and writes one line per row.
+///
+/// # Errors
+/// Only of `out`; a case that cannot be computed is written and counted as failed.
+pub fn verify(filter: Option<&str>, size: Size, out: &mut dyn Write) -> io::Result<Verdict> {
+    check::verify(&checks(), filter, size, out)
+}
+
+#[cfg(test)]
+fn assert_quick(check: &Check) {
+    let rows = (check.run)(Size::Quick).unwrap();
+    assert!(!rows.is_empty(), "nothing was checked");
+    for row in &rows {
+        println!("{row}");
+    }
+    let failed = rows.iter().filter(|row| !row.holds()).count();
+    assert_eq!(failed, 0, "{}: {}", check.name, check.fact);
+}

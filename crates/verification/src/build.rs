@@ -1,0 +1,115 @@
+//! Parts of models, in few words.
+
+use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_contact::law::{Adhesion, Capture, Damped, Displacement, Reading, Velocity};
+use carom_contact::{Law, Plane, Sliding};
+use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
+use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Scheme, Support};
+use carom_materials::Elastic;
+use carom_mesh::{Group, Mesh, Surface};
+
+use crate::Error;
+
+/// The theta scheme.
+pub(crate) fn theta(theta: f64) -> Scheme {
+    Scheme::Theta(Theta { theta })
+}
+
+/// Newmark's scheme.
+pub(crate) fn newmark(beta: f64, gamma: f64) -> Scheme {
+    Scheme::Newmark(Newmark { beta, gamma })
+}
+
+/// Newmark's parameters (β, γ) in the paper's three runs.
+pub(crate) const PAPER_SETS: [[f64; 2]; 3] = [[0.25, 0.5], [0.5, 0.5], [0.49, 0.9]];
+
+/// Central differences.
+pub(crate) const CENTRAL: Scheme = Scheme::CentralDifference(CentralDifference);
+
+/// The displacement law.
+pub(crate) const DISPLACEMENT: Law = Law::Displacement(Displacement);
+
+/// The velocity law with closure taken as it stands.
+pub(crate) const NOW: Law = velocity(Capture::Now);
+
+/// The velocity law with closure taken half a step ahead.
+pub(crate) const HALF: Law = velocity(Capture::Half);
+
+/// The velocity law.
+pub(crate) const fn velocity(capture: Capture) -> Law {
+    Law::Velocity(Velocity {
+        capture,
+        reading: Reading::Closed,
+    })
+}
+
+/// The damped law with k_p = E / h and C_n = `part` ρ c. `size`: h in m.
+pub(crate) fn damped(material: &Elastic, size: f64, part: f64, adhesion: Adhesion) -> Law {
+    let wave_speed = (material.young / material.density).sqrt();
+    Law::Damped(Damped {
+        stiffness: material.young / size,
+        damping: part * material.density * wave_speed,
+        adhesion,
+    })
+}
+
+/// A group of the mesh.
+pub(crate) fn group<'a>(mesh: &'a Mesh, name: &str) -> Result<&'a Group, Error> {
+    mesh.groups.get(name).ok_or_else(|| Error::Group {
+        name: name.to_string(),
+    })
+}
+
+/// The body made of the cells of a group, which gives its name; at rest, with lumped mass.
+pub(crate) fn body(
+    mesh: &Mesh,
+    name: &str,
+    kinematics: Kinematics,
+    material: Elastic,
+) -> Result<ModelBody, Error> {
+    Ok(ModelBody {
+        spec: BodySpec {
+            name: name.to_string(),
+            cells: group(mesh, name)?.elements.clone(),
+            kinematics,
+            material,
+        },
+        mass: MassKind::Lumped,
+        velocity: [0.0; 3],
+        displacement: [0.0; 3],
+    })
+}
+
+/// The surface of a body made of the facets of a group.
+pub(crate) fn surface(mesh: &Mesh, name: &str, body: &ModelBody) -> Result<Surface, Error> {
+    Ok(Surface::new(mesh, group(mesh, name)?, &body.spec.cells)?)
+}
+
+/// A contact, named "shock", with pairing anew at every step.
+pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> ModelContact {
+    ModelContact {
+        name: "shock".to_string(),
+        secondary,
+        primary,
+        law,
+        sliding: Sliding::Finite,
+    }
+}
+
+/// The rigid plane through the origin with the axis `axis` as normal, turned by `sign`.
+pub(crate) fn plane(axis: usize, sign: f64) -> ModelTarget {
+    let mut normal = [0.0; 3];
+    normal[axis] = sign;
+    ModelTarget::Plane(Plane {
+        point: [0.0; 3],
+        normal,
+    })
+}
+
+/// Holds the nodes of a group.
+pub(crate) fn support(mesh: &Mesh, name: &str, fix: [bool; 3]) -> Result<Support, Error> {
+    Ok(Support {
+        nodes: mesh.group_nodes(group(mesh, name)?),
+        fix,
+    })
+}

@@ -1,0 +1,27 @@
+//! Why a check could not be made.
+
+/// Errors of this crate: a model that cannot be built or run, never a wrong number.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A mesh could not be generated or its surfaces not be found.
+    #[error(transparent)]
+    Mesh(#[from] carom_mesh::Error),
+    /// A mesh file could not be read.
+    #[error(transparent)]
+    Read(#[from] carom_mesh::read::ReadError),
+    /// A system was refused or a step failed.
+    #[error(transparent)]
+    Dynamics(#[from] carom_dynamics::Error),
+    /// The exact solution was refused.
+    #[error(transparent)]
+    Exact(#[from] carom_exact::Error),
+    /// A pool of threads could not be started.
+    #[error(transparent)]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// A mesh lacks a group.
+    #[error("the mesh has no group '{name}'")]
+    Group {
+        /// Name of the group.
+        name: String,
+    },
+}

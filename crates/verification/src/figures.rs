@@ -1,0 +1,136 @@
+//! Histories of a contact, and the figures of merit of bars against the exact solution.
+
+use carom_dynamics::{Driver, Observer, State, StepReport, System, march};
+
+use crate::Error;
+use crate::bars::Run;
+
+/// History of the first contact and of the balance, one entry per step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct History {
+    /// Time at the end of each step, s.
+    pub(crate) time: Vec<f64>,
+    /// Contact force, N.
+    pub(crate) force: Vec<f64>,
+    /// Gap rate at the point of least gap, m/s.
+    pub(crate) rate: Vec<f64>,
+    /// Kinetic and strain energy, J.
+    pub(crate) energy: Vec<f64>,
+}
+
+impl Observer for History {
+    fn accepted(
+        &mut self,
+        _system: &System,
+        _state: &State,
+        report: &StepReport,
+    ) -> Result<(), carom_dynamics::Error> {
+        if report.step > 0 {
+            self.time.push(report.time);
+            self.force.push(report.contacts[0].force);
+            self.rate.push(report.contacts[0].rate);
+            self.energy.push(report.balance.energy());
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self, _system: &System, _state: &State) -> Result<(), carom_dynamics::Error> {
+        Ok(())
+    }
+}
+
+/// Figures of merit of a run of bars.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Figures {
+    /// Relative L2 error of the contact force, step by step against the mean of the exact force over the step, on all
+    /// steps that meet the exact contact.
+    pub(crate) force_error: f64,
+    /// (max F - F0) / F0.
+    pub(crate) overshoot: f64,
+    /// Energy at the end / initial - 1.
+    pub(crate) energy_change: f64,
+    /// The same for the energy that the scheme balances: with its term in |a|².
+    pub(crate) balanced_change: f64,
+    /// Changes of "F > 1e-4 F0", the closing at the first step not counted.
+    pub(crate) switches: usize,
+    /// Separation of the mean velocities along the axis / v0.
+    pub(crate) restitution: f64,
+    /// Largest penetration / (v0 dt).
+    pub(crate) penetration: f64,
+    /// Largest |F ġ₊| / (F0 v0) after the impact step and before 0.98 of the contact.
+    pub(crate) defect: f64,
+    /// Largest absolute energy residual / initial energy.
+    pub(crate) residual: f64,
+    /// Largest component of the momentum residual / largest momentum or impulse.
+    pub(crate) momentum_residual: f64,
+}
+
+/// Runs the bars: history and figures.
+///
+/// # Errors
+/// What the system or a step refuses.
+pub(crate) fn run(run: &Run) -> Result<(History, Figures), Error> {
+    let (driver, history) = drive(run)?;
+    let figures = figures(run, &driver, &history)?;
+    Ok((history, figures))
+}
+
+/// Runs the bars to the end of the run.
+pub(crate) fn drive(run: &Run) -> Result<(Driver, History), Error> {
+    let mut driver = Driver::new(System::new(run.model()?)?)?;
+    let mut history = History::default();
+    let end = run.end * run.set.duration();
+    march(&mut driver, end, &mut [&mut history], &|| false)?;
+    Ok((driver, history))
+}
+
+fn figures(run: &Run, driver: &Driver, history: &History) -> Result<Figures, Error> {
+    let (f0, v0, duration) = (run.force(), run.set.speed, run.set.duration());
+    let force = &history.force;
+    let active: Vec<bool> = force.iter().map(|force| *force > 1e-4 * f0).collect();
+    let first = active.iter().position(|active| *active).unwrap_or(0);
+    let persistent = (first + 1..force.len()).filter(|&k| history.time[k] < 0.98 * duration);
+    let state = driver.state();
+    let (ledger, records) = (&state.ledger, &state.records.contacts[0]);
+    let (start, end) = (&ledger.initial, &ledger.balance);
+    Ok(Figures {
+        force_error: force_error(run, history)?,
+        overshoot: force.iter().fold(0.0_f64, |m, f| m.max(*f)) / f0 - 1.0,
+        energy_change: end.energy() / start.energy() - 1.0,
+        balanced_change: (end.energy() + end.scheme_energy)
+            / (start.energy() + start.scheme_energy)
+            - 1.0,
+        switches: active.windows(2).filter(|pair| pair[0] != pair[1]).count(),
+        restitution: separation(run, driver) / v0,
+        penetration: records.penetration / (v0 * run.dt()),
+        defect: persistent
+            .map(|k| (force[k] * history.rate[k]).abs() / (f0 * v0))
+            .fold(0.0, f64::max),
+        residual: ledger.largest_energy_residual / start.energy(),
+        momentum_residual: ledger.largest_momentum_residual / ledger.largest_momentum,
+    })
+}
+
+/// Mean velocity of the target, or zero, less that of the striker, m/s.
+fn separation(run: &Run, driver: &Driver) -> f64 {
+    let (system, v) = (driver.system(), &driver.state().motion.v);
+    let mean = |body| system.mean_velocity(body, v)[run.axis()];
+    match system.bodies.len() {
+        1 => -mean(0),
+        _ => mean(1) - mean(0),
+    }
+}
+
+fn force_error(run: &Run, history: &History) -> Result<f64, Error> {
+    let (duration, dt) = (run.set.duration(), run.dt());
+    let exact = run.exact(run.end.max(1.0) * duration + dt)?;
+    let (mut error, mut norm) = (0.0, 0.0);
+    for (&end, force) in history.time.iter().zip(&history.force) {
+        if end - dt < duration * (1.0 - 1e-12) {
+            let mean = exact.force().mean(end - dt, end);
+            error += (force - mean).powi(2);
+            norm += mean.powi(2);
+        }
+    }
+    Ok((error / norm).sqrt())
+}
