@@ -2,9 +2,13 @@
 
 use std::ops::Range;
 
-use carom_algebra::Error;
+use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
+use carom_algebra::pattern::Cliques;
 use carom_algebra::solver::{Cholesky, FactorStats, Response, SparseRow};
+
+use crate::error::Error;
+use crate::system::{System, push_cliques};
 
 /// A of the step for one connected part.
 ///
@@ -29,7 +33,11 @@ pub(crate) enum Column {
 
 impl Operator {
     /// Factorises a symmetric positive definite matrix; unknowns marked `fixed` are taken out.
-    pub(crate) fn factored(matrix: &Csr, fixed: &[bool], dim: usize) -> Result<Operator, Error> {
+    pub(crate) fn factored(
+        matrix: &Csr,
+        fixed: &[bool],
+        dim: usize,
+    ) -> Result<Operator, AlgebraError> {
         let groups: Vec<u32> = (0..matrix.n as u32)
             .map(|unknown| unknown / dim as u32)
             .collect();
@@ -142,6 +150,42 @@ pub(crate) struct Operators {
 }
 
 impl Operators {
+    /// `mass_factor` M + `stiffness_factor` K of every part, ready to solve with; `matrix`: its name for messages.
+    ///
+    /// # Errors
+    /// The matrix of a part is not positive definite.
+    pub(crate) fn new(
+        system: &System,
+        mass_factor: f64,
+        stiffness_factor: f64,
+        matrix: &'static str,
+    ) -> Result<Operators, Error> {
+        let operator = |part: &Range<usize>| {
+            let fixed = &system.fixed[part.clone()];
+            if stiffness_factor == 0.0 && system.mass.consistent.is_none() {
+                let lumped = system.mass.lumped[part.clone()].iter();
+                let diagonal: Vec<f64> = lumped.map(|m| mass_factor * m).collect();
+                return Ok(Operator::diagonal(&diagonal, fixed));
+            }
+            let a = assembled(system, part, mass_factor, stiffness_factor);
+            let node = system.mesh_node[part.start / system.dim];
+            Operator::factored(&a, fixed, system.dim).map_err(|cause| Error::Factor {
+                matrix,
+                node,
+                cause,
+            })
+        };
+        let operators = system
+            .parts
+            .iter()
+            .map(operator)
+            .collect::<Result<_, _>>()?;
+        Ok(Operators {
+            parts: system.parts.clone(),
+            operators,
+        })
+    }
+
     /// `begin` on every part; vectors of the whole system.
     pub(crate) fn begin(&mut self, r: &[f64], y: &mut [f64]) {
         for (part, operator) in self.parts.iter().zip(&mut self.operators) {
@@ -160,4 +204,28 @@ impl Operators {
     pub(crate) fn part_of(&self, unknown: usize) -> usize {
         self.parts.partition_point(|part| part.end <= unknown)
     }
+}
+
+/// `mass_factor` M + `stiffness_factor` K of one part.
+fn assembled(system: &System, part: &Range<usize>, mass_factor: f64, stiffness_factor: f64) -> Csr {
+    let mut cliques = Cliques::new();
+    for body in &system.bodies {
+        push_cliques(body, system.dim, part, &mut cliques);
+    }
+    let mut a = Csr::from_cliques(part.len(), &cliques);
+    for body in &system.bodies {
+        body.assemble(stiffness_factor, 0.0, part, &mut a);
+    }
+    for (i, m) in system.mass.lumped[part.clone()].iter().enumerate() {
+        a.add(i, i, mass_factor * m);
+    }
+    if let Some(mass) = &system.mass.consistent {
+        for i in part.clone() {
+            let (columns, values) = mass.row(i);
+            for (&j, m) in columns.iter().zip(values).filter(|(_, m)| **m != 0.0) {
+                a.add(i - part.start, j as usize - part.start, mass_factor * m);
+            }
+        }
+    }
+    a
 }

@@ -1,0 +1,205 @@
+//! The contacts of a step: pairing, candidates, forces.
+
+use std::sync::Arc;
+
+use carom_contact::law::{Level, Status};
+use carom_contact::{Places, Rows, Sliding};
+
+use super::Driver;
+use crate::error::Error;
+use crate::interface::{Candidate, Failure};
+use crate::state::Motion;
+use crate::step_map::Row;
+
+impl Driver {
+    pub(super) fn pair_initially(&mut self) {
+        let system = Arc::clone(&self.system);
+        let places = Places {
+            dim: system.dim,
+            x: &system.x,
+            u: &self.vectors.work,
+        };
+        let rows = system
+            .contacts
+            .iter()
+            .zip(&mut self.search)
+            .map(|(contact, search)| match contact.sliding {
+                Sliding::Finite => None,
+                Sliding::Small => {
+                    let mut rows = Rows::default();
+                    rows.clear();
+                    contact.pair(&places, search, &mut rows);
+                    Some(rows)
+                }
+            });
+        self.initial_rows = rows.collect();
+    }
+
+    /// Pairs all contacts at their captured instant; `now` takes the state as it is.
+    pub(super) fn place(&mut self, now: bool) {
+        let system = Arc::clone(&self.system);
+        let (map, dt, motion) = (&self.map, system.dt, &self.state.motion);
+        self.rows.clear();
+        self.ahead.clear();
+        let mut capture = f64::NAN;
+        for (k, contact) in system.contacts.iter().enumerate() {
+            let place = match now {
+                true => Row {
+                    u: 1.0,
+                    ..Row::default()
+                },
+                false => Row {
+                    v: map.placed.v + contact.law.get().capture() * dt,
+                    ..map.placed
+                },
+            };
+            if capture != place.v {
+                place.known(&motion.u, &motion.v, &motion.a, &mut self.vectors.known);
+                capture = place.v;
+            }
+            let u = &self.vectors.known;
+            match &self.initial_rows[k] {
+                Some(initial) => self.rows.append_moved(initial, u),
+                None => {
+                    let places = Places {
+                        dim: system.dim,
+                        x: &system.x,
+                        u,
+                    };
+                    contact.pair(&places, &mut self.search[k], &mut self.rows);
+                }
+            }
+            let end = map.displacement;
+            let ahead = Row {
+                u: end.u - place.u,
+                v: end.v - place.v,
+                a: end.a - place.a,
+                x: end.x,
+            };
+            self.ahead.resize(self.rows.len(), ahead);
+        }
+    }
+
+    /// Points that may carry a force. Laws in the rate say so themselves; others are taken when they carried one or when
+    /// twice the present rate would close them, and the others checked after the solve.
+    pub(super) fn choose_candidates(&mut self) {
+        let system = &self.system;
+        self.candidates.clear();
+        for point in 0..system.points() {
+            let gap = self.rows.gap(point);
+            let law = system.point(point).0.law;
+            let watched = gap < f64::INFINITY && law.get().watches(gap, system.tolerance);
+            let within = law.get().level() == Level::Rate
+                || self.state.interface.status[point] != Status::Open
+                || gap + 2.0 * system.dt * self.rows.product(point, &self.state.motion.v).min(0.0)
+                    <= system.tolerance;
+            self.next.interface.watched[point] = watched;
+            if watched && within {
+                self.candidates.push(point as u32);
+            }
+        }
+    }
+
+    pub(super) fn solve_interface(&mut self) -> Result<(), Error> {
+        let system = &*self.system;
+        let motion = &self.state.motion;
+        let interface_error = |cause, points| Error::Interface {
+            step: self.state.step + 1,
+            points,
+            cause,
+        };
+        self.compliance
+            .update(
+                &self.candidates,
+                &self.rows,
+                &system.fixed,
+                &mut self.operators,
+            )
+            .map_err(|cause| interface_error(cause, self.candidates.len()))?;
+        self.candidate_data.clear();
+        for &point in &self.candidates {
+            let at = point as usize;
+            let (contact, place) = system.point(at);
+            let free = self
+                .compliance
+                .free(point, &self.operators, &self.vectors.half);
+            let [nu, nv, na] =
+                [&motion.u, &motion.v, &motion.a].map(|vector| self.rows.product(at, vector));
+            let value = |row: &Row| row.u * nu + row.v * nv + row.a * na + row.x * free;
+            self.candidate_data.push(Candidate {
+                law: contact.law,
+                area: contact.points[place].area,
+                gap_free: self.rows.gap(at) + value(&self.ahead[at]),
+                rate_free: value(&self.map.rate),
+                status: self.state.interface.status[at],
+            });
+        }
+        let factors = [self.map.displacement.x, self.map.rate.x];
+        let solved = self.interface.solve(
+            &self.candidate_data,
+            (&self.compliance.matrix, self.compliance.version),
+            factors,
+        );
+        if let Err(failure) = solved {
+            return Err(match failure {
+                Failure::Singular { points, cause } => interface_error(cause, points),
+                Failure::Cycling { passes, candidate } => {
+                    let (contact, point) = system.point(self.candidates[candidate] as usize);
+                    Error::Statuses {
+                        step: self.state.step + 1,
+                        passes,
+                        contact: contact.name.clone(),
+                        point,
+                    }
+                }
+            });
+        }
+        for (&point, &force) in self.candidates.iter().zip(&self.interface.forces) {
+            if force != 0.0 {
+                self.compliance
+                    .add(point, force, &self.operators, &mut self.vectors.half);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the points that ended penetrating without having been candidates; whether there are any.
+    pub(super) fn add_missed(&mut self) -> bool {
+        let before = self.candidates.len();
+        let motion = &self.state.motion;
+        for point in 0..self.system.points() {
+            let level = self.system.point(point).0.law.get().level();
+            if level == Level::Rate || self.rows.gap(point) == f64::INFINITY {
+                continue;
+            }
+            if self.candidates[..before]
+                .binary_search(&(point as u32))
+                .is_ok()
+            {
+                continue;
+            }
+            if self.rows.gap(point)
+                + on_row(
+                    &self.rows,
+                    point,
+                    &self.ahead[point],
+                    motion,
+                    &self.vectors.x,
+                )
+                < 0.0
+            {
+                self.candidates.push(point as u32);
+            }
+        }
+        self.candidates.sort_unstable();
+        self.candidates.len() > before
+    }
+}
+
+/// N applied to a row of the step, for one point.
+pub(super) fn on_row(rows: &Rows, point: usize, row: &Row, motion: &Motion, x: &[f64]) -> f64 {
+    row.u * rows.product(point, &motion.u)
+        + row.v * rows.product(point, &motion.v)
+        + row.a * rows.product(point, &motion.a)
+        + row.x * rows.product(point, x)
+}

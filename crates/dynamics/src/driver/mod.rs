@@ -1,0 +1,399 @@
+//! The one driver of all steps: free motion, interface problem, correction, balance.
+//!
+//! What it holds besides the state is a function of the system and the state, or scratch: a run goes on from a saved
+//! state with the same bits.
+
+mod balance;
+mod contacts;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use carom_algebra::solver::FactorStats;
+use carom_bodies::Scratch;
+use carom_contact::law::Status;
+use carom_contact::{Rows, Search};
+
+use crate::compliance::Compliance;
+use crate::error::Error;
+use crate::interface::{Candidate, Interface};
+use crate::ledger::{Ledger, Resultant, reactions};
+use crate::operator::Operators;
+use crate::records::{ContactRecord, Records};
+use crate::scheme::EnergyIdentity;
+use crate::state::{ContactReport, InterfaceState, Motion, State, StepReport};
+use crate::step_map::{Row, StepMap};
+use crate::system::System;
+use balance::energies;
+use contacts::on_row;
+
+/// Takes steps.
+pub struct Driver {
+    system: Arc<System>,
+    map: StepMap,
+    identity: EnergyIdentity,
+    operators: Operators,
+    compliance: Compliance,
+    interface: Interface,
+    forces: Forces,
+    /// Rows at zero displacement of contacts with small sliding.
+    initial_rows: Vec<Option<Rows>>,
+    search: Vec<Search>,
+    rows: Rows,
+    /// For each point, the factors of u, v, a and x in its gap at the end, counted from the paired configuration.
+    ahead: Vec<Row>,
+    candidates: Vec<u32>,
+    candidate_data: Vec<Candidate>,
+    state: State,
+    next: State,
+    report: StepReport,
+    vectors: Vectors,
+    phases: Phases,
+}
+
+/// Internal forces of all bodies with their buffers.
+struct Forces {
+    scratch: Vec<Scratch>,
+    sweeps: usize,
+}
+
+impl Forces {
+    /// f(u) into `f`; returns U(u).
+    fn evaluate(&mut self, system: &System, u: &[f64], f: &mut [f64]) -> f64 {
+        f.fill(0.0);
+        self.sweeps += 1;
+        let bodies = system.bodies.iter().zip(&mut self.scratch);
+        bodies
+            .map(|(body, scratch)| body.internal_force(u, scratch, f))
+            .sum()
+    }
+}
+
+#[derive(Default)]
+struct Vectors {
+    residual: Vec<f64>,
+    half: Vec<f64>,
+    x: Vec<f64>,
+    known: Vec<f64>,
+    work: Vec<f64>,
+    inertia: Vec<f64>,
+}
+
+/// Wall time spent so far by phase of the step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Phases {
+    /// Analysis and factorisation, before the first step.
+    pub factorisation: Duration,
+    /// Internal forces.
+    pub forces: Duration,
+    /// Forward and backward sweeps of the free motion and the correction.
+    pub sweeps: Duration,
+    /// Pairing, columns, interface problem.
+    pub contact: Duration,
+    /// Balance, records, vector updates.
+    pub balance: Duration,
+}
+
+/// What the run cost so far.
+#[derive(Clone, Debug, Default)]
+pub struct Costs {
+    /// One entry per connected part with a factor.
+    pub factors: Vec<FactorStats>,
+    /// Columns A⁻¹ Nᵀ computed.
+    pub columns: usize,
+    /// Bytes of columns and compliance.
+    pub compliance_bytes: usize,
+    /// Internal-force sweeps.
+    pub force_sweeps: usize,
+    /// Times.
+    pub phases: Phases,
+}
+
+impl Driver {
+    /// Factorises the effective matrix of each part and sets the initial state.
+    ///
+    /// # Errors
+    /// A matrix that is not positive definite.
+    pub fn new(system: Arc<System>) -> Result<Driver, Error> {
+        let scheme = system.scheme.get();
+        let (map, identity) = (
+            scheme.step_map(system.dt),
+            scheme.energy_identity(system.dt),
+        );
+        let begin = Instant::now();
+        let operators = Operators::new(&system, map.inertia.x, map.force.x, "effective matrix")?;
+        let factorisation = begin.elapsed();
+        let (n, points) = (system.unknowns(), system.points());
+        let zeros = || vec![0.0; n];
+        let mut driver = Driver {
+            map,
+            identity,
+            operators,
+            compliance: Compliance::new(points),
+            interface: Interface::default(),
+            forces: Forces {
+                scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
+                sweeps: 0,
+            },
+            initial_rows: Vec::new(),
+            search: system.contacts.iter().map(|_| Search::default()).collect(),
+            rows: Rows::default(),
+            ahead: Vec::new(),
+            candidates: Vec::new(),
+            candidate_data: Vec::new(),
+            state: empty_state(&system),
+            next: empty_state(&system),
+            report: StepReport {
+                contacts: vec![ContactReport::default(); system.contacts.len()],
+                ..StepReport::default()
+            },
+            vectors: Vectors {
+                residual: zeros(),
+                half: zeros(),
+                x: zeros(),
+                known: zeros(),
+                work: zeros(),
+                inertia: zeros(),
+            },
+            phases: Phases {
+                factorisation,
+                ..Phases::default()
+            },
+            system,
+        };
+        driver.pair_initially();
+        driver.start()?;
+        Ok(driver)
+    }
+
+    /// A driver that goes on from a saved state.
+    ///
+    /// # Errors
+    /// As [`Driver::new`].
+    pub fn resume(system: Arc<System>, state: State) -> Result<Driver, Error> {
+        let mut driver = Driver::new(system)?;
+        driver.next.clone_from(&state);
+        driver.state = state;
+        Ok(driver)
+    }
+
+    /// The system.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// The last accepted state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// What the last step did.
+    pub fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    /// What the run cost so far.
+    pub fn costs(&self) -> Costs {
+        Costs {
+            factors: self
+                .operators
+                .operators
+                .iter()
+                .filter_map(|operator| operator.stats().cloned())
+                .collect(),
+            columns: self.compliance.columns_computed,
+            compliance_bytes: self.compliance.bytes(),
+            force_sweeps: self.forces.sweeps,
+            phases: self.phases,
+        }
+    }
+
+    /// Initial state: internal forces, the acceleration in balance without contact forces, gaps, energies.
+    fn start(&mut self) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        let motion = &mut self.state.motion;
+        motion.u.copy_from_slice(&system.initial_displacement);
+        motion.v.copy_from_slice(&system.initial_velocity);
+        let strain = self
+            .forces
+            .evaluate(&system, &motion.u, &mut motion.internal_force);
+        if system.scheme.get().keeps_acceleration() {
+            let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
+            for i in 0..system.unknowns() {
+                let balance = system.load[i] - motion.internal_force[i];
+                self.vectors.residual[i] = if system.fixed[i] { 0.0 } else { balance };
+            }
+            mass.begin(&self.vectors.residual, &mut self.vectors.half);
+            mass.end(&mut self.vectors.half, &mut motion.a);
+        }
+        let energies = energies(
+            &system,
+            motion,
+            strain,
+            &mut self.vectors.work,
+            self.identity.inertia != 0.0,
+        );
+        system.mass.multiply(&motion.a, &mut self.vectors.inertia);
+        let motion = &self.state.motion;
+        reactions(
+            &system,
+            &self.map,
+            motion,
+            motion,
+            &self.vectors.inertia,
+            &mut self.vectors.work,
+        );
+        let supports = Resultant::of(&system, &self.vectors.work);
+        let loads = Resultant::of(&system, &system.load);
+        self.state.ledger = Ledger::start(
+            &energies,
+            &self.identity,
+            [loads, Resultant::default(), supports],
+        );
+        self.state.records = Records {
+            contacts: vec![ContactRecord::default(); system.contacts.len()],
+            impacts: Vec::new(),
+        };
+        self.place(true);
+        for point in 0..system.points() {
+            self.state.interface.gap[point] = self.rows.gap(point);
+            self.state.interface.rate[point] = self.rows.product(point, &self.state.motion.v);
+        }
+        self.next.clone_from(&self.state);
+        self.tell();
+        Ok(())
+    }
+
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// A contact problem without solution, or a motion that is not finite. The state is then the one before the step.
+    pub fn step(&mut self) -> Result<(), Error> {
+        let begin = Instant::now();
+        let predicted = self.residual();
+        let forces = Instant::now();
+        self.place(false);
+        self.choose_candidates();
+        let mut sweeps = Duration::ZERO;
+        loop {
+            let begin = Instant::now();
+            self.operators
+                .begin(&self.vectors.residual, &mut self.vectors.half);
+            sweeps += begin.elapsed();
+            self.solve_interface()?;
+            let begin = Instant::now();
+            self.operators
+                .end(&mut self.vectors.half, &mut self.vectors.x);
+            sweeps += begin.elapsed();
+            if !self.add_missed() {
+                break;
+            }
+        }
+        let solved = Instant::now();
+        self.advance();
+        let strain = self.end_forces(predicted);
+        let ended = Instant::now();
+        self.balance(strain);
+        self.finite()?;
+        self.phases.forces += (forces - begin) + (ended - solved);
+        self.phases.sweeps += sweeps;
+        self.phases.contact += (solved - forces).saturating_sub(sweeps);
+        self.phases.balance += ended.elapsed();
+        std::mem::swap(&mut self.state, &mut self.next);
+        self.tell();
+        Ok(())
+    }
+
+    /// Residual of the momentum balance with x = 0; returns the strain energy at the place of the internal forces.
+    fn residual(&mut self) -> f64 {
+        let (system, motion) = (&*self.system, &self.state.motion);
+        let Vectors {
+            residual,
+            known,
+            work,
+            ..
+        } = &mut self.vectors;
+        self.map.force.known(&motion.u, &motion.v, &motion.a, known);
+        let energy = self.forces.evaluate(system, known, residual);
+        self.map
+            .inertia
+            .known(&motion.u, &motion.v, &motion.a, known);
+        system.mass.multiply(known, work);
+        // the internal forces are needed again at the end of an explicit step
+        self.next.motion.internal_force.copy_from_slice(residual);
+        for i in 0..residual.len() {
+            residual[i] = if system.fixed[i] {
+                0.0
+            } else {
+                system.load[i] - work[i] - residual[i]
+            };
+        }
+        energy
+    }
+
+    /// Writes the motion and the interface at the end of the step.
+    fn advance(&mut self) {
+        let system = &*self.system;
+        let (old, map, x) = (&self.state.motion, &self.map, &self.vectors.x);
+        let new = &mut self.next.motion;
+        map.displacement
+            .whole(&old.u, &old.v, &old.a, x, &mut new.u);
+        map.velocity.whole(&old.u, &old.v, &old.a, x, &mut new.v);
+        map.acceleration
+            .whole(&old.u, &old.v, &old.a, x, &mut new.a);
+        new.contact_force.fill(0.0);
+        let interface = &mut self.next.interface;
+        interface.force.fill(0.0);
+        interface.status.fill(Status::Open);
+        for (k, &point) in self.candidates.iter().enumerate() {
+            interface.force[point as usize] = self.interface.forces[k];
+            interface.status[point as usize] = self.interface.statuses[k];
+            self.rows.add_force(
+                point as usize,
+                self.interface.forces[k],
+                &mut new.contact_force,
+            );
+        }
+        for point in 0..system.points() {
+            interface.gap[point] =
+                self.rows.gap(point) + on_row(&self.rows, point, &self.ahead[point], old, x);
+            interface.rate[point] = on_row(&self.rows, point, &map.rate, old, x);
+        }
+        self.next.step = self.state.step + 1;
+        self.next.time = self.next.step as f64 * system.dt;
+    }
+
+    /// Internal forces at the end of the step; returns the strain energy.
+    fn end_forces(&mut self, predicted: f64) -> f64 {
+        if self.map.force.x == 0.0 && self.map.force == self.map.displacement {
+            return predicted;
+        }
+        let motion = &mut self.next.motion;
+        self.forces
+            .evaluate(&self.system, &motion.u, &mut motion.internal_force)
+    }
+}
+
+fn empty_state(system: &System) -> State {
+    let (zeros, points) = (vec![0.0; system.unknowns()], system.points());
+    State {
+        step: 0,
+        time: 0.0,
+        motion: Motion {
+            u: zeros.clone(),
+            v: zeros.clone(),
+            a: zeros.clone(),
+            internal_force: zeros.clone(),
+            contact_force: zeros,
+        },
+        interface: InterfaceState {
+            force: vec![0.0; points],
+            gap: vec![0.0; points],
+            rate: vec![0.0; points],
+            status: vec![Status::Open; points],
+            watched: vec![false; points],
+        },
+        ledger: Ledger::default(),
+        records: Records::default(),
+    }
+}
