@@ -131,6 +131,18 @@ pub enum Error {
         /// What it said.
         cause: String,
     },
+    /// A probe on a group without a node of a body.
+    #[error("probe '{name}' follows no node of a body")]
+    Probe {
+        /// Name of the probe.
+        name: String,
+    },
+    /// The thread that writes fields could not be started.
+    #[error("cannot start the thread that writes fields: {0}")]
+    Thread(#[source] io::Error),
+    /// The thread that writes fields ended before its work.
+    #[error("the thread that writes fields is gone")]
+    Writer,
     /// The page could not be made from its template.
     #[error("cannot make the report: {0}")]
     Template(#[from] minijinja::Error),

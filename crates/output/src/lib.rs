@@ -1,6 +1,6 @@
 //! What a run leaves behind: the results folder and every file in it.
 //!
-//! The modules here turn plain data into files and know neither the case file nor the command line. Every file is
+//! [`Results`] observes a run and fills the folder; the other modules turn plain data into files and know neither the case file nor the command line. Every file is
 //! either written whole and renamed into place ([`atomic`]) or grows by complete rows ([`rows`]), so that a run cut
 //! anywhere, by a full disk or by a signal, leaves files that can be read.
 //!
@@ -13,12 +13,14 @@ pub mod impacts;
 pub mod plot;
 pub mod pvd;
 pub mod report;
+pub mod results;
 pub mod rows;
 pub mod summary;
 pub mod vtu;
 pub mod window;
 
 mod error;
+mod writer;
 
 pub use error::Error;
 pub use folder::Folder;
@@ -26,4 +28,5 @@ pub use history::History;
 pub use impacts::{ImpactRow, ImpactTable};
 pub use pvd::Collection;
 pub use report::Report;
+pub use results::{Ending, Fields, Probe, Reference, Results, Settings};
 pub use summary::Summary;

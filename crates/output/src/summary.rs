@@ -33,8 +33,8 @@ pub struct Summary {
     pub energy: Energy,
     /// Balance of linear momentum.
     pub momentum: Momentum,
-    /// Errors against the exact solution, where the case names one.
-    pub exact: Vec<ExactError>,
+    /// Distance from the exact solution, where the case names one.
+    pub exact: Option<Exact>,
     /// Work done, in counts that do not depend on the machine.
     pub counts: Counts,
     /// Seconds spent, by the name of the part.
@@ -155,7 +155,7 @@ pub struct Contact {
     pub status_changes: u64,
     /// Largest penetration (minus the smallest gap), m, zero if never penetrated.
     pub max_penetration: f64,
-    /// Persistency defect: Σ |P · gap rate| dt over the steps after closing, J.
+    /// Persistency defect: Σ |P · gap rate| dt over the steps, J.
     pub persistency_defect: f64,
     /// Impacts from closing to release.
     pub impacts: usize,
@@ -174,13 +174,17 @@ pub struct Energy {
     pub kinetic_final: f64,
     /// Strain energy at the end.
     pub strain_final: f64,
-    /// Further work and stored or lost energies over the run, by name, positive when the bodies *gain*: `loads`,
-    /// `supports`, `contact`, `scheme`, `material`.
+    /// Further work and stored or lost energies over the run, by name, positive when the bodies *gain*: `work of
+    /// loads`, `work of contact`, `dissipation of the scheme`, and `stored by the scheme` where its energy has a term
+    /// of its own.
     pub works: BTreeMap<String, f64>,
     /// Final - initial - Σ works.
     #[serde(with = "float")]
     pub residual: f64,
-    /// `residual` over the largest total energy of the run; what the check bounds.
+    /// Largest magnitude of the residual over the run.
+    #[serde(with = "float")]
+    pub largest_residual: f64,
+    /// `largest_residual` over the largest kinetic and strain energy of the run; what the check bounds.
     #[serde(with = "float")]
     pub relative_residual: f64,
 }
@@ -196,21 +200,39 @@ pub struct Momentum {
     pub impulses: BTreeMap<String, [f64; 3]>,
     /// Final - initial - Σ impulses.
     pub residual: [f64; 3],
-    /// Largest component of `residual` over the largest Σ |m v| of the run.
+    /// Largest component of the residual over the run, relative to the largest momentum or impulse, or to sqrt(2 m E),
+    /// the momentum that its largest energy could hold, if that is larger; what the check bounds.
     #[serde(with = "float")]
     pub relative_residual: f64,
 }
 
-/// Error of one history against the exact solution.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ExactError {
-    /// Name of the exact solution and of the quantity: `two-bars: contact force`.
-    pub quantity: String,
-    /// Relative error in the L² norm over the run.
-    #[serde(with = "float")]
-    pub relative_l2: f64,
-    /// Largest relative overshoot: (computed maximum - exact maximum) / exact maximum.
+/// Distance of one contact from its exact solution. Relative errors are `null` where there is nothing to be relative to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Exact {
+    /// Name of the exact solution: `two-bars`.
+    pub name: String,
+    /// Name of the contact.
+    pub contact: String,
+    /// Relative L² error of the contact force, step by step against the mean of the exact force over the step, on all
+    /// steps that meet the exact contact.
+    pub force_error: Option<f64>,
+    /// Relative L² error of the displacements of the contact points, counted from the start, over the run.
+    pub displacement_error: Option<f64>,
+    /// Largest exact force, N.
+    pub peak_force: f64,
+    /// Largest force of a single step / largest exact force - 1.
     pub overshoot: Option<f64>,
+    /// Largest mean of the force over the window / largest exact force - 1.
+    pub mean_overshoot: Option<f64>,
+    /// Exact impulse up to the end of the run, N s.
+    pub impulse: f64,
+    /// Impulse / exact impulse - 1.
+    #[serde(with = "float")]
+    pub impulse_error: f64,
+    /// Speed at which the mean motions part at the end of the run over that at which they approach at its start.
+    pub restitution: Option<f64>,
+    /// The same of the exact solution.
+    pub exact_restitution: Option<f64>,
 }
 
 /// Work done, in counts that do not depend on the machine.
@@ -224,6 +246,12 @@ pub struct Counts {
     pub factor_entries: u64,
     /// Bytes of the factor.
     pub factor_bytes: u64,
+    /// Columns A⁻¹ Nᵀ computed for contact points.
+    pub contact_columns: u64,
+    /// Bytes of these columns and of the compliance of the contact.
+    pub compliance_bytes: u64,
+    /// Evaluations of the internal forces.
+    pub force_sweeps: u64,
     /// Iterations of the contact status over the run.
     pub status_iterations: u64,
 }

@@ -1,6 +1,6 @@
 //! The figures of every run: what happens at the contact point, and where the energy goes.
 
-use super::{Axis, Curve, Figure, Panel, Role};
+use super::{Axis, Curve, Figure, Panel};
 
 const TIME: Axis = Axis {
     quantity: "time",
@@ -56,47 +56,35 @@ pub fn contact_figure<'a>(title: &str, curves: ContactCurves<'a>) -> Figure<'a> 
     }
 }
 
-/// Histories of energy, J, all of the same length.
-#[derive(Clone, Copy, Debug)]
+/// Curves of energy, J.
+#[derive(Clone, Debug, Default)]
 pub struct EnergyCurves<'a> {
-    /// Instants, s.
-    pub time: &'a [f64],
-    /// Kinetic energy.
-    pub kinetic: &'a [f64],
-    /// Strain energy.
-    pub strain: &'a [f64],
-    /// Kinetic plus strain energy.
-    pub total: &'a [f64],
-    /// Energy dissipated since the start, positive when lost.
-    pub dissipated: &'a [f64],
+    /// Kinetic, strain, total and dissipated energy.
+    pub energies: Vec<Curve<'a>>,
+    /// What the balance leaves over.
+    pub residual: Vec<Curve<'a>>,
 }
 
-/// One panel with the energies against time.
+/// Two panels: the energies and the residual of their balance against time. A panel without curves is left out.
 pub fn energy_figure<'a>(title: &str, energy: EnergyCurves<'a>) -> Figure<'a> {
-    let curve = |name, y| Curve {
-        name,
-        x: energy.time,
-        y,
-        role: Role::Computed,
-    };
-    let panel = Panel {
-        title: "Energy".to_owned(),
+    let panel = |title: &str, curves| Panel {
+        title: title.to_owned(),
         ordinate: Axis {
             quantity: "energy",
             unit: "J",
         },
-        curves: vec![
-            curve("kinetic", energy.kinetic),
-            curve("strain", energy.strain),
-            curve("total", energy.total),
-            curve("dissipated", energy.dissipated),
-        ],
+        curves,
         clip: false,
     };
+    let mut panels = vec![
+        panel("Energy", energy.energies),
+        panel("Residual of the balance", energy.residual),
+    ];
+    panels.retain(|panel| !panel.curves.is_empty());
     Figure {
         title: title.to_owned(),
         abscissa: TIME,
-        panels: vec![panel],
-        columns: 1,
+        panels,
+        columns: 2,
     }
 }

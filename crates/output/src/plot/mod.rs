@@ -13,6 +13,7 @@ use std::path::Path;
 
 pub use figures::{ContactCurves, EnergyCurves, contact_figure, energy_figure};
 pub use scale::{digits, quantity, scientific};
+pub(crate) use thin::thin;
 
 use crate::{Error, atomic};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_output::summary::{self, Check, Contact, Energy, ExactError, Momentum, Verdict};
+use carom_output::summary::{self, Check, Contact, Energy, Exact, Momentum, Verdict};
 use carom_output::{ImpactRow, Report, Summary};
 
 fn check(value: f64) -> Check {
@@ -44,11 +44,12 @@ fn sample(verdict: Verdict) -> Summary {
             initial: [6.6, 0.0, 0.0],
             ..Momentum::default()
         },
-        exact: vec![ExactError {
-            quantity: "force".to_owned(),
-            relative_l2: 0.047,
-            overshoot: None,
-        }],
+        exact: Some(Exact {
+            name: "two-bars".to_owned(),
+            contact: "shock".to_owned(),
+            force_error: Some(0.047),
+            ..Exact::default()
+        }),
         counts: summary::Counts::default(),
         timings: BTreeMap::from([("solve".to_owned(), 0.1234)]),
         warnings: vec!["the step is long".to_owned()],

@@ -1,6 +1,6 @@
 //! The peak of a windowed mean against brute force and closed cases.
 
-use carom_output::window::peak_of_mean;
+use carom_output::window::PeakOfMean;
 
 /// A fixed pseudo-random sequence in (0, 1).
 fn random(count: usize) -> Vec<f64> {
@@ -15,55 +15,43 @@ fn random(count: usize) -> Vec<f64> {
         .collect()
 }
 
+fn peak(values: &[f64], steps: usize) -> f64 {
+    let mut mean = PeakOfMean::new(steps);
+    values.iter().for_each(|value| mean.push(*value));
+    mean.peak()
+}
+
 #[test]
-fn a_constant_is_its_own_mean_and_a_window_as_long_as_the_record_gives_the_mean() {
-    let times = [0.0, 0.1, 0.5, 2.0];
-    for window in [1e-3, 0.3, 1.0, 2.0, 5.0] {
-        let peak = peak_of_mean(&times, &[3.0; 3], window).unwrap();
-        assert!((peak - 3.0).abs() < 1e-12);
-    }
-    let peak = peak_of_mean(&times, &[4.0, 0.0, 2.0], 9.0).unwrap();
-    assert!((peak - 3.4 / 2.0).abs() < 1e-14);
+fn a_constant_is_its_own_mean_once_the_window_is_full() {
+    assert_eq!(peak(&[3.0; 5], 5), 3.0);
+    assert!((peak(&[3.0; 4], 5) - 3.0 * 4.0 / 5.0).abs() < 1e-15);
+    assert_eq!(peak(&[1.0, 7.0, 2.0], 1), 7.0);
+    assert_eq!(PeakOfMean::new(0).steps(), 1);
+    assert_eq!(peak(&[], 3), 0.0);
 }
 
 #[test]
 fn a_spike_counts_with_its_impulse() {
-    // 100 N for 0.01 s on 1 N: in a window of 0.1 s, (100 * 0.01 + 0.09) / 0.1.
-    let peak = peak_of_mean(&[0.0, 0.5, 0.51, 1.0], &[1.0, 100.0, 1.0], 0.1).unwrap();
-    assert!((peak - 10.9).abs() < 1e-10, "{peak}");
+    let mut values = vec![1.0; 100];
+    values[60] = 100.0;
+    assert!((peak(&values, 10) - 10.9).abs() < 1e-12);
 }
 
 #[test]
-fn no_window_of_a_fine_scan_has_a_larger_mean_and_one_comes_close() {
-    let random = random(80);
-    let mut times = vec![0.0];
-    for dt in &random[..40] {
-        times.push(times[times.len() - 1] + dt);
-    }
-    let values = &random[40..];
-    let last = times[40];
-    for window in [0.05, 0.7, 3.0] {
-        let peak = peak_of_mean(&times, values, window).unwrap();
-        let mean = |start: f64| {
-            let overlap =
-                |k: usize| (times[k + 1].min(start + window) - times[k].max(start)).max(0.0);
-            (0..40).map(|k| values[k] * overlap(k)).sum::<f64>() / window
-        };
-        let scan = (0..=20_000).map(|i| mean((last - window) * f64::from(i) / 20_000.0));
-        let largest = scan.fold(0.0, f64::max);
-        assert!(
-            largest <= peak + 1e-12 && largest > peak - 1e-2,
-            "{largest} {peak}"
-        );
+fn the_peak_is_that_of_brute_force_and_does_not_drift() {
+    let values = random(100_000);
+    for steps in [3, 40, 997] {
+        let sums = values.windows(steps).map(|w| w.iter().sum::<f64>());
+        let largest = sums.fold(0.0, f64::max) / steps as f64;
+        assert!((peak(&values, steps) - largest).abs() < 1e-13 * largest);
     }
 }
 
 #[test]
-fn what_has_no_mean_has_no_peak() {
-    assert_eq!(peak_of_mean(&[], &[], 1.0), None);
-    assert_eq!(peak_of_mean(&[0.0], &[], 1.0), None);
-    assert_eq!(peak_of_mean(&[1.0, 1.0], &[5.0], 1.0), None);
-    assert_eq!(peak_of_mean(&[0.0, 1.0], &[5.0], 0.0), None);
-    assert_eq!(peak_of_mean(&[0.0, 1.0], &[5.0], f64::NAN), None);
-    assert_eq!(peak_of_mean(&[0.0, 1.0], &[5.0, 6.0], 1.0), None);
+fn peaks_are_taken_one_after_the_other() {
+    let mut mean = PeakOfMean::new(2);
+    [4.0, 6.0, 0.0].iter().for_each(|value| mean.push(*value));
+    assert_eq!(mean.take(), 5.0);
+    [0.0, 2.0].iter().for_each(|value| mean.push(*value));
+    assert_eq!((mean.take(), mean.peak()), (1.0, 5.0));
 }

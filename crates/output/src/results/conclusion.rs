@@ -1,0 +1,378 @@
+//! After the run: figures, report, summary with its verdict.
+
+use std::collections::BTreeMap;
+
+use carom_contact::Contact as Pair;
+use carom_dynamics::{ContactRecord, Costs, System};
+
+use crate::results::exact::{mean_velocity, peak_force};
+use crate::results::impacts::ContactTotals;
+use crate::results::{Comparison, Ending, Last, Results};
+use crate::summary::{
+    Check, Contact, Counts, Energy, Exact, Model, Momentum, Summary, Time, Verdict, hash,
+};
+use crate::{Error, Report, atomic};
+
+/// Bound of the energy residual relative to the largest energy, and of the momentum residual relative to the largest
+/// momentum. Both balances are identities of the linear step; what is left is the rounding of the solves, some 1e-16
+/// a step, summed over up to a million steps.
+const BOUND: f64 = 1e-9;
+
+/// Writes figures, report and summary. Everything is tried; the first error is returned.
+pub(crate) fn conclude(mut results: Results, ending: &Ending) -> Result<Summary, Error> {
+    let mut errors = Vec::new();
+    let figures = draw(&mut results, &mut errors);
+    let report = keep(results.folder.file("report.html"), &mut errors);
+    let path = keep(results.folder.file("summary.json"), &mut errors);
+    let cause = ending.unfinished.clone();
+    let mut summary = summary(&results, ending, cause.or_else(|| first(&errors)));
+    if let Some(path) = report {
+        let report = Report {
+            summary: &summary,
+            impacts: &results.impacts.rows,
+            figures: &figures,
+            case: &results.settings.case_text,
+        };
+        if let Err(error) = report.write(&path) {
+            summary.verdict.good = false;
+            summary.verdict.reasons.push(error.to_string());
+            errors.push(error);
+        }
+    }
+    if let Some(path) = path {
+        keep(summary.write(&path), &mut errors);
+    }
+    match errors.into_iter().next() {
+        Some(error) => Err(error),
+        None => Ok(summary),
+    }
+}
+
+fn first(errors: &[Error]) -> Option<String> {
+    errors.first().map(Error::to_string)
+}
+
+fn keep<T>(outcome: Result<T, Error>, errors: &mut Vec<Error>) -> Option<T> {
+    outcome.map_err(|error| errors.push(error)).ok()
+}
+
+/// Writes the figures; returns those that could be drawn.
+fn draw(results: &mut Results, errors: &mut Vec<Error>) -> Vec<String> {
+    let reference = results.settings.reference.as_ref();
+    let drawn = results.curves.draw(reference, results.last.time);
+    let mut figures = Vec::new();
+    for (name, figure) in drawn {
+        let Some(svg) = keep(figure, errors) else {
+            continue;
+        };
+        let path = results.folder.file(name);
+        keep(
+            path.and_then(|path| atomic::write_text(&path, &svg)),
+            errors,
+        );
+        figures.push(svg);
+    }
+    figures
+}
+
+fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Summary {
+    let Results {
+        system,
+        settings,
+        last,
+        totals,
+        ..
+    } = results;
+    let (energy, momentum) = (energy(last), momentum(system, last));
+    let check = |quantity: &str, value, bound| Check {
+        quantity: quantity.to_owned(),
+        value,
+        bound,
+    };
+    let checks = vec![
+        check(
+            "energy residual / largest energy",
+            energy.relative_residual,
+            BOUND,
+        ),
+        check(
+            "momentum residual / largest momentum",
+            momentum.relative_residual,
+            BOUND,
+        ),
+        check("states that are not finite", totals.not_finite as f64, 0.0),
+    ];
+    let names = results.folder.names().map(str::to_owned);
+    let own = ["report.html", "summary.json"];
+    let there =
+        |name: &String| own.contains(&&**name) || results.folder.path().join(name).is_file();
+    Summary {
+        version: settings.version.clone(),
+        title: settings.title.clone(),
+        case_hash: hash(&settings.case_text),
+        verdict: Verdict::new(unfinished, checks),
+        model: model(system),
+        scheme: settings.scheme.clone(),
+        time: time(system, last),
+        contacts: contacts(results),
+        energy,
+        momentum,
+        exact: results
+            .comparison
+            .as_ref()
+            .map(|comparison| exact(results, comparison)),
+        counts: counts(ending.costs, totals.passes),
+        timings: timings(results, ending),
+        warnings: settings.warnings.clone(),
+        outputs: names.filter(there).collect(),
+    }
+}
+
+fn model(system: &System) -> Model {
+    let mut elements = BTreeMap::new();
+    for cell in system.bodies.iter().flat_map(|body| body.cells()) {
+        let name = system.mesh.kind(*cell).table().name;
+        *elements.entry(name.to_owned()).or_insert(0) += 1;
+    }
+    let lumped = |node: &(u32, f64)| system.mass.lumped[system.dim * node.0 as usize] > 0.0;
+    let mass = system.bodies.iter().zip(&system.body_masses);
+    let mass = mass.map(|(body, nodes)| {
+        let kind = if nodes.iter().all(lumped) {
+            "lumped"
+        } else {
+            "consistent"
+        };
+        (body.name().to_owned(), kind.to_owned())
+    });
+    Model {
+        dimension: system.dim,
+        bodies: system
+            .bodies
+            .iter()
+            .map(|body| body.name().to_owned())
+            .collect(),
+        nodes: system.x.len(),
+        elements,
+        unknowns: system.fixed.iter().filter(|fixed| !**fixed).count(),
+        contact_points: system.points(),
+        mass: mass.collect(),
+    }
+}
+
+fn time(system: &System, last: &Last) -> Time {
+    let bodies = system.bodies.iter();
+    let courant = bodies.map(|body| body.wave_speed() * system.dt / body.smallest_size());
+    Time {
+        end: last.time,
+        steps: last.step,
+        rejected: 0,
+        smallest_step: system.dt,
+        largest_step: system.dt,
+        courant: courant.reduce(f64::max),
+    }
+}
+
+fn contacts(results: &Results) -> BTreeMap<String, Contact> {
+    let system = &results.system;
+    let all = system.contacts.iter().zip(&results.impacts.contacts);
+    let one = |(k, (contact, totals)): (usize, (&Pair, &ContactTotals))| {
+        let none = ContactRecord::default();
+        let records = &results.last.records;
+        let record = records.contacts.get(k).unwrap_or(&none);
+        let closed = totals.closed as f64 * system.dt;
+        let still_closed = results.last.closed.get(k) == Some(&true);
+        let impacts = || {
+            records
+                .impacts
+                .iter()
+                .filter(|impact| impact.contact as usize == k)
+        };
+        (
+            contact.name.clone(),
+            Contact {
+                law: contact.law.get().name().to_owned(),
+                peak_force: record.peak_force,
+                peak_mean_force: totals.mean.peak(),
+                window: totals.window,
+                mean_force: if closed > 0.0 {
+                    record.impulse() / closed
+                } else {
+                    0.0
+                },
+                impulse: record.impulse(),
+                first_closing: record.first_closing,
+                last_release: record.last_force.filter(|_| !still_closed),
+                status_changes: record.status_changes,
+                max_penetration: record.penetration,
+                persistency_defect: record.persistency_defect(),
+                impacts: impacts().count() + usize::from(still_closed),
+                restitution: impacts()
+                    .next_back()
+                    .filter(|impact| impact.approach > 0.0)
+                    .map(|impact| impact.restitution()),
+            },
+        )
+    };
+    all.enumerate().map(one).collect()
+}
+
+fn energy(last: &Last) -> Energy {
+    let ledger = &last.ledger;
+    let (start, end) = (&ledger.initial, &ledger.balance);
+    let mut works = BTreeMap::from([
+        ("work of loads".to_owned(), end.work_loads),
+        ("work of contact".to_owned(), end.work_contact),
+        (
+            "dissipation of the scheme".to_owned(),
+            -end.dissipation_scheme,
+        ),
+    ]);
+    let stored = end.scheme_energy - start.scheme_energy;
+    if stored != 0.0 {
+        works.insert("stored by the scheme".to_owned(), -stored);
+    }
+    // a residual that is not a number must not be hidden by `max`
+    let largest = match end.energy_residual.is_nan() {
+        true => f64::NAN,
+        false => ledger.largest_energy_residual,
+    };
+    Energy {
+        kinetic_initial: start.kinetic,
+        strain_initial: start.strain,
+        kinetic_final: end.kinetic,
+        strain_final: end.strain,
+        works,
+        residual: end.energy_residual,
+        largest_residual: largest,
+        relative_residual: relative(largest, ledger.largest_energy),
+    }
+}
+
+/// Residuals are compared with the largest momentum or impulse of the run, or, if that is larger, with the momentum
+/// that its energy could hold, sqrt(2 m E) >= Σ |m v|: bodies that run at each other have none in sum.
+fn momentum(system: &System, last: &Last) -> Momentum {
+    let ledger = &last.ledger;
+    let (start, end) = (&ledger.initial, &ledger.balance);
+    let mass: f64 = (0..system.bodies.len())
+        .map(|body| system.body_mass(body))
+        .sum();
+    let size = (2.0 * mass * ledger.largest_energy).sqrt();
+    let size = size.max(ledger.largest_momentum);
+    let impulses = [
+        ("loads", end.impulse_loads.linear),
+        ("supports", end.impulse_supports.linear),
+        ("obstacles", end.impulse_contact.linear),
+    ];
+    Momentum {
+        initial: start.momentum.linear,
+        r#final: end.momentum.linear,
+        impulses: impulses
+            .map(|(name, impulse)| (name.to_owned(), impulse))
+            .into(),
+        residual: end.momentum_residual.linear,
+        relative_residual: relative(ledger.largest_momentum_residual, size),
+    }
+}
+
+/// A part of something; nothing is no part of anything.
+fn relative(part: f64, whole: f64) -> f64 {
+    if part == 0.0 { 0.0 } else { part / whole }
+}
+
+fn exact(results: &Results, comparison: &Comparison) -> Exact {
+    let reference = &comparison.reference;
+    let (solution, k) = (&reference.solution, reference.contact);
+    let end = results.last.time.min(solution.end_time());
+    let totals = &results.impacts.contacts[k];
+    let none = ContactRecord::default();
+    let record = results.last.records.contacts.get(k).unwrap_or(&none);
+    let peak = peak_force(solution, end);
+    let over = |value: f64| (peak > 0.0).then(|| value / peak - 1.0);
+    Exact {
+        name: reference.name.clone(),
+        contact: results.system.contacts[k].name.clone(),
+        force_error: comparison.force.relative(),
+        displacement_error: comparison.displacement.relative(),
+        peak_force: peak,
+        overshoot: over(record.peak_force),
+        mean_overshoot: over(totals.mean.peak()),
+        impulse: solution.impulse(end),
+        impulse_error: relative(
+            record.impulse() - solution.impulse(end),
+            solution.impulse(end),
+        ),
+        restitution: parting(results, comparison),
+        exact_restitution: restitution(
+            |body, t| mean_velocity(solution, body, t),
+            solution.motions().len(),
+            end,
+        ),
+    }
+}
+
+/// Speed at which the mean motions of two bodies part at the end, over that at which they approach at the start.
+fn restitution(velocity: impl Fn(usize, f64) -> f64, bodies: usize, end: f64) -> Option<f64> {
+    let opening = |t: f64| {
+        let other = if bodies > 1 { velocity(1, t) } else { 0.0 };
+        other - velocity(0, t)
+    };
+    let approach = -opening(0.0);
+    (approach > 0.0).then(|| opening(end) / approach)
+}
+
+/// [`restitution`] of the run.
+fn parting(results: &Results, comparison: &Comparison) -> Option<f64> {
+    let (system, reference) = (&results.system, &comparison.reference);
+    let (body, other) = system.sides[reference.contact];
+    let bodies = [Some(body), other].map(|body| body.unwrap_or(usize::MAX));
+    let along = |v: [f64; 3]| (0..3).map(|i| v[i] * reference.axis[i]).sum::<f64>();
+    let velocity = |side: usize, t: f64| match t {
+        0.0 => along(system.mean_velocity(bodies[side], &system.initial_velocity)),
+        _ => results
+            .last
+            .velocities
+            .get(bodies[side])
+            .map_or(0.0, |v| along(*v)),
+    };
+    restitution(
+        velocity,
+        1 + usize::from(other.is_some()),
+        results.last.time,
+    )
+}
+
+fn counts(costs: &Costs, passes: u64) -> Counts {
+    let factors = &costs.factors;
+    Counts {
+        factorisations: factors.iter().map(|f| f.factorisations as u64).sum(),
+        sweeps: factors.iter().map(|f| f.sweeps as u64).sum(),
+        factor_entries: factors.iter().map(|f| f.nnz_factor as u64).sum(),
+        factor_bytes: factors.iter().map(|f| f.bytes as u64).sum(),
+        contact_columns: costs.columns as u64,
+        compliance_bytes: costs.compliance_bytes as u64,
+        force_sweeps: costs.force_sweeps as u64,
+        status_iterations: passes,
+    }
+}
+
+fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f64> {
+    let phases = &ending.costs.phases;
+    let parts = [
+        ("total", ending.wall),
+        ("factorisation", phases.factorisation),
+        ("internal forces", phases.forces),
+        ("triangular sweeps", phases.sweeps),
+        ("contact", phases.contact),
+        ("balance", phases.balance),
+        ("output", results.totals.spent),
+    ];
+    let mut timings: BTreeMap<String, f64> = parts
+        .map(|(name, time)| (name.to_owned(), time.as_secs_f64()))
+        .into();
+    if results.last.step > 0 {
+        let steps = phases.forces + phases.sweeps + phases.contact + phases.balance;
+        let per_step = steps.as_secs_f64() / results.last.step as f64;
+        timings.insert("one step".to_owned(), per_step);
+    }
+    timings
+}

@@ -1,0 +1,165 @@
+//! The distance of the result from the exact solution, step by step.
+
+use carom_dynamics::{State, StepReport};
+use carom_exact::{Motion, Solution};
+
+use crate::results::Reference;
+use crate::results::sensor::ContactPoint;
+
+/// Sums of squares of an error and of what it is relative to.
+#[derive(Debug, Default)]
+pub(crate) struct Norms {
+    error: f64,
+    size: f64,
+}
+
+impl Norms {
+    fn add(&mut self, value: f64, exact: f64) {
+        self.error += (value - exact).powi(2);
+        self.size += exact * exact;
+    }
+
+    /// Relative L² error; `None` if there is nothing to be relative to.
+    pub(crate) fn relative(&self) -> Option<f64> {
+        (self.size > 0.0).then(|| (self.error / self.size).sqrt())
+    }
+}
+
+/// The comparison, growing with the run.
+#[derive(Debug)]
+pub(crate) struct Comparison {
+    pub(crate) reference: Reference,
+    /// Force of each step against the mean of the exact force over the step, over the steps that meet the exact
+    /// contact.
+    pub(crate) force: Norms,
+    /// Displacement of the contact points at the end of each step, counted from the start.
+    pub(crate) displacement: Norms,
+    start: Vec<f64>,
+}
+
+impl Comparison {
+    pub(crate) fn new(reference: Reference) -> Comparison {
+        Comparison {
+            reference,
+            force: Norms::default(),
+            displacement: Norms::default(),
+            start: Vec::new(),
+        }
+    }
+
+    pub(crate) fn push(
+        &mut self,
+        dt: f64,
+        point: &ContactPoint,
+        state: &State,
+        report: &StepReport,
+    ) {
+        let (from, to) = (report.time - dt, report.time);
+        let values = point.sides.iter().map(|(_, s)| s.of(&state.motion.u));
+        if report.step == 0 {
+            self.start = values.collect();
+            return;
+        }
+        let solution = &self.reference.solution;
+        if to > solution.end_time() * (1.0 + 1e-9) {
+            return;
+        }
+        let over = |end: f64| end * (1.0 - 1e-12);
+        let contacts = solution.contacts();
+        let next = contacts.partition_point(|contact| over(contact.end) <= from);
+        if contacts.get(next).is_some_and(|c| c.start < over(to)) {
+            let force = report.contacts[self.reference.contact].force;
+            self.force.add(force, solution.force().mean(from, to));
+        }
+        for (body, value) in values.enumerate().take(solution.motions().len()) {
+            let start = self.start.get(body).copied().unwrap_or(0.0);
+            let exact = displacement(solution, body, to);
+            self.displacement.add(value - start, exact);
+        }
+    }
+}
+
+/// Displacement of the contact end of a bar since the start, along the axis from the secondary to the primary side, m.
+pub(crate) fn displacement(solution: &Solution, body: usize, t: f64) -> f64 {
+    let motion = &solution.motions()[body];
+    sign(body) * (motion.displacement(0.0, t) - motion.displacement(0.0, 0.0))
+}
+
+/// Direction away from the contact along the axis.
+fn sign(body: usize) -> f64 {
+    if body == 0 { -1.0 } else { 1.0 }
+}
+
+/// Mean velocity of a bar along the axis, m/s.
+pub(crate) fn mean_velocity(solution: &Solution, body: usize, t: f64) -> f64 {
+    let motion = &solution.motions()[body];
+    sign(body) * motion.momentum(t) / motion.bar().mass()
+}
+
+/// Largest exact force up to a time, N.
+pub(crate) fn peak_force(solution: &Solution, t: f64) -> f64 {
+    let contacts = solution.contacts().iter();
+    contacts
+        .filter(|contact| contact.start < t)
+        .fold(0.0, |peak, contact| peak.max(contact.peak_force))
+}
+
+/// An exact curve: abscissae and ordinates, jumps as two samples at one instant.
+pub(crate) type Polyline = (Vec<f64>, Vec<f64>);
+
+/// Displacement, velocity and acceleration of the contact end of a bar up to a time, along the axis. The acceleration
+/// is that between the jumps of the velocity, where it is infinite.
+pub(crate) fn motion_curves(solution: &Solution, body: usize, end: f64) -> [Polyline; 3] {
+    let motion = &solution.motions()[body];
+    let mut curves: [Polyline; 3] = Default::default();
+    for pair in instants(motion, end.min(solution.end_time())).windows(2) {
+        let (from, to) = (pair[0], pair[1]);
+        let at = |part: f64| from + part * (to - from);
+        for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
+            add(
+                &mut curves[0],
+                at(part),
+                displacement(solution, body, at(part)),
+            );
+        }
+        // The velocity is linear between two instants, and may jump at both.
+        let [a, b] = [0.25, 0.75].map(|part| sign(body) * motion.velocity(0.0, at(part)));
+        let slope = 2.0 * (b - a);
+        add(&mut curves[1], from, a - 0.25 * slope);
+        add(&mut curves[1], to, b + 0.25 * slope);
+        add(&mut curves[2], from, slope / (to - from));
+        add(&mut curves[2], to, slope / (to - from));
+    }
+    curves
+}
+
+/// The exact force up to a time.
+pub(crate) fn force_curve(solution: &Solution, end: f64) -> Polyline {
+    let mut curve = Polyline::default();
+    for (time, force) in solution.force().polyline() {
+        if time >= end {
+            add(&mut curve, end, solution.force().value(end));
+            break;
+        }
+        add(&mut curve, time, force);
+    }
+    curve
+}
+
+fn add(curve: &mut Polyline, x: f64, y: f64) {
+    curve.0.push(x);
+    curve.1.push(y);
+}
+
+/// Instants of jumps and kinks at the contact end of a bar, from 0 to `end`, these included.
+fn instants(motion: &Motion, end: f64) -> Vec<f64> {
+    let delay = motion.bar().round_trip();
+    let emitted = motion.wave().breakpoints();
+    let mut instants: Vec<f64> = emitted.flat_map(|t| [t, t + delay]).collect();
+    instants.retain(|t| *t > 0.0 && *t < end);
+    instants.extend([0.0, end]);
+    instants.sort_unstable_by(f64::total_cmp);
+    // Arrivals that differ by rounding are one.
+    instants.dedup_by(|b, a| *b - *a <= 1e-9 * end);
+    instants
+}

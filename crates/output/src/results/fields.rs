@@ -1,0 +1,402 @@
+//! Fields as VTU and PVD: copied by the run into one of two buffers, derived and written by the background thread.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use carom_contact::law::{Level, Status};
+use carom_dynamics::{InterfaceState, State, System};
+use carom_elements::Kind;
+use carom_mesh::Face;
+
+use crate::results::Fields;
+use crate::vtu::{Cells, Field, Grid, Values, write};
+use crate::writer::Writer;
+use crate::{Collection, Error, Folder};
+
+/// What the thread needs of a state, and the names of the files it makes of it: the bodies, then each contact.
+#[derive(Debug, Default)]
+struct Snapshot {
+    time: f64,
+    names: Vec<String>,
+    u: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+    interface: InterfaceState,
+}
+
+/// The run's side: when a state is due, and the buffers.
+#[derive(Debug)]
+pub(crate) struct FieldOutput {
+    fields: Fields,
+    writer: Writer<Snapshot>,
+    /// Field files asked for so far.
+    count: u64,
+    /// Time of the last one, s.
+    last: Option<f64>,
+    failed: bool,
+}
+
+impl FieldOutput {
+    pub(crate) fn create(
+        folder: &mut Folder,
+        system: &Arc<System>,
+        fields: &Fields,
+    ) -> Result<FieldOutput, Error> {
+        let collection = Collection::create(&folder.file("fields.pvd")?)?;
+        let mut files = Files {
+            folder: folder.path().to_owned(),
+            collection,
+            fields: fields.clone(),
+            bodies: Volume::new(system),
+            surfaces: (0..system.contacts.len())
+                .map(|contact| SurfaceGrid::new(system, contact))
+                .collect(),
+            system: Arc::clone(system),
+        };
+        Ok(FieldOutput {
+            fields: fields.clone(),
+            writer: Writer::start(vec![Snapshot::default(), Snapshot::default()], move |s| {
+                files.write(s)
+            })?,
+            count: 0,
+            last: None,
+            failed: false,
+        })
+    }
+
+    /// Hands over the state if it is due.
+    pub(crate) fn take(
+        &mut self,
+        folder: &mut Folder,
+        system: &System,
+        state: &State,
+    ) -> Result<(), Error> {
+        let due = match self.last {
+            None => true,
+            Some(_) => {
+                // instants are sums of steps: a millionth of one is rounding
+                let number = (state.time + 1e-6 * system.dt) / self.fields.every;
+                let before = (state.time - (1.0 - 1e-6) * system.dt) / self.fields.every;
+                number.floor() > before.floor()
+            }
+        };
+        let outcome = match due {
+            true => self.send(folder, system, state),
+            false => self.writer.check(),
+        };
+        self.failed |= outcome.is_err();
+        outcome
+    }
+
+    /// Hands over the last state, unless it is there already, and waits for the thread.
+    pub(crate) fn finish(
+        &mut self,
+        folder: &mut Folder,
+        system: &System,
+        state: &State,
+    ) -> Result<(), Error> {
+        let sent = match self.failed || self.last == Some(state.time) {
+            true => Ok(()),
+            false => self.send(folder, system, state),
+        };
+        sent.and(self.writer.finish())
+    }
+
+    fn send(&mut self, folder: &mut Folder, system: &System, state: &State) -> Result<(), Error> {
+        let mut snapshot = self.writer.buffer()?;
+        snapshot.names.clear();
+        let mut name = |part: &str| -> Result<(), Error> {
+            let name = format!("fields/{part}-{:06}.vtu", self.count);
+            folder.file(&name)?;
+            snapshot.names.push(name);
+            Ok(())
+        };
+        name("bodies")?;
+        for contact in &system.contacts {
+            name(&format!("contact-{}", contact.name))?;
+        }
+        snapshot.fill(&self.fields, state);
+        self.count += 1;
+        self.last = Some(state.time);
+        self.writer.send(snapshot)
+    }
+}
+
+impl Snapshot {
+    /// Copies what is needed, into the memory of the time before.
+    fn fill(&mut self, fields: &Fields, state: &State) {
+        let State {
+            motion, interface, ..
+        } = state;
+        self.time = state.time;
+        copy(&mut self.u, &motion.u);
+        if fields.velocity {
+            copy(&mut self.v, &motion.v);
+        }
+        if fields.acceleration {
+            copy(&mut self.a, &motion.a);
+        }
+        copy(&mut self.interface.force, &interface.force);
+        copy(&mut self.interface.gap, &interface.gap);
+        copy(&mut self.interface.rate, &interface.rate);
+        copy(&mut self.interface.status, &interface.status);
+        copy(&mut self.interface.watched, &interface.watched);
+    }
+}
+
+fn copy<T: Copy>(to: &mut Vec<T>, from: &[T]) {
+    to.clear();
+    to.extend_from_slice(from);
+}
+
+/// The thread's side.
+struct Files {
+    folder: PathBuf,
+    collection: Collection,
+    fields: Fields,
+    bodies: Volume,
+    surfaces: Vec<SurfaceGrid>,
+    system: Arc<System>,
+}
+
+impl Files {
+    fn write(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
+        let (names, folder) = (&snapshot.names, &self.folder);
+        if let Some(name) = names.first() {
+            let path = folder.join(name);
+            self.bodies
+                .write(&path, &self.system, &self.fields, snapshot)?;
+        }
+        for (surface, name) in self.surfaces.iter().zip(names.iter().skip(1)) {
+            surface.write(&folder.join(name), &self.system, snapshot)?;
+        }
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        self.collection.add(snapshot.time, &names)
+    }
+}
+
+/// All bodies as one grid on the system's nodes.
+struct Volume {
+    cells: Vec<(Kind, Vec<u32>)>,
+    /// Number of the body of each cell, in the order of the case.
+    body: Vec<i32>,
+}
+
+impl Volume {
+    fn new(system: &System) -> Volume {
+        let mut volume = Volume {
+            cells: Vec::new(),
+            body: Vec::new(),
+        };
+        for (number, body) in system.bodies.iter().enumerate() {
+            let mut last = None;
+            for &cell in body.cells() {
+                let kind = system.mesh.kind(cell);
+                if last != Some(kind) {
+                    volume.cells.push((kind, Vec::new()));
+                    last = Some(kind);
+                }
+                let nodes = system.mesh.element_nodes(cell).iter();
+                if let Some((_, block)) = volume.cells.last_mut() {
+                    block.extend(nodes.map(|node| system.number[*node as usize]));
+                }
+                volume.body.push(number as i32);
+            }
+        }
+        volume
+    }
+
+    fn write(
+        &self,
+        path: &Path,
+        system: &System,
+        fields: &Fields,
+        snapshot: &Snapshot,
+    ) -> Result<(), Error> {
+        let chosen = [
+            ("displacement", fields.displacement, &snapshot.u),
+            ("velocity", fields.velocity, &snapshot.v),
+            ("acceleration", fields.acceleration, &snapshot.a),
+        ];
+        let chosen = chosen.into_iter().filter(|(_, on, _)| *on);
+        let vectors: Vec<(&str, Vec<[f64; 3]>)> = chosen
+            .map(|(name, _, values)| (name, vectors(system.dim, values)))
+            .collect();
+        let point_fields = vectors.iter().map(|(name, values)| Field {
+            name,
+            values: Values::Vector(values),
+        });
+        let point_fields: Vec<Field> = point_fields.collect();
+        let stress = match fields.stress {
+            true => stresses(system, &snapshot.u),
+            false => Vec::new(),
+        };
+        let mises: Vec<f64> = stress.iter().map(von_mises).collect();
+        let mut cell_fields = vec![Field {
+            name: "body",
+            values: Values::Integer(&self.body),
+        }];
+        if fields.stress {
+            cell_fields.push(Field {
+                name: "stress",
+                values: Values::SymmetricTensor(&stress),
+            });
+            cell_fields.push(Field {
+                name: "von_mises",
+                values: Values::Scalar(&mises),
+            });
+        }
+        write(
+            path,
+            &Grid {
+                time: snapshot.time,
+                points: &system.x,
+                cells: &borrowed(&self.cells),
+                point_fields: &point_fields,
+                cell_fields: &cell_fields,
+            },
+        )
+    }
+}
+
+/// The secondary surface of a contact, with one point per contact point.
+struct SurfaceGrid {
+    contact: usize,
+    points: Vec<[f64; 3]>,
+    cells: Vec<(Kind, Vec<u32>)>,
+}
+
+impl SurfaceGrid {
+    fn new(system: &System, contact: usize) -> SurfaceGrid {
+        let nodes: Vec<u32> = system.contacts[contact]
+            .points
+            .iter()
+            .map(|p| p.node)
+            .collect();
+        let mut places: Vec<(u32, u32)> = nodes.iter().copied().zip(0..).collect();
+        places.sort_unstable();
+        let place = |node: &u32| {
+            let found = places.binary_search_by_key(node, |(node, _)| *node);
+            found.ok().map(|k| places[k].1)
+        };
+        let mut cells = Vec::new();
+        for kind in Kind::ALL {
+            let faces = system.secondary_faces[contact].iter();
+            let of_kind = faces.filter(|face| face.kind == kind);
+            let nodes: Vec<u32> = of_kind.flat_map(Face::corners).filter_map(place).collect();
+            if !nodes.is_empty() {
+                cells.push((kind, nodes));
+            }
+        }
+        SurfaceGrid {
+            contact,
+            points: nodes.iter().map(|node| system.x[*node as usize]).collect(),
+            cells,
+        }
+    }
+
+    fn write(&self, path: &Path, system: &System, snapshot: &Snapshot) -> Result<(), Error> {
+        let contact = &system.contacts[self.contact];
+        let range = system.first_point[self.contact]..system.first_point[self.contact + 1];
+        let interface = &snapshot.interface;
+        let (force, status) = (
+            &interface.force[range.clone()],
+            &interface.status[range.clone()],
+        );
+        // a point that faces nothing has no gap: viewers leave out what is not a number
+        let gap = |gap: &f64| if gap.is_finite() { *gap } else { f64::NAN };
+        let gap: Vec<f64> = interface.gap[range.clone()].iter().map(gap).collect();
+        let points = contact.points.iter().zip(force);
+        let pressure: Vec<f64> = points
+            .map(|(point, force)| {
+                if *force == 0.0 {
+                    0.0
+                } else {
+                    force / point.area
+                }
+            })
+            .collect();
+        let sign = |on: bool| i32::from(on);
+        let closed: Vec<i32> = status.iter().map(|s| sign(*s != Status::Open)).collect();
+        let watched = interface.watched[range.clone()].iter();
+        let watched: Vec<i32> = watched.map(|on| sign(*on)).collect();
+        let all = vectors(system.dim, &snapshot.u);
+        let nodes = contact.points.iter().map(|point| point.node as usize);
+        let displacement: Vec<[f64; 3]> = nodes.map(|node| all[node]).collect();
+        let signs = match contact.law.get().level() {
+            Level::Gap | Level::GapAndRate => vec![("S_g", &closed)],
+            Level::Rate => vec![("S_d", &watched), ("S_v", &closed)],
+        };
+        let scalar = |name, values| Field {
+            name,
+            values: Values::Scalar(values),
+        };
+        let mut fields = vec![
+            scalar("gap", &gap[..]),
+            scalar("gap_rate", &interface.rate[range.clone()]),
+            scalar("pressure", &pressure),
+            scalar("force", force),
+            Field {
+                name: "displacement",
+                values: Values::Vector(&displacement),
+            },
+        ];
+        fields.extend(signs.into_iter().map(|(name, values)| Field {
+            name,
+            values: Values::Integer(values),
+        }));
+        write(
+            path,
+            &Grid {
+                time: snapshot.time,
+                points: &self.points,
+                cells: &borrowed(&self.cells),
+                point_fields: &fields,
+                cell_fields: &[],
+            },
+        )
+    }
+}
+
+fn borrowed(cells: &[(Kind, Vec<u32>)]) -> Vec<Cells<'_>> {
+    let blocks = cells
+        .iter()
+        .map(|(kind, nodes)| Cells { kind: *kind, nodes });
+    blocks.collect()
+}
+
+/// One vector of three components per node.
+fn vectors(dim: usize, values: &[f64]) -> Vec<[f64; 3]> {
+    let nodes = values.chunks_exact(dim);
+    let vector = |node: &[f64]| {
+        let mut vector = [0.0; 3];
+        vector[..dim].copy_from_slice(node);
+        vector
+    };
+    nodes.map(vector).collect()
+}
+
+/// Mean stress of each cell in VTK's order xx, yy, zz, xy, yz, xz, Pa.
+fn stresses(system: &System, u: &[f64]) -> Vec<[f64; 6]> {
+    let of_bodies = system.bodies.iter().flat_map(|body| body.stresses(u));
+    of_bodies
+        .map(|(_, s)| {
+            [
+                s[(0, 0)],
+                s[(1, 1)],
+                s[(2, 2)],
+                s[(0, 1)],
+                s[(1, 2)],
+                s[(0, 2)],
+            ]
+        })
+        .collect()
+}
+
+/// Equivalent stress of von Mises, sqrt(3/2 s : s) with s the deviator, Pa.
+fn von_mises(stress: &[f64; 6]) -> f64 {
+    let [xx, yy, zz, xy, yz, xz] = *stress;
+    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+    let shear = xy * xy + yz * yz + xz * xz;
+    (0.5 * normal + 3.0 * shear).sqrt()
+}

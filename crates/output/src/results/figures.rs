@@ -1,0 +1,174 @@
+//! The figures of a run, from what was kept while it went.
+
+use carom_dynamics::{State, StepReport, System};
+
+use crate::Error;
+use crate::plot::{
+    ContactCurves, Curve, EnergyCurves, Figure, Role, contact_figure, energy_figure,
+};
+use crate::results::exact::{Polyline, force_curve, motion_curves};
+use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor, of_probe};
+use crate::results::trace::Trace;
+use crate::results::{Reference, Settings};
+
+/// Histories for the figures, in bounded memory.
+#[derive(Debug)]
+pub(crate) struct Curves {
+    title: String,
+    contact: Option<usize>,
+    /// Name, sensor, and what it showed: displacement, velocity, acceleration.
+    motions: Vec<(String, Sensor, [Trace; 3])>,
+    recorded: [bool; 3],
+    force: Trace,
+    kinetic: Trace,
+    strain: Trace,
+    total: Trace,
+    dissipated: Trace,
+    residual: Trace,
+}
+
+impl Curves {
+    /// Follows the contact point, or without a contact the first probe.
+    pub(crate) fn new(
+        system: &System,
+        settings: &Settings,
+        point: Option<&ContactPoint>,
+    ) -> Result<Curves, Error> {
+        let (title, sensors, recorded) = match (point, settings.probes.first()) {
+            (Some(point), _) => {
+                let name = &system.contacts[point.contact].name;
+                let title = format!("Contact '{name}', along {}", direction(point.axis));
+                (title, point.sides.clone(), [true; 3])
+            }
+            (None, Some(probe)) => {
+                let names = COMPONENTS.iter().map(ToString::to_string);
+                let sensors = names.zip(of_probe(system, probe)?).collect();
+                (format!("Probe '{}'", probe.name), sensors, probe.recorded())
+            }
+            (None, None) => (String::new(), Vec::new(), [false; 3]),
+        };
+        let followed = |(name, sensor)| (name, sensor, Default::default());
+        Ok(Curves {
+            title,
+            contact: point.map(|point| point.contact),
+            motions: sensors.into_iter().map(followed).collect(),
+            recorded,
+            force: Trace::default(),
+            kinetic: Trace::default(),
+            strain: Trace::default(),
+            total: Trace::default(),
+            dissipated: Trace::default(),
+            residual: Trace::default(),
+        })
+    }
+
+    pub(crate) fn push(&mut self, state: &State, report: &StepReport) {
+        let (t, motion, balance) = (report.time, &state.motion, &report.balance);
+        for (_, sensor, traces) in &mut self.motions {
+            let vectors = [&motion.u, &motion.v, &motion.a];
+            for (trace, vector) in traces.iter_mut().zip(vectors) {
+                trace.push(t, sensor.of(vector));
+            }
+        }
+        if let Some(contact) = self.contact {
+            self.force.push(t, report.contacts[contact].force);
+        }
+        self.kinetic.push(t, balance.kinetic);
+        self.strain.push(t, balance.strain);
+        self.total.push(t, balance.energy());
+        let dissipated = balance.dissipation_scheme - balance.work_contact;
+        self.dissipated.push(t, dissipated);
+        self.residual.push(t, balance.energy_residual);
+    }
+
+    /// Names of the files and figures as SVG, in the order of the report.
+    pub(crate) fn draw(
+        &self,
+        reference: Option<&Reference>,
+        end: f64,
+    ) -> Vec<(&'static str, Result<String, Error>)> {
+        let mut figures = Vec::new();
+        if !self.motions.is_empty() {
+            let name = match self.contact {
+                Some(_) => "plots/contact.svg",
+                None => "plots/probe.svg",
+            };
+            figures.push((name, self.contact_svg(reference, end)));
+        }
+        figures.push(("plots/energy.svg", self.energy_svg()));
+        figures
+    }
+
+    fn contact_svg(&self, reference: Option<&Reference>, end: f64) -> Result<String, Error> {
+        let exact: Vec<[Polyline; 3]> = reference.map_or(Vec::new(), |reference| {
+            let bodies = 0..reference.solution.motions().len().min(self.motions.len());
+            bodies
+                .map(|body| motion_curves(&reference.solution, body, end))
+                .collect()
+        });
+        let motions = self.motions.iter();
+        let columns: Vec<[Polyline; 3]> = motions
+            .map(|(_, _, traces)| [0, 1, 2].map(|k: usize| traces[k].columns()))
+            .collect();
+        let curves = |k: usize| {
+            let exact = exact
+                .iter()
+                .map(|motion| curve("exact", &motion[k], Role::Exact));
+            let names = self.motions.iter().map(|(name, _, _)| name);
+            let computed = names.zip(&columns);
+            let computed = computed.map(|(name, motion)| curve(name, &motion[k], Role::Computed));
+            match self.recorded[k] {
+                true => exact.chain(computed).collect(),
+                false => Vec::new(),
+            }
+        };
+        let force = self.force.columns();
+        let exact_force = reference.map(|reference| force_curve(&reference.solution, end));
+        let mut force_curves = Vec::new();
+        if self.contact.is_some() {
+            force_curves.extend(exact_force.iter().map(|c| curve("exact", c, Role::Exact)));
+            force_curves.push(curve("computed", &force, Role::Computed));
+        }
+        let curves = ContactCurves {
+            displacement: curves(0),
+            velocity: curves(1),
+            force: force_curves,
+            acceleration: curves(2),
+        };
+        contact_figure(&self.title, curves).svg()
+    }
+
+    fn energy_svg(&self) -> Result<String, Error> {
+        let columns = [
+            &self.kinetic,
+            &self.strain,
+            &self.total,
+            &self.dissipated,
+            &self.residual,
+        ]
+        .map(Trace::columns);
+        let names = ["kinetic", "strain", "total", "dissipated", "residual"];
+        let at = |k: usize| curve(names[k], &columns[k], Role::Computed);
+        let figure: Figure = energy_figure(
+            "Energy balance",
+            EnergyCurves {
+                energies: (0..4).map(at).collect(),
+                residual: vec![at(4)],
+            },
+        );
+        figure.svg()
+    }
+}
+
+fn curve<'a>(name: &'a str, (x, y): &'a Polyline, role: Role) -> Curve<'a> {
+    Curve { name, x, y, role }
+}
+
+/// The name of an axis of coordinates, or the components of another one.
+fn direction(axis: [f64; 3]) -> String {
+    let along = |i: usize| (axis[i] - 1.0).abs() < 1e-9;
+    match (0..3).find(|i| along(*i)) {
+        Some(i) => COMPONENTS[i].to_owned(),
+        None => format!("({:.3}, {:.3}, {:.3})", axis[0], axis[1], axis[2]),
+    }
+}

@@ -1,0 +1,125 @@
+//! The table of impacts, and the peaks of the mean force.
+
+use carom_dynamics::{Impact, State, StepReport, System};
+
+use crate::window::PeakOfMean;
+use crate::{Error, Folder, ImpactRow, ImpactTable};
+
+/// The window of the mean force, as a part of the time that a wave takes along the secondary body.
+const WINDOW: f64 = 0.1;
+
+/// Most impacts that the report shows.
+pub(crate) const SHOWN: usize = 100;
+
+/// The file with what its rows need.
+#[derive(Debug)]
+pub(crate) struct Impacts {
+    file: Option<ImpactTable>,
+    /// Ended impacts already written.
+    written: usize,
+    /// The first [`SHOWN`] rows.
+    pub(crate) rows: Vec<ImpactRow>,
+    /// By contact.
+    pub(crate) contacts: Vec<ContactTotals>,
+}
+
+/// What is gathered of a contact beside the records of the state.
+#[derive(Debug)]
+pub(crate) struct ContactTotals {
+    /// Mean of the force.
+    pub(crate) mean: PeakOfMean,
+    /// Length of its window, s.
+    pub(crate) window: f64,
+    /// Steps with a force.
+    pub(crate) closed: u64,
+}
+
+impl Impacts {
+    pub(crate) fn create(folder: &mut Folder, system: &System) -> Result<Impacts, Error> {
+        let totals = |contact| {
+            let steps = (mean_window(system, contact) / system.dt).round().max(1.0);
+            ContactTotals {
+                mean: PeakOfMean::new(steps as usize),
+                window: steps * system.dt,
+                closed: 0,
+            }
+        };
+        Ok(Impacts {
+            file: Some(ImpactTable::create(&folder.file("impacts.csv")?)?),
+            written: 0,
+            rows: Vec::new(),
+            contacts: (0..system.contacts.len()).map(totals).collect(),
+        })
+    }
+
+    /// Adds the forces of a step, and the rows of the impacts that ended with it.
+    pub(crate) fn take(
+        &mut self,
+        system: &System,
+        state: &State,
+        report: &StepReport,
+    ) -> Result<(), Error> {
+        for (totals, contact) in self.contacts.iter_mut().zip(&report.contacts) {
+            totals.mean.push(contact.force);
+            totals.closed += u64::from(contact.closed > 0);
+        }
+        let ended = &state.records.impacts;
+        while let Some(impact) = ended.get(self.written) {
+            self.written += 1;
+            self.push(system, impact)?;
+        }
+        Ok(())
+    }
+
+    /// Adds the impacts that still go on and closes the file. Nothing to do the second time.
+    pub(crate) fn finish(&mut self, system: &System, state: &State) -> Result<(), Error> {
+        let all = state.records.all_impacts(system, state);
+        for impact in all.iter().filter(|impact| impact.unfinished) {
+            self.push(system, impact)?;
+        }
+        self.file.take().map_or(Ok(()), ImpactTable::finish)
+    }
+
+    fn push(&mut self, system: &System, impact: &Impact) -> Result<(), Error> {
+        let Some(file) = &mut self.file else {
+            return Ok(());
+        };
+        let totals = &mut self.contacts[impact.contact as usize];
+        let over = |value: f64| (!impact.unfinished).then_some(value);
+        let row = ImpactRow {
+            pair: system.contacts[impact.contact as usize].name.clone(),
+            start: impact.start,
+            duration: over(impact.duration),
+            peak_force: impact.peak_force,
+            peak_mean_force: totals.mean.take(),
+            window: totals.window,
+            impulse: impact.impulse,
+            approach_speed: impact.approach,
+            rebound_speed: over(impact.rebound),
+            restitution: over(impact.restitution()).filter(|_| impact.approach > 0.0),
+            energy_given: impact.energy_given,
+            energy_lost: impact.energy_lost,
+        };
+        let outcome = file.push(&row);
+        if self.rows.len() < SHOWN {
+            self.rows.push(row);
+        }
+        outcome
+    }
+}
+
+/// A tenth of the time that a wave takes along the secondary body (the diagonal of its box), s: longer than the
+/// oscillations behind a front, which are a matter of the mesh, and shorter than the impact.
+fn mean_window(system: &System, contact: usize) -> f64 {
+    let (body, _) = system.sides[contact];
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for (node, _) in &system.body_masses[body] {
+        let x = system.x[*node as usize];
+        for i in 0..3 {
+            low[i] = low[i].min(x[i]);
+            high[i] = high[i].max(x[i]);
+        }
+    }
+    let diagonal = (0..3).map(|i| (high[i] - low[i]).powi(2)).sum::<f64>();
+    WINDOW * diagonal.sqrt() / system.bodies[body].wave_speed()
+}

@@ -1,0 +1,271 @@
+//! The observer that turns a run into its results folder.
+//!
+//! [`Results`] is told of every accepted state: it adds a row to `histories.csv`, a row to `impacts.csv` when an
+//! impact ends, hands fields to the background thread, and keeps what the figures need in bounded memory. After the
+//! run, whether it came to its end or not, [`Results::conclude`] writes the figures, `report.html` and
+//! `summary.json`. It is configured by plain data; the case file is not known here.
+//!
+//! What a run writes is complete whenever it is cut: tables grow by whole rows, all other files appear by one rename.
+
+mod conclusion;
+mod exact;
+mod fields;
+mod figures;
+mod histories;
+mod impacts;
+mod sensor;
+mod trace;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use carom_dynamics::{Costs, Ledger, Observer, Records, State, StepReport, System};
+use carom_exact::Solution;
+
+use crate::summary::Summary;
+use crate::{Error, Folder, atomic};
+use exact::Comparison;
+use fields::FieldOutput;
+use figures::Curves;
+use histories::Histories;
+use impacts::Impacts;
+use sensor::ContactPoint;
+
+/// What is written and where.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The results folder; an earlier one is replaced, any other folder refused ([`Folder::create`]).
+    pub folder: PathBuf,
+    /// Title of the case.
+    pub title: String,
+    /// Text of the case file: copied to `case.toml` and shown in the report.
+    pub case_text: String,
+    /// Version of the program.
+    pub version: String,
+    /// Time scheme with its parameters, as text: `theta, theta = 0.5`.
+    pub scheme: String,
+    /// Histories of groups of nodes.
+    pub probes: Vec<Probe>,
+    /// Fields for ParaView; `None`: none.
+    pub fields: Option<Fields>,
+    /// Exact solution to compare with.
+    pub reference: Option<Reference>,
+    /// Warnings of the check.
+    pub warnings: Vec<String>,
+}
+
+/// A history of the mean motion of a group of nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// Name as in the case file.
+    pub name: String,
+    /// Nodes of the mesh; those that no body uses are left out.
+    pub nodes: Vec<u32>,
+    /// Whether the displacement is written, m.
+    pub displacement: bool,
+    /// Whether the velocity is written, m/s.
+    pub velocity: bool,
+    /// Whether the acceleration is written, m/s².
+    pub acceleration: bool,
+}
+
+impl Probe {
+    /// Displacement, velocity, acceleration.
+    fn recorded(&self) -> [bool; 3] {
+        [self.displacement, self.velocity, self.acceleration]
+    }
+}
+
+/// Fields on the bodies, chosen here, and on the contact surfaces, always.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fields {
+    /// Time between two of them, s. The first is at the start, the last at the end, whatever this is.
+    pub every: f64,
+    /// Displacement of the nodes, m.
+    pub displacement: bool,
+    /// Velocity of the nodes, m/s.
+    pub velocity: bool,
+    /// Acceleration of the nodes, m/s².
+    pub acceleration: bool,
+    /// Mean stress of the cells and its von Mises equivalent, Pa.
+    pub stress: bool,
+}
+
+/// An exact solution of a contact, from time 0 of the run.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// Name as in the case file: `two-bars`.
+    pub name: String,
+    /// The solution; it is compared as far as it goes.
+    pub solution: Solution,
+    /// Index of the contact in the system.
+    pub contact: usize,
+    /// Unit vector from the secondary to the primary side.
+    pub axis: [f64; 3],
+}
+
+/// How the run ended.
+#[derive(Clone, Debug)]
+pub struct Ending<'a> {
+    /// Why it did not come to its end time, in a sentence; `None` if it did.
+    pub unfinished: Option<String>,
+    /// What the steps cost.
+    pub costs: &'a Costs,
+    /// Wall time of the whole run, reading and factorisation included.
+    pub wall: Duration,
+}
+
+/// The observer that writes the results folder.
+///
+/// Create it after [`carom_dynamics::Driver::new`], so that a model which cannot start leaves no folder.
+#[derive(Debug)]
+pub struct Results {
+    system: Arc<System>,
+    settings: Settings,
+    folder: Folder,
+    point: Option<ContactPoint>,
+    histories: Histories,
+    impacts: Impacts,
+    fields: Option<FieldOutput>,
+    curves: Curves,
+    comparison: Option<Comparison>,
+    totals: Totals,
+    last: Last,
+}
+
+/// What is counted over the steps.
+#[derive(Debug, Default)]
+struct Totals {
+    /// Passes of the status loop.
+    passes: u64,
+    /// Accepted states with an energy or a force that is not finite.
+    not_finite: u64,
+    /// Time spent in here by the run itself.
+    spent: Duration,
+}
+
+/// The last accepted state, as far as the summary needs it.
+#[derive(Debug, Default)]
+struct Last {
+    step: u64,
+    time: f64,
+    ledger: Ledger,
+    records: Records,
+    /// Mean velocity of the bodies, m/s.
+    velocities: Vec<[f64; 3]>,
+    /// Whether each contact has a force.
+    closed: Vec<bool>,
+}
+
+impl Results {
+    /// Creates the folder, copies the case into it and opens the tables.
+    ///
+    /// # Errors
+    /// The folder cannot be made or is not a results folder; a probe without a node of a body; two columns of one
+    /// name.
+    pub fn create(settings: Settings, system: Arc<System>) -> Result<Results, Error> {
+        let mut folder = Folder::create(&settings.folder)?;
+        atomic::write_text(&folder.file("case.toml")?, &settings.case_text)?;
+        let point = sensor::contact_point(&system, settings.reference.as_ref());
+        let histories = Histories::create(&mut folder, &system, &settings, point.as_ref())?;
+        let impacts = Impacts::create(&mut folder, &system)?;
+        let fields = match &settings.fields {
+            Some(fields) => Some(FieldOutput::create(&mut folder, &system, fields)?),
+            None => None,
+        };
+        Ok(Results {
+            curves: Curves::new(&system, &settings, point.as_ref())?,
+            comparison: settings.reference.clone().map(Comparison::new),
+            totals: Totals::default(),
+            last: Last::default(),
+            system,
+            settings,
+            folder,
+            point,
+            histories,
+            impacts,
+            fields,
+        })
+    }
+
+    fn take(&mut self, state: &State, report: &StepReport) -> Result<(), Error> {
+        self.totals.passes += report.passes as u64;
+        let force = |contact: &carom_dynamics::ContactReport| contact.force;
+        let forces: f64 = report.contacts.iter().map(force).sum();
+        let finite = (report.balance.energy_residual + forces).is_finite();
+        self.totals.not_finite += u64::from(!finite);
+        let point = self.point.as_ref();
+        self.histories.push(&self.system, (state, report), point)?;
+        self.impacts.take(&self.system, state, report)?;
+        self.curves.push(state, report);
+        if let (Some(comparison), Some(point)) = (&mut self.comparison, point) {
+            comparison.push(self.system.dt, point, state, report);
+        }
+        match &mut self.fields {
+            Some(fields) => fields.take(&mut self.folder, &self.system, state),
+            None => Ok(()),
+        }
+    }
+
+    /// Ends the tables and the thread, and keeps what the summary needs. Everything is tried, whatever fails.
+    fn end(&mut self, state: &State) -> Result<(), Error> {
+        let bodies = 0..self.system.bodies.len();
+        let velocity = |body| self.system.mean_velocity(body, &state.motion.v);
+        let forces = |k: usize| {
+            let points = self.system.first_point[k]..self.system.first_point[k + 1];
+            state.interface.force[points].iter().any(|f| *f != 0.0)
+        };
+        self.last = Last {
+            step: state.step,
+            time: state.time,
+            ledger: state.ledger.clone(),
+            records: state.records.clone(),
+            velocities: bodies.map(velocity).collect(),
+            closed: (0..self.system.contacts.len()).map(forces).collect(),
+        };
+        let outcomes = [
+            self.histories.finish(),
+            self.impacts.finish(&self.system, state),
+            match &mut self.fields {
+                Some(fields) => fields.finish(&mut self.folder, &self.system, state),
+                None => Ok(()),
+            },
+        ];
+        outcomes.into_iter().collect()
+    }
+
+    /// Writes figures, report and summary, after the run has told its end to the observers
+    /// ([`carom_dynamics::march`] does, after a failed run too).
+    ///
+    /// # Errors
+    /// The first file that could not be written; the others are written nevertheless.
+    pub fn conclude(self, ending: &Ending) -> Result<Summary, Error> {
+        conclusion::conclude(self, ending)
+    }
+}
+
+impl Observer for Results {
+    fn accepted(
+        &mut self,
+        _system: &System,
+        state: &State,
+        report: &StepReport,
+    ) -> Result<(), carom_dynamics::Error> {
+        let begin = Instant::now();
+        let outcome = self.take(state, report);
+        self.totals.spent += begin.elapsed();
+        outcome.map_err(observer)
+    }
+
+    fn finish(&mut self, _system: &System, state: &State) -> Result<(), carom_dynamics::Error> {
+        let begin = Instant::now();
+        let outcome = self.end(state);
+        self.totals.spent += begin.elapsed();
+        outcome.map_err(observer)
+    }
+}
+
+fn observer(cause: Error) -> carom_dynamics::Error {
+    carom_dynamics::Error::Observer(Box::new(cause))
+}

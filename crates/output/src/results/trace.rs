@@ -1,0 +1,54 @@
+//! A history kept for a figure, in bounded memory.
+
+use crate::plot::thin;
+
+/// Most samples that a trace holds: 1 MB.
+const LIMIT: usize = 1 << 16;
+
+/// Samples of a quantity over time. When it is full it is thinned to the first, lowest, highest and last sample of
+/// [`LIMIT`] / 8 equal parts of the time so far: no extreme is lost, and a figure, a few thousand dots wide, does not
+/// change.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Trace {
+    points: Vec<(f64, f64)>,
+}
+
+impl Trace {
+    /// Adds a sample, not before the last one. What is not finite cannot be drawn and is left out.
+    pub(crate) fn push(&mut self, time: f64, value: f64) {
+        if self.points.len() == LIMIT {
+            self.points = thin(&self.points, LIMIT / 8);
+        }
+        if value.is_finite() {
+            self.points.push((time, value));
+        }
+    }
+
+    /// Abscissae and ordinates.
+    pub(crate) fn columns(&self) -> (Vec<f64>, Vec<f64>) {
+        self.points.iter().copied().unzip()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_history_stays_bounded_and_keeps_its_extremes_and_ends() {
+        let mut trace = Trace::default();
+        let value = |k: u32| match k {
+            123_456 => 1e6,
+            400_000 => -1e6,
+            _ => f64::from(k % 1009),
+        };
+        for k in 0..1_000_000 {
+            trace.push(f64::from(k), value(k));
+            assert!(trace.points.len() <= LIMIT);
+        }
+        for k in [0, 123_456, 400_000, 999_999] {
+            assert!(trace.points.contains(&(f64::from(k), value(k))), "{k}");
+        }
+        assert!(trace.points.is_sorted_by(|a, b| a.0 < b.0));
+    }
+}
