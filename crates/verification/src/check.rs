@@ -71,14 +71,17 @@ impl Row {
         Row::near(quantity, value, reference, part * reference.abs())
     }
 
-    /// The value rounds to a published number: the tolerance is half a unit of its last printed digit.
+    /// The value agrees with a published number within its digits: the tolerance is one unit of the last one, since a
+    /// number may have been rounded more than once on its way into a table. Without a decimal point it is a count, and
+    /// exact.
     ///
     /// `printed` is a decimal number without exponent; anything else makes a row that fails.
     pub fn printed(quantity: impl Into<String>, value: f64, printed: &str) -> Row {
-        let decimals = printed.split_once('.').map_or(0, |(_, part)| part.len());
         let reference = printed.parse().unwrap_or(f64::NAN);
-        let half = 0.5 * 0.1_f64.powi(decimals as i32);
-        Row::near(quantity, value, reference, half * (1.0 + 1e-9))
+        let unit = printed.split_once('.').map_or(0.0, |(_, decimals)| {
+            0.1_f64.powi(decimals.len() as i32) * (1.0 + 1e-9)
+        });
+        Row::near(quantity, value, reference, unit)
     }
 
     /// An exact count.
@@ -222,11 +225,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn printed_number_gives_half_a_unit_of_its_last_digit() {
-        assert!(Row::printed("x", 0.04704, "0.0470").holds());
-        assert!(!Row::printed("x", 0.04706, "0.0470").holds());
-        assert!(Row::printed("x", -0.0496, "-0.05").holds());
-        assert!(Row::printed("x", 10.95, "10.9").holds());
+    fn printed_number_gives_a_unit_of_its_last_digit() {
+        assert!(Row::printed("x", 0.04709, "0.0470").holds());
+        assert!(!Row::printed("x", 0.04711, "0.0470").holds());
+        assert!(Row::printed("x", -0.0401, "-0.05").holds());
+        assert!(Row::printed("x", 11.0, "10.9").holds());
+        assert!(Row::printed("n", 59.0, "59").holds());
+        assert!(!Row::printed("n", 60.0, "59").holds());
         assert!(!Row::printed("x", 1.0, "one").holds());
     }
 

@@ -4,6 +4,7 @@ use carom_dynamics::{Driver, Observer, State, StepReport, System, march};
 
 use crate::Error;
 use crate::bars::Run;
+use crate::check::Row;
 
 /// History of the first contact and of the balance, one entry per step.
 #[derive(Clone, Debug, Default)]
@@ -134,3 +135,56 @@ fn force_error(run: &Run, history: &History) -> Result<f64, Error> {
     }
     Ok((error / norm).sqrt())
 }
+
+/// Names of the columns of a printed table, in its order.
+const COLUMNS: [&str; 7] = [
+    "force error",
+    "overshoot",
+    "energy change",
+    "changes after the closing",
+    "restitution",
+    "penetration / (v0 dt)",
+    "largest |F rate| / (F0 v0)",
+];
+
+impl Figures {
+    /// Rows against a line of a printed table: force error, overshoot, energy change, changes, restitution,
+    /// penetration, defect. An empty text leaves a column out.
+    pub(crate) fn against(&self, name: &str, printed: [&str; 7]) -> Vec<Row> {
+        let values = [
+            self.force_error,
+            self.overshoot,
+            self.energy_change,
+            self.switches as f64,
+            self.restitution,
+            self.penetration,
+            self.defect,
+        ];
+        let columns = COLUMNS.iter().zip(values).zip(printed);
+        columns
+            .filter(|(_, printed)| !printed.is_empty())
+            .map(|((column, value), printed)| {
+                Row::printed(format!("{name}: {column}"), value, printed)
+            })
+            .collect()
+    }
+
+    /// Rows for the balances of energy and momentum, which hold to round-off.
+    pub(crate) fn balances(&self, name: &str) -> [Row; 2] {
+        [
+            Row::at_most(
+                format!("{name}: energy residual / E0"),
+                self.residual,
+                ROUND_OFF,
+            ),
+            Row::at_most(
+                format!("{name}: momentum residual / largest"),
+                self.momentum_residual,
+                ROUND_OFF,
+            ),
+        ]
+    }
+}
+
+/// Bound of the relative residuals of balances: a thousand steps of sums over a thousand numbers leave about 1e-13.
+const ROUND_OFF: f64 = 1e-11;

@@ -12,7 +12,12 @@ mod check;
 mod error;
 mod figures;
 
+mod bars_central_difference;
+mod bars_damped;
+mod bars_newmark;
 mod bars_theta;
+mod closed_field_as_printed;
+mod first_force;
 
 use std::io::{self, Write};
 
@@ -40,7 +45,12 @@ macro_rules! registry {
 }
 
 registry! {
+    bars_central_difference
+    bars_damped
+    bars_newmark
     bars_theta
+    closed_field_as_printed
+    first_force
 }
 
 /// Runs all cases, or those whose name contains `filter`, and writes one line per row.
