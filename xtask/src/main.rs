@@ -1,7 +1,7 @@
 //! The project's checks: `cargo xtask check` is what a contributor runs before a commit and what CI runs.
 //!
-//! Quick things first: what the repository holds (`files`), the documentation (`docs`), format, lints, pages of the
-//! API, one build of the dependencies for all commands (`builds`), then the README's test command.
+//! Quick things first: what the repository holds (`files`), the documentation (`docs`), who uses whom (`layers`), format,
+//! lints, pages of the API, one build of the dependencies for all commands (`builds`), then the README's test command.
 
 // A tool for the terminal: printing is its work.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
@@ -9,6 +9,7 @@
 mod builds;
 mod docs;
 mod files;
+mod layers;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -25,9 +26,10 @@ const DOC: &str = "cargo doc --release --workspace --no-deps";
 /// A named check: what is wrong, one line each, or nothing.
 type Check = (&'static str, fn(&Path) -> Vec<String>);
 
-const CHECKS: [Check; 7] = [
+const CHECKS: [Check; 8] = [
     ("files", files::check),
     ("documentation", docs::check),
+    ("layers", layers::check),
     ("format", |root| command(root, "cargo fmt --all -- --check")),
     ("lints", |root| command(root, CLIPPY)),
     ("pages of the API", |root| command(root, DOC)),
