@@ -67,11 +67,6 @@ impl Set {
     pub(crate) fn duration(&self) -> f64 {
         2.0 * self.length / self.wave_speed()
     }
-
-    /// Kinetic energy of the striker in J.
-    pub(crate) fn energy(&self) -> f64 {
-        0.5 * self.density * self.area * self.length * self.speed * self.speed
-    }
 }
 
 /// What the bars are made of; Poisson's ratio is zero.
@@ -100,7 +95,7 @@ pub(crate) enum Against {
     Wall,
 }
 
-/// A run of one or two bars, all ends free, in touch at the start.
+/// A run of one or two bars, all ends free.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run {
     /// The bars.
@@ -111,6 +106,8 @@ pub(crate) struct Run {
     pub(crate) kind: Elements,
     /// What the striker meets.
     pub(crate) against: Against,
+    /// Gap at the start, m.
+    pub(crate) gap: f64,
     /// Mass.
     pub(crate) mass: MassKind,
     /// Time scheme.
@@ -124,13 +121,14 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    /// Two bars of the set "slow", lumped mass, theta ½, velocity law, CFL 0.5, to 1.5 durations of the contact.
+    /// Two bars of the set "slow" in touch, lumped mass, theta ½, velocity law, CFL 0.5, to 1.5 durations of the contact.
     pub(crate) fn slow(elements: usize) -> Run {
         Run {
             set: SLOW,
             elements,
             kind: Elements::Bar2,
             against: Against::Bar,
+            gap: 0.0,
             mass: MassKind::Lumped,
             scheme: theta(0.5),
             law: HALF,
@@ -162,11 +160,11 @@ impl Run {
             Against::Bar => Impact::TwoBars {
                 secondary: striker,
                 primary: bar,
-                gap: 0.0,
+                gap: self.gap,
             },
             Against::Wall => Impact::Wall {
                 bar: striker,
-                gap: 0.0,
+                gap: self.gap,
             },
         };
         Ok(carom_exact::solve(&impact, end)?)
@@ -219,7 +217,7 @@ impl Run {
             0 => ["left", "right"],
             _ => ["bottom", "top"],
         };
-        let mut mesh = self.part("striker", -self.set.length);
+        let mut mesh = self.part("striker", -self.set.length - self.gap);
         if self.against == Against::Bar {
             mesh.merge("target", self.part("target", 0.0))?;
         }

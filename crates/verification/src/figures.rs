@@ -13,6 +13,8 @@ pub(crate) struct History {
     pub(crate) time: Vec<f64>,
     /// Contact force, N.
     pub(crate) force: Vec<f64>,
+    /// Least gap at the end of each step, m.
+    pub(crate) gap: Vec<f64>,
     /// Gap rate at the point of least gap, m/s.
     pub(crate) rate: Vec<f64>,
     /// Kinetic and strain energy, J.
@@ -29,6 +31,7 @@ impl Observer for History {
         if report.step > 0 {
             self.time.push(report.time);
             self.force.push(report.contacts[0].force);
+            self.gap.push(report.contacts[0].gap);
             self.rate.push(report.contacts[0].rate);
             self.energy.push(report.balance.energy());
         }

@@ -12,12 +12,22 @@ mod check;
 mod error;
 mod figures;
 
+mod bar_on_wall;
 mod bars_central_difference;
+mod bars_convergence;
 mod bars_damped;
 mod bars_newmark;
 mod bars_theta;
+mod block_drop;
+mod blocks;
 mod closed_field_as_printed;
+mod energy_identity;
 mod first_force;
+mod invariance;
+mod order;
+mod resume;
+mod sdnl111;
+mod shapes;
 
 use std::io::{self, Write};
 
@@ -45,12 +55,22 @@ macro_rules! registry {
 }
 
 registry! {
+    bar_on_wall
     bars_central_difference
+    bars_convergence
     bars_damped
     bars_newmark
     bars_theta
+    block_drop
+    blocks
     closed_field_as_printed
+    energy_identity
     first_force
+    invariance
+    order
+    resume
+    sdnl111
+    shapes
 }
 
 /// Runs all cases, or those whose name contains `filter`, and writes one line per row.
