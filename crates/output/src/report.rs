@@ -20,7 +20,7 @@ const NOTHING: &str = "–";
 pub struct Report<'a> {
     /// The summary.
     pub summary: &'a Summary,
-    /// The impacts, in their order.
+    /// The impacts, in their order; or the first of them, if the summary counts more.
     pub impacts: &'a [ImpactRow],
     /// Figures as SVG documents ([`crate::plot::Figure::svg`]).
     pub figures: &'a [String],
@@ -40,7 +40,7 @@ impl Report<'_> {
         });
         environment.add_filter("exact", |value: Value| show(&value, exact));
         environment.add_filter("percent", |value: Value| {
-            show(&value, |x| format!("{:.2} %", 100.0 * x))
+            show(&value, |x| format!("{:.2} %", 100.0 * x).replace('-', "−"))
         });
         environment.add_filter("bytes", |value: Value| show(&value, bytes));
         environment.add_template("report.html", include_str!("../templates/report.html"))?;
@@ -57,9 +57,12 @@ impl Report<'_> {
             .cloned()
             .map(Value::from_safe_string)
             .collect();
+        let contacts = self.summary.contacts.values();
+        let impacts: usize = contacts.map(|contact| contact.impacts).sum();
         let page = environment.get_template("report.html")?.render(context! {
             summary => Serde(self.summary),
             impacts => Serde(self.impacts),
+            hidden => impacts.saturating_sub(self.impacts.len()),
             figures,
             holding,
             case => self.case,

@@ -36,7 +36,8 @@ impl Rows {
     /// # Errors
     /// [`Error::File`]; [`Error::TwinColumns`] if a name occurs twice.
     pub fn create<S: AsRef<str>>(path: &Path, columns: &[S]) -> Result<Rows, Error> {
-        let mut names: Vec<&str> = columns.iter().map(AsRef::as_ref).collect();
+        unique(path, columns)?;
+        let names: Vec<&str> = columns.iter().map(AsRef::as_ref).collect();
         let mut rows = Rows {
             path: path.to_owned(),
             file: File::create(path).map_err(Error::file("create", path))?,
@@ -48,14 +49,7 @@ impl Rows {
         };
         rows.push(names.iter().map(|name| Cell::Text(name)))?;
         rows.flush()?;
-        names.sort_unstable();
-        match names.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => Err(Error::TwinColumns {
-                path: path.to_owned(),
-                name: pair[0].to_owned(),
-            }),
-            None => Ok(rows),
-        }
+        Ok(rows)
     }
 
     /// Adds a row; it reaches the file at the next flush, which is never long after.
@@ -130,6 +124,22 @@ impl Drop for Rows {
     /// A run that ends by an error elsewhere still leaves its rows; whoever wants to know calls [`Rows::finish`].
     fn drop(&mut self) {
         let _ = self.flush();
+    }
+}
+
+/// Refuses two columns of one name.
+///
+/// # Errors
+/// [`Error::TwinColumns`].
+pub(crate) fn unique<S: AsRef<str>>(path: &Path, columns: &[S]) -> Result<(), Error> {
+    let mut names: Vec<&str> = columns.iter().map(AsRef::as_ref).collect();
+    names.sort_unstable();
+    match names.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(Error::TwinColumns {
+            path: path.to_owned(),
+            name: pair[0].to_owned(),
+        }),
+        None => Ok(()),
     }
 }
 

@@ -41,7 +41,7 @@ pub struct Summary {
     pub timings: BTreeMap<String, f64>,
     /// Warnings of the check and of the run.
     pub warnings: Vec<String>,
-    /// Files of the results folder, relative to it.
+    /// Files of the results folder, relative to it, but those that `fields.pvd` names.
     pub outputs: Vec<String>,
 }
 

@@ -95,7 +95,7 @@ impl<B: Send + 'static> Writer<B> {
     /// The error of a buffer; [`Error::Writer`] if the thread is gone without one.
     pub(crate) fn finish(&mut self) -> Result<(), Error> {
         self.to = None;
-        let outcomes: Result<(), Error> = self.back.iter().map(|(_, outcome)| outcome).collect();
+        let outcomes = self.back.iter().try_for_each(|(_, outcome)| outcome);
         let ended = self.thread.take().map_or(Ok(()), JoinHandle::join);
         outcomes?;
         ended.map_err(|_| Error::Writer)
@@ -109,5 +109,78 @@ impl<B> Drop for Writer<B> {
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::mpsc::channel;
+
+    use super::*;
+
+    #[test]
+    fn the_run_waits_while_both_buffers_are_out() {
+        let (open_gate, gate) = channel::<()>();
+        let mut writer = Writer::start(vec![0, 0], move |_: &i32| {
+            gate.recv().map_err(|_| Error::Writer)
+        })
+        .unwrap();
+        for _ in 0..2 {
+            let buffer = writer.buffer().unwrap();
+            writer.send(buffer).unwrap();
+        }
+        writer.check().unwrap();
+        assert!(writer.idle.is_empty(), "both are out");
+        open_gate.send(()).unwrap();
+        // the one that came back, and no third one
+        let buffer = writer.buffer().unwrap();
+        writer.check().unwrap();
+        assert!(writer.idle.is_empty());
+        writer.send(buffer).unwrap();
+        (0..2).for_each(|_| open_gate.send(()).unwrap());
+        writer.finish().unwrap();
+        writer.finish().unwrap();
+    }
+
+    #[test]
+    fn buffers_are_written_in_their_order_and_all_of_them() {
+        static NEXT: AtomicUsize = AtomicUsize::new(0);
+        let mut writer = Writer::start(vec![0, 0], |number: &usize| {
+            assert_eq!(NEXT.fetch_add(1, Ordering::SeqCst), *number);
+            Ok(())
+        })
+        .unwrap();
+        for number in 0..100 {
+            writer.buffer().unwrap();
+            writer.send(number).unwrap();
+        }
+        writer.finish().unwrap();
+        assert_eq!(NEXT.load(Ordering::SeqCst), 100);
+    }
+
+    #[test]
+    fn an_error_comes_back_and_ends_the_thread() {
+        let full = || Error::Thread(io::Error::from(io::ErrorKind::StorageFull));
+        let mut writer = Writer::start(vec![0, 0], move |_: &i32| Err(full())).unwrap();
+        let buffer = writer.buffer().unwrap();
+        writer.send(buffer).unwrap();
+        let failed = loop {
+            if let Err(error) = writer.check() {
+                break error;
+            }
+        };
+        assert!(matches!(failed, Error::Thread(_)), "{failed}");
+        assert!(matches!(writer.finish(), Ok(())), "told once");
+        assert!(writer.buffer().is_ok() || writer.send(0).is_err());
+    }
+
+    #[test]
+    fn a_thread_that_panics_is_an_error() {
+        let mut writer = Writer::start(vec![0], |_: &i32| panic!("a bug")).unwrap();
+        let buffer = writer.buffer().unwrap();
+        writer.send(buffer).unwrap();
+        assert!(matches!(writer.finish(), Err(Error::Writer)));
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use carom_contact::Contact as Pair;
 use carom_dynamics::{ContactRecord, Costs, System};
 
-use crate::results::exact::{mean_velocity, peak_force};
+use crate::results::exact;
 use crate::results::impacts::ContactTotals;
 use crate::results::{Comparison, Ending, Last, Results};
 use crate::summary::{
@@ -104,6 +104,8 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
     ];
     let names = results.folder.names().map(str::to_owned);
     let own = ["report.html", "summary.json"];
+    // the collection names the field files, which may be thousands
+    let names = names.filter(|name| !name.starts_with("fields/"));
     let there =
         |name: &String| own.contains(&&**name) || results.folder.path().join(name).is_file();
     Summary {
@@ -120,7 +122,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         exact: results
             .comparison
             .as_ref()
-            .map(|comparison| exact(results, comparison)),
+            .map(|comparison| against_exact(results, comparison)),
         counts: counts(ending.costs, totals.passes),
         timings: timings(results, ending),
         warnings: settings.warnings.clone(),
@@ -224,7 +226,7 @@ fn energy(last: &Last) -> Energy {
         ("work of contact".to_owned(), end.work_contact),
         (
             "dissipation of the scheme".to_owned(),
-            -end.dissipation_scheme,
+            0.0 - end.dissipation_scheme,
         ),
     ]);
     let stored = end.scheme_energy - start.scheme_energy;
@@ -279,14 +281,14 @@ fn relative(part: f64, whole: f64) -> f64 {
     if part == 0.0 { 0.0 } else { part / whole }
 }
 
-fn exact(results: &Results, comparison: &Comparison) -> Exact {
+fn against_exact(results: &Results, comparison: &Comparison) -> Exact {
     let reference = &comparison.reference;
     let (solution, k) = (&reference.solution, reference.contact);
     let end = results.last.time.min(solution.end_time());
     let totals = &results.impacts.contacts[k];
     let none = ContactRecord::default();
     let record = results.last.records.contacts.get(k).unwrap_or(&none);
-    let peak = peak_force(solution, end);
+    let peak = exact::peak_force(solution, end);
     let over = |value: f64| (peak > 0.0).then(|| value / peak - 1.0);
     Exact {
         name: reference.name.clone(),
@@ -301,44 +303,35 @@ fn exact(results: &Results, comparison: &Comparison) -> Exact {
             record.impulse() - solution.impulse(end),
             solution.impulse(end),
         ),
-        restitution: parting(results, comparison),
-        exact_restitution: restitution(
-            |body, t| mean_velocity(solution, body, t),
-            solution.motions().len(),
-            end,
+        restitution: parting(
+            opening_speed(results, k, &results.last.velocities),
+            opening_speed(results, k, &results.start),
+        ),
+        exact_restitution: parting(
+            exact::opening_speed(solution, end),
+            exact::opening_speed(solution, 0.0),
         ),
     }
 }
 
-/// Speed at which the mean motions of two bodies part at the end, over that at which they approach at the start.
-fn restitution(velocity: impl Fn(usize, f64) -> f64, bodies: usize, end: f64) -> Option<f64> {
-    let opening = |t: f64| {
-        let other = if bodies > 1 { velocity(1, t) } else { 0.0 };
-        other - velocity(0, t)
-    };
-    let approach = -opening(0.0);
-    (approach > 0.0).then(|| opening(end) / approach)
+/// Speed of parting over that of approach, from the opening speeds at the end and at the start.
+fn parting(end: f64, start: f64) -> Option<f64> {
+    (start < 0.0).then(|| -end / start)
 }
 
-/// [`restitution`] of the run.
-fn parting(results: &Results, comparison: &Comparison) -> Option<f64> {
-    let (system, reference) = (&results.system, &comparison.reference);
-    let (body, other) = system.sides[reference.contact];
-    let bodies = [Some(body), other].map(|body| body.unwrap_or(usize::MAX));
-    let along = |v: [f64; 3]| (0..3).map(|i| v[i] * reference.axis[i]).sum::<f64>();
-    let velocity = |side: usize, t: f64| match t {
-        0.0 => along(system.mean_velocity(bodies[side], &system.initial_velocity)),
-        _ => results
-            .last
-            .velocities
-            .get(bodies[side])
-            .map_or(0.0, |v| along(*v)),
+/// Speed at which the mean motions of the two sides of a contact part along the axis of the exact solution, m/s.
+fn opening_speed(results: &Results, contact: usize, velocities: &[[f64; 3]]) -> f64 {
+    let axis = results
+        .settings
+        .reference
+        .as_ref()
+        .map_or([0.0; 3], |r| r.axis);
+    let along = |body: usize| {
+        let v = velocities.get(body).copied().unwrap_or_default();
+        (0..3).map(|i| v[i] * axis[i]).sum::<f64>()
     };
-    restitution(
-        velocity,
-        1 + usize::from(other.is_some()),
-        results.last.time,
-    )
+    let (secondary, primary) = results.system.sides[contact];
+    primary.map_or(0.0, along) - along(secondary)
 }
 
 fn counts(costs: &Costs, passes: u64) -> Counts {
@@ -372,7 +365,7 @@ fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f64> {
     if results.last.step > 0 {
         let steps = phases.forces + phases.sweeps + phases.contact + phases.balance;
         let per_step = steps.as_secs_f64() / results.last.step as f64;
-        timings.insert("one step".to_owned(), per_step);
+        timings.insert("per step".to_owned(), per_step);
     }
     timings
 }

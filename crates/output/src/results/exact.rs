@@ -90,10 +90,10 @@ fn sign(body: usize) -> f64 {
     if body == 0 { -1.0 } else { 1.0 }
 }
 
-/// Mean velocity of a bar along the axis, m/s.
-pub(crate) fn mean_velocity(solution: &Solution, body: usize, t: f64) -> f64 {
-    let motion = &solution.motions()[body];
-    sign(body) * motion.momentum(t) / motion.bar().mass()
+/// Speed at which the mean motions of the bars part, m/s: each is positive away from the contact.
+pub(crate) fn opening_speed(solution: &Solution, t: f64) -> f64 {
+    let motions = solution.motions().iter();
+    motions.map(|m| m.momentum(t) / m.bar().mass()).sum()
 }
 
 /// Largest exact force up to a time, N.

@@ -7,7 +7,7 @@ use crate::plot::{
     ContactCurves, Curve, EnergyCurves, Figure, Role, contact_figure, energy_figure,
 };
 use crate::results::exact::{Polyline, force_curve, motion_curves};
-use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor, of_probe};
+use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor};
 use crate::results::trace::Trace;
 use crate::results::{Reference, Settings};
 
@@ -28,27 +28,29 @@ pub(crate) struct Curves {
 }
 
 impl Curves {
-    /// Follows the contact point, or without a contact the first probe.
+    /// Follows the contact point, or without a contact the first probe; `probes`: the sensors of each.
     pub(crate) fn new(
         system: &System,
         settings: &Settings,
         point: Option<&ContactPoint>,
-    ) -> Result<Curves, Error> {
-        let (title, sensors, recorded) = match (point, settings.probes.first()) {
+        probes: &[Vec<Sensor>],
+    ) -> Curves {
+        let (title, sensors, recorded) = match (point, settings.probes.first().zip(probes.first()))
+        {
             (Some(point), _) => {
                 let name = &system.contacts[point.contact].name;
                 let title = format!("Contact '{name}', along {}", direction(point.axis));
                 (title, point.sides.clone(), [true; 3])
             }
-            (None, Some(probe)) => {
+            (None, Some((probe, sensors))) => {
                 let names = COMPONENTS.iter().map(ToString::to_string);
-                let sensors = names.zip(of_probe(system, probe)?).collect();
+                let sensors = names.zip(sensors.iter().cloned()).collect();
                 (format!("Probe '{}'", probe.name), sensors, probe.recorded())
             }
             (None, None) => (String::new(), Vec::new(), [false; 3]),
         };
         let followed = |(name, sensor)| (name, sensor, Default::default());
-        Ok(Curves {
+        Curves {
             title,
             contact: point.map(|point| point.contact),
             motions: sensors.into_iter().map(followed).collect(),
@@ -59,7 +61,7 @@ impl Curves {
             total: Trace::default(),
             dissipated: Trace::default(),
             residual: Trace::default(),
-        })
+        }
     }
 
     pub(crate) fn push(&mut self, state: &State, report: &StepReport) {
@@ -81,13 +83,16 @@ impl Curves {
         self.residual.push(t, balance.energy_residual);
     }
 
-    /// Names of the files and figures as SVG, in the order of the report.
+    /// Names of the files and figures as SVG, in the order of the report; none if no state was told.
     pub(crate) fn draw(
         &self,
         reference: Option<&Reference>,
         end: f64,
     ) -> Vec<(&'static str, Result<String, Error>)> {
         let mut figures = Vec::new();
+        if self.total.is_empty() {
+            return figures;
+        }
         if !self.motions.is_empty() {
             let name = match self.contact {
                 Some(_) => "plots/contact.svg",

@@ -3,9 +3,13 @@
 use carom_dynamics::{State, StepReport, System};
 
 use crate::history::column;
-use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor, of_probe};
+use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor};
 use crate::results::{Probe, Settings};
+use crate::rows::unique;
 use crate::{Error, Folder, History};
+
+/// Its name.
+const FILE: &str = "histories.csv";
 
 /// Names of a motion with its unit, in the order displacement, velocity, acceleration.
 const MOTIONS: [(&str, &str); 3] = [
@@ -23,21 +27,19 @@ pub(crate) struct Histories {
 }
 
 impl Histories {
+    /// Creates the file; `columns`: of [`columns()`]; `sensors`: of each probe.
     pub(crate) fn create(
         folder: &mut Folder,
-        system: &System,
-        settings: &Settings,
-        point: Option<&ContactPoint>,
+        columns: &[String],
+        probes: &[Probe],
+        sensors: Vec<Vec<Sensor>>,
     ) -> Result<Histories, Error> {
-        let sensors = |probe: &Probe| Ok((probe.recorded(), of_probe(system, probe)?));
-        let probes = settings.probes.iter().map(sensors);
-        let probes = probes.collect::<Result<Vec<_>, Error>>()?;
-        let columns = columns(system, settings, point);
-        let path = folder.file("histories.csv")?;
+        let path = folder.file(FILE)?;
+        let recorded = probes.iter().map(Probe::recorded);
         Ok(Histories {
+            file: Some(History::create(&path, columns)?),
+            probes: recorded.zip(sensors).collect(),
             row: Vec::with_capacity(columns.len()),
-            file: Some(History::create(&path, &columns)?),
-            probes,
         })
     }
 
@@ -93,7 +95,15 @@ impl Histories {
     }
 }
 
-fn columns(system: &System, settings: &Settings, point: Option<&ContactPoint>) -> Vec<String> {
+/// Names of the columns.
+///
+/// # Errors
+/// [`Error::TwinColumns`]: two probes, say, whose names differ by a capital only.
+pub(crate) fn columns(
+    system: &System,
+    settings: &Settings,
+    point: Option<&ContactPoint>,
+) -> Result<Vec<String>, Error> {
     let components = &COMPONENTS[..system.dim];
     let mut names = vec![column(&["time"], "s")];
     for (k, contact) in system.contacts.iter().enumerate() {
@@ -103,7 +113,7 @@ fn columns(system: &System, settings: &Settings, point: Option<&ContactPoint>) -
         };
         add(&["force"], "N");
         for i in components {
-            add(&["resultant", i], "N");
+            add(&[&format!("resultant {i}")], "N");
         }
         add(&["gap"], "m");
         add(&["gap rate"], "m/s");
@@ -136,5 +146,6 @@ fn columns(system: &System, settings: &Settings, point: Option<&ContactPoint>) -
     let residual = |i: &&str| column(&["momentum", &format!("residual {i}")], "N s");
     names.extend(components.iter().map(residual));
     names.push(column(&["status", "passes"], ""));
-    names
+    unique(&settings.folder.join(FILE), &names)?;
+    Ok(names)
 }

@@ -131,6 +131,8 @@ pub struct Results {
     curves: Curves,
     comparison: Option<Comparison>,
     totals: Totals,
+    /// Mean velocity of the bodies at the start, m/s.
+    start: Vec<[f64; 3]>,
     last: Last,
 }
 
@@ -162,22 +164,29 @@ impl Results {
     /// Creates the folder, copies the case into it and opens the tables.
     ///
     /// # Errors
-    /// The folder cannot be made or is not a results folder; a probe without a node of a body; two columns of one
-    /// name.
+    /// A probe without a node of a body; two columns of one name; a folder that cannot be made or is not a results
+    /// folder. Only the last may leave something on the disk.
     pub fn create(settings: Settings, system: Arc<System>) -> Result<Results, Error> {
+        let point = sensor::contact_point(&system, settings.reference.as_ref());
+        let probes = settings.probes.iter();
+        let probes = probes.map(|probe| sensor::of_probe(&system, probe));
+        let probes = probes.collect::<Result<Vec<_>, Error>>()?;
+        let columns = histories::columns(&system, &settings, point.as_ref())?;
+        // what is wrong with the settings is found before there is a folder
         let mut folder = Folder::create(&settings.folder)?;
         atomic::write_text(&folder.file("case.toml")?, &settings.case_text)?;
-        let point = sensor::contact_point(&system, settings.reference.as_ref());
-        let histories = Histories::create(&mut folder, &system, &settings, point.as_ref())?;
+        let curves = Curves::new(&system, &settings, point.as_ref(), &probes);
+        let histories = Histories::create(&mut folder, &columns, &settings.probes, probes)?;
         let impacts = Impacts::create(&mut folder, &system)?;
         let fields = match &settings.fields {
             Some(fields) => Some(FieldOutput::create(&mut folder, &system, fields)?),
             None => None,
         };
         Ok(Results {
-            curves: Curves::new(&system, &settings, point.as_ref())?,
+            curves,
             comparison: settings.reference.clone().map(Comparison::new),
             totals: Totals::default(),
+            start: velocities(&system, &system.initial_velocity),
             last: Last::default(),
             system,
             settings,
@@ -210,8 +219,6 @@ impl Results {
 
     /// Ends the tables and the thread, and keeps what the summary needs. Everything is tried, whatever fails.
     fn end(&mut self, state: &State) -> Result<(), Error> {
-        let bodies = 0..self.system.bodies.len();
-        let velocity = |body| self.system.mean_velocity(body, &state.motion.v);
         let forces = |k: usize| {
             let points = self.system.first_point[k]..self.system.first_point[k + 1];
             state.interface.force[points].iter().any(|f| *f != 0.0)
@@ -221,7 +228,7 @@ impl Results {
             time: state.time,
             ledger: state.ledger.clone(),
             records: state.records.clone(),
-            velocities: bodies.map(velocity).collect(),
+            velocities: velocities(&self.system, &state.motion.v),
             closed: (0..self.system.contacts.len()).map(forces).collect(),
         };
         let outcomes = [
@@ -264,6 +271,12 @@ impl Observer for Results {
         self.totals.spent += begin.elapsed();
         outcome.map_err(observer)
     }
+}
+
+/// Mean velocity of each body, m/s.
+fn velocities(system: &System, v: &[f64]) -> Vec<[f64; 3]> {
+    let bodies = 0..system.bodies.len();
+    bodies.map(|body| system.mean_velocity(body, v)).collect()
 }
 
 fn observer(cause: Error) -> carom_dynamics::Error {

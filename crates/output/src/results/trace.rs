@@ -24,6 +24,11 @@ impl Trace {
         }
     }
 
+    /// Whether there is nothing to draw.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
     /// Abscissae and ordinates.
     pub(crate) fn columns(&self) -> (Vec<f64>, Vec<f64>) {
         self.points.iter().copied().unzip()

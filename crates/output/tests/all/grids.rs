@@ -9,13 +9,13 @@ use carom_output::vtu::{Cells, Field, Grid, Values, write};
 use carom_output::{Collection, Error};
 
 /// One array as the file has it: the attributes of its element and its bytes.
-struct Array {
-    attributes: BTreeMap<String, String>,
+pub struct Array {
+    pub attributes: BTreeMap<String, String>,
     bytes: Vec<u8>,
 }
 
 impl Array {
-    fn floats(&self) -> Vec<f64> {
+    pub fn floats(&self) -> Vec<f64> {
         assert_eq!(self.attributes["type"], "Float64");
         self.bytes
             .as_chunks()
@@ -25,7 +25,7 @@ impl Array {
             .collect()
     }
 
-    fn integers(&self) -> Vec<i64> {
+    pub fn integers(&self) -> Vec<i64> {
         match self.attributes["type"].as_str() {
             "Int64" => self
                 .bytes
@@ -87,7 +87,7 @@ fn decode(data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-fn read(path: &Path) -> (String, BTreeMap<String, Array>) {
+pub fn read(path: &Path) -> (String, BTreeMap<String, Array>) {
     let file = std::fs::read(path).unwrap();
     let mark = b"<AppendedData encoding=\"raw\">\n_";
     let head = file

@@ -6,6 +6,8 @@
 mod figures;
 mod files;
 mod grids;
+mod models;
 mod pages;
+mod runs;
 mod tables;
 mod windows;

@@ -6,7 +6,7 @@ use std::process::Command;
 use carom_output::history::column;
 use carom_output::{Error, History, ImpactRow, ImpactTable};
 
-fn read(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+pub fn read(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     let mut reader = csv::Reader::from_path(path).unwrap();
     let names = reader
         .headers()

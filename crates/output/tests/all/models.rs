@@ -1,0 +1,177 @@
+//! Small models for whole runs.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_contact::law::{Capture, Displacement, Reading, Velocity};
+use carom_contact::{Law, Plane, Sliding};
+use carom_dynamics::scheme::{Newmark, Theta};
+use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System};
+use carom_exact::{Bar, Impact};
+use carom_materials::Elastic;
+use carom_mesh::{Surface, generate};
+use carom_output::{Fields, Probe, Reference, Settings};
+
+pub const LENGTH: f64 = 0.254;
+pub const AREA: f64 = 6.45e-4;
+pub const SPEED: f64 = 5.1359;
+const STEEL: Elastic = Elastic {
+    density: 7844.0,
+    young: 2.07e11,
+    poisson: 0.0,
+};
+
+pub fn wave_speed() -> f64 {
+    (STEEL.young / STEEL.density).sqrt()
+}
+
+/// Exact duration of the contact of the two bars, s.
+pub fn duration() -> f64 {
+    2.0 * LENGTH / wave_speed()
+}
+
+pub fn velocity_law() -> Law {
+    Law::Velocity(Velocity {
+        capture: Capture::Half,
+        reading: Reading::Closed,
+    })
+}
+
+/// Two equal bars, `n` elements each, Courant number 1/2, theta 1/2, velocity law.
+pub fn two_bars(n: usize) -> Arc<System> {
+    let line = |name: &str, from: f64| {
+        generate::line(name, [from, 0.0, 0.0], [from + LENGTH, 0.0, 0.0], n, 1)
+    };
+    let mut mesh = line("striker", -LENGTH);
+    mesh.merge("target", line("target", 0.0)).unwrap();
+    let body = |name: &str, speed: f64| ModelBody {
+        spec: BodySpec {
+            name: name.to_owned(),
+            cells: mesh.groups[name].elements.clone(),
+            kinematics: Kinematics::Bar { area: AREA },
+            material: STEEL,
+        },
+        mass: MassKind::Lumped,
+        velocity: [speed, 0.0, 0.0],
+        displacement: [0.0; 3],
+    };
+    let bodies = vec![body("striker", SPEED), body("target", 0.0)];
+    let surface = |group: &str, body: &ModelBody| {
+        Surface::new(&mesh, &mesh.groups[group], &body.spec.cells).unwrap()
+    };
+    let contacts = vec![ModelContact {
+        name: "shock".to_owned(),
+        secondary: surface("striker.right", &bodies[0]),
+        primary: ModelTarget::Surface(surface("target.left", &bodies[1])),
+        law: velocity_law(),
+        sliding: Sliding::Small,
+    }];
+    let model = Model {
+        bodies,
+        supports: Vec::new(),
+        gravity: [0.0; 3],
+        contacts,
+        scheme: Scheme::Theta(Theta { theta: 0.5 }),
+        dt: 0.5 * LENGTH / n as f64 / wave_speed(),
+        mesh,
+    };
+    System::new(model).unwrap()
+}
+
+/// The exact solution of the two bars, up to `end`.
+pub fn exact(end: f64) -> Reference {
+    let bar = Bar::new(LENGTH, AREA, STEEL.young, STEEL.density);
+    let impact = Impact::TwoBars {
+        secondary: bar.with_velocity(-SPEED),
+        primary: bar,
+        gap: 0.0,
+    };
+    Reference {
+        name: "two-bars".to_owned(),
+        solution: carom_exact::solve(&impact, end).unwrap(),
+        contact: 0,
+        axis: [1.0, 0.0, 0.0],
+    }
+}
+
+/// A soft block that drops on a rigid plane at 5 m/s: `n` cells a side, Newmark's trapezoid with the displacement law.
+/// Without a plane it flies freely.
+pub fn block(n: usize, plane: bool) -> Arc<System> {
+    let mesh = generate::box_("block", [0.0, 0.0, 0.001], [1.0; 3], [n; 3], false);
+    let body = ModelBody {
+        spec: BodySpec {
+            name: "block".to_owned(),
+            cells: mesh.groups["block"].elements.clone(),
+            kinematics: Kinematics::Solid,
+            material: Elastic {
+                density: 1000.0,
+                young: 1e9,
+                poisson: 0.3,
+            },
+        },
+        mass: MassKind::Lumped,
+        velocity: [0.0, 0.0, -5.0],
+        displacement: [0.0; 3],
+    };
+    let bottom = Surface::new(&mesh, &mesh.groups["block.bottom"], &body.spec.cells).unwrap();
+    let ground = ModelContact {
+        name: "ground".to_owned(),
+        secondary: bottom,
+        primary: ModelTarget::Plane(Plane {
+            point: [0.0; 3],
+            normal: [0.0, 0.0, 1.0],
+        }),
+        law: Law::Displacement(Displacement),
+        sliding: Sliding::Small,
+    };
+    let model = Model {
+        bodies: vec![body],
+        supports: Vec::<Support>::new(),
+        gravity: [0.0, 0.0, -9.81],
+        contacts: if plane { vec![ground] } else { Vec::new() },
+        scheme: Scheme::Newmark(Newmark {
+            beta: 0.49,
+            gamma: 0.9,
+        }),
+        dt: 1e-4,
+        mesh,
+    };
+    System::new(model).unwrap()
+}
+
+/// Histories only.
+pub fn settings(folder: &Path) -> Settings {
+    Settings {
+        folder: folder.to_owned(),
+        title: "A test".to_owned(),
+        case_text: "carom = 1\n".to_owned(),
+        version: "0.1.0".to_owned(),
+        scheme: "a scheme".to_owned(),
+        probes: Vec::new(),
+        fields: None,
+        reference: None,
+        warnings: Vec::new(),
+    }
+}
+
+pub fn all_fields(every: f64) -> Option<Fields> {
+    Some(Fields {
+        every,
+        displacement: true,
+        velocity: true,
+        acceleration: true,
+        stress: true,
+    })
+}
+
+/// A probe of everything on a group.
+pub fn probe(system: &System, name: &str, group: &str) -> Probe {
+    Probe {
+        name: name.to_owned(),
+        nodes: system.mesh.group_nodes(&system.mesh.groups[group]),
+        displacement: true,
+        velocity: true,
+        acceleration: true,
+    }
+}
