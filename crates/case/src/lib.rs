@@ -10,19 +10,23 @@ pub mod units;
 mod build;
 mod describe;
 mod error;
+mod facts;
 mod input;
 mod keys;
 mod locate;
 mod reference;
 mod rules;
+mod run;
 mod tree;
 mod validate;
 
 pub use build::{Built, BuiltProbe, ExactReference, build};
+pub use facts::{Fact, facts};
 pub use error::{Place, Problem};
 pub use input::{Input, Source};
 pub use locate::Locator;
 pub use reference::reference_page;
+pub use run::{Failed, Finished, run};
 
 /// Reads a case: syntax, overrides, schema.
 ///

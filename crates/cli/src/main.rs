@@ -1,2 +1,144 @@
-//! The executable.
-fn main() {}
+//! The executable: `carom run`, `check`, `schema`, `new`, `verify`.
+//!
+//! Exit codes: 0 done and the verdict good, 2 bad input, 3 the run failed with the last good state on disk, 4 done but a
+//! balance is out of its bound, 130 interrupted.
+// The program talks to people: printing is its job.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod diagnostics;
+mod new;
+mod progress;
+mod run;
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use carom_case::{Built, Input, Problem};
+use clap::{Parser, Subcommand};
+
+/// Impact of deformable solids: a case file, a run, a report.
+#[derive(Parser)]
+#[command(name = "carom", version, about)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Check a case, run it, and leave its results folder
+    Run(run::Arguments),
+    /// Say everything that can be said of a case before a run
+    Check {
+        /// The case file
+        case: PathBuf,
+        /// Replace a value of the case: `--set time.scheme.theta.theta=0.6`
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+    },
+    /// Print the JSON schema of the case file
+    Schema {
+        /// Print the reference page of the manual instead
+        #[arg(long)]
+        reference: bool,
+    },
+    /// Write a commented case to start from
+    New {
+        /// Name of the template; without it the templates are listed
+        template: Option<String>,
+        /// File to write
+        #[arg(default_value = "case.toml")]
+        file: PathBuf,
+    },
+    /// Rerun the verification manual on this machine
+    Verify {
+        /// Only the checks whose name contains this
+        name: Option<String>,
+        /// The small sizes of the quick tests
+        #[arg(long)]
+        quick: bool,
+    },
+}
+
+/// Exit code of bad input.
+const BAD_INPUT: u8 = 2;
+/// Exit code of a run that failed.
+const FAILED: u8 = 3;
+/// Exit code of a run or a verification with a quantity out of its bound.
+const OUT_OF_BOUND: u8 = 4;
+/// Exit code of an interrupted run.
+const INTERRUPTED: u8 = 130;
+
+fn main() -> ExitCode {
+    tracing_subscriber::fmt().with_max_level(tracing::Level::WARN).with_writer(std::io::stderr).init();
+    let code = match Arguments::parse().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Check { case, set } => check(&case, &set),
+        Command::Schema { reference } => schema(reference),
+        Command::New { template, file } => new::new(template.as_deref(), &file),
+        Command::Verify { name, quick } => verify(name.as_deref(), quick),
+    };
+    ExitCode::from(code)
+}
+
+/// Reads and builds a case, or prints all its problems.
+fn load(case: &Path, set: &[String]) -> Result<(Input, carom_case::schema::Case, Built), u8> {
+    let input = Input::read(case, set).map_err(|problems| refuse(&[], &problems))?;
+    let (parsed, locator) = carom_case::parse(&input).map_err(|problems| refuse(&input.sources, &problems))?;
+    let built = carom_case::build(&parsed, &locator, &input).map_err(|problems| refuse(&input.sources, &problems))?;
+    Ok((input, parsed, built))
+}
+
+fn refuse(sources: &[carom_case::Source], problems: &[Problem]) -> u8 {
+    eprint!("{}", diagnostics::render(sources, problems, std::io::stderr().is_terminal()));
+    BAD_INPUT
+}
+
+fn check(case: &Path, set: &[String]) -> u8 {
+    let built = match load(case, set) {
+        Ok((_, _, built)) => built,
+        Err(code) => return code,
+    };
+    for fact in carom_case::facts(&built) {
+        println!("{:<18} {}", fact.name, fact.value);
+    }
+    for warning in &built.warnings {
+        println!("{:<18} {warning}", "warning");
+    }
+    println!("{} can be run.", case.display());
+    0
+}
+
+fn schema(reference: bool) -> u8 {
+    if reference {
+        print!("{}", carom_case::reference_page());
+        return 0;
+    }
+    match serde_json::to_string_pretty(&carom_case::schema::json_schema()) {
+        Ok(text) => {
+            println!("{text}");
+            0
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            FAILED
+        }
+    }
+}
+
+fn verify(name: Option<&str>, quick: bool) -> u8 {
+    let size = if quick { carom_verification::Size::Quick } else { carom_verification::Size::Full };
+    match carom_verification::verify(name, size, &mut std::io::stdout().lock()) {
+        Ok(verdict) if verdict.holds() => 0,
+        Ok(verdict) if verdict.checks == 0 => {
+            eprintln!("error: no check of this name");
+            BAD_INPUT
+        }
+        Ok(_) => OUT_OF_BOUND,
+        Err(error) => {
+            eprintln!("error: {error}");
+            FAILED
+        }
+    }
+}

@@ -104,6 +104,14 @@ pub(crate) struct Step<'a> {
 }
 
 impl Records {
+    /// Makes these the records of the state before the step, of which they are those of one step earlier or of an
+    /// attempt given up: the impacts of both begin alike, and only the last are copied.
+    pub(crate) fn follow(&mut self, before: &Records) {
+        self.contacts.clone_from(&before.contacts);
+        self.impacts.truncate(before.impacts.len());
+        self.impacts.extend_from_slice(&before.impacts[self.impacts.len()..]);
+    }
+
     /// Adds a step of one contact. `old`, `new`: the states around it.
     pub(crate) fn add(
         &mut self,

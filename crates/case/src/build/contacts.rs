@@ -98,10 +98,11 @@ impl Builder<'_> {
             let node = contact.points[deepest].node;
             let x = places.of(node);
             let path = format!("contact.{}", contact.name);
-            let message = format!("{} penetrate at the start", super::plural(deep.len(), "point"));
+            let verb = if deep.len() == 1 { "penetrates" } else { "penetrate" };
+            let message = format!("{} {verb} at the start", super::plural(deep.len(), "point"));
             let problem = Problem::new(path, message)
-                .found(format!("a gap of {:e} m at node {}, ({:.6}, {:.6}, {:.6}) m", rows.gap(deepest), system.mesh_node[node as usize], x[0], x[1], x[2]))
-                .accepted([format!("gaps of at least -{slack:e} m")]);
+                .found(format!("a gap of {:.4e} m at node {}, ({:.6}, {:.6}, {:.6}) m", rows.gap(deepest), system.mesh_node[node as usize], x[0], x[1], x[2]))
+                .accepted([format!("gaps of at least -{slack:.1e} m")]);
             self.problems.push(problem);
         }
     }

@@ -19,7 +19,7 @@ pub struct ExactReference {
     pub solution: Solution,
     /// Index of the contact.
     pub contact: usize,
-    /// Unit vector along the bars, from the primary side to the secondary one.
+    /// Unit vector along the bars, from the secondary side to the primary one.
     pub axis: [f64; 3],
 }
 
@@ -31,7 +31,9 @@ impl Builder<'_> {
         };
         let path = format!("reference.{name}");
         match solve(system, sides, two, end) {
-            Ok((solution, axis)) => Some(ExactReference { name, solution, contact: 0, axis }),
+            Ok((solution, normal)) => {
+                Some(ExactReference { name, solution, contact: 0, axis: normal.map(|n| -n) })
+            }
             Err(message) => {
                 let problem = Problem::new(path, format!("the case is not this problem: {message}"));
                 self.problems.push(problem);
@@ -41,6 +43,7 @@ impl Builder<'_> {
     }
 }
 
+/// The solution, and the contact normal, which points from the primary side to the secondary one.
 fn solve(system: &System, sides: Sides, two: bool, end: f64) -> Result<(Solution, [f64; 3]), String> {
     let [contact] = &system.contacts[..] else {
         return Err(format!("it has {} contacts instead of one", system.contacts.len()));
@@ -64,18 +67,18 @@ fn solve(system: &System, sides: Sides, two: bool, end: f64) -> Result<(Solution
     }
     // the reference's contact begins with gap zero to the rounding of the mesh
     let gap = if gap.abs() <= 1e-9 * system.mesh.size() { 0.0 } else { gap };
-    let axis = rows.normal(0);
+    let normal = rows.normal(0);
     let area: f64 = contact.points.iter().map(|point| point.area).sum();
-    let one = bar(system, secondary, axis, sides, area)?;
+    let one = bar(system, secondary, normal, sides, area)?;
     let impact = match primary {
         None => Impact::Wall { bar: one, gap },
         Some(primary) => {
-            Impact::TwoBars { secondary: one, primary: bar(system, primary, axis.map(|n| -n), sides, area)?, gap }
+            Impact::TwoBars { secondary: one, primary: bar(system, primary, normal.map(|n| -n), sides, area)?, gap }
         }
     };
     let last = step_count(end, system.dt) as f64 * system.dt;
     let solution = carom_exact::solve(&impact, last * (1.0 + 1e-9)).map_err(|error| error.to_string())?;
-    Ok((solution, axis))
+    Ok((solution, normal))
 }
 
 /// The bar behind a body, whose contact end lies against `inward`, the unit vector from the contact into the bar.

@@ -55,7 +55,7 @@ impl Builder<'_> {
         };
         let steps = step_count(end, dt);
         if !(dt > 0.0 && dt.is_finite()) || steps > MOST_STEPS {
-            let problem = Problem::new(path, "the run would never end").found(format!("{:e} steps of {dt:e} s", end / dt));
+            let problem = Problem::new(path, "the run would never end").found(format!("{:.3e} steps of {dt:.3e} s", end / dt));
             self.problems.push(problem.accepted([format!("at most {MOST_STEPS:e} steps")]));
             return None;
         }
@@ -80,7 +80,7 @@ impl Builder<'_> {
             }
             Error::Unstable { dt, critical } => {
                 let problem = Problem::new("time.step", "the step is above the critical step of the explicit scheme");
-                problem.found(format!("{dt:e} s")).accepted([format!("at most {critical:e} s"), "step = { critical = 0.9 }".to_string()])
+                problem.found(format!("{dt:.4e} s")).accepted([format!("at most {critical:.4e} s"), "step = { critical = 0.9 }".to_string()])
             }
             other => Problem::new("time", other.to_string()),
         }

@@ -63,7 +63,7 @@ impl Driver {
 
     pub(super) fn record(&mut self) {
         let system = Arc::clone(&self.system);
-        self.next.records.clone_from(&self.state.records);
+        self.next.records.follow(&self.state.records);
         for k in 0..system.contacts.len() {
             let report = contact_report(
                 &system,

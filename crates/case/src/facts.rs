@@ -1,0 +1,100 @@
+//! What can be said of a case before it runs.
+
+use carom_contact::{Places, Rows, Search};
+use carom_dynamics::{System, step_count};
+
+use crate::build::Built;
+
+/// A line of `carom check`: what, and how much.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fact {
+    /// What.
+    pub name: String,
+    /// How much, with units.
+    pub value: String,
+}
+
+fn fact(name: impl Into<String>, value: impl Into<String>) -> Fact {
+    Fact { name: name.into(), value: value.into() }
+}
+
+/// Sizes, speeds and times of a case.
+pub fn facts(built: &Built) -> Vec<Fact> {
+    let system = &built.system;
+    let elements: usize = system.bodies.iter().map(|body| body.cells().len()).sum();
+    let held = system.fixed.iter().filter(|fixed| **fixed).count();
+    let mut facts = vec![fact(
+        "model",
+        format!(
+            "{}D, {} nodes, {elements} elements, {} unknowns ({held} held), {} connected parts, {} contact points",
+            system.dim,
+            system.x.len(),
+            system.unknowns(),
+            system.parts.len(),
+            system.points()
+        ),
+    )];
+    for (k, body) in system.bodies.iter().enumerate() {
+        let (speed, size) = (body.wave_speed(), extent(system, k));
+        facts.push(fact(
+            format!("body {}", body.name()),
+            format!(
+                "{}, {:.6} kg, waves at {speed:.5} m/s, {:.4e} s to cross its {size:.4} m, smallest element {:.4e} m",
+                body.kinematics().name(),
+                system.body_mass(k),
+                size / speed,
+                body.smallest_size()
+            ),
+        ));
+    }
+    for (k, contact) in system.contacts.iter().enumerate() {
+        facts.push(fact(format!("contact {}", contact.name), contact_facts(system, k)));
+    }
+    let crossing = system.bodies.iter().map(|body| body.smallest_size() / body.wave_speed()).fold(f64::INFINITY, f64::min);
+    let scheme = system.scheme.get();
+    facts.push(fact(
+        "time",
+        format!(
+            "{}, {} steps of {:.6e} s (Courant number {:.3}) to {:.4e} s",
+            scheme.name(),
+            step_count(built.end, system.dt),
+            system.dt,
+            system.dt / crossing,
+            built.end
+        ),
+    ));
+    if scheme.is_explicit() {
+        facts.push(fact("critical step", format!("{:.6e} s, from element eigenvalues", system.critical_step())));
+    }
+    facts
+}
+
+/// Largest extent of a body along the axes, m.
+fn extent(system: &System, body: usize) -> f64 {
+    let mut largest: f64 = 0.0;
+    for i in 0..system.dim {
+        let places = system.body_masses[body].iter().map(|&(node, _)| system.x[node as usize][i]);
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        largest = largest.max(high - low);
+    }
+    largest
+}
+
+fn contact_facts(system: &System, contact: usize) -> String {
+    let places = Places { dim: system.dim, x: &system.x, u: &system.initial_displacement };
+    let mut rows = Rows::default();
+    rows.clear();
+    system.contacts[contact].pair(&places, &mut Search::default(), &mut rows);
+    let gap = (0..rows.len()).map(|point| rows.gap(point)).fold(f64::INFINITY, f64::min);
+    let first = (0..rows.len())
+        .map(|point| (rows.gap(point), -rows.product(point, &system.initial_velocity)))
+        .filter(|(_, closing)| *closing > 0.0)
+        .map(|(gap, closing)| gap.max(0.0) / closing)
+        .fold(f64::INFINITY, f64::min);
+    let law = system.contacts[contact].law.get().name();
+    let impact = match first.is_finite() {
+        true => format!("first possible impact at {first:.4e} s"),
+        false => "nothing approaches at the start".to_string(),
+    };
+    format!("{law} law, {} points, least gap {gap:.4e} m, {impact}", rows.len())
+}

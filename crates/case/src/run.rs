@@ -1,0 +1,110 @@
+//! The run of a built case, from the first factorisation to the results folder.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use carom_dynamics::{Driver, Observer, Outcome, march};
+use carom_output::{Ending, Fields, Probe, Reference, Results, Settings, Summary};
+use thiserror::Error as ThisError;
+
+use crate::build::Built;
+use crate::input::Input;
+use crate::schema::{Case, Field, Motion, Scheme};
+
+/// How a run ended.
+#[derive(Debug)]
+pub struct Finished {
+    /// What `summary.json` holds.
+    pub summary: Summary,
+    /// Whether somebody stopped it before its end time.
+    pub interrupted: bool,
+}
+
+/// Why a run did not come to its end.
+#[derive(Debug, ThisError)]
+pub enum Failed {
+    /// Nothing was computed.
+    #[error(transparent)]
+    Start(carom_dynamics::Error),
+    /// The results could not be written.
+    #[error(transparent)]
+    Output(#[from] carom_output::Error),
+    /// A step failed, or its results could not be written; what was written before is complete.
+    #[error(transparent)]
+    Step(carom_dynamics::Error),
+}
+
+/// Runs a case into a results folder. `progress` sees every accepted state; `stop` is asked before every step.
+///
+/// # Errors
+/// The folder cannot be written, or a step fails. The folder then holds all that was computed before.
+pub fn run(
+    (input, case, built): (&Input, &Case, &Built),
+    folder: PathBuf,
+    progress: &mut dyn Observer,
+    stop: &dyn Fn() -> bool,
+) -> Result<Finished, Failed> {
+    let begin = Instant::now();
+    let mut driver = Driver::new(Arc::clone(&built.system)).map_err(Failed::Start)?;
+    let mut results = Results::create(settings(input, case, built, folder), Arc::clone(&built.system))?;
+    let outcome = march(&mut driver, built.end, &mut [&mut results, progress], stop);
+    let unfinished = match &outcome {
+        Ok(Outcome::Done) => None,
+        Ok(Outcome::Interrupted) => Some("the run was interrupted".to_string()),
+        Err(error) => Some(error.to_string()),
+    };
+    let ending = Ending { unfinished, costs: &driver.costs(), wall: begin.elapsed() };
+    let summary = results.conclude(&ending);
+    // the first cause is the one to report
+    let outcome = outcome.map_err(Failed::Step)?;
+    Ok(Finished { summary: summary?, interrupted: outcome == Outcome::Interrupted })
+}
+
+fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Settings {
+    let set = input.sources.iter().filter(|source| source.name == "--set");
+    let overrides: String = set.map(|source| format!("# --set {}\n", source.text.trim())).collect();
+    let file = input.sources.first().map_or(String::new(), |source| source.text.clone());
+    Settings {
+        folder,
+        title: case.title.clone().unwrap_or_else(|| input.sources.first().map_or_else(String::new, |s| s.name.clone())),
+        case_text: overrides + &file,
+        version: env!("CARGO_PKG_VERSION").to_string(),
+        scheme: scheme(&case.time.scheme),
+        probes: built.probes.iter().map(|probe| {
+            let has = |motion| probe.record.contains(&motion);
+            Probe {
+                name: probe.name.clone(),
+                nodes: probe.nodes.clone(),
+                displacement: has(Motion::Displacement),
+                velocity: has(Motion::Velocity),
+                acceleration: has(Motion::Acceleration),
+            }
+        }).collect(),
+        fields: case.output.fields.as_ref().map(|fields| {
+            let has = |field| fields.record.contains(&field);
+            Fields {
+                every: fields.every.0,
+                displacement: has(Field::Displacement),
+                velocity: has(Field::Velocity),
+                acceleration: has(Field::Acceleration),
+                stress: has(Field::Stress),
+            }
+        }),
+        reference: built.reference.as_ref().map(|reference| Reference {
+            name: reference.name.to_string(),
+            solution: reference.solution.clone(),
+            contact: reference.contact,
+            axis: reference.axis,
+        }),
+        warnings: built.warnings.clone(),
+    }
+}
+
+fn scheme(scheme: &Scheme) -> String {
+    match scheme {
+        Scheme::Newmark(newmark) => format!("newmark, beta = {}, gamma = {}", newmark.beta, newmark.gamma),
+        Scheme::Theta(theta) => format!("theta, theta = {}", theta.theta),
+        Scheme::CentralDifference(_) => "central-difference".to_string(),
+    }
+}

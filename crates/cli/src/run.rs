@@ -1,0 +1,121 @@
+//! `carom run`.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use carom_case::{Built, Finished, Input, schema::Case};
+use carom_dynamics::step_count;
+use carom_output::Summary;
+use carom_output::plot::quantity;
+
+use crate::progress::Progress;
+use crate::{FAILED, INTERRUPTED, OUT_OF_BOUND};
+
+/// Arguments of `carom run`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The case file
+    case: PathBuf,
+    /// Replace a value of the case: `--set time.scheme.theta.theta=0.6`
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Results folder; default: the case file's name with the ending `.carom`, beside it
+    #[arg(long, value_name = "FOLDER")]
+    results: Option<PathBuf>,
+    /// No progress bar
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Runs a case; returns the exit code.
+pub fn run(arguments: &Arguments) -> u8 {
+    let (input, case, built) = match crate::load(&arguments.case, &arguments.set) {
+        Ok(loaded) => loaded,
+        Err(code) => return code,
+    };
+    for warning in &built.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let folder = arguments.results.clone().unwrap_or_else(|| arguments.case.with_extension("carom"));
+    match march(&input, &case, &built, folder.clone(), arguments.quiet) {
+        Ok(finished) => {
+            print(&finished.summary, &folder);
+            match (finished.interrupted, finished.summary.verdict.good) {
+                (true, _) => INTERRUPTED,
+                (false, true) => 0,
+                (false, false) => OUT_OF_BOUND,
+            }
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            let mut cause: &dyn std::error::Error = &error;
+            while let Some(source) = cause.source() {
+                eprintln!("  because: {source}");
+                cause = source;
+            }
+            FAILED
+        }
+    }
+}
+
+fn march(input: &Input, case: &Case, built: &Built, folder: PathBuf, quiet: bool) -> Result<Finished, carom_case::Failed> {
+    let stopped = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stopped);
+    // without a handler Ctrl-C ends the program at once, as it would any other
+    let handled = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+    if let Err(error) = handled {
+        tracing::warn!("Ctrl-C will not leave a summary: {error}");
+    }
+    let steps = step_count(built.end, built.system.dt);
+    let mut progress = Progress::new(steps, quiet || !std::io::stderr().is_terminal());
+    carom_case::run((input, case, built), folder, &mut progress, &|| stopped.load(Ordering::Relaxed))
+}
+
+/// The summary for people: forces, impulses, energy, verdict, where to look.
+fn print(summary: &Summary, folder: &Path) {
+    println!("{}", summary.title);
+    println!("  {} steps of {} to {}", summary.time.steps, quantity(summary.time.largest_step, "s"), quantity(summary.time.end, "s"));
+    for (name, contact) in &summary.contacts {
+        println!("  contact {name} ({} law)", contact.law);
+        println!(
+            "    mean force {}, peak of the mean over {}: {}, raw peak {}",
+            quantity(contact.mean_force, "N"),
+            quantity(contact.window, "s"),
+            quantity(contact.peak_mean_force, "N"),
+            quantity(contact.peak_force, "N")
+        );
+        let times = match (contact.first_closing, contact.last_release) {
+            (Some(first), Some(last)) => format!(", closed from {} to {}", quantity(first, "s"), quantity(last, "s")),
+            (Some(first), None) => format!(", closed from {}", quantity(first, "s")),
+            (None, _) => ", never closed".to_string(),
+        };
+        println!("    impulse {}{times}", quantity(contact.impulse, "N s"));
+    }
+    for exact in &summary.exact {
+        let percent = |error: Option<f64>| error.map_or("-".to_string(), |error| format!("{:+.2} %", 100.0 * error));
+        println!("  against the exact solution `{}`:", exact.name);
+        println!(
+            "    force {} (L2), peak of the mean {}, impulse {}, displacement {} (L2)",
+            percent(exact.force_error),
+            percent(exact.mean_overshoot),
+            percent(Some(exact.impulse_error)),
+            percent(exact.displacement_error)
+        );
+    }
+    println!(
+        "  energy residual {:.1e}, momentum residual {:.1e} (relative)",
+        summary.energy.relative_residual, summary.momentum.relative_residual
+    );
+    println!("  {}", verdict(summary));
+    println!("  report: {}", folder.join("report.html").display());
+    println!("  figures: {}", folder.join("plots").display());
+}
+
+fn verdict(summary: &Summary) -> String {
+    match summary.verdict.good {
+        true => "verdict: good, every balance within its bound".to_string(),
+        false => format!("verdict: BAD: {}", summary.verdict.reasons.join("; ")),
+    }
+}

@@ -1,0 +1,6 @@
+//! Facts about whole steps that need no exact solution.
+
+// Helpers of tests panic as the tests themselves do.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod allocation;
