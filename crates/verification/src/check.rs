@@ -125,7 +125,7 @@ impl fmt::Display for Row {
         let verdict = if self.holds() { "ok  " } else { "FAIL" };
         write!(
             f,
-            "{verdict}  {:<66}  {:>12}",
+            "{verdict}  {:<84}  {:>12}",
             self.quantity,
             short(self.value)
         )?;

@@ -7,32 +7,17 @@
 //! largest momentum of the run (the displacement law under the trapezoid at this step multiplies the energy).
 
 use carom_bodies::MassKind;
-use carom_contact::Law;
-use carom_contact::law::{Adhesion, Capture};
 use carom_dynamics::Scheme;
 
 use crate::Error;
 use crate::bars::{Run, SLOW};
-use crate::build::{DISPLACEMENT, PAPER_SETS, damped, newmark, theta, velocity};
+use crate::battery::{is_senseless, laws};
+use crate::build::{PAPER_SETS, newmark, theta};
 use crate::check::{Check, Row};
 use crate::figures::drive;
 
 const ELEMENTS: usize = 50;
 const TOLERANCE: f64 = 1e-11;
-
-/// Every law with usual parameters.
-fn laws() -> Vec<(&'static str, Law)> {
-    let size = SLOW.length / ELEMENTS as f64;
-    let damped = |adhesion| damped(&SLOW.material(), size, 0.5, adhesion);
-    vec![
-        ("displacement", DISPLACEMENT),
-        ("damped, clip", damped(Adhesion::Clip)),
-        ("damped, as printed", damped(Adhesion::AsPrinted)),
-        ("velocity, now", velocity(Capture::Now)),
-        ("velocity, half", velocity(Capture::Half)),
-        ("velocity, full", velocity(Capture::Full)),
-    ]
-}
 
 /// Σ F (g₊ - g) of theta ½ against the energy that is gone.
 fn work_of_history() -> Result<Row, Error> {
@@ -63,11 +48,11 @@ pub(crate) const CHECK: Check = Check {
         schemes.push(theta(1.0));
         let mut rows = vec![work_of_history()?];
         for scheme in schemes {
-            for (law_name, law) in laws() {
+            for (law_name, law) in laws(&SLOW.material(), SLOW.length / ELEMENTS as f64) {
                 for mass in [MassKind::Lumped, MassKind::Consistent] {
-                    let explicit = scheme.get().is_explicit();
-                    if explicit && (mass == MassKind::Consistent || law == DISPLACEMENT) {
-                        continue; // refused, which the battery of resumed runs asserts
+                    let consistent = mass == MassKind::Consistent;
+                    if is_senseless(scheme, law) || consistent && scheme.get().is_explicit() {
+                        continue; // refused; see the battery of resumed runs
                     }
                     let case = Run {
                         scheme,

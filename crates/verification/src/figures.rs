@@ -59,6 +59,8 @@ pub(crate) struct Figures {
     pub(crate) switches: usize,
     /// Separation of the mean velocities along the axis / v0.
     pub(crate) restitution: f64,
+    /// End of the last step with a force / exact duration.
+    pub(crate) release: f64,
     /// Largest penetration / (v0 dt).
     pub(crate) penetration: f64,
     /// Largest |F ġ₊| / (F0 v0) after the impact step and before 0.98 of the contact.
@@ -106,6 +108,7 @@ fn figures(run: &Run, driver: &Driver, history: &History) -> Result<Figures, Err
             - 1.0,
         switches: active.windows(2).filter(|pair| pair[0] != pair[1]).count(),
         restitution: separation(run, driver) / v0,
+        release: records.last_force.unwrap_or(f64::NAN) / duration,
         penetration: records.penetration / (v0 * run.dt()),
         defect: persistent
             .map(|k| (force[k] * history.rate[k]).abs() / (f0 * v0))

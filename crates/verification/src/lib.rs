@@ -7,6 +7,7 @@
 //! Adding a case: one file, its `mod` line, its name in the list below.
 
 mod bars;
+mod battery;
 mod build;
 mod check;
 mod error;
@@ -28,6 +29,7 @@ mod order;
 mod resume;
 mod sdnl111;
 mod shapes;
+mod threads;
 
 use std::io::{self, Write};
 
@@ -71,6 +73,7 @@ registry! {
     resume
     sdnl111
     shapes
+    threads
 }
 
 /// Runs all cases, or those whose name contains `filter`, and writes one line per row.
@@ -79,6 +82,16 @@ registry! {
 /// Only of `out`; a case that cannot be computed is written and counted as failed.
 pub fn verify(filter: Option<&str>, size: Size, out: &mut dyn Write) -> io::Result<Verdict> {
     check::verify(&checks(), filter, size, out)
+}
+
+#[test]
+fn names_differ_and_facts_are_stated() {
+    let mut names: Vec<_> = checks().iter().map(|check| check.name).collect();
+    let count = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), count);
+    assert!(checks().iter().all(|check| !check.fact.is_empty()));
 }
 
 #[cfg(test)]

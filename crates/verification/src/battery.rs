@@ -1,0 +1,81 @@
+//! What runs over every registered scheme and every law.
+
+use std::sync::Arc;
+
+use carom_contact::Law;
+use carom_contact::law::{Adhesion, Capture};
+use carom_dynamics::{Model, Scheme, State, System};
+use carom_materials::Elastic;
+
+use crate::Error;
+use crate::build::{DISPLACEMENT, damped, velocity};
+use crate::check::Row;
+
+/// Every law with usual parameters, for elements of the given size in m; without the closed field as printed, which is a
+/// negative control with a case of its own.
+pub(crate) fn laws(material: &Elastic, size: f64) -> Vec<(&'static str, Law)> {
+    let damped = |adhesion| damped(material, size, 0.5, adhesion);
+    vec![
+        ("displacement", DISPLACEMENT),
+        ("damped, clip", damped(Adhesion::Clip)),
+        ("damped, as printed", damped(Adhesion::AsPrinted)),
+        ("velocity, now", velocity(Capture::Now)),
+        ("velocity, half", velocity(Capture::Half)),
+        ("velocity, full", velocity(Capture::Full)),
+    ]
+}
+
+/// Whether a scheme cannot take a law: with an explicit one the end displacement does not depend on the force.
+pub(crate) fn is_senseless(scheme: Scheme, law: Law) -> bool {
+    scheme.get().is_explicit() && law == DISPLACEMENT
+}
+
+/// Pairs of runs that must end in the same bytes.
+#[derive(Default)]
+pub(crate) struct Battery {
+    pairs: usize,
+    different: usize,
+    without_contact: usize,
+    refused: usize,
+    senseless: usize,
+}
+
+impl Battery {
+    /// The system of a combination, or none where it is refused for its law.
+    ///
+    /// # Errors
+    /// A refusal for another reason.
+    pub(crate) fn system(&mut self, model: Model) -> Result<Option<Arc<System>>, Error> {
+        let senseless = is_senseless(model.scheme, model.contacts[0].law);
+        self.senseless += usize::from(senseless);
+        match System::new(model) {
+            Ok(system) => Ok(Some(system)),
+            Err(carom_dynamics::Error::DisplacementLaw { .. }) if senseless => {
+                self.refused += 1;
+                Ok(None)
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Compares two end states byte by byte.
+    pub(crate) fn compare(&mut self, one: &State, other: &State) -> Result<(), Error> {
+        self.pairs += 1;
+        self.different += usize::from(one.to_bytes()? != other.to_bytes()?);
+        let closing = one.records.contacts[0].first_closing;
+        self.without_contact += usize::from(closing.is_none());
+        Ok(())
+    }
+
+    /// Rows of the counts; `pairs`: how many had to be compared.
+    pub(crate) fn rows(&self, name: &str, pairs: usize) -> Vec<Row> {
+        let row =
+            |what: &str, value, reference| Row::count(format!("{name}: {what}"), value, reference);
+        vec![
+            row("pairs compared", self.pairs, pairs),
+            row("pairs that differ in a byte", self.different, 0),
+            row("pairs that never touched", self.without_contact, 0),
+            row("combinations refused", self.refused, self.senseless),
+        ]
+    }
+}
