@@ -1,5 +1,5 @@
-//! Kernels of a straight two-node bar in one, two or three dimensions: strain along its axis only,
-//! ε = e · (u_2 - u_1) / L. Slices hold the two nodes.
+//! Stiffness, mass and stress of a straight two-node bar in one, two or three dimensions: strain along its axis only,
+//! ε = e · (u_2 - u_1) / L. Slices hold the two nodes. Internal forces are in `force.rs`.
 
 use carom_algebra::tensor::Mat3;
 
@@ -24,19 +24,6 @@ impl Bar {
 
     fn strain(axis: &[f64; 3], length: f64, u: &[[f64; 3]]) -> f64 {
         (0..3).map(|i| axis[i] * (u[1][i] - u[0][i])).sum::<f64>() / length
-    }
-
-    /// Adds the internal forces to `f` (N) and returns the strain energy ½ E A L ε² (J).
-    #[inline]
-    pub(crate) fn force(&self, x: &[[f64; 3]], u: &[[f64; 3]], f: &mut [[f64; 3]]) -> f64 {
-        let (axis, length) = Bar::axis(x);
-        let strain = Bar::strain(&axis, length, u);
-        let tension = self.young * self.area * strain;
-        for i in 0..3 {
-            f[0][i] -= tension * axis[i];
-            f[1][i] += tension * axis[i];
-        }
-        0.5 * tension * strain * length
     }
 
     /// Stiffness E A / L [e⊗e, -e⊗e; -e⊗e, e⊗e], row-major, in N/m.

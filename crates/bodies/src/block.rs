@@ -5,12 +5,21 @@
 
 use carom_algebra::tensor::Mat3;
 use carom_elements::Kind;
+use pulp::{Arch, Simd, WithSimd};
 
 use crate::bar::Bar;
 use crate::continuum::{self, Law, Points};
+use crate::force::{self, Cell, Kernel};
+use crate::lanes::Lanes;
 
-/// Elements per chunk, whatever the number of threads.
-const CHUNK: usize = 256;
+/// Elements per chunk, whatever the number of threads: about 30 microseconds of work.
+fn chunk_length(kind: Kind) -> usize {
+    match kind {
+        Kind::Point1 | Kind::Bar2 => 4096,
+        Kind::Tri3 | Kind::Quad4 | Kind::Tet4 => 1024,
+        Kind::Hex8 => 256,
+    }
+}
 
 /// The physics of the elements of a block.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +60,7 @@ impl Block {
     /// `elements`: system numbers of the nodes of each element, flat; `x`: coordinates by system number.
     pub(crate) fn new(kind: Kind, physics: Physics, elements: &[u32], x: &[[f64; 3]]) -> Block {
         let per = kind.table().nodes;
-        let chunks = elements.chunks(CHUNK * per).map(|elements| {
+        let chunks = elements.chunks(chunk_length(kind) * per).map(|elements| {
             let mut nodes = elements.to_vec();
             nodes.sort_unstable();
             nodes.dedup();
@@ -75,38 +84,13 @@ impl Block {
     /// vector with `dim` entries per node); returns the strain energy (J).
     pub(crate) fn force(&self, chunk: &Chunk, dim: usize, u: &[f64], f: &mut [[f64; 3]]) -> f64 {
         f.fill([0.0; 3]);
-        match self.kind {
-            Kind::Point1 => 0.0,
-            Kind::Bar2 => self.sweep::<2>(chunk, dim, u, f),
-            Kind::Tri3 => self.sweep::<3>(chunk, dim, u, f),
-            Kind::Quad4 | Kind::Tet4 => self.sweep::<4>(chunk, dim, u, f),
-            Kind::Hex8 => self.sweep::<8>(chunk, dim, u, f),
-        }
-    }
-
-    fn sweep<const N: usize>(
-        &self,
-        chunk: &Chunk,
-        dim: usize,
-        u: &[f64],
-        f: &mut [[f64; 3]],
-    ) -> f64 {
-        let mut energy = 0.0;
-        for element in chunk.connectivity.chunks_exact(N) {
-            let (x, u_e) = chunk.gather::<N>(element, dim, u);
-            let mut f_e = [[0.0; 3]; N];
-            energy += match &self.physics {
-                Physics::Bar(bar) => bar.force(&x, &u_e, &mut f_e),
-                Physics::Continuum(law) => {
-                    continuum::force(law, &self.stiffness_points, &x, &u_e, &mut f_e)
-                }
-            };
-            for (&node, f_a) in element.iter().zip(&f_e) {
-                let sum = &mut f[node as usize];
-                *sum = [sum[0] + f_a[0], sum[1] + f_a[1], sum[2] + f_a[2]];
-            }
-        }
-        energy
+        Arch::new().dispatch(Sweep {
+            block: self,
+            chunk,
+            dim,
+            u,
+            f,
+        })
     }
 
     /// Calls `visit(nodes, stiffness, mass)` for each element: system numbers of its nodes, stiffness (N/m, row-major
@@ -169,6 +153,91 @@ impl Block {
                 });
             }
         }
+    }
+}
+
+/// The internal forces of one chunk, by whatever instruction set.
+struct Sweep<'a> {
+    block: &'a Block,
+    chunk: &'a Chunk,
+    dim: usize,
+    u: &'a [f64],
+    f: &'a mut [[f64; 3]],
+}
+
+impl WithSimd for Sweep<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        // two registers for each number: their chains of operations fill each other's waiting time
+        if S::F64_LANES == 8 {
+            self.run::<S, 16>()
+        } else {
+            self.run::<S, 8>()
+        }
+    }
+}
+
+impl Sweep<'_> {
+    #[inline(always)]
+    fn run<S: Simd, const W: usize>(self) -> f64 {
+        let law = match &self.block.physics {
+            Physics::Continuum(law) => law,
+            Physics::Bar(bar) => {
+                return match self.dim {
+                    1 => self.batches::<S, W, 2, 1>(bar),
+                    2 => self.batches::<S, W, 2, 2>(bar),
+                    _ => self.batches::<S, W, 2, 3>(bar),
+                };
+            }
+        };
+        let points = &self.block.stiffness_points;
+        match self.block.kind {
+            Kind::Point1 | Kind::Bar2 => 0.0,
+            Kind::Tri3 => self.batches::<S, W, 3, 2>(&Cell::new(law, points, &force::TRI3)),
+            Kind::Quad4 => self.batches::<S, W, 4, 2>(&Cell::new(law, points, &force::QUAD4)),
+            Kind::Tet4 => self.batches::<S, W, 4, 3>(&Cell::new(law, points, &force::TET4)),
+            Kind::Hex8 => self.batches::<S, W, 8, 3>(&Cell::new(law, points, &force::HEX8)),
+        }
+    }
+
+    /// Takes the elements W at a time, and adds forces and energies in the order of the elements.
+    #[inline(always)]
+    fn batches<S: Simd, const W: usize, const N: usize, const D: usize>(
+        self,
+        kernel: &impl Kernel<N, D>,
+    ) -> f64 {
+        let mut energy = 0.0;
+        for batch in self.chunk.connectivity.chunks(N * W) {
+            let count = batch.len() / N;
+            let (mut x, mut u) = ([[Lanes::ZERO; D]; N], [[Lanes::ZERO; D]; N]);
+            for k in 0..W {
+                // a short batch repeats its last element, and the results are dropped
+                let element = &batch[N * k.min(count - 1)..][..N];
+                for a in 0..N {
+                    let place = element[a] as usize;
+                    let x_a = &self.chunk.x[place];
+                    let u_a = &self.u[D * self.chunk.nodes[place] as usize..][..D];
+                    for i in 0..D {
+                        x[a][i].0[k] = x_a[i];
+                        u[a][i].0[k] = u_a[i];
+                    }
+                }
+            }
+            let mut f = [[Lanes::ZERO; D]; N];
+            let energies = kernel.force::<S, W>(&x, &u, &mut f);
+            for (k, element) in batch.chunks_exact(N).enumerate() {
+                energy += energies.0[k];
+                for a in 0..N {
+                    let sum = &mut self.f[element[a] as usize];
+                    for i in 0..D {
+                        sum[i] += f[a][i].0[k];
+                    }
+                }
+            }
+        }
+        energy
     }
 }
 

@@ -1,8 +1,8 @@
-//! Small-strain kernels of one plane, axisymmetric or solid element.
+//! Stiffness, mass and stress of one plane, axisymmetric or solid element at small strain. Its internal forces, wanted
+//! at every step, are computed for several elements at a time in `force.rs`.
 //!
-//! Letters are those of the formulas: `H = ∂u/∂x = Σ_a u_a ⊗ dN_a`, `ε = sym H`, `σ(ε)`, and the nodal forces
-//! `f_a = ∫ σ dN_a dV`. In axisymmetry (x, y) is (r, z), the hoop strain `ε_θ = u_r / r` fills the third diagonal
-//! entry and dV carries 2πr.
+//! Letters are those of the formulas: `H = ∂u/∂x = Σ_a u_a ⊗ dN_a`, `ε = sym H`, `σ(ε)`. In axisymmetry (x, y) is
+//! (r, z), the hoop strain `ε_θ = u_r / r` fills the third diagonal entry and dV carries 2πr.
 
 use carom_algebra::tensor::Mat3;
 use carom_elements::{Kind, MAX_NODES, Rule, map};
@@ -13,14 +13,15 @@ use crate::body::Kinematics;
 /// Shape functions and reference gradients at the points of a rule, evaluated once per block.
 #[derive(Debug)]
 pub(crate) struct Points {
-    points: Vec<Point>,
+    pub(crate) points: Vec<Point>,
 }
 
+/// Weight, N_a and dN_a/dξ at one point of a rule.
 #[derive(Debug)]
-struct Point {
-    weight: f64,
-    n: [f64; MAX_NODES],
-    dn: [[f64; 3]; MAX_NODES],
+pub(crate) struct Point {
+    pub(crate) weight: f64,
+    pub(crate) n: [f64; MAX_NODES],
+    pub(crate) dn: [[f64; 3]; MAX_NODES],
 }
 
 impl Points {
@@ -48,11 +49,11 @@ impl Points {
 pub(crate) struct Law {
     material: Elastic,
     plane: Plane,
-    lame_1: f64,
-    shear_modulus: f64,
+    pub(crate) lame_1: f64,
+    pub(crate) shear_modulus: f64,
     /// Thickness in m of a plane body; 1 otherwise.
-    thickness: f64,
-    axisymmetric: bool,
+    pub(crate) thickness: f64,
+    pub(crate) axisymmetric: bool,
     /// Dimension of the elements, and number of unknowns of a node.
     pub(crate) dim: usize,
 }
@@ -123,46 +124,6 @@ fn strain<const N: usize>(
         [shear(0, 1), h[1][1], shear(1, 2)],
         [shear(0, 2), shear(1, 2), h[2][2]],
     ]
-}
-
-/// Adds the internal forces of one element to `f` (N) and returns its strain energy ½ ∫ σ:ε dV (J).
-#[inline]
-pub(crate) fn force<const N: usize>(
-    law: &Law,
-    points: &Points,
-    x: &[[f64; 3]; N],
-    u: &[[f64; 3]; N],
-    f: &mut [[f64; 3]; N],
-) -> f64 {
-    let mut energy = 0.0;
-    for point in &points.points {
-        let at = local(law, point, x);
-        let e = strain(law, point, &at, u);
-        let trace = law.lame_1 * (e[0][0] + e[1][1] + e[2][2]);
-        let mut s = e.map(|row| row.map(|e| 2.0 * law.shear_modulus * e));
-        for i in 0..3 {
-            s[i][i] += trace;
-        }
-        let mut density = 0.0;
-        for i in 0..3 {
-            for j in 0..3 {
-                density += s[i][j] * e[i][j];
-                s[i][j] *= at.volume;
-            }
-        }
-        energy += 0.5 * density * at.volume;
-        for a in 0..N {
-            for i in 0..3 {
-                f[a][i] += s[i][0] * at.dn[a][0] + s[i][1] * at.dn[a][1] + s[i][2] * at.dn[a][2];
-            }
-        }
-        if law.axisymmetric {
-            for a in 0..N {
-                f[a][0] += s[2][2] * point.n[a] / at.radius;
-            }
-        }
-    }
-    energy
 }
 
 /// Stiffness of one element, row-major, `dim * N` squared entries in N/m:

@@ -8,6 +8,8 @@ mod block;
 mod body;
 mod continuum;
 mod error;
+mod force;
+mod lanes;
 mod size;
 mod stability;
 

@@ -1,0 +1,99 @@
+//! Internal-force sweeps: elements per second and core, for every element kind.
+//!
+//! `cargo bench -p carom-benches --bench bodies`. One thread; about 32 000 elements, gather and scatter included. The limits
+//! that they are compared with were measured on one AVX-512 core with a kernel of hexahedra: 7.1 million a second
+//! (docs/dependencies.md, measured limits); the last lines print the ratio.
+
+use std::time::{Duration, Instant};
+
+use carom_bodies::{Body, BodySpec, Kinematics, Scratch};
+use carom_materials::Elastic;
+use carom_mesh::{Mesh, generate};
+use criterion::{Criterion, Throughput};
+
+/// Hexahedra per second and core that the kernel should reach on AVX-512.
+const TARGET: f64 = 7.1e6;
+
+const MATERIAL: Elastic = Elastic {
+    density: 1000.0,
+    young: 1e9,
+    poisson: 0.3,
+};
+
+fn main() {
+    let mut criterion = Criterion::default().sample_size(20).configure_from_args();
+    let plane = Kinematics::PlaneStrain { thickness: 1.0 };
+    let bar = Kinematics::Bar { area: 1.0 };
+    let square = |triangles| generate::rectangle("b", [1.0, 0.0], [1.0; 2], [180; 2], triangles);
+    let cube = |n, tets| generate::box_("b", [0.0; 3], [1.0; 3], [n; 3], tets);
+    let line = |dim| {
+        let to = [[1.0, 0.0, 0.0], [1.0, 2.0, 0.0], [1.0, 2.0, 3.0]][dim - 1];
+        generate::line("b", [0.0; 3], to, 32_000, dim)
+    };
+    if let Err(error) = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build_global()
+    {
+        println!("rates are not those of one thread: {error}");
+    }
+    let mut rates = Vec::new();
+    for (name, mesh, kinematics) in [
+        ("bar2 1D", line(1), bar),
+        ("bar2 2D", line(2), bar),
+        ("bar2 3D", line(3), bar),
+        ("tri3 plane strain", square(true), plane),
+        ("quad4 plane strain", square(false), plane),
+        (
+            "quad4 axisymmetric",
+            square(false),
+            Kinematics::Axisymmetric,
+        ),
+        ("tet4", cube(18, true), Kinematics::Solid),
+        ("hex8", cube(32, false), Kinematics::Solid),
+    ] {
+        rates.push((name, sweep(&mut criterion, name, &mesh, kinematics)));
+    }
+    for (name, rate) in rates {
+        println!("{name}: {:.1} million elements/s", rate / 1e6);
+        if name == "hex8" {
+            println!("{name}: {:.2} of the target", rate / TARGET);
+        }
+    }
+    criterion.final_summary();
+}
+
+/// Times one kind; returns its best rate in elements per second.
+fn sweep(criterion: &mut Criterion, name: &str, mesh: &Mesh, kinematics: Kinematics) -> f64 {
+    let cells = mesh.groups["b"].elements.clone();
+    let count = cells.len() as u64;
+    let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
+    let spec = BodySpec {
+        name: name.to_owned(),
+        cells,
+        kinematics,
+        material: MATERIAL,
+    };
+    let body = match Body::new(mesh, spec, &number) {
+        Ok(body) => body,
+        Err(error) => {
+            println!("{error}");
+            return 0.0;
+        }
+    };
+    let n = mesh.dim * mesh.nodes.len();
+    let u: Vec<f64> = (0..n).map(|i| 1e-3 * (i as f64).sin()).collect();
+    let (mut scratch, mut f) = (Scratch::default(), vec![0.0; n]);
+    let mut best = Duration::MAX;
+    let mut group = criterion.benchmark_group("internal_force");
+    group.throughput(Throughput::Elements(count));
+    group.bench_function(name, |bench| {
+        bench.iter(|| {
+            let begin = Instant::now();
+            let energy = body.internal_force(&u, &mut scratch, &mut f);
+            best = best.min(begin.elapsed());
+            energy
+        });
+    });
+    group.finish();
+    count as f64 / best.as_secs_f64()
+}

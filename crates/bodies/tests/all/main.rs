@@ -1,0 +1,16 @@
+//! Facts about discretised bodies, over every element kind and kinematics.
+
+// Helpers of the tests may unwrap as the tests do.
+#![allow(clippy::unwrap_used)]
+
+mod allocation;
+mod axisymmetry;
+mod bars;
+mod derivatives;
+mod mass;
+mod patch;
+mod refusals;
+mod sample;
+mod sizes;
+mod stiffness;
+mod threads;
