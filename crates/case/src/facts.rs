@@ -15,7 +15,10 @@ pub struct Fact {
 }
 
 fn fact(name: impl Into<String>, value: impl Into<String>) -> Fact {
-    Fact { name: name.into(), value: value.into() }
+    Fact {
+        name: name.into(),
+        value: value.into(),
+    }
 }
 
 /// Sizes, speeds and times of a case.
@@ -48,9 +51,16 @@ pub fn facts(built: &Built) -> Vec<Fact> {
         ));
     }
     for (k, contact) in system.contacts.iter().enumerate() {
-        facts.push(fact(format!("contact {}", contact.name), contact_facts(system, k)));
+        facts.push(fact(
+            format!("contact {}", contact.name),
+            contact_facts(system, k),
+        ));
     }
-    let crossing = system.bodies.iter().map(|body| body.smallest_size() / body.wave_speed()).fold(f64::INFINITY, f64::min);
+    let crossing = system
+        .bodies
+        .iter()
+        .map(|body| body.smallest_size() / body.wave_speed())
+        .fold(f64::INFINITY, f64::min);
     let scheme = system.scheme.get();
     facts.push(fact(
         "time",
@@ -64,7 +74,10 @@ pub fn facts(built: &Built) -> Vec<Fact> {
         ),
     ));
     if scheme.is_explicit() {
-        facts.push(fact("critical step", format!("{:.6e} s, from element eigenvalues", system.critical_step())));
+        facts.push(fact(
+            "critical step",
+            format!("{:.6e} s, from element eigenvalues", system.critical_step()),
+        ));
     }
     facts
 }
@@ -73,21 +86,36 @@ pub fn facts(built: &Built) -> Vec<Fact> {
 fn extent(system: &System, body: usize) -> f64 {
     let mut largest: f64 = 0.0;
     for i in 0..system.dim {
-        let places = system.body_masses[body].iter().map(|&(node, _)| system.x[node as usize][i]);
-        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let places = system.body_masses[body]
+            .iter()
+            .map(|&(node, _)| system.x[node as usize][i]);
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
         largest = largest.max(high - low);
     }
     largest
 }
 
 fn contact_facts(system: &System, contact: usize) -> String {
-    let places = Places { dim: system.dim, x: &system.x, u: &system.initial_displacement };
+    let places = Places {
+        dim: system.dim,
+        x: &system.x,
+        u: &system.initial_displacement,
+    };
     let mut rows = Rows::default();
     rows.clear();
     system.contacts[contact].pair(&places, &mut Search::default(), &mut rows);
-    let gap = (0..rows.len()).map(|point| rows.gap(point)).fold(f64::INFINITY, f64::min);
+    let gap = (0..rows.len())
+        .map(|point| rows.gap(point))
+        .fold(f64::INFINITY, f64::min);
     let first = (0..rows.len())
-        .map(|point| (rows.gap(point), -rows.product(point, &system.initial_velocity)))
+        .map(|point| {
+            (
+                rows.gap(point),
+                -rows.product(point, &system.initial_velocity),
+            )
+        })
         .filter(|(_, closing)| *closing > 0.0)
         .map(|(gap, closing)| gap.max(0.0) / closing)
         .fold(f64::INFINITY, f64::min);
@@ -96,5 +124,8 @@ fn contact_facts(system: &System, contact: usize) -> String {
         true => format!("first possible impact at {first:.4e} s"),
         false => "nothing approaches at the start".to_string(),
     };
-    format!("{law} law, {} points, least gap {gap:.4e} m, {impact}", rows.len())
+    format!(
+        "{law} law, {} points, least gap {gap:.4e} m, {impact}",
+        rows.len()
+    )
 }

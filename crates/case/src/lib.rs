@@ -21,8 +21,8 @@ mod tree;
 mod validate;
 
 pub use build::{Built, BuiltProbe, ExactReference, build};
-pub use facts::{Fact, facts};
 pub use error::{Place, Problem};
+pub use facts::{Fact, facts};
 pub use input::{Input, Source};
 pub use locate::Locator;
 pub use reference::reference_page;

@@ -47,40 +47,64 @@ pub fn run(
 ) -> Result<Finished, Failed> {
     let begin = Instant::now();
     let mut driver = Driver::new(Arc::clone(&built.system)).map_err(Failed::Start)?;
-    let mut results = Results::create(settings(input, case, built, folder), Arc::clone(&built.system))?;
+    let mut results = Results::create(
+        settings(input, case, built, folder),
+        Arc::clone(&built.system),
+    )?;
     let outcome = march(&mut driver, built.end, &mut [&mut results, progress], stop);
     let unfinished = match &outcome {
         Ok(Outcome::Done) => None,
         Ok(Outcome::Interrupted) => Some("the run was interrupted".to_string()),
         Err(error) => Some(error.to_string()),
     };
-    let ending = Ending { unfinished, costs: &driver.costs(), wall: begin.elapsed() };
+    let ending = Ending {
+        unfinished,
+        costs: &driver.costs(),
+        wall: begin.elapsed(),
+    };
     let summary = results.conclude(&ending);
     // the first cause is the one to report
     let outcome = outcome.map_err(Failed::Step)?;
-    Ok(Finished { summary: summary?, interrupted: outcome == Outcome::Interrupted })
+    Ok(Finished {
+        summary: summary?,
+        interrupted: outcome == Outcome::Interrupted,
+    })
 }
 
 fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Settings {
     let set = input.sources.iter().filter(|source| source.name == "--set");
-    let overrides: String = set.map(|source| format!("# --set {}\n", source.text.trim())).collect();
-    let file = input.sources.first().map_or(String::new(), |source| source.text.clone());
+    let overrides: String = set
+        .map(|source| format!("# --set {}\n", source.text.trim()))
+        .collect();
+    let file = input
+        .sources
+        .first()
+        .map_or(String::new(), |source| source.text.clone());
     Settings {
         folder,
-        title: case.title.clone().unwrap_or_else(|| input.sources.first().map_or_else(String::new, |s| s.name.clone())),
+        title: case.title.clone().unwrap_or_else(|| {
+            input
+                .sources
+                .first()
+                .map_or_else(String::new, |s| s.name.clone())
+        }),
         case_text: overrides + &file,
         version: env!("CARGO_PKG_VERSION").to_string(),
         scheme: scheme(&case.time.scheme),
-        probes: built.probes.iter().map(|probe| {
-            let has = |motion| probe.record.contains(&motion);
-            Probe {
-                name: probe.name.clone(),
-                nodes: probe.nodes.clone(),
-                displacement: has(Motion::Displacement),
-                velocity: has(Motion::Velocity),
-                acceleration: has(Motion::Acceleration),
-            }
-        }).collect(),
+        probes: built
+            .probes
+            .iter()
+            .map(|probe| {
+                let has = |motion| probe.record.contains(&motion);
+                Probe {
+                    name: probe.name.clone(),
+                    nodes: probe.nodes.clone(),
+                    displacement: has(Motion::Displacement),
+                    velocity: has(Motion::Velocity),
+                    acceleration: has(Motion::Acceleration),
+                }
+            })
+            .collect(),
         fields: case.output.fields.as_ref().map(|fields| {
             let has = |field| fields.record.contains(&field);
             Fields {
@@ -103,7 +127,10 @@ fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Setti
 
 fn scheme(scheme: &Scheme) -> String {
     match scheme {
-        Scheme::Newmark(newmark) => format!("newmark, beta = {}, gamma = {}", newmark.beta, newmark.gamma),
+        Scheme::Newmark(newmark) => format!(
+            "newmark, beta = {}, gamma = {}",
+            newmark.beta, newmark.gamma
+        ),
         Scheme::Theta(theta) => format!("theta, theta = {}", theta.theta),
         Scheme::CentralDifference(_) => "central-difference".to_string(),
     }

@@ -71,7 +71,10 @@ const OUT_OF_BOUND: u8 = 4;
 const INTERRUPTED: u8 = 130;
 
 fn main() -> ExitCode {
-    tracing_subscriber::fmt().with_max_level(tracing::Level::WARN).with_writer(std::io::stderr).init();
+    tracing_subscriber::fmt()
+        .with_max_level(tracing::Level::WARN)
+        .with_writer(std::io::stderr)
+        .init();
     let code = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { case, set } => check(&case, &set),
@@ -85,13 +88,18 @@ fn main() -> ExitCode {
 /// Reads and builds a case, or prints all its problems.
 fn load(case: &Path, set: &[String]) -> Result<(Input, carom_case::schema::Case, Built), u8> {
     let input = Input::read(case, set).map_err(|problems| refuse(&[], &problems))?;
-    let (parsed, locator) = carom_case::parse(&input).map_err(|problems| refuse(&input.sources, &problems))?;
-    let built = carom_case::build(&parsed, &locator, &input).map_err(|problems| refuse(&input.sources, &problems))?;
+    let (parsed, locator) =
+        carom_case::parse(&input).map_err(|problems| refuse(&input.sources, &problems))?;
+    let built = carom_case::build(&parsed, &locator, &input)
+        .map_err(|problems| refuse(&input.sources, &problems))?;
     Ok((input, parsed, built))
 }
 
 fn refuse(sources: &[carom_case::Source], problems: &[Problem]) -> u8 {
-    eprint!("{}", diagnostics::render(sources, problems, std::io::stderr().is_terminal()));
+    eprint!(
+        "{}",
+        diagnostics::render(sources, problems, std::io::stderr().is_terminal())
+    );
     BAD_INPUT
 }
 
@@ -128,7 +136,11 @@ fn schema(reference: bool) -> u8 {
 }
 
 fn verify(name: Option<&str>, quick: bool) -> u8 {
-    let size = if quick { carom_verification::Size::Quick } else { carom_verification::Size::Full };
+    let size = if quick {
+        carom_verification::Size::Quick
+    } else {
+        carom_verification::Size::Full
+    };
     match carom_verification::verify(name, size, &mut std::io::stdout().lock()) {
         Ok(verdict) if verdict.holds() => 0,
         Ok(verdict) if verdict.checks == 0 => {

@@ -7,10 +7,26 @@ use crate::{BAD_INPUT, FAILED};
 
 /// Name, what it shows, text.
 const TEMPLATES: [(&str, &str, &str); 4] = [
-    ("two-bars", "two bars in impact, velocity law", include_str!("../../../cases/two-bars/case.toml")),
-    ("two-bars-newmark", "two bars, Newmark with the displacement law", include_str!("../../../cases/two-bars-newmark/case.toml")),
-    ("bar-on-wall", "a bar on a rigid wall", include_str!("../../../cases/bar-on-wall/case.toml")),
-    ("block-drop", "a 3D block on a rigid plane", include_str!("../../../cases/block-drop/case.toml")),
+    (
+        "two-bars",
+        "two bars in impact, velocity law",
+        include_str!("../../../cases/two-bars/case.toml"),
+    ),
+    (
+        "two-bars-newmark",
+        "two bars, Newmark with the displacement law",
+        include_str!("../../../cases/two-bars-newmark/case.toml"),
+    ),
+    (
+        "bar-on-wall",
+        "a bar on a rigid wall",
+        include_str!("../../../cases/bar-on-wall/case.toml"),
+    ),
+    (
+        "block-drop",
+        "a 3D block on a rigid plane",
+        include_str!("../../../cases/block-drop/case.toml"),
+    ),
 ];
 
 /// Writes a template to a file that must not exist yet; returns the exit code.
@@ -25,13 +41,21 @@ pub fn new(template: Option<&str>, file: &Path) -> u8 {
     };
     let Some((_, _, text)) = TEMPLATES.iter().find(|(known, _, _)| *known == name) else {
         let names: Vec<&str> = TEMPLATES.iter().map(|(name, _, _)| *name).collect();
-        eprintln!("error: no template `{name}`; there are: {}", names.join(", "));
+        eprintln!(
+            "error: no template `{name}`; there are: {}",
+            names.join(", ")
+        );
         return BAD_INPUT;
     };
-    let written = std::fs::File::create_new(file).and_then(|mut target| target.write_all(text.as_bytes()));
+    let written =
+        std::fs::File::create_new(file).and_then(|mut target| target.write_all(text.as_bytes()));
     match written {
         Ok(()) => {
-            println!("Wrote {}. Next: carom run {}", file.display(), file.display());
+            println!(
+                "Wrote {}. Next: carom run {}",
+                file.display(),
+                file.display()
+            );
             0
         }
         Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {

@@ -22,12 +22,21 @@ impl Progress {
 }
 
 impl Observer for Progress {
-    fn accepted(&mut self, _system: &System, state: &State, report: &StepReport) -> Result<(), Error> {
+    fn accepted(
+        &mut self,
+        _system: &System,
+        state: &State,
+        report: &StepReport,
+    ) -> Result<(), Error> {
         // the text is renewed as rarely as the bar: formatting would show in small models
         if report.step % 64 == 0 {
             let ledger = &state.ledger;
-            let relative = ledger.balance.energy_residual / ledger.largest_energy.max(f64::MIN_POSITIVE);
-            self.bar.set_message(format!("t = {:.3e} s, energy residual {relative:+.0e}", report.time));
+            let relative =
+                ledger.balance.energy_residual / ledger.largest_energy.max(f64::MIN_POSITIVE);
+            self.bar.set_message(format!(
+                "t = {:.3e} s, energy residual {relative:+.0e}",
+                report.time
+            ));
             self.bar.set_position(report.step);
         }
         Ok(())

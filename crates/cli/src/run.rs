@@ -38,7 +38,10 @@ pub fn run(arguments: &Arguments) -> u8 {
     for warning in &built.warnings {
         eprintln!("warning: {warning}");
     }
-    let folder = arguments.results.clone().unwrap_or_else(|| arguments.case.with_extension("carom"));
+    let folder = arguments
+        .results
+        .clone()
+        .unwrap_or_else(|| arguments.case.with_extension("carom"));
     match march(&input, &case, &built, folder.clone(), arguments.quiet) {
         Ok(finished) => {
             print(&finished.summary, &folder);
@@ -60,7 +63,13 @@ pub fn run(arguments: &Arguments) -> u8 {
     }
 }
 
-fn march(input: &Input, case: &Case, built: &Built, folder: PathBuf, quiet: bool) -> Result<Finished, carom_case::Failed> {
+fn march(
+    input: &Input,
+    case: &Case,
+    built: &Built,
+    folder: PathBuf,
+    quiet: bool,
+) -> Result<Finished, carom_case::Failed> {
     let stopped = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stopped);
     // without a handler Ctrl-C ends the program at once, as it would any other
@@ -70,13 +79,20 @@ fn march(input: &Input, case: &Case, built: &Built, folder: PathBuf, quiet: bool
     }
     let steps = step_count(built.end, built.system.dt);
     let mut progress = Progress::new(steps, quiet || !std::io::stderr().is_terminal());
-    carom_case::run((input, case, built), folder, &mut progress, &|| stopped.load(Ordering::Relaxed))
+    carom_case::run((input, case, built), folder, &mut progress, &|| {
+        stopped.load(Ordering::Relaxed)
+    })
 }
 
 /// The summary for people: forces, impulses, energy, verdict, where to look.
 fn print(summary: &Summary, folder: &Path) {
     println!("{}", summary.title);
-    println!("  {} steps of {} to {}", summary.time.steps, quantity(summary.time.largest_step, "s"), quantity(summary.time.end, "s"));
+    println!(
+        "  {} steps of {} to {}",
+        summary.time.steps,
+        quantity(summary.time.largest_step, "s"),
+        quantity(summary.time.end, "s")
+    );
     for (name, contact) in &summary.contacts {
         println!("  contact {name} ({} law)", contact.law);
         println!(
@@ -87,14 +103,20 @@ fn print(summary: &Summary, folder: &Path) {
             quantity(contact.peak_force, "N")
         );
         let times = match (contact.first_closing, contact.last_release) {
-            (Some(first), Some(last)) => format!(", closed from {} to {}", quantity(first, "s"), quantity(last, "s")),
+            (Some(first), Some(last)) => format!(
+                ", closed from {} to {}",
+                quantity(first, "s"),
+                quantity(last, "s")
+            ),
             (Some(first), None) => format!(", closed from {}", quantity(first, "s")),
             (None, _) => ", never closed".to_string(),
         };
         println!("    impulse {}{times}", quantity(contact.impulse, "N s"));
     }
-    for exact in &summary.exact {
-        let percent = |error: Option<f64>| error.map_or("-".to_string(), |error| format!("{:+.2} %", 100.0 * error));
+    if let Some(exact) = &summary.exact {
+        let percent = |error: Option<f64>| {
+            error.map_or("-".to_string(), |error| format!("{:+.2} %", 100.0 * error))
+        };
         println!("  against the exact solution `{}`:", exact.name);
         println!(
             "    force {} (L2), peak of the mean {}, impulse {}, displacement {} (L2)",

@@ -109,7 +109,8 @@ impl Records {
     pub(crate) fn follow(&mut self, before: &Records) {
         self.contacts.clone_from(&before.contacts);
         self.impacts.truncate(before.impacts.len());
-        self.impacts.extend_from_slice(&before.impacts[self.impacts.len()..]);
+        self.impacts
+            .extend_from_slice(&before.impacts[self.impacts.len()..]);
     }
 
     /// Adds a step of one contact. `old`, `new`: the states around it.

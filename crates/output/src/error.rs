@@ -37,6 +37,14 @@ pub enum Error {
         /// The name as given.
         name: String,
     },
+    /// A saved state that cannot be encoded or taken.
+    #[error("the state '{path}': {cause}", path = path.display())]
+    Checkpoint {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        cause: String,
+    },
     /// Two columns of one table have the same name.
     #[error("two columns of '{path}' are called '{name}'", path = path.display())]
     TwinColumns {

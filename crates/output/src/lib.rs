@@ -7,6 +7,7 @@
 //! Units are SI throughout; the names of columns and fields carry them.
 
 pub mod atomic;
+pub mod checkpoint;
 pub mod folder;
 pub mod history;
 pub mod impacts;

@@ -285,10 +285,15 @@ impl Summary {
 /// Fingerprint of a text as 16 hexadecimal digits (FNV-1a, 64 bits): tells whether two runs had the same case file;
 /// no protection against intent.
 pub fn hash(text: &str) -> String {
-    let digest = text
-        .bytes()
+    hash_bytes(text.as_bytes())
+}
+
+/// The same fingerprint of bytes.
+pub(crate) fn hash_bytes(bytes: &[u8]) -> String {
+    let digest = bytes
+        .iter()
         .fold(0xcbf2_9ce4_8422_2325_u64, |digest, byte| {
-            (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+            (digest ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
         });
     format!("{digest:016x}")
 }

@@ -15,17 +15,26 @@ use crate::schema::{Body, Mass, Section};
 const LISTED: usize = 3;
 
 impl Builder<'_> {
-    pub(super) fn bodies(&mut self, mesh: &Mesh, materials: &BTreeMap<String, Elastic>) -> Vec<ModelBody> {
+    pub(super) fn bodies(
+        &mut self,
+        mesh: &Mesh,
+        materials: &BTreeMap<String, Elastic>,
+    ) -> Vec<ModelBody> {
         let mut bodies: Vec<ModelBody> = Vec::new();
         for (name, body) in self.case.body.iter() {
             let path = format!("body.{name}");
             let material = materials.get(&body.material).copied();
             if material.is_none() {
                 let problem = Problem::new(format!("{path}.material"), "no material of this name");
-                self.problems.push(problem.unknown(&body.material, materials.keys().map(String::as_str)));
+                self.problems
+                    .push(problem.unknown(&body.material, materials.keys().map(String::as_str)));
             }
-            let Some(group) = self.group(mesh, &format!("{path}.region"), &body.region) else { continue };
-            let Some(kinematics) = self.kinematics(mesh, &path, body, group.dim) else { continue };
+            let Some(group) = self.group(mesh, &format!("{path}.region"), &body.region) else {
+                continue;
+            };
+            let Some(kinematics) = self.kinematics(mesh, &path, body, group.dim) else {
+                continue;
+            };
             let cells = group.elements.clone();
             self.sound(mesh, &path, &cells);
             self.apart(&path, &cells, &bodies);
@@ -35,12 +44,18 @@ impl Builder<'_> {
                     velocity = self.vector(mesh, &format!("{path}.initial.velocity"), vector);
                 }
                 if let Some(vector) = &initial.displacement {
-                    displacement = self.vector(mesh, &format!("{path}.initial.displacement"), vector);
+                    displacement =
+                        self.vector(mesh, &format!("{path}.initial.displacement"), vector);
                 }
             }
             let Some(material) = material else { continue };
             bodies.push(ModelBody {
-                spec: BodySpec { name: name.to_string(), cells, kinematics, material },
+                spec: BodySpec {
+                    name: name.to_string(),
+                    cells,
+                    kinematics,
+                    material,
+                },
                 mass: match body.mass {
                     Mass::Lumped => MassKind::Lumped,
                     Mass::Consistent => MassKind::Consistent,
@@ -53,30 +68,62 @@ impl Builder<'_> {
     }
 
     /// The kinematics that a section gives to cells of dimension `dim`.
-    fn kinematics(&mut self, mesh: &Mesh, path: &str, body: &Body, dim: usize) -> Option<Kinematics> {
+    fn kinematics(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        body: &Body,
+        dim: usize,
+    ) -> Option<Kinematics> {
         let kinematics = match &body.section {
             None => Kinematics::Solid,
             Some(Section::Bar(bar)) => Kinematics::Bar { area: bar.area.0 },
-            Some(Section::PlaneStrain(plane)) => Kinematics::PlaneStrain { thickness: plane.thickness.0 },
-            Some(Section::PlaneStress(plane)) => Kinematics::PlaneStress { thickness: plane.thickness.0 },
+            Some(Section::PlaneStrain(plane)) => Kinematics::PlaneStrain {
+                thickness: plane.thickness.0,
+            },
+            Some(Section::PlaneStress(plane)) => Kinematics::PlaneStress {
+                thickness: plane.thickness.0,
+            },
             Some(Section::Axisymmetric(_)) => Kinematics::Axisymmetric,
         };
         let kind = |dim: usize| ["points", "bars", "plane cells", "solid cells"][dim.min(3)];
         let takes: &[&str] = match dim {
             1 => &["section.bar"],
-            2 => &["section.plane-strain", "section.plane-stress", "section.axisymmetric"],
+            2 => &[
+                "section.plane-strain",
+                "section.plane-stress",
+                "section.axisymmetric",
+            ],
             _ => &["no section"],
         };
         let problem = if dim == 0 || (dim == 2 && mesh.dim == 3) {
-            let problem = Problem::new(format!("{path}.region"), format!("a body cannot be made of {} here", kind(dim)));
-            Some(problem.found(&body.region).accepted([format!("a group of cells of a mesh of {}", super::dimensions(mesh.dim))]))
+            let problem = Problem::new(
+                format!("{path}.region"),
+                format!("a body cannot be made of {} here", kind(dim)),
+            );
+            Some(problem.found(&body.region).accepted([format!(
+                "a group of cells of a mesh of {}",
+                super::dimensions(mesh.dim)
+            )]))
         } else if kinematics.dim() == dim {
             None
         } else if body.section.is_none() {
-            let message = format!("the group `{}` holds {}, which need a section", body.region, kind(dim));
-            Some(Problem::new(path, message).found("no section").accepted(takes.to_vec()))
+            let message = format!(
+                "the group `{}` holds {}, which need a section",
+                body.region,
+                kind(dim)
+            );
+            Some(
+                Problem::new(path, message)
+                    .found("no section")
+                    .accepted(takes.to_vec()),
+            )
         } else {
-            let message = format!("this section does not go with the {} of the group `{}`", kind(dim), body.region);
+            let message = format!(
+                "this section does not go with the {} of the group `{}`",
+                kind(dim),
+                body.region
+            );
             let problem = Problem::new(format!("{path}.section"), message);
             Some(problem.found(kinematics.name()).accepted(takes.to_vec()))
         };
@@ -99,11 +146,18 @@ impl Builder<'_> {
             let element = defect.element();
             let nodes = mesh.element_nodes(element);
             let middle = [0, 1, 2].map(|i| {
-                nodes.iter().map(|&node| mesh.nodes[node as usize][i]).sum::<f64>() / nodes.len() as f64
+                nodes
+                    .iter()
+                    .map(|&node| mesh.nodes[node as usize][i])
+                    .sum::<f64>()
+                    / nodes.len() as f64
             });
             let name = mesh.kind(element).table().name;
             let at = format!("({:.6}, {:.6}, {:.6}) m", middle[0], middle[1], middle[2]);
-            problem = problem.note(format!("{name} number {} about {at}: {defect}", element.index));
+            problem = problem.note(format!(
+                "{name} number {} about {at}: {defect}",
+                element.index
+            ));
         }
         if defects.len() > LISTED {
             problem = problem.note(format!("and {} more", defects.len() - LISTED));
@@ -114,10 +168,20 @@ impl Builder<'_> {
     /// Refuses cells that a body before has.
     fn apart(&mut self, path: &str, cells: &[ElementId], bodies: &[ModelBody]) {
         for other in bodies {
-            let shared = cells.iter().filter(|cell| other.spec.cells.binary_search(cell).is_ok()).count();
+            let shared = cells
+                .iter()
+                .filter(|cell| other.spec.cells.binary_search(cell).is_ok())
+                .count();
             if shared > 0 {
-                let message = format!("{} of this region belong to the body `{}` too", super::plural(shared, "cell"), other.spec.name);
-                self.problems.push(Problem::new(format!("{path}.region"), message).accepted(["a region of its own"]));
+                let message = format!(
+                    "{} of this region belong to the body `{}` too",
+                    super::plural(shared, "cell"),
+                    other.spec.name
+                );
+                self.problems.push(
+                    Problem::new(format!("{path}.region"), message)
+                        .accepted(["a region of its own"]),
+                );
             }
         }
     }

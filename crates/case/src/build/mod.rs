@@ -50,7 +50,11 @@ pub struct BuiltProbe {
 /// # Errors
 /// All problems that stage two can tell, with their places.
 pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
-    let mut builder = Builder { case, problems: Vec::new(), warnings: Vec::new() };
+    let mut builder = Builder {
+        case,
+        problems: Vec::new(),
+        warnings: Vec::new(),
+    };
     let built = builder.build(input);
     match built {
         Some(built) if builder.problems.is_empty() => Ok(built),
@@ -83,7 +87,15 @@ impl Builder<'_> {
             return None;
         }
         let scheme = self.scheme();
-        let model = Model { mesh, bodies, supports, gravity, contacts, scheme, dt };
+        let model = Model {
+            mesh,
+            bodies,
+            supports,
+            gravity,
+            contacts,
+            scheme,
+            dt,
+        };
         let system = match System::new(model) {
             Ok(system) => system,
             Err(error) => {
@@ -95,7 +107,13 @@ impl Builder<'_> {
         self.advise(&system);
         let end = self.case.time.end.0;
         let reference = self.reference(&system, end);
-        Some(Built { system, end, probes, reference, warnings: std::mem::take(&mut self.warnings) })
+        Some(Built {
+            system,
+            end,
+            probes,
+            reference,
+            warnings: std::mem::take(&mut self.warnings),
+        })
     }
 
     /// The group called `name`, or a problem at `path`.
@@ -103,12 +121,14 @@ impl Builder<'_> {
         match mesh.groups.get(name) {
             None => {
                 let problem = Problem::new(path, "no group of this name in the mesh");
-                self.problems.push(problem.unknown(name, mesh.groups.keys().map(String::as_str)));
+                self.problems
+                    .push(problem.unknown(name, mesh.groups.keys().map(String::as_str)));
                 None
             }
             Some(group) if group.elements.is_empty() => {
                 let problem = Problem::new(path, "this group of the mesh is empty").found(name);
-                self.problems.push(problem.accepted(["a group with elements"]));
+                self.problems
+                    .push(problem.accepted(["a group with elements"]));
                 None
             }
             Some(group) => Some(group),
@@ -116,12 +136,23 @@ impl Builder<'_> {
     }
 
     /// The components of a vector, or a problem where it has more than the mesh.
-    fn vector<Q: Copy + Into<f64>>(&mut self, mesh: &Mesh, path: &str, vector: &Vector<Q>) -> [f64; 3] {
+    fn vector<Q: Copy + Into<f64>>(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        vector: &Vector<Q>,
+    ) -> [f64; 3] {
         let components = vector.si();
         if components[mesh.dim..].iter().any(|c| *c != 0.0) {
-            let message = format!("a component beyond the {} of the mesh", dimensions(mesh.dim));
+            let message = format!(
+                "a component beyond the {} of the mesh",
+                dimensions(mesh.dim)
+            );
             let problem = Problem::new(path, message).found(format!("{components:?}"));
-            self.problems.push(problem.accepted([format!("{}, or zeros after it", plural(mesh.dim, "component"))]));
+            self.problems.push(problem.accepted([format!(
+                "{}, or zeros after it",
+                plural(mesh.dim, "component")
+            )]));
         }
         components
     }
@@ -129,15 +160,30 @@ impl Builder<'_> {
     fn supports(&mut self, mesh: &Mesh) -> Vec<carom_dynamics::Support> {
         let mut supports = Vec::new();
         for (name, support) in self.case.support.iter() {
-            for (k, axis) in support.fix.iter().enumerate().filter(|(_, axis)| axis.index() >= mesh.dim) {
-                let message = format!("a direction beyond the {} of the mesh", dimensions(mesh.dim));
+            for (k, axis) in support
+                .fix
+                .iter()
+                .enumerate()
+                .filter(|(_, axis)| axis.index() >= mesh.dim)
+            {
+                let message = format!(
+                    "a direction beyond the {} of the mesh",
+                    dimensions(mesh.dim)
+                );
                 let problem = Problem::new(format!("support.{name}.fix[{k}]"), message);
-                self.problems.push(problem.found(["x", "y", "z"][axis.index()]).accepted(["x", "y", "z"][..mesh.dim].to_vec()));
+                self.problems.push(
+                    problem
+                        .found(["x", "y", "z"][axis.index()])
+                        .accepted(["x", "y", "z"][..mesh.dim].to_vec()),
+                );
             }
             if let Some(group) = self.group(mesh, &format!("support.{name}.on"), &support.on) {
                 let mut fix = [false; 3];
                 support.fix.iter().for_each(|axis| fix[axis.index()] = true);
-                supports.push(carom_dynamics::Support { nodes: mesh.group_nodes(group), fix });
+                supports.push(carom_dynamics::Support {
+                    nodes: mesh.group_nodes(group),
+                    fix,
+                });
             }
         }
         supports
@@ -155,7 +201,11 @@ impl Builder<'_> {
         for (name, probe) in self.case.probe.iter() {
             if let Some(group) = self.group(mesh, &format!("probe.{name}.on"), &probe.on) {
                 let nodes = mesh.group_nodes(group);
-                probes.push(BuiltProbe { name: name.to_string(), nodes, record: probe.record.clone() });
+                probes.push(BuiltProbe {
+                    name: name.to_string(),
+                    nodes,
+                    record: probe.record.clone(),
+                });
             }
         }
         probes
@@ -179,5 +229,9 @@ fn dimensions(dim: usize) -> String {
 }
 
 fn plural(count: usize, noun: &str) -> String {
-    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+    if count == 1 {
+        format!("1 {noun}")
+    } else {
+        format!("{count} {noun}s")
+    }
 }

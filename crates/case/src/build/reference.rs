@@ -31,11 +31,15 @@ impl Builder<'_> {
         };
         let path = format!("reference.{name}");
         match solve(system, sides, two, end) {
-            Ok((solution, normal)) => {
-                Some(ExactReference { name, solution, contact: 0, axis: normal.map(|n| -n) })
-            }
+            Ok((solution, normal)) => Some(ExactReference {
+                name,
+                solution,
+                contact: 0,
+                axis: normal.map(|n| -n),
+            }),
             Err(message) => {
-                let problem = Problem::new(path, format!("the case is not this problem: {message}"));
+                let problem =
+                    Problem::new(path, format!("the case is not this problem: {message}"));
                 self.problems.push(problem);
                 None
             }
@@ -44,9 +48,17 @@ impl Builder<'_> {
 }
 
 /// The solution, and the contact normal, which points from the primary side to the secondary one.
-fn solve(system: &System, sides: Sides, two: bool, end: f64) -> Result<(Solution, [f64; 3]), String> {
+fn solve(
+    system: &System,
+    sides: Sides,
+    two: bool,
+    end: f64,
+) -> Result<(Solution, [f64; 3]), String> {
     let [contact] = &system.contacts[..] else {
-        return Err(format!("it has {} contacts instead of one", system.contacts.len()));
+        return Err(format!(
+            "it has {} contacts instead of one",
+            system.contacts.len()
+        ));
     };
     let (secondary, primary) = system.sides[0];
     match (two, primary) {
@@ -56,49 +68,89 @@ fn solve(system: &System, sides: Sides, two: bool, end: f64) -> Result<(Solution
     }
     let bodies = if two { 2 } else { 1 };
     if system.bodies.len() != bodies {
-        return Err(format!("it has {} bodies instead of {bodies}", system.bodies.len()));
+        return Err(format!(
+            "it has {} bodies instead of {bodies}",
+            system.bodies.len()
+        ));
     }
     let mut rows = Rows::default();
     rows.clear();
-    contact.pair(&Places { dim: system.dim, x: &system.x, u: &system.initial_displacement }, &mut Search::default(), &mut rows);
-    let gap = (0..rows.len()).map(|point| rows.gap(point)).fold(f64::INFINITY, f64::min);
+    contact.pair(
+        &Places {
+            dim: system.dim,
+            x: &system.x,
+            u: &system.initial_displacement,
+        },
+        &mut Search::default(),
+        &mut rows,
+    );
+    let gap = (0..rows.len())
+        .map(|point| rows.gap(point))
+        .fold(f64::INFINITY, f64::min);
     if !gap.is_finite() {
         return Err("the bars do not face each other".to_string());
     }
     // the reference's contact begins with gap zero to the rounding of the mesh
-    let gap = if gap.abs() <= 1e-9 * system.mesh.size() { 0.0 } else { gap };
+    let gap = if gap.abs() <= 1e-9 * system.mesh.size() {
+        0.0
+    } else {
+        gap
+    };
     let normal = rows.normal(0);
     let area: f64 = contact.points.iter().map(|point| point.area).sum();
     let one = bar(system, secondary, normal, sides, area)?;
     let impact = match primary {
         None => Impact::Wall { bar: one, gap },
-        Some(primary) => {
-            Impact::TwoBars { secondary: one, primary: bar(system, primary, normal.map(|n| -n), sides, area)?, gap }
-        }
+        Some(primary) => Impact::TwoBars {
+            secondary: one,
+            primary: bar(system, primary, normal.map(|n| -n), sides, area)?,
+            gap,
+        },
     };
     let last = step_count(end, system.dt) as f64 * system.dt;
-    let solution = carom_exact::solve(&impact, last * (1.0 + 1e-9)).map_err(|error| error.to_string())?;
+    let solution =
+        carom_exact::solve(&impact, last * (1.0 + 1e-9)).map_err(|error| error.to_string())?;
     Ok((solution, normal))
 }
 
 /// The bar behind a body, whose contact end lies against `inward`, the unit vector from the contact into the bar.
-fn bar(system: &System, index: usize, inward: [f64; 3], sides: Sides, area: f64) -> Result<Bar, String> {
+fn bar(
+    system: &System,
+    index: usize,
+    inward: [f64; 3],
+    sides: Sides,
+    area: f64,
+) -> Result<Bar, String> {
     let body: &Body = &system.bodies[index];
-    let along = |vector: &[f64]| (0..vector.len()).map(|i| inward[i] * vector[i]).sum::<f64>();
-    let places = system.body_masses[index].iter().map(|&(node, _)| (along(&system.x[node as usize]), node));
+    let along = |vector: &[f64]| {
+        (0..vector.len())
+            .map(|i| inward[i] * vector[i])
+            .sum::<f64>()
+    };
+    let places = system.body_masses[index]
+        .iter()
+        .map(|&(node, _)| (along(&system.x[node as usize]), node));
     let (mut near, mut far) = (f64::INFINITY, f64::NEG_INFINITY);
-    places.clone().for_each(|(s, _)| (near, far) = (near.min(s), far.max(s)));
+    places
+        .clone()
+        .for_each(|(s, _)| (near, far) = (near.min(s), far.max(s)));
     let length = far - near;
     let mass: f64 = system.body_mass(index);
     let density = body.material().density;
     if (mass - density * area * length).abs() > 1e-6 * mass {
-        return Err(format!("body `{}` is not a bar of the section of its contact", body.name()));
+        return Err(format!(
+            "body `{}` is not a bar of the section of its contact",
+            body.name()
+        ));
     }
     let held = |node: u32, i: usize| system.fixed[system.dim * node as usize + i];
     let clamped = |node: u32| (0..system.dim).any(|i| inward[i].abs() > 0.5 && held(node, i));
     let at_far = |s: f64| far - s < 1e-6 * length;
     if places.clone().any(|(s, node)| clamped(node) && !at_far(s)) {
-        return Err(format!("body `{}` is held along its axis elsewhere than at its far end", body.name()));
+        return Err(format!(
+            "body `{}` is held along its axis elsewhere than at its far end",
+            body.name()
+        ));
     }
     let modulus = match sides {
         Sides::Free => body.material().young,
@@ -108,7 +160,10 @@ fn bar(system: &System, index: usize, inward: [f64; 3], sides: Sides, area: f64)
     if places.clone().any(|(s, node)| at_far(s) && clamped(node)) {
         bar = bar.clamped();
     }
-    let first = places.clone().find(|&(_, node)| !clamped(node)).map_or(0, |(_, node)| system.dim * node as usize);
+    let first = places
+        .clone()
+        .find(|&(_, node)| !clamped(node))
+        .map_or(0, |(_, node)| system.dim * node as usize);
     let velocity = along(&system.initial_velocity[first..first + system.dim]);
     let gravity: f64 = along(&gravity(system, index));
     Ok(bar.with_velocity(velocity).with_gravity(-gravity))

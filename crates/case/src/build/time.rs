@@ -14,7 +14,10 @@ const MOST_STEPS: u64 = 1_000_000_000;
 impl Builder<'_> {
     pub(super) fn scheme(&self) -> Scheme {
         match self.case.time.scheme {
-            schema::Scheme::Newmark(newmark) => Scheme::Newmark(Newmark { beta: newmark.beta, gamma: newmark.gamma }),
+            schema::Scheme::Newmark(newmark) => Scheme::Newmark(Newmark {
+                beta: newmark.beta,
+                gamma: newmark.gamma,
+            }),
             schema::Scheme::Theta(theta) => Scheme::Theta(Theta { theta: theta.theta }),
             schema::Scheme::CentralDifference(_) => Scheme::CentralDifference(CentralDifference),
         }
@@ -24,8 +27,15 @@ impl Builder<'_> {
     pub(super) fn scheme_and_laws(&mut self) {
         if !self.scheme().get().is_explicit() {
             if let Step::FromMesh(StepRule::Critical(_)) = self.case.time.step {
-                let problem = Problem::new("time.step.critical", "only an explicit scheme has a critical step");
-                self.problems.push(problem.found(self.scheme().get().name()).accepted(["step = { courant = ... }", "a fixed step"]));
+                let problem = Problem::new(
+                    "time.step.critical",
+                    "only an explicit scheme has a critical step",
+                );
+                self.problems.push(
+                    problem
+                        .found(self.scheme().get().name())
+                        .accepted(["step = { courant = ... }", "a fixed step"]),
+                );
             }
             return;
         }
@@ -33,14 +43,22 @@ impl Builder<'_> {
             if let Law::Displacement(_) = contact.law {
                 let message = "an explicit scheme knows the displacement at the end of the step before the contact force, so this law cannot hold";
                 let problem = Problem::new(format!("contact.{name}.law.displacement"), message);
-                self.problems.push(problem.found("displacement with central-difference").accepted(["velocity", "damped"]));
+                self.problems.push(
+                    problem
+                        .found("displacement with central-difference")
+                        .accepted(["velocity", "damped"]),
+                );
             }
         }
         for (name, body) in self.case.body.iter() {
             if body.mass == Mass::Consistent {
                 let message = "an explicit scheme divides by the mass: it must be diagonal";
                 let problem = Problem::new(format!("body.{name}.mass"), message);
-                self.problems.push(problem.found("consistent with central-difference").accepted(["lumped"]));
+                self.problems.push(
+                    problem
+                        .found("consistent with central-difference")
+                        .accepted(["lumped"]),
+                );
             }
         }
     }
@@ -50,18 +68,26 @@ impl Builder<'_> {
         let end = self.case.time.end.0;
         let (path, dt) = match self.case.time.step {
             Step::Fixed(step) => ("time.step", step.0),
-            Step::FromMesh(StepRule::Courant(courant)) => ("time.step.courant", courant * crossing(mesh, bodies)),
-            Step::FromMesh(StepRule::Critical(fraction)) => ("time.step.critical", fraction * critical(mesh, bodies)),
+            Step::FromMesh(StepRule::Courant(courant)) => {
+                ("time.step.courant", courant * crossing(mesh, bodies))
+            }
+            Step::FromMesh(StepRule::Critical(fraction)) => {
+                ("time.step.critical", fraction * critical(mesh, bodies))
+            }
         };
         let steps = step_count(end, dt);
         if !(dt > 0.0 && dt.is_finite()) || steps > MOST_STEPS {
-            let problem = Problem::new(path, "the run would never end").found(format!("{:.3e} steps of {dt:.3e} s", end / dt));
-            self.problems.push(problem.accepted([format!("at most {MOST_STEPS:e} steps")]));
+            let problem = Problem::new(path, "the run would never end")
+                .found(format!("{:.3e} steps of {dt:.3e} s", end / dt));
+            self.problems
+                .push(problem.accepted([format!("at most {MOST_STEPS:e} steps")]));
             return None;
         }
         if steps == 0 {
-            let problem = Problem::new("time.end", "the run ends before its first step").found(format!("{end:e} s"));
-            self.problems.push(problem.accepted([format!("at least one step of {dt:e} s")]));
+            let problem = Problem::new("time.end", "the run ends before its first step")
+                .found(format!("{end:e} s"));
+            self.problems
+                .push(problem.accepted([format!("at least one step of {dt:e} s")]));
             return None;
         }
         Some(dt)
@@ -79,8 +105,14 @@ impl Builder<'_> {
                 Problem::new(format!("body.{name}.region"), cause.to_string())
             }
             Error::Unstable { dt, critical } => {
-                let problem = Problem::new("time.step", "the step is above the critical step of the explicit scheme");
-                problem.found(format!("{dt:.4e} s")).accepted([format!("at most {critical:.4e} s"), "step = { critical = 0.9 }".to_string()])
+                let problem = Problem::new(
+                    "time.step",
+                    "the step is above the critical step of the explicit scheme",
+                );
+                problem.found(format!("{dt:.4e} s")).accepted([
+                    format!("at most {critical:.4e} s"),
+                    "step = { critical = 0.9 }".to_string(),
+                ])
             }
             other => Problem::new("time", other.to_string()),
         }
@@ -91,7 +123,11 @@ impl Builder<'_> {
 fn crossing(mesh: &Mesh, bodies: &[ModelBody]) -> f64 {
     let time = |body: &ModelBody| {
         let speed = body.spec.material.wave_speed(body.spec.kinematics.plane());
-        body.spec.cells.iter().map(|&cell| carom_bodies::smallest_size(mesh, cell) / speed).fold(f64::INFINITY, f64::min)
+        body.spec
+            .cells
+            .iter()
+            .map(|&cell| carom_bodies::smallest_size(mesh, cell) / speed)
+            .fold(f64::INFINITY, f64::min)
     };
     bodies.iter().map(time).fold(f64::INFINITY, f64::min)
 }
@@ -100,7 +136,8 @@ fn crossing(mesh: &Mesh, bodies: &[ModelBody]) -> f64 {
 fn critical(mesh: &Mesh, bodies: &[ModelBody]) -> f64 {
     let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
     let bound = |body: &ModelBody| {
-        carom_bodies::Body::new(mesh, body.spec.clone(), &number).map_or(0.0, |body| body.frequency_bound())
+        carom_bodies::Body::new(mesh, body.spec.clone(), &number)
+            .map_or(0.0, |body| body.frequency_bound())
     };
     2.0 / bodies.iter().map(bound).fold(0.0, f64::max)
 }

@@ -10,7 +10,11 @@ pub fn project() -> PathBuf {
 
 /// Runs the program in a folder.
 pub fn carom(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_carom")).args(arguments).current_dir(folder).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_carom"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap()
 }
 
 /// Standard output and error, for messages.
@@ -22,10 +26,19 @@ pub fn text(output: &Output) -> String {
 fn every_case_of_the_project_passes_the_check_and_leaves_nothing() {
     let cases = project().join("cases");
     let mut count = 0;
-    for folder in std::fs::read_dir(&cases).unwrap().map(|entry| entry.unwrap().path()) {
+    for folder in std::fs::read_dir(&cases)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+    {
         let before = std::fs::read_dir(&folder).unwrap().count();
         let output = carom(&folder, &["check", "case.toml"]);
-        assert_eq!(output.status.code(), Some(0), "{}: {}", folder.display(), text(&output));
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{}: {}",
+            folder.display(),
+            text(&output)
+        );
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), before);
         count += 1;
     }
@@ -39,19 +52,37 @@ fn every_template_passes_the_check_and_no_file_is_overwritten() {
     for name in ["two-bars", "two-bars-newmark", "bar-on-wall", "block-drop"] {
         assert!(listed.contains(name));
         let file = format!("{name}.toml");
-        assert_eq!(carom(work.path(), &["new", name, &file]).status.code(), Some(0));
+        assert_eq!(
+            carom(work.path(), &["new", name, &file]).status.code(),
+            Some(0)
+        );
         let output = carom(work.path(), &["check", &file]);
         assert_eq!(output.status.code(), Some(0), "{}", text(&output));
-        assert_eq!(carom(work.path(), &["new", name, &file]).status.code(), Some(2));
+        assert_eq!(
+            carom(work.path(), &["new", name, &file]).status.code(),
+            Some(2)
+        );
     }
-    assert_eq!(carom(work.path(), &["new", "two-barz"]).status.code(), Some(2));
+    assert_eq!(
+        carom(work.path(), &["new", "two-barz"]).status.code(),
+        Some(2)
+    );
 }
 
 #[test]
 fn schema_is_json_and_names_the_tables() {
     let output = carom(&project(), &["schema"]);
     let schema: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    for table in ["mesh", "material", "body", "contact", "time", "probe", "output", "reference"] {
+    for table in [
+        "mesh",
+        "material",
+        "body",
+        "contact",
+        "time",
+        "probe",
+        "output",
+        "reference",
+    ] {
         assert!(schema["properties"].get(table).is_some(), "{table}");
     }
 }

@@ -1,6 +1,9 @@
 //! A step allocates nothing once contact has been met and the buffers have grown.
 
-#![allow(unsafe_code, reason = "an allocator that counts is the only way to see allocations")]
+#![allow(
+    unsafe_code,
+    reason = "an allocator that counts is the only way to see allocations"
+)]
 
 use std::alloc::{GlobalAlloc, Layout, System as Heap};
 use std::cell::Cell;
@@ -44,7 +47,11 @@ fn resting_cube(scheme: Scheme, law: Law, dt: f64) -> Driver {
                 name: "cube".into(),
                 cells: cells.clone(),
                 kinematics: Kinematics::Solid,
-                material: Elastic { density: 1000.0, young: 1e9, poisson: 0.3 },
+                material: Elastic {
+                    density: 1000.0,
+                    young: 1e9,
+                    poisson: 0.3,
+                },
             },
             mass: MassKind::Lumped,
             velocity: [0.0, 0.0, -1.0],
@@ -55,7 +62,10 @@ fn resting_cube(scheme: Scheme, law: Law, dt: f64) -> Driver {
         contacts: vec![ModelContact {
             name: "ground".into(),
             secondary: Surface::new(&mesh, &mesh.groups["cube.bottom"], &cells).unwrap(),
-            primary: ModelTarget::Plane(Plane { point: [0.0; 3], normal: [0.0, 0.0, 1.0] }),
+            primary: ModelTarget::Plane(Plane {
+                point: [0.0; 3],
+                normal: [0.0, 0.0, 1.0],
+            }),
             law,
             sliding: Sliding::Finite,
         }],
@@ -68,10 +78,19 @@ fn resting_cube(scheme: Scheme, law: Law, dt: f64) -> Driver {
 
 #[test]
 fn a_step_in_contact_allocates_nothing() {
-    let velocity = Law::Velocity(Velocity { capture: Capture::Now, reading: Reading::Closed });
+    let velocity = Law::Velocity(Velocity {
+        capture: Capture::Now,
+        reading: Reading::Closed,
+    });
     let runs = [
         (Scheme::Theta(Theta { theta: 1.0 }), velocity),
-        (Scheme::Newmark(Newmark { beta: 0.49, gamma: 0.9 }), Law::Displacement(Displacement)),
+        (
+            Scheme::Newmark(Newmark {
+                beta: 0.49,
+                gamma: 0.9,
+            }),
+            Law::Displacement(Displacement),
+        ),
         (Scheme::CentralDifference(CentralDifference), velocity),
     ];
     for (scheme, law) in runs {

@@ -23,8 +23,8 @@ use std::time::{Duration, Instant};
 use carom_dynamics::{Costs, Ledger, Observer, Records, State, StepReport, System};
 use carom_exact::Solution;
 
-use crate::summary::Summary;
-use crate::{Error, Folder, atomic};
+use crate::summary::{self, Summary};
+use crate::{Error, Folder, atomic, checkpoint};
 use exact::Comparison;
 use fields::FieldOutput;
 use figures::Curves;
@@ -238,8 +238,15 @@ impl Results {
                 Some(fields) => fields.finish(&mut self.folder, &self.system, state),
                 None => Ok(()),
             },
+            self.keep(state),
         ];
         outcomes.into_iter().collect()
+    }
+
+    /// The last good state on disk.
+    fn keep(&mut self, state: &State) -> Result<(), Error> {
+        let path = self.folder.file("checkpoints/last.state")?;
+        checkpoint::write(&path, &summary::hash(&self.settings.case_text), state)
     }
 
     /// Writes figures, report and summary, after the run has told its end to the observers

@@ -5,7 +5,9 @@ use std::io;
 use std::path::Path;
 
 use carom_output::folder::LIST;
-use carom_output::{Error, Folder, atomic};
+use carom_output::{Error, Folder, atomic, checkpoint};
+
+use crate::models;
 
 fn entries(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = fs::read_dir(folder)
@@ -164,4 +166,31 @@ fn names_that_leave_the_folder_are_refused_when_written_and_when_read() {
     fs::write(path.join(LIST), list + "../precious\n").unwrap();
     Folder::create(&path).unwrap();
     assert_eq!(entries(parent.path()), ["case.carom", "precious"]);
+}
+
+#[test]
+fn a_saved_state_comes_back_and_a_damaged_or_foreign_one_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("last.state");
+    let system = models::two_bars(8);
+    let mut driver = carom_dynamics::Driver::new(system.clone()).unwrap();
+    driver.step().unwrap();
+    checkpoint::write(&path, "0123", driver.state()).unwrap();
+    assert_eq!(
+        &checkpoint::read(&path, "0123", &system).unwrap(),
+        driver.state()
+    );
+    let refused = |case: &str, system: &_| {
+        checkpoint::read(&path, case, system)
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(refused("4567", &system).contains("another case"));
+    assert!(refused("0123", &models::two_bars(9)).contains("another model"));
+    let mut bytes = std::fs::read(&path).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    std::fs::write(&path, &bytes).unwrap();
+    assert!(refused("0123", &system).contains("damaged"));
+    std::fs::write(&path, "a text\n").unwrap();
+    assert!(refused("0123", &system).contains("no state"));
 }
