@@ -56,9 +56,10 @@ fn compiled(root: &Path, line: &str) -> Result<Compiled, String> {
     Ok(compiled)
 }
 
-/// Name and file of the library that a line of cargo's messages is about. Cargo writes one compact JSON object a line.
+/// Name and file of the library that a line of cargo's messages is about. Cargo writes one compact JSON object a line; test
+/// programs have no library.
 fn artifact(message: &str) -> Option<(String, String)> {
-    if !message.contains(r#""reason":"compiler-artifact""#) || message.contains(r#""test":true"#) {
+    if !message.contains(r#""reason":"compiler-artifact""#) {
         return None;
     }
     let target = message.split(r#""target":"#).nth(1)?;
@@ -78,7 +79,7 @@ mod tests {
 
     #[test]
     fn libraries_are_found_in_the_messages_of_cargo() {
-        let message = r#"{"reason":"compiler-artifact","package_id":"x#faer@0.24.0","target":{"kind":["lib"],"name":"faer"},"profile":{"test":false},"features":["std"],"filenames":["/t/libfaer-1.rlib","/t/libfaer-1.rmeta"],"fresh":true}"#;
+        let message = r#"{"reason":"compiler-artifact","package_id":"x#faer@0.24.0","target":{"kind":["lib"],"name":"faer","test":true},"profile":{"test":false},"features":["std"],"filenames":["/t/libfaer-1.rlib","/t/libfaer-1.rmeta"],"fresh":true}"#;
         assert_eq!(
             artifact(message),
             Some(("faer".to_owned(), "/t/libfaer-1.rlib".to_owned()))
