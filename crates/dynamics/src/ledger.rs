@@ -44,7 +44,8 @@ pub struct Resultant {
 }
 
 impl Resultant {
-    /// Resultant of a system vector of nodal forces.
+    /// Resultant of a system vector of nodal forces. In axisymmetry only the axial force is one: radial forces of a full
+    /// turn cancel, and hoop stresses are no external force.
     pub(crate) fn of(system: &System, f: &[f64]) -> Resultant {
         let mut sum = Resultant::default();
         for (x, f) in system.x.iter().zip(f.chunks_exact(system.dim)) {
@@ -55,6 +56,10 @@ impl Resultant {
                 sum.linear[i] += force[i];
                 sum.angular[i] += x[j] * force[k] - x[k] * force[j];
             }
+        }
+        if system.axisymmetric {
+            sum.linear[0] = 0.0;
+            sum.angular = [0.0; 3];
         }
         sum
     }

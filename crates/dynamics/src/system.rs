@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
-use carom_bodies::{Body, BodySpec, MassKind};
+use carom_bodies::{Body, BodySpec, Kinematics, MassKind};
 use carom_contact::law::Level;
 use carom_contact::{Contact, Law, Plane, Point, Sliding, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
@@ -106,6 +106,8 @@ pub struct System {
     pub mesh: Mesh,
     /// Unknowns per node.
     pub dim: usize,
+    /// Whether bodies are axisymmetric: x is then a radius.
+    pub axisymmetric: bool,
     /// Reference coordinates by system number, m.
     pub x: Vec<[f64; 3]>,
     /// Mesh node of each system node. Nodes of one connected part follow each other.
@@ -211,6 +213,10 @@ impl System {
         let secondary_faces = model.contacts.iter().map(faces_of).collect();
         let system = System {
             tolerance: 1e-12 * model.mesh.size(),
+            axisymmetric: model
+                .bodies
+                .iter()
+                .any(|body| body.spec.kinematics == Kinematics::Axisymmetric),
             dim,
             x,
             mesh_node,

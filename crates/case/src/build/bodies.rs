@@ -64,7 +64,29 @@ impl Builder<'_> {
                 displacement,
             });
         }
+        self.one_plane(&bodies);
         bodies
+    }
+
+    /// Refuses axisymmetric bodies beside plane ones: the same coordinate would be a radius and none.
+    fn one_plane(&mut self, bodies: &[ModelBody]) {
+        let turns = |body: &&ModelBody| body.spec.kinematics == Kinematics::Axisymmetric;
+        let (round, flat) = (
+            bodies.iter().find(turns),
+            bodies.iter().find(|body| !turns(body)),
+        );
+        if let (Some(round), Some(flat)) = (round, flat) {
+            let message = format!(
+                "body `{}` is axisymmetric, this one is not",
+                round.spec.name
+            );
+            let problem = Problem::new(format!("body.{}.section", flat.spec.name), message);
+            self.problems.push(
+                problem
+                    .found(flat.spec.kinematics.name())
+                    .accepted(["section.axisymmetric"]),
+            );
+        }
     }
 
     /// The kinematics that a section gives to cells of dimension `dim`.
