@@ -13,6 +13,10 @@ use crate::{RUN, TEST};
 /// Folder of the book's pages.
 const BOOK: &str = "docs/src";
 
+/// Pages that show the first case, and the case: each line that they show is one of its lines.
+const SHOWN: [&str; 2] = ["README.md", "docs/src/start.md"];
+const CASE: &str = "cases/two-bars/case.toml";
+
 /// Files that must give the README's two commands word for word.
 const COMMANDS: [&str; 2] = ["README.md", ".ci/run"];
 
@@ -69,6 +73,7 @@ pub fn check(root: &Path) -> Vec<String> {
     }
     problems.extend(unlisted(&pages));
     problems.extend(missing_commands(root));
+    problems.extend(SHOWN.iter().flat_map(|file| not_in_the_case(root, file)));
     problems
 }
 
@@ -223,6 +228,24 @@ fn missing_commands(root: &Path) -> Vec<String> {
             .map(move |line| format!("{file}: does not give the command `{line}`"))
     });
     lacking.collect()
+}
+
+/// Lines of TOML that a page shows and the first case does not have.
+fn not_in_the_case(root: &Path, file: &str) -> Vec<String> {
+    let read = |file: &str| fs::read_to_string(root.join(file)).unwrap_or_default();
+    let case = read(CASE);
+    let known: BTreeSet<&str> = case.lines().collect();
+    let page = read(file);
+    let blocks = page
+        .split("```toml\n")
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next());
+    let strange = blocks
+        .flat_map(str::lines)
+        .filter(|line| !known.contains(line));
+    strange
+        .map(|line| format!("{file}: shows `{line}`, which {CASE} does not have"))
+        .collect()
 }
 
 #[cfg(test)]
