@@ -4,7 +4,7 @@
 //! number of threads.
 
 use carom_algebra::tensor::Mat3;
-use carom_elements::Kind;
+use carom_elements::{Kind, MAX_NODES};
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::bar::Bar;
@@ -20,6 +20,10 @@ fn chunk_length(kind: Kind) -> usize {
         Kind::Hex8 => 256,
     }
 }
+
+/// What is called for each element: system numbers of its nodes, stiffness (N/m, row-major over node-major unknowns;
+/// empty where it is not wanted) and scalar consistent mass (kg, row-major over nodes).
+pub(crate) type Visit<'a> = dyn FnMut(&[u32], &[f64], &[f64]) + 'a;
 
 /// The physics of the elements of a block.
 #[derive(Clone, Copy, Debug)]
@@ -93,32 +97,46 @@ impl Block {
         })
     }
 
-    /// Calls `visit(nodes, stiffness, mass)` for each element: system numbers of its nodes, stiffness (N/m, row-major
-    /// over node-major unknowns) and scalar consistent mass (kg, row-major over nodes).
-    pub(crate) fn matrices(&self, dim: usize, visit: &mut dyn FnMut(&[u32], &[f64], &[f64])) {
-        match self.kind {
-            Kind::Point1 => {}
-            Kind::Bar2 => self.visit::<2>(dim, visit),
-            Kind::Tri3 => self.visit::<3>(dim, visit),
-            Kind::Quad4 | Kind::Tet4 => self.visit::<4>(dim, visit),
-            Kind::Hex8 => self.visit::<8>(dim, visit),
+    /// Calls `visit` with the nodes of each element.
+    pub(crate) fn elements(&self, visit: &mut dyn FnMut(&[u32])) {
+        let mut nodes = [0; MAX_NODES];
+        let nodes = &mut nodes[..self.kind.table().nodes];
+        for chunk in &self.chunks {
+            for element in chunk.connectivity.chunks_exact(nodes.len()) {
+                for (node, &place) in nodes.iter_mut().zip(element) {
+                    *node = chunk.nodes[place as usize];
+                }
+                visit(nodes);
+            }
         }
     }
 
-    fn visit<const N: usize>(&self, dim: usize, visit: &mut dyn FnMut(&[u32], &[f64], &[f64])) {
-        let mut k = vec![0.0; (dim * N).pow(2)];
+    /// Calls `visit` with the matrices of each element.
+    pub(crate) fn matrices(&self, dim: usize, stiffness: bool, visit: &mut Visit) {
+        match self.kind {
+            Kind::Point1 => {}
+            Kind::Bar2 => self.visit::<2>(dim, stiffness, visit),
+            Kind::Tri3 => self.visit::<3>(dim, stiffness, visit),
+            Kind::Quad4 | Kind::Tet4 => self.visit::<4>(dim, stiffness, visit),
+            Kind::Hex8 => self.visit::<8>(dim, stiffness, visit),
+        }
+    }
+
+    fn visit<const N: usize>(&self, dim: usize, stiffness: bool, visit: &mut Visit) {
+        let mut k = vec![0.0; if stiffness { (dim * N).pow(2) } else { 0 }];
         let mut m = vec![0.0; N * N];
         for chunk in &self.chunks {
             for element in chunk.connectivity.chunks_exact(N) {
                 let x = element_nodes::<N, _>(element, |node| chunk.x[node]);
                 match &self.physics {
-                    Physics::Bar(bar) => {
-                        bar.stiffness(dim, &x, &mut k);
-                        bar.mass(&x, &mut m);
-                    }
+                    Physics::Bar(bar) => bar.mass(&x, &mut m),
+                    Physics::Continuum(law) => continuum::mass(law, &self.mass_points, &x, &mut m),
+                }
+                match &self.physics {
+                    _ if !stiffness => {}
+                    Physics::Bar(bar) => bar.stiffness(dim, &x, &mut k),
                     Physics::Continuum(law) => {
-                        continuum::stiffness(law, &self.stiffness_points, &x, &mut k);
-                        continuum::mass(law, &self.mass_points, &x, &mut m);
+                        continuum::stiffness(law, &self.stiffness_points, &x, &mut k)
                     }
                 }
                 visit(
@@ -262,4 +280,79 @@ impl Chunk {
 #[inline]
 fn element_nodes<const N: usize, T>(element: &[u32], of: impl Fn(usize) -> T) -> [T; N] {
     std::array::from_fn(|a| of(element[a] as usize))
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_materials::Elastic;
+    use pulp::Scalar;
+
+    use super::*;
+    use crate::Kinematics;
+
+    const MATERIAL: Elastic = Elastic {
+        density: 1.0,
+        young: 2.0,
+        poisson: 0.3,
+    };
+
+    /// Elements that share no node: `count` reference cells, each moved, and their corners too.
+    fn block(kind: Kind, kinematics: Kinematics, count: usize) -> (Block, Vec<f64>) {
+        let element = kind.table();
+        let total = count * element.nodes;
+        let x = (0..total).map(|node| {
+            let wave = |i: usize| 0.1 * ((3 * node + i) as f64).sin();
+            let corner = element.reference[node % element.nodes];
+            [
+                3.0 + corner[0] + wave(0),
+                corner[1] + wave(1),
+                corner[2] + wave(2),
+            ]
+        });
+        let physics = match kinematics {
+            Kinematics::Bar { area } => Physics::Bar(Bar {
+                young: MATERIAL.young,
+                area,
+                density: MATERIAL.density,
+            }),
+            _ => Physics::Continuum(Law::new(kinematics, MATERIAL, element.dim)),
+        };
+        let elements: Vec<u32> = (0..total as u32).collect();
+        let block = Block::new(kind, physics, &elements, &x.collect::<Vec<_>>());
+        let u = (0..element.dim * total).map(|i| (i as f64).cos());
+        (block, u.collect())
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_same_forces_and_energy() {
+        for (kind, kinematics) in [
+            (Kind::Bar2, Kinematics::Bar { area: 0.3 }),
+            (Kind::Tri3, Kinematics::PlaneStress { thickness: 0.2 }),
+            (Kind::Quad4, Kinematics::Axisymmetric),
+            (Kind::Tet4, Kinematics::Solid),
+            (Kind::Hex8, Kinematics::Solid),
+        ] {
+            for count in [1, 7, 8, 9, 16, 17, 50] {
+                let (block, u) = block(kind, kinematics, count);
+                let dim = kind.table().dim;
+                let chunk = &block.chunks[0];
+                let (mut best, mut plain) = (vec![[0.0; 3]; chunk.nodes.len()], Vec::new());
+                plain.clone_from(&best);
+                let sweep = |f| Sweep {
+                    block: &block,
+                    chunk,
+                    dim,
+                    u: &u,
+                    f,
+                };
+                let energy = Arch::new().dispatch(sweep(&mut best));
+                let plain_energy = Scalar.vectorize(sweep(&mut plain));
+                assert!((energy - plain_energy).abs() < 1e-13 * energy, "{kind:?}");
+                let largest = plain.iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
+                for (a, b) in best.iter().flatten().zip(plain.iter().flatten()) {
+                    assert!((a - b).abs() < 1e-13 * largest, "{kind:?} {count}: {a} {b}");
+                }
+            }
+        }
+    }
 }

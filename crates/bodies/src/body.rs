@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::Error;
 use crate::bar::Bar;
-use crate::block::{Block, Physics, Scratch};
+use crate::block::{Block, Physics, Scratch, Visit};
 use crate::continuum::Law;
 use crate::{size, stability};
 
@@ -251,7 +251,7 @@ impl Body {
     /// Adds the row sums ∫ ρ N_a dV of the mass (kg) to the entries of a system vector.
     pub fn add_lumped_mass(&self, mass: &mut [f64]) {
         let dim = self.dim;
-        self.each_matrix(&mut |nodes, _, m| {
+        self.each_matrix(false, &mut |nodes, _, m| {
             for (a, &node) in nodes.iter().enumerate() {
                 let row: f64 = m[a * nodes.len()..(a + 1) * nodes.len()].iter().sum();
                 for i in 0..dim {
@@ -272,7 +272,7 @@ impl Body {
         matrix: &mut Csr,
     ) {
         let dim = self.dim;
-        self.each_matrix(&mut |nodes, k, m| {
+        self.each_matrix(true, &mut |nodes, k, m| {
             let n = nodes.len();
             if !part.contains(&(dim * nodes[0] as usize)) {
                 return;
@@ -295,7 +295,9 @@ impl Body {
 
     /// System numbers of the nodes of each element, in the order of [`Body::cells`].
     pub fn each_element(&self, visit: &mut dyn FnMut(&[u32])) {
-        self.each_matrix(&mut |nodes, _, _| visit(nodes));
+        for block in &self.blocks {
+            block.elements(visit);
+        }
     }
 
     /// Volume (m³) and mean stress (Pa) of each element, in the order of [`Body::cells`].
@@ -313,16 +315,16 @@ impl Body {
         let mut bound: f64 = 0.0;
         let dim = self.dim;
         let mut scaled = Vec::new();
-        self.each_matrix(&mut |nodes, k, m| {
+        self.each_matrix(true, &mut |nodes, k, m| {
             stability::scale(dim, nodes.len(), k, m, &mut scaled);
             bound = bound.max(stability::largest_eigenvalue(&mut scaled));
         });
         bound.sqrt()
     }
 
-    fn each_matrix(&self, visit: &mut dyn FnMut(&[u32], &[f64], &[f64])) {
+    fn each_matrix(&self, stiffness: bool, visit: &mut Visit) {
         for block in &self.blocks {
-            block.matrices(self.dim, visit);
+            block.matrices(self.dim, stiffness, visit);
         }
     }
 }

@@ -1,11 +1,17 @@
 //! The largest eigenvalue of an element, which bounds the stable step of an explicit scheme.
 
+use carom_elements::MAX_NODES;
+use pulp::{Arch, Simd, WithSimd};
+
 /// Writes M^-1/2 K M^-1/2 with the row-sum mass into `out`, row-major (1/s²).
 pub(crate) fn scale(dim: usize, nodes: usize, k: &[f64], m: &[f64], out: &mut Vec<f64>) {
     let n = dim * nodes;
-    let root = |row: usize| m[row / dim * nodes..][..nodes].iter().sum::<f64>().sqrt();
+    let mut root = [0.0; MAX_NODES];
+    for (root, row) in root.iter_mut().zip(m.chunks_exact(nodes)) {
+        *root = row.iter().sum::<f64>().sqrt();
+    }
     out.clear();
-    out.extend((0..n * n).map(|entry| k[entry] / (root(entry / n) * root(entry % n))));
+    out.extend((0..n * n).map(|entry| k[entry] / (root[entry / n / dim] * root[entry % n / dim])));
 }
 
 /// Upper bound, within a thousandth, of the largest eigenvalue of a symmetric positive semi-definite matrix
@@ -24,22 +30,52 @@ pub(crate) fn largest_eigenvalue(b: &mut Vec<f64>) -> f64 {
         if factor <= 0.0 {
             return 0.0;
         }
-        b.iter_mut().for_each(|entry| *entry /= factor);
-        logarithm += factor.ln() / power;
-        for row in 0..n {
-            for column in 0..n {
-                // symmetric: the column is a row
-                square[row * n + column] = b[row * n..][..n]
-                    .iter()
-                    .zip(&b[column * n..][..n])
-                    .map(|(x, y)| x * y)
-                    .sum();
-            }
+        let inverse = 1.0 / factor;
+        // what would become subnormal is slow to multiply and too small to matter
+        for entry in b.iter_mut() {
+            let scaled = *entry * inverse;
+            *entry = if scaled.abs() < 1e-100 { 0.0 } else { scaled };
         }
+        logarithm += factor.ln() / power;
+        Arch::new().dispatch(Square {
+            b,
+            square: &mut square,
+        });
         std::mem::swap(b, &mut square);
         power *= 2.0;
     }
     (logarithm + trace(b).ln() / power).exp()
+}
+
+/// The square of a row-major matrix.
+struct Square<'a> {
+    b: &'a [f64],
+    square: &'a mut [f64],
+}
+
+impl WithSimd for Square<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let n = self.b.len().isqrt();
+        for (out, row) in self.square.chunks_exact_mut(n).zip(self.b.chunks_exact(n)) {
+            let (out, tail) = S::as_mut_simd_f64s(out);
+            for (place, out) in out.iter_mut().enumerate() {
+                let mut sum = simd.splat_f64s(0.0);
+                for (&factor, other) in row.iter().zip(self.b.chunks_exact(n)) {
+                    let other = S::as_simd_f64s(other).0[place];
+                    sum = simd.mul_add_e_f64s(simd.splat_f64s(factor), other, sum);
+                }
+                *out = sum;
+            }
+            let first = n - tail.len();
+            for (place, out) in tail.iter_mut().enumerate() {
+                let column = self.b.chunks_exact(n).map(|other| other[first + place]);
+                *out = row.iter().zip(column).map(|(x, y)| x * y).sum();
+            }
+        }
+    }
 }
 
 #[cfg(test)]
