@@ -6,6 +6,7 @@
 use carom_algebra::tensor::Mat3;
 use carom_elements::{Kind, MAX_NODES};
 use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
 
 use crate::bar::Bar;
 use crate::continuum::{self, Law, Points};
@@ -84,17 +85,32 @@ impl Block {
         }
     }
 
-    /// Internal forces of one chunk into `f` (N, one entry per chunk node) for the displacement `u` (m, system
-    /// vector with `dim` entries per node); returns the strain energy (J).
-    pub(crate) fn force(&self, chunk: &Chunk, dim: usize, u: &[f64], f: &mut [[f64; 3]]) -> f64 {
-        f.fill([0.0; 3]);
-        Arch::new().dispatch(Sweep {
-            block: self,
-            chunk,
-            dim,
-            u,
-            f,
-        })
+    /// Internal forces (N, one entry per chunk node) and strain energy (J) of each chunk, for the displacement `u` (m,
+    /// system vector with `dim` entries per node).
+    pub(crate) fn forces(
+        &self,
+        dim: usize,
+        u: &[f64],
+        forces: &mut [Vec<[f64; 3]>],
+        energies: &mut [f64],
+    ) {
+        let chunk = |((chunk, f), energy): ((&Chunk, &mut Vec<[f64; 3]>), &mut f64)| {
+            f.fill([0.0; 3]);
+            *energy = Arch::new().dispatch(Sweep {
+                block: self,
+                chunk,
+                dim,
+                u,
+                f,
+            });
+        };
+        if self.chunks.len() == 1 {
+            // waking a thread takes as long as the work
+            let all = self.chunks.iter().zip(forces).zip(energies);
+            return all.for_each(chunk);
+        }
+        let chunks = self.chunks.par_iter().zip(forces).zip(energies);
+        chunks.for_each(chunk);
     }
 
     /// Calls `visit` with the nodes of each element.

@@ -7,7 +7,6 @@ use carom_algebra::tensor::Mat3;
 use carom_elements::Kind;
 use carom_materials::{Elastic, Plane};
 use carom_mesh::{ElementId, Mesh};
-use rayon::prelude::*;
 
 use crate::Error;
 use crate::bar::Bar;
@@ -207,37 +206,24 @@ impl Body {
 
     /// Adds the internal forces f(u) (N) of this body to `f` and returns its strain energy U(u) (J).
     ///
-    /// `u`, `f`: system vectors, m and N. The sums run in a fixed order whatever the number of threads.
+    /// `u`, `f`: system vectors, m and N. `scratch`: this body's own, empty before the first call; later calls allocate
+    /// nothing. The sums run in a fixed order whatever the number of threads.
     pub fn internal_force(&self, u: &[f64], scratch: &mut Scratch, f: &mut [f64]) -> f64 {
-        let chunks = || {
-            self.blocks
-                .iter()
-                .flat_map(|block| block.chunks.iter().map(move |chunk| (block, chunk)))
-        };
+        let chunks = || self.blocks.iter().flat_map(|block| &block.chunks);
         if scratch.forces.is_empty() {
-            scratch.forces = chunks()
-                .map(|(_, chunk)| vec![[0.0; 3]; chunk.nodes.len()])
-                .collect();
+            let lists = chunks().map(|chunk| vec![[0.0; 3]; chunk.nodes.len()]);
+            scratch.forces = lists.collect();
             scratch.energies = vec![0.0; scratch.forces.len()];
         }
-        for (block, energies, forces) in
-            split(&self.blocks, &mut scratch.energies, &mut scratch.forces)
-        {
-            if let ([chunk], [force], [energy]) = (&block.chunks[..], &mut *forces, &mut *energies)
-            {
-                *energy = block.force(chunk, self.dim, u, force);
-                continue;
-            }
-            block
-                .chunks
-                .par_iter()
-                .zip(forces.par_iter_mut())
-                .zip(energies.par_iter_mut())
-                .for_each(|((chunk, force), energy)| {
-                    *energy = block.force(chunk, self.dim, u, force)
-                });
+        let (mut forces, mut energies) = (&mut scratch.forces[..], &mut scratch.energies[..]);
+        for block in &self.blocks {
+            let (block_forces, rest) = forces.split_at_mut(block.chunks.len());
+            forces = rest;
+            let (block_energies, rest) = energies.split_at_mut(block.chunks.len());
+            energies = rest;
+            block.forces(self.dim, u, block_forces, block_energies);
         }
-        for ((_, chunk), force) in chunks().zip(&scratch.forces) {
+        for (chunk, force) in chunks().zip(&scratch.forces) {
             for (&node, f_a) in chunk.nodes.iter().zip(force) {
                 let first = self.dim * node as usize;
                 for i in 0..self.dim {
@@ -327,21 +313,6 @@ impl Body {
             block.matrices(self.dim, stiffness, visit);
         }
     }
-}
-
-/// Each block with its share of the chunk buffers.
-fn split<'a>(
-    blocks: &'a [Block],
-    mut energies: &'a mut [f64],
-    mut forces: &'a mut [Vec<[f64; 3]>],
-) -> impl Iterator<Item = (&'a Block, &'a mut [f64], &'a mut [Vec<[f64; 3]>])> {
-    blocks.iter().map(move |block| {
-        let (energy, rest) = std::mem::take(&mut energies).split_at_mut(block.chunks.len());
-        energies = rest;
-        let (force, rest) = std::mem::take(&mut forces).split_at_mut(block.chunks.len());
-        forces = rest;
-        (block, energy, force)
-    })
 }
 
 fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {

@@ -108,13 +108,7 @@ impl<const N: usize, const D: usize, const E: usize> Kernel<N, D> for Cell<'_, D
                 density += product::<S, W, D>(&stress[i], &h[i]);
             }
             energy += density * det * weight * 0.5;
-            let mut weighted = stress;
-            for i in 0..D {
-                for k in 0..D {
-                    weighted[i][k] = stress[i][k] * weight;
-                }
-            }
-            self.spread::<S, W>(point, &weighted, &cofactor, &mut df);
+            self.spread::<S, W>(point, &stress, &cofactor, weight, &mut df);
             if D == 2 && self.law.axisymmetric {
                 // ∫ σ_θ N_a / r 2πr dA: the radius drops out
                 let ring = hoop_stress * det * (TAU * point.weight);
@@ -161,22 +155,23 @@ impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
         let mut gradient = [[Lanes::ZERO; D]; D];
         for c in 0..D {
             for e in 0..E {
-                let weight = point.dn[self.edges[c][e][1]][c];
+                let slope = point.dn[self.edges[c][e][1]][c];
                 for i in 0..D {
-                    gradient[i][c] = differences[c][e][i].scale_add::<S>(weight, gradient[i][c]);
+                    gradient[i][c] = differences[c][e][i].scale_add::<S>(slope, gradient[i][c]);
                 }
             }
         }
         gradient
     }
 
-    /// Adds the share of one point, σ C dN_b/dξ_c, to the forces along the edges; `stress` holds the weight.
+    /// Adds the share of one point, σ C weight dN_b/dξ_c, to the forces along the edges.
     #[inline(always)]
     fn spread<S: Simd, const W: usize>(
         &self,
         point: &Point,
         stress: &[Vector<W, D>; D],
         cofactor: &[Vector<W, D>; D],
+        weight: Lanes<W>,
         edge_forces: &mut OfEdges<W, D, E>,
     ) {
         for c in 0..D {
@@ -185,11 +180,12 @@ impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
                 for k in 0..D {
                     pull[i] = stress[i][k].mul_add::<S>(cofactor[k][c], pull[i]);
                 }
+                pull[i] = pull[i] * weight;
             }
             for e in 0..E {
-                let weight = point.dn[self.edges[c][e][1]][c];
+                let slope = point.dn[self.edges[c][e][1]][c];
                 for i in 0..D {
-                    edge_forces[c][e][i] = pull[i].scale_add::<S>(weight, edge_forces[c][e][i]);
+                    edge_forces[c][e][i] = pull[i].scale_add::<S>(slope, edge_forces[c][e][i]);
                 }
             }
         }
