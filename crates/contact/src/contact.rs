@@ -12,6 +12,8 @@ pub struct Point {
     pub node: u32,
     /// Surface that it stands for, ∫ N_a dΓ, in m².
     pub area: f64,
+    /// Its share in the surface of the contact; the shares add up to 1.
+    pub share: f64,
 }
 
 /// What the secondary points face.
@@ -226,8 +228,7 @@ mod tests {
             sliding: Sliding::Finite,
             points: vec![Point {
                 node: 25,
-                area: 1.0,
-            }],
+                area: 1.0, share: 1.0 }],
             target: Target::Surface(faces),
         };
         let mut rows = Rows::default();

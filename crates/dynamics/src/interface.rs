@@ -9,17 +9,15 @@
 
 use carom_algebra::dense::DenseCholesky;
 use carom_contact::Law;
-use carom_contact::law::{End, Relation, Status};
+use carom_contact::law::{End, Local, Relation, Status};
 
 /// A candidate before the solve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
     /// Its law.
     pub(crate) law: Law,
-    /// Surface that it stands for, m².
-    pub(crate) area: f64,
-    /// g_f, m.
-    pub(crate) gap_free: f64,
+    /// What is known of it before the forces; holds g_f.
+    pub(crate) local: Local,
     /// ġ_f, m/s.
     pub(crate) rate_free: f64,
     /// Status at the end of the last step.
@@ -77,6 +75,7 @@ impl Interface {
             .extend(candidates.iter().map(|candidate| match candidate.status {
                 Status::Open => Status::Open,
                 Status::Closed | Status::Corner => Status::Closed,
+                Status::Piece(piece) => Status::Piece(piece),
             }));
         self.reversals.clear();
         self.reversals.resize(n, 0);
@@ -108,11 +107,12 @@ impl Interface {
                     &self.forces,
                     &self.product,
                 );
-                self.statuses[i] =
-                    candidates[i]
-                        .law
-                        .get()
-                        .status(self.statuses[i], &end, self.reversals[i]);
+                self.statuses[i] = candidates[i].law.get().status(
+                    self.statuses[i],
+                    &end,
+                    &candidates[i].local,
+                    self.reversals[i],
+                );
                 self.reversals[i] += 1;
             }
             if pass == limit {
@@ -148,7 +148,7 @@ impl Interface {
             candidates[i as usize]
                 .law
                 .get()
-                .relation(status, candidates[i as usize].area)
+                .relation(status, &candidates[i as usize].local)
         };
         if self.factor.is_none() || self.factor_of.0 != version || self.factor_of.1 != self.closed {
             let mut matrix = Vec::with_capacity(self.closed.len().pow(2));
@@ -178,7 +178,9 @@ impl Interface {
         self.rhs.clear();
         self.rhs.extend(self.closed.iter().map(|&(i, status)| {
             let (relation, candidate) = (relation(i, status), &candidates[i as usize]);
-            -(relation.gap * candidate.gap_free + relation.rate * candidate.rate_free)
+            -(relation.gap * candidate.local.gap_free
+                + relation.rate * candidate.rate_free
+                + relation.offset)
                 / scale(&relation, s)
         }));
         factor.solve(&mut self.rhs);
@@ -205,11 +207,12 @@ impl Interface {
         self.changes.clear();
         for (i, candidate) in candidates.iter().enumerate() {
             let end = end(candidate, i, d, s, &self.forces, &self.product);
-            if candidate
-                .law
-                .get()
-                .status(self.statuses[i], &end, self.reversals[i])
-                != self.statuses[i]
+            if candidate.law.get().status(
+                self.statuses[i],
+                &end,
+                &candidates[i].local,
+                self.reversals[i],
+            ) != self.statuses[i]
             {
                 self.changes.push(i as u32);
             }
@@ -247,8 +250,8 @@ fn end(
     // In a closed point of an exact law the gap or the rate is zero by construction, and its sign but rounding: the
     // laws look at the force there.
     End {
-        gap_released: candidate.gap_free + s[0] * (product[i] - own),
-        gap: candidate.gap_free + s[0] * product[i],
+        gap_released: candidate.local.gap_free + s[0] * (product[i] - own),
+        gap: candidate.local.gap_free + s[0] * product[i],
         rate: candidate.rate_free + s[1] * product[i],
         force: forces[i],
     }
@@ -263,8 +266,12 @@ mod tests {
     fn candidate(law: Law, gap_free: f64) -> Candidate {
         Candidate {
             law,
-            area: 1.0,
-            gap_free,
+            local: Local {
+                area: 1.0,
+                share: 1.0,
+                gap_free,
+                ..Local::default()
+            },
             rate_free: 0.0,
             status: Status::Open,
         }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::scheme::EnergyIdentity;
 use crate::state::Motion;
-use crate::step_map::StepMap;
+use crate::step_map::{Impulse, StepMap};
 use crate::system::System;
 
 /// Sum with compensation of the rounding (Neumaier).
@@ -182,7 +182,7 @@ impl Ledger {
     /// Adds a step of length `dt`: works on Δu, squares of the scheme's dissipation, resultants of the forces.
     pub(crate) fn add(
         &mut self,
-        (dt, identity): (f64, &EnergyIdentity),
+        (dt, identity, impulses): (f64, &EnergyIdentity, [&Impulse; 2]),
         energies: &Energies,
         works: [f64; 2],
         squares: &Squares,
@@ -196,13 +196,17 @@ impl Ledger {
                 + identity.acceleration * squares.acceleration,
         );
         for (k, force) in forces.iter().enumerate() {
-            let mean = self.forces[k].combine(dt * identity.old, force, dt * identity.new);
+            // loads, contacts, supports
+            let impulse = impulses[usize::from(k == 1)];
+            let before = self.forces[k];
+            let force = force.combine(impulse.gain, &before, -impulse.carry);
+            self.forces[k] = force;
+            let mean = before.combine(dt * impulse.old, &force, dt * impulse.new);
             for i in 0..3 {
                 self.impulses[k][i].add(mean.linear[i]);
                 self.impulses[k][3 + i].add(mean.angular[i]);
             }
         }
-        self.forces = forces;
         self.balance = self.closed(energies, identity);
         self.largest_energy = self.largest_energy.max(self.balance.energy());
         self.largest_energy_residual = self
@@ -277,7 +281,7 @@ pub(crate) fn reactions(
         *out = if system.fixed[i] {
             let internal =
                 (1.0 - fraction) * old.internal_force[i] + fraction * new.internal_force[i];
-            inertia[i] + internal - system.load[i] - new.contact_force[i]
+            inertia[i] + internal - system.load[i] - map.contact * new.contact_force[i]
         } else {
             0.0
         };

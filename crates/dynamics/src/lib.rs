@@ -24,5 +24,5 @@ pub use march::{Observer, Outcome, march, step_count};
 pub use records::{ContactRecord, Impact, Records};
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use state::{ContactReport, InterfaceState, Motion, State, StepReport};
-pub use step_map::{Row, StepMap};
+pub use step_map::{Impulse, Row, StepMap};
 pub use system::{Mass, Model, ModelBody, ModelContact, ModelTarget, Support, System};

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ledger::Sum;
 use crate::state::{ContactReport, State};
+use crate::step_map::Impulse;
 use crate::system::System;
 
 /// Records of all contacts.
@@ -30,7 +31,7 @@ pub struct ContactRecord {
     pub status_changes: u64,
     /// Largest penetration at the end of a step, m.
     pub penetration: f64,
-    /// Total force and force on the secondary body in the last step, N.
+    /// Total force and force on the secondary body in the last step as they enter impulses, N.
     last: (f64, [f64; 3]),
     /// The impact going on.
     open: Option<OpenImpact>,
@@ -95,8 +96,8 @@ struct OpenImpact {
 pub(crate) struct Step<'a> {
     /// Time at its start and end, s.
     pub(crate) span: [f64; 2],
-    /// Weights of the old and of the new force in the impulse.
-    pub(crate) weights: [f64; 2],
+    /// How forces make impulses in the scheme.
+    pub(crate) impulse: Impulse,
     /// What the contact did.
     pub(crate) report: &'a ContactReport,
     /// Work of the contact's forces, J.
@@ -124,9 +125,14 @@ impl Records {
     ) {
         let (report, dt) = (step.report, step.span[1] - step.span[0]);
         let record = &mut self.contacts[contact];
-        let mean = |before: f64, now: f64| dt * (step.weights[0] * before + step.weights[1] * now);
-        let before = std::mem::replace(&mut record.last, (report.force, report.resultant));
-        record.impulse.add(mean(before.0, report.force));
+        let impulse = step.impulse;
+        let mean = |before: f64, now: f64| dt * (impulse.old * before + impulse.new * now);
+        let taken = |force: f64, before: f64| impulse.gain * force - impulse.carry * before;
+        let before = record.last;
+        let force = taken(report.force, before.0);
+        let resultant = [0, 1, 2].map(|i| taken(report.resultant[i], before.1[i]));
+        record.last = (force, resultant);
+        record.impulse.add(mean(before.0, force));
         record.defect.add(report.persistency_defect);
         record.status_changes += report.status_changes as u64;
         if report.gap.is_finite() {
@@ -149,7 +155,7 @@ impl Records {
             open.peak_force = open.peak_force.max(report.force);
             open.work.add(step.work);
             for i in 0..3 {
-                open.impulse[i].add(mean(before.1[i], report.resultant[i]));
+                open.impulse[i].add(mean(before.1[i], resultant[i]));
             }
             if !active {
                 let impact = open.finished(system, contact, step.span[1], new_velocity);

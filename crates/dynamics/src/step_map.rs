@@ -1,6 +1,9 @@
 //! A time scheme as a table of numbers: how everything in a step depends on its one unknown x.
 
-/// Coefficients of one vector of the step, `u` u_k + `v` v_k + `a` a_k + `x` x.
+use crate::state::Motion;
+
+/// Coefficients of one vector of the step, `u` u_k + `v` v_k + `a` a_k + `x` x + `c` c, with c = M⁻¹ Nᵀ P the acceleration
+/// that the contact forces of the step give by themselves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
     /// Factor of the displacement at the start.
@@ -11,25 +14,61 @@ pub struct Row {
     pub a: f64,
     /// Factor of the unknown.
     pub x: f64,
+    /// Factor of the contact acceleration c; zero for most schemes, which then never compute c.
+    pub c: f64,
 }
 
 impl Row {
-    /// Writes the combination of the known vectors, x left out.
-    pub fn known(&self, u: &[f64], v: &[f64], a: &[f64], out: &mut [f64]) {
+    /// Writes the combination of the known vectors, x and c left out.
+    pub fn known(&self, motion: &Motion, out: &mut [f64]) {
+        let Motion { u, v, a, .. } = motion;
         for i in 0..out.len() {
             out[i] = self.u * u[i] + self.v * v[i] + self.a * a[i];
         }
     }
 
     /// Writes the whole combination.
-    pub fn whole(&self, u: &[f64], v: &[f64], a: &[f64], x: &[f64], out: &mut [f64]) {
+    pub fn whole(&self, motion: &Motion, x: &[f64], c: &[f64], out: &mut [f64]) {
+        let Motion { u, v, a, .. } = motion;
         for i in 0..out.len() {
             out[i] = self.u * u[i] + self.v * v[i] + self.a * a[i] + self.x * x[i];
+        }
+        if self.c != 0.0 {
+            for i in 0..out.len() {
+                out[i] += self.c * c[i];
+            }
         }
     }
 }
 
-/// One step of a scheme: momentum balance `M inertia + f(force) = p_ext + Nᵀ P`, end values and contact quantities.
+/// How the momentum changes over a step. With G the sum of the nodal forces of a kind in the balance of the step,
+/// `R_{k+1} = gain G - carry R_k` and `Δ(M v) = dt (old R_k + new R_{k+1})`. Where the balance holds at one instant, R is
+/// the force itself: gain 1, carry 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impulse {
+    /// Weight of R at the start.
+    pub old: f64,
+    /// Weight of R of the step.
+    pub new: f64,
+    /// Factor of the forces in R.
+    pub gain: f64,
+    /// Factor of the R before.
+    pub carry: f64,
+}
+
+impl Impulse {
+    /// Weights of forces that enter the balance at one instant.
+    pub fn weights(old: f64, new: f64) -> Impulse {
+        Impulse {
+            old,
+            new,
+            gain: 1.0,
+            carry: 0.0,
+        }
+    }
+}
+
+/// One step of a scheme: momentum balance `M inertia + f(force) = p_ext + contact Nᵀ P`, end values and contact quantities.
 ///
 /// The effective matrix is `A = inertia.x M + force.x K`; A and the residual are in N when x is an acceleration, and in
 /// N per unit of x otherwise.
@@ -51,4 +90,18 @@ pub struct StepMap {
     pub placed: Row,
     /// The velocity that a contact law in the rate constrains.
     pub rate: Row,
+    /// Factor of the contact forces in the momentum balance; 1 for most schemes.
+    pub contact: f64,
+    /// How loads and supports change the momentum over the step.
+    pub impulse: Impulse,
+    /// How contact forces change it.
+    pub contact_impulse: Impulse,
+}
+
+impl StepMap {
+    /// Whether any vector of the step needs the contact acceleration.
+    pub fn uses_contact_acceleration(&self) -> bool {
+        let rows = [self.displacement, self.velocity, self.acceleration];
+        rows.iter().any(|row| row.c != 0.0)
+    }
 }

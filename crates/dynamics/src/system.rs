@@ -462,12 +462,16 @@ fn numbered(contact: &ModelContact, model: &Model, number: &[u32]) -> Contact {
         .and_then(|face| owner(model, face.parent));
     let kinematics = kinematics.map(|body| model.bodies[body].spec.kinematics);
     let areas = surface.node_areas(&model.mesh);
-    let points = surface.nodes.iter().zip(areas).map(|(&node, area)| {
+    let area = |(&node, area): (&u32, f64)| {
         let factor = kinematics.map_or(1.0, |k| k.surface_factor(&model.mesh.nodes[node as usize]));
-        Point {
-            node: number[node as usize],
-            area: area * factor,
-        }
+        (number[node as usize], area * factor)
+    };
+    let areas: Vec<(u32, f64)> = surface.nodes.iter().zip(areas).map(area).collect();
+    let total: f64 = areas.iter().map(|(_, area)| area).sum();
+    let points = areas.iter().map(|&(node, area)| Point {
+        node,
+        area,
+        share: area / total,
     });
     let target = match &contact.primary {
         ModelTarget::Plane(plane) => Target::Plane(*plane),

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ContactLaw, End, Level, Relation, Status};
+use super::{ContactLaw, End, Level, Local, Relation, Status};
 
 /// What becomes of tension in the damper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,35 +43,30 @@ impl ContactLaw for Damped {
         0.0
     }
 
-    fn watches(&self, _gap: f64, _tolerance: f64) -> bool {
-        true
+    fn watches(&self, _gap: f64, _tolerance: f64) -> Option<bool> {
+        None
     }
 
-    fn relation(&self, status: Status, area: f64) -> Relation {
+    fn relation(&self, status: Status, local: &Local) -> Relation {
         match status {
-            Status::Corner => Relation {
-                gap: 1.0,
-                rate: 0.0,
-                compliance: 0.0,
-            },
-            Status::Open | Status::Closed => Relation {
-                gap: self.stiffness * area,
-                rate: self.damping * area,
+            Status::Corner => Relation::GAP,
+            Status::Open | Status::Closed | Status::Piece(_) => Relation {
+                gap: self.stiffness * local.area,
+                rate: self.damping * local.area,
                 compliance: 1.0,
+                offset: 0.0,
             },
         }
     }
 
-    fn status(&self, now: Status, end: &End, reversals: u32) -> Status {
+    fn status(&self, now: Status, end: &End, _local: &Local, reversals: u32) -> Status {
         match now {
             Status::Open if end.gap < 0.0 && reversals < 3 => Status::Closed,
             Status::Open if end.gap < 0.0 => Status::Corner,
             Status::Open => Status::Open,
-            Status::Closed if end.gap < 0.0 => Status::Closed,
-            Status::Closed if end.gap_released < 0.0 => Status::Corner,
-            Status::Closed => Status::Open,
-            Status::Corner if end.gap_released < 0.0 => Status::Corner,
-            Status::Corner => Status::Open,
+            Status::Closed | Status::Piece(_) if end.gap < 0.0 => Status::Closed,
+            _ if end.gap_released < 0.0 => Status::Corner,
+            _ => Status::Open,
         }
     }
 

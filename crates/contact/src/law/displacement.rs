@@ -1,6 +1,6 @@
 //! The hybrid displacement law: exact Signorini conditions in the gap.
 
-use super::{ContactLaw, End, Level, Relation, Status};
+use super::{ContactLaw, End, Level, Local, Relation, Status};
 
 /// Hybrid displacement law, `p = S_g (p - r g)` with S_g = 1 where `p - r g > 0`: the gap at the end of the step is
 /// zero where the force is compressive, and positive where there is none. Not a penalty; the result does not depend
@@ -24,22 +24,18 @@ impl ContactLaw for Displacement {
         0.0
     }
 
-    fn watches(&self, _gap: f64, _tolerance: f64) -> bool {
-        true
+    fn watches(&self, _gap: f64, _tolerance: f64) -> Option<bool> {
+        None
     }
 
-    fn relation(&self, _status: Status, _area: f64) -> Relation {
-        Relation {
-            gap: 1.0,
-            rate: 0.0,
-            compliance: 0.0,
-        }
+    fn relation(&self, _status: Status, _local: &Local) -> Relation {
+        Relation::GAP
     }
 
-    fn status(&self, now: Status, end: &End, _reversals: u32) -> Status {
+    fn status(&self, now: Status, end: &End, _local: &Local, _reversals: u32) -> Status {
         let closed = match now {
             Status::Open => end.gap < 0.0,
-            Status::Closed | Status::Corner => end.force > 0.0,
+            Status::Closed | Status::Corner | Status::Piece(_) => end.force > 0.0,
         };
         if closed { Status::Closed } else { Status::Open }
     }

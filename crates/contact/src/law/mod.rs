@@ -1,7 +1,8 @@
 //! Contact laws: pure functions of the local state of one point.
 //!
 //! A law says (i) which points it watches, (ii) what holds at the end of the step in a point of given status,
-//! `gap_factor g₊ + rate_factor ġ₊ + compliance P = 0`, or P = 0 if open, and (iii) which status the end state asks for.
+//! `gap_factor g₊ + rate_factor ġ₊ + compliance P + offset = 0`, or P = 0 if open, and (iii) which status the end state
+//! asks for.
 //! The sign fields are these decisions: S_g for a law in the gap, S_d and S_v for a law in the rate. With the status
 //! frozen all is linear; the interface problem repeats until no status changes.
 //!
@@ -27,6 +28,27 @@ pub enum Status {
     Closed,
     /// Between the two: g₊ = 0 with the force that this takes. Only laws whose force jumps with the status need it.
     Corner,
+    /// The relation of one piece, from 0, of a law that is linear in pieces.
+    Piece(u16),
+}
+
+/// What is known of a point before the forces of the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Local {
+    /// Surface that the point stands for, m².
+    pub area: f64,
+    /// Share of the point in the surface of its contact: the shares add up to 1.
+    pub share: f64,
+    /// Gap at the captured instant, m.
+    pub gap: f64,
+    /// Gap rate at the start of the step, m/s.
+    pub rate: f64,
+    /// Gap at the end of the step without any contact force, m.
+    pub gap_free: f64,
+    /// Length of the step, s.
+    pub dt: f64,
+    /// Gap below which a point counts as closed, m.
+    pub tolerance: f64,
 }
 
 /// Which quantity at the end of the step a law constrains.
@@ -53,7 +75,7 @@ pub struct End {
     pub force: f64,
 }
 
-/// Coefficients of `gap g₊ + rate ġ₊ + compliance P = 0`.
+/// Coefficients of `gap g₊ + rate ġ₊ + compliance P + offset = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relation {
     /// Factor of the gap.
@@ -62,6 +84,25 @@ pub struct Relation {
     pub rate: f64,
     /// Factor of the force.
     pub compliance: f64,
+    /// What is left when gap, rate and force vanish.
+    pub offset: f64,
+}
+
+impl Relation {
+    /// g₊ = 0.
+    pub const GAP: Relation = Relation {
+        gap: 1.0,
+        rate: 0.0,
+        compliance: 0.0,
+        offset: 0.0,
+    };
+    /// ġ₊ = 0.
+    pub const RATE: Relation = Relation {
+        gap: 0.0,
+        rate: 1.0,
+        compliance: 0.0,
+        offset: 0.0,
+    };
 }
 
 /// What a contact law must answer.
@@ -73,13 +114,15 @@ pub trait ContactLaw {
     /// The instant at which the geometry is taken and closure is tested, as a fraction of the step ahead of the newest
     /// known configuration.
     fn capture(&self) -> f64;
-    /// S_d: whether a point with this gap (m) at the captured instant takes part in the step; `tolerance` in m.
-    fn watches(&self, gap: f64, tolerance: f64) -> bool;
-    /// What holds in a point of this status other than open; `area`: the surface in m² that the point stands for.
-    fn relation(&self, status: Status, area: f64) -> Relation;
+    /// S_d: whether a point with this gap (m) at the captured instant takes part in the step, `tolerance` in m; `None`
+    /// where only the end of the step can tell, so that every point within reach is asked.
+    fn watches(&self, gap: f64, tolerance: f64) -> Option<bool>;
+    /// What holds in a point of this status other than open. Only the offset may change from step to step: the factors
+    /// belong to a matrix that is kept while the statuses stand.
+    fn relation(&self, status: Status, local: &Local) -> Relation;
     /// The status that the end state asks for. `reversals`: how often the status of this point has turned within the
     /// step so far.
-    fn status(&self, now: Status, end: &End, reversals: u32) -> Status;
+    fn status(&self, now: Status, end: &End, local: &Local, reversals: u32) -> Status;
     /// Whether tensile forces are cut off once the statuses stand.
     fn clips(&self) -> bool;
 }
@@ -110,6 +153,16 @@ impl Law {
 mod tests {
     use super::*;
 
+    const LOCAL: Local = Local {
+        area: 0.5,
+        share: 1.0,
+        gap: 0.0,
+        rate: 0.0,
+        gap_free: 0.0,
+        dt: 1.0,
+        tolerance: 0.0,
+    };
+
     fn end(gap: f64, rate: f64, force: f64) -> End {
         End {
             gap_released: gap,
@@ -123,24 +176,24 @@ mod tests {
     fn displacement_signs_close_on_penetration_and_open_on_tension() {
         let law = Displacement;
         assert_eq!(
-            law.status(Status::Open, &end(1e-3, -1.0, 0.0), 0),
+            law.status(Status::Open, &end(1e-3, -1.0, 0.0), &LOCAL, 0),
             Status::Open
         );
         assert_eq!(
-            law.status(Status::Open, &end(-1e-3, -1.0, 0.0), 0),
+            law.status(Status::Open, &end(-1e-3, -1.0, 0.0), &LOCAL, 0),
             Status::Closed
         );
         assert_eq!(
-            law.status(Status::Closed, &end(0.0, 0.0, 5.0), 0),
+            law.status(Status::Closed, &end(0.0, 0.0, 5.0), &LOCAL, 0),
             Status::Closed
         );
         assert_eq!(
-            law.status(Status::Closed, &end(0.0, 0.0, -5.0), 0),
+            law.status(Status::Closed, &end(0.0, 0.0, -5.0), &LOCAL, 0),
             Status::Open
         );
         // at rest on the surface without force: the strict sign leaves it free
         assert_eq!(
-            law.status(Status::Closed, &end(0.0, 0.0, 0.0), 0),
+            law.status(Status::Closed, &end(0.0, 0.0, 0.0), &LOCAL, 0),
             Status::Open
         );
     }
@@ -151,29 +204,31 @@ mod tests {
             capture: Capture::Half,
             reading: Reading::Closed,
         };
-        assert!(law.watches(-1e-6, 1e-12) && law.watches(0.0, 1e-12));
-        assert!(!law.watches(1e-6, 1e-12));
+        assert_eq!(law.watches(-1e-6, 1e-12), Some(true));
+        assert_eq!(law.watches(0.0, 1e-12), Some(true));
+        assert_eq!(law.watches(1e-6, 1e-12), Some(false));
         assert_eq!(
-            law.status(Status::Open, &end(0.0, -1.0, 0.0), 0),
+            law.status(Status::Open, &end(0.0, -1.0, 0.0), &LOCAL, 0),
             Status::Closed
         );
         assert_eq!(
-            law.status(Status::Open, &end(0.0, 1.0, 0.0), 0),
+            law.status(Status::Open, &end(0.0, 1.0, 0.0), &LOCAL, 0),
             Status::Open
         );
         assert_eq!(
-            law.status(Status::Closed, &end(0.0, 0.0, 5.0), 0),
+            law.status(Status::Closed, &end(0.0, 0.0, 5.0), &LOCAL, 0),
             Status::Closed
         );
         assert_eq!(
-            law.status(Status::Closed, &end(0.0, 0.0, -5.0), 0),
+            law.status(Status::Closed, &end(0.0, 0.0, -5.0), &LOCAL, 0),
             Status::Open
         );
         let printed = Velocity {
             reading: Reading::AsPrinted,
             ..law
         };
-        assert!(printed.watches(1e-6, 1e-12) && !printed.watches(-1e-6, 1e-12));
+        assert_eq!(printed.watches(1e-6, 1e-12), Some(true));
+        assert_eq!(printed.watches(-1e-6, 1e-12), Some(false));
     }
 
     #[test]
@@ -184,15 +239,16 @@ mod tests {
             adhesion: Adhesion::Clip,
         };
         assert_eq!(
-            law.relation(Status::Closed, 0.5),
+            law.relation(Status::Closed, &LOCAL),
             Relation {
                 gap: 1.0,
                 rate: 1.5,
-                compliance: 1.0
+                compliance: 1.0,
+                offset: 0.0
             }
         );
         assert_eq!(
-            law.status(Status::Open, &end(-1.0, 0.0, 0.0), 0),
+            law.status(Status::Open, &end(-1.0, 0.0, 0.0), &LOCAL, 0),
             Status::Closed
         );
         let opened = End {
@@ -201,13 +257,16 @@ mod tests {
             rate: 0.0,
             force: 4.0,
         };
-        assert_eq!(law.status(Status::Closed, &opened, 1), Status::Corner);
+        assert_eq!(
+            law.status(Status::Closed, &opened, &LOCAL, 1),
+            Status::Corner
+        );
         let free = End {
             gap_released: 1.0,
             gap: 1.1,
             rate: 0.0,
             force: 4.0,
         };
-        assert_eq!(law.status(Status::Closed, &free, 1), Status::Open);
+        assert_eq!(law.status(Status::Closed, &free, &LOCAL, 1), Status::Open);
     }
 }

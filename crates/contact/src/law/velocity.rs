@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ContactLaw, End, Level, Relation, Status};
+use super::{ContactLaw, End, Level, Local, Relation, Status};
 
 /// When a point counts as closed (S_d): where the gap of this configuration is at most the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,25 +54,21 @@ impl ContactLaw for Velocity {
         }
     }
 
-    fn watches(&self, gap: f64, tolerance: f64) -> bool {
-        match self.reading {
+    fn watches(&self, gap: f64, tolerance: f64) -> Option<bool> {
+        Some(match self.reading {
             Reading::Closed => gap <= tolerance,
             Reading::AsPrinted => gap >= -tolerance,
-        }
+        })
     }
 
-    fn relation(&self, _status: Status, _area: f64) -> Relation {
-        Relation {
-            gap: 0.0,
-            rate: 1.0,
-            compliance: 0.0,
-        }
+    fn relation(&self, _status: Status, _local: &Local) -> Relation {
+        Relation::RATE
     }
 
-    fn status(&self, now: Status, end: &End, _reversals: u32) -> Status {
+    fn status(&self, now: Status, end: &End, _local: &Local, _reversals: u32) -> Status {
         let closed = match now {
             Status::Open => end.rate < 0.0,
-            Status::Closed | Status::Corner => end.force > 0.0,
+            Status::Closed | Status::Corner | Status::Piece(_) => end.force > 0.0,
         };
         if closed { Status::Closed } else { Status::Open }
     }

@@ -10,19 +10,22 @@ use crate::error::Error;
 use crate::ledger::{Energies, Resultant, Squares, reactions};
 use crate::records::Step;
 use crate::state::{ContactReport, InterfaceState, Motion, State};
+use crate::step_map::Impulse;
 use crate::system::System;
 
 impl Driver {
     /// Energy and momentum of the step, then the records of the contacts.
     pub(super) fn balance(&mut self, strain: f64) {
         let system = Arc::clone(&self.system);
-        let (dt, identity) = (system.dt, self.identity);
+        let identity = self.identity.unwrap_or_default();
+        let [before, now] = self.work_weights();
         let (old, new) = (&self.state.motion, &self.next.motion);
         let Vectors {
             x,
             known,
             work,
             inertia,
+            contact_acceleration,
             ..
         } = &mut self.vectors;
         let energies = energies(&system, new, strain, work, identity.inertia != 0.0);
@@ -33,7 +36,7 @@ impl Driver {
         if identity.acceleration != 0.0 {
             squares.acceleration = change_squared(&system, &old.a, &new.a, known, work);
         }
-        self.map.inertia.whole(&old.u, &old.v, &old.a, x, known);
+        self.map.inertia.whole(old, x, contact_acceleration, known);
         system.mass.multiply(known, inertia);
         reactions(&system, &self.map, old, new, inertia, work);
         let supports = Resultant::of(&system, work);
@@ -47,18 +50,30 @@ impl Driver {
             squares.displacement =
                 dot(known, &new.internal_force) - dot(known, &old.internal_force);
         }
-        let work_contact = identity.old * dot(known, &old.contact_force)
-            + identity.new * dot(known, &new.contact_force);
+        let work_contact =
+            before * dot(known, &old.contact_force) + now * dot(known, &new.contact_force);
         let work_loads = dot(known, &system.load);
         self.next.ledger.clone_from(&self.state.ledger);
         self.next.ledger.add(
-            (dt, &identity),
+            (
+                system.dt,
+                &identity,
+                [&self.map.impulse, &self.map.contact_impulse],
+            ),
             &energies,
             [work_loads, work_contact],
             &squares,
             [loads, contact, supports],
         );
         self.record();
+    }
+
+    /// Weights of the forces at the start and of the step in the work on Δu: those of the energy identity, or of the
+    /// impulse where there is none.
+    fn work_weights(&self) -> [f64; 2] {
+        let Impulse { old, new, .. } = self.map.contact_impulse;
+        self.identity
+            .map_or([old, new], |identity| [identity.old, identity.new])
     }
 
     pub(super) fn record(&mut self) {
@@ -72,10 +87,10 @@ impl Driver {
                 &self.state.interface,
                 &self.next.interface,
             );
-            let weights = [self.identity.old, self.identity.new];
+            let weights = self.work_weights();
             let step = Step {
                 span: [self.state.time, self.next.time],
-                weights,
+                impulse: self.map.contact_impulse,
                 report: &report,
                 work: contact_work(&system, k, &self.rows, weights, (&self.state, &self.next)),
             };

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_contact::law::{Level, Status};
+use carom_contact::law::{End, Local, Status};
 use carom_contact::{Places, Rows, Sliding};
 
 use super::Driver;
@@ -54,7 +54,7 @@ impl Driver {
                 },
             };
             if capture != place.v {
-                place.known(&motion.u, &motion.v, &motion.a, &mut self.vectors.known);
+                place.known(motion, &mut self.vectors.known);
                 capture = place.v;
             }
             let u = &self.vectors.known;
@@ -75,26 +75,31 @@ impl Driver {
                 v: end.v - place.v,
                 a: end.a - place.a,
                 x: end.x,
+                c: end.c,
             };
             self.ahead.resize(self.rows.len(), ahead);
         }
     }
 
-    /// Points that may carry a force. Laws in the rate say so themselves; others are taken when they carried one or when
-    /// twice the present rate would close them, and the others checked after the solve.
+    /// Points that may carry a force. Some laws say so from the captured gap; of others, those are taken that carried one or
+    /// that twice the present rate would close, and the rest is looked at after the solve.
     pub(super) fn choose_candidates(&mut self) {
         let system = &self.system;
         self.candidates.clear();
         for point in 0..system.points() {
             let gap = self.rows.gap(point);
-            let law = system.point(point).0.law;
-            let watched = gap < f64::INFINITY && law.get().watches(gap, system.tolerance);
-            let within = law.get().level() == Level::Rate
-                || self.state.interface.status[point] != Status::Open
-                || gap + 2.0 * system.dt * self.rows.product(point, &self.state.motion.v).min(0.0)
-                    <= system.tolerance;
-            self.next.interface.watched[point] = watched;
-            if watched && within {
+            let law = system.point(point).0.law.get();
+            let chosen = match law.watches(gap, system.tolerance) {
+                _ if gap == f64::INFINITY => false,
+                Some(watched) => watched,
+                None => {
+                    let rate = self.rows.product(point, &self.state.motion.v);
+                    self.state.interface.status[point] != Status::Open
+                        || gap + 2.0 * system.dt * rate.min(0.0) <= system.tolerance
+                }
+            };
+            self.next.interface.watched[point] = chosen;
+            if chosen {
                 self.candidates.push(point as u32);
             }
         }
@@ -126,15 +131,24 @@ impl Driver {
             let [nu, nv, na] =
                 [&motion.u, &motion.v, &motion.a].map(|vector| self.rows.product(at, vector));
             let value = |row: &Row| row.u * nu + row.v * nv + row.a * na + row.x * free;
+            let carrier = &contact.points[place];
             self.candidate_data.push(Candidate {
                 law: contact.law,
-                area: contact.points[place].area,
-                gap_free: self.rows.gap(at) + value(&self.ahead[at]),
+                local: Local {
+                    area: carrier.area,
+                    share: carrier.share,
+                    gap: self.rows.gap(at),
+                    rate: nv,
+                    gap_free: self.rows.gap(at) + value(&self.ahead[at]),
+                    dt: system.dt,
+                    tolerance: system.tolerance,
+                },
                 rate_free: value(&self.map.rate),
                 status: self.state.interface.status[at],
             });
         }
-        let factors = [self.map.displacement.x, self.map.rate.x];
+        let factor = self.map.contact;
+        let factors = [self.map.displacement.x * factor, self.map.rate.x * factor];
         let solved = self.interface.solve(
             &self.candidate_data,
             (&self.compliance.matrix, self.compliance.version),
@@ -156,20 +170,28 @@ impl Driver {
         }
         for (&point, &force) in self.candidates.iter().zip(&self.interface.forces) {
             if force != 0.0 {
-                self.compliance
-                    .add(point, force, &self.operators, &mut self.vectors.half);
+                self.compliance.add(
+                    point,
+                    factor * force,
+                    &self.operators,
+                    &mut self.vectors.half,
+                );
             }
         }
         Ok(())
     }
 
-    /// Adds the points that ended penetrating without having been candidates; whether there are any.
+    /// Adds the points that were no candidates and whose law asks for a force at the end of the step; whether there are any.
     pub(super) fn add_missed(&mut self) -> bool {
         let before = self.candidates.len();
         let motion = &self.state.motion;
+        // the contact acceleration enters no row that decides on a contact
+        let xc = [&self.vectors.x[..], &self.vectors.contact_acceleration[..]];
         for point in 0..self.system.points() {
-            let level = self.system.point(point).0.law.get().level();
-            if level == Level::Rate || self.rows.gap(point) == f64::INFINITY {
+            let captured = self.rows.gap(point);
+            let law = self.system.point(point).0.law.get();
+            let told = law.watches(captured, self.system.tolerance).is_some();
+            if told || captured == f64::INFINITY {
                 continue;
             }
             if self.candidates[..before]
@@ -178,17 +200,25 @@ impl Driver {
             {
                 continue;
             }
-            if self.rows.gap(point)
-                + on_row(
-                    &self.rows,
-                    point,
-                    &self.ahead[point],
-                    motion,
-                    &self.vectors.x,
-                )
-                < 0.0
-            {
+            let gap = captured + on_row(&self.rows, point, &self.ahead[point], motion, xc);
+            let rate = on_row(&self.rows, point, &self.map.rate, motion, xc);
+            let end = End {
+                gap_released: gap,
+                gap,
+                rate,
+                force: 0.0,
+            };
+            let local = Local {
+                gap: captured,
+                rate: self.rows.product(point, &motion.v),
+                gap_free: gap,
+                dt: self.system.dt,
+                tolerance: self.system.tolerance,
+                ..Local::default()
+            };
+            if law.status(Status::Open, &end, &local, 0) != Status::Open {
                 self.candidates.push(point as u32);
+                self.next.interface.watched[point] = true;
             }
         }
         self.candidates.sort_unstable();
@@ -197,9 +227,20 @@ impl Driver {
 }
 
 /// N applied to a row of the step, for one point.
-pub(super) fn on_row(rows: &Rows, point: usize, row: &Row, motion: &Motion, x: &[f64]) -> f64 {
+pub(super) fn on_row(
+    rows: &Rows,
+    point: usize,
+    row: &Row,
+    motion: &Motion,
+    [x, c]: [&[f64]; 2],
+) -> f64 {
     row.u * rows.product(point, &motion.u)
         + row.v * rows.product(point, &motion.v)
         + row.a * rows.product(point, &motion.a)
         + row.x * rows.product(point, x)
+        + if row.c == 0.0 {
+            0.0
+        } else {
+            row.c * rows.product(point, c)
+        }
 }

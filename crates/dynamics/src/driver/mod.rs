@@ -31,7 +31,7 @@ use contacts::on_row;
 pub struct Driver {
     system: Arc<System>,
     map: StepMap,
-    identity: EnergyIdentity,
+    identity: Option<EnergyIdentity>,
     operators: Operators,
     compliance: Compliance,
     interface: Interface,
@@ -77,6 +77,7 @@ struct Vectors {
     known: Vec<f64>,
     work: Vec<f64>,
     inertia: Vec<f64>,
+    contact_acceleration: Vec<f64>,
 }
 
 /// Wall time spent so far by phase of the step.
@@ -154,6 +155,7 @@ impl Driver {
                 known: zeros(),
                 work: zeros(),
                 inertia: zeros(),
+                contact_acceleration: zeros(),
             },
             phases: Phases {
                 factorisation,
@@ -211,6 +213,7 @@ impl Driver {
     /// Initial state: internal forces, the acceleration in balance without contact forces, gaps, energies.
     fn start(&mut self) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
+        let identity = self.identity.unwrap_or_default();
         let motion = &mut self.state.motion;
         motion.u.copy_from_slice(&system.initial_displacement);
         motion.v.copy_from_slice(&system.initial_velocity);
@@ -231,7 +234,7 @@ impl Driver {
             motion,
             strain,
             &mut self.vectors.work,
-            self.identity.inertia != 0.0,
+            identity.inertia != 0.0,
         );
         system.mass.multiply(&motion.a, &mut self.vectors.inertia);
         let motion = &self.state.motion;
@@ -247,7 +250,7 @@ impl Driver {
         let loads = Resultant::of(&system, &system.load);
         self.state.ledger = Ledger::start(
             &energies,
-            &self.identity,
+            &identity,
             [loads, Resultant::default(), supports],
         );
         self.state.records = Records {
@@ -313,11 +316,9 @@ impl Driver {
             work,
             ..
         } = &mut self.vectors;
-        self.map.force.known(&motion.u, &motion.v, &motion.a, known);
+        self.map.force.known(motion, known);
         let energy = self.forces.evaluate(system, known, residual);
-        self.map
-            .inertia
-            .known(&motion.u, &motion.v, &motion.a, known);
+        self.map.inertia.known(motion, known);
         system.mass.multiply(known, work);
         // the internal forces are needed again at the end of an explicit step
         self.next.motion.internal_force.copy_from_slice(residual);
@@ -334,30 +335,41 @@ impl Driver {
     /// Writes the motion and the interface at the end of the step.
     fn advance(&mut self) {
         let system = &*self.system;
-        let (old, map, x) = (&self.state.motion, &self.map, &self.vectors.x);
+        let (old, map) = (&self.state.motion, &self.map);
         let new = &mut self.next.motion;
-        map.displacement
-            .whole(&old.u, &old.v, &old.a, x, &mut new.u);
-        map.velocity.whole(&old.u, &old.v, &old.a, x, &mut new.v);
-        map.acceleration
-            .whole(&old.u, &old.v, &old.a, x, &mut new.a);
         new.contact_force.fill(0.0);
+        for (&point, &force) in self.candidates.iter().zip(&self.interface.forces) {
+            self.rows
+                .add_force(point as usize, force, &mut new.contact_force);
+        }
+        let Vectors {
+            x,
+            contact_acceleration: c,
+            ..
+        } = &mut self.vectors;
+        if map.uses_contact_acceleration() {
+            for i in 0..c.len() {
+                c[i] = if system.fixed[i] {
+                    0.0
+                } else {
+                    new.contact_force[i] / system.mass.lumped[i]
+                };
+            }
+        }
+        map.displacement.whole(old, x, c, &mut new.u);
+        map.velocity.whole(old, x, c, &mut new.v);
+        map.acceleration.whole(old, x, c, &mut new.a);
         let interface = &mut self.next.interface;
         interface.force.fill(0.0);
         interface.status.fill(Status::Open);
         for (k, &point) in self.candidates.iter().enumerate() {
             interface.force[point as usize] = self.interface.forces[k];
             interface.status[point as usize] = self.interface.statuses[k];
-            self.rows.add_force(
-                point as usize,
-                self.interface.forces[k],
-                &mut new.contact_force,
-            );
         }
         for point in 0..system.points() {
             interface.gap[point] =
-                self.rows.gap(point) + on_row(&self.rows, point, &self.ahead[point], old, x);
-            interface.rate[point] = on_row(&self.rows, point, &map.rate, old, x);
+                self.rows.gap(point) + on_row(&self.rows, point, &self.ahead[point], old, [x, c]);
+            interface.rate[point] = on_row(&self.rows, point, &map.rate, old, [x, c]);
         }
         self.next.step = self.state.step + 1;
         self.next.time = self.next.step as f64 * system.dt;

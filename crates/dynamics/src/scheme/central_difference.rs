@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{EnergyIdentity, TimeScheme};
-use crate::step_map::{Row, StepMap};
+use crate::step_map::{Impulse, Row, StepMap};
 
 /// Central differences, written at whole steps:
 ///
@@ -28,6 +28,7 @@ impl TimeScheme for CentralDifference {
             v: dt,
             a: 0.5 * dt * dt,
             x: 0.0,
+            c: 0.0,
         };
         let acceleration = Row {
             x: 1.0,
@@ -43,6 +44,7 @@ impl TimeScheme for CentralDifference {
                 v: 1.0,
                 a: 0.5 * dt,
                 x: 0.5 * dt,
+                c: 0.0,
             },
             acceleration,
             placed: displacement,
@@ -51,19 +53,23 @@ impl TimeScheme for CentralDifference {
                 v: 1.0,
                 a: 0.5 * dt,
                 x: dt,
+                c: 0.0,
             },
+            contact: 1.0,
+            impulse: Impulse::weights(0.5, 0.5),
+            contact_impulse: Impulse::weights(0.5, 0.5),
         }
     }
 
-    fn energy_identity(&self, dt: f64) -> EnergyIdentity {
-        EnergyIdentity {
+    fn energy_identity(&self, dt: f64) -> Option<EnergyIdentity> {
+        Some(EnergyIdentity {
             inertia: -0.125 * dt * dt,
             old: 0.5,
             new: 0.5,
             velocity: 0.0,
             displacement: 0.0,
             acceleration: 0.0,
-        }
+        })
     }
 
     fn keeps_acceleration(&self) -> bool {

@@ -19,9 +19,8 @@ pub use theta::Theta;
 ///
 /// `Δ(E + inertia |a|²_M) = Δu · (old F_k + new F_{k+1}) - (velocity |Δv|²_M + displacement |Δu|²_K + acceleration |Δa|²_M)`
 ///
-/// The bracket is the dissipation of the scheme. `old` and `new` weight impulses too:
-/// `Δ(M v) = dt (old F_k + new F_{k+1})`, reactions included in F.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The bracket is the dissipation of the scheme.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyIdentity {
     /// Factor of |a|²_M in the energy that the scheme conserves, in s².
     pub inertia: f64,
@@ -43,8 +42,9 @@ pub trait TimeScheme {
     fn name(&self) -> &'static str;
     /// How the step of length `dt` (s) depends on its unknown.
     fn step_map(&self, dt: f64) -> StepMap;
-    /// Its energy balance for a step of length `dt` (s).
-    fn energy_identity(&self, dt: f64) -> EnergyIdentity;
+    /// Its energy balance for a step of length `dt` (s); `None` where none is known: the ledger then says so, and its
+    /// residual holds what the scheme dissipates.
+    fn energy_identity(&self, dt: f64) -> Option<EnergyIdentity>;
     /// Whether the state holds an acceleration in balance, which needs one at the start.
     fn keeps_acceleration(&self) -> bool;
     /// Whether end displacements are known before the forces: no linear solve, lumped mass only, a critical step.

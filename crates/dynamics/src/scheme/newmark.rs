@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{EnergyIdentity, TimeScheme};
-use crate::step_map::{Row, StepMap};
+use crate::step_map::{Impulse, Row, StepMap};
 
 /// Newmark's scheme with the acceleration at the end of the step as unknown:
 ///
@@ -35,12 +35,14 @@ impl TimeScheme for Newmark {
             v: dt,
             a: dt * dt * (0.5 - beta),
             x: dt * dt * beta,
+            c: 0.0,
         };
         let velocity = Row {
             u: 0.0,
             v: 1.0,
             a: dt * (1.0 - gamma),
             x: dt * gamma,
+            c: 0.0,
         };
         let acceleration = Row {
             x: 1.0,
@@ -58,20 +60,23 @@ impl TimeScheme for Newmark {
                 ..Row::default()
             },
             rate: velocity,
+            contact: 1.0,
+            impulse: Impulse::weights(1.0 - gamma, gamma),
+            contact_impulse: Impulse::weights(1.0 - gamma, gamma),
         }
     }
 
-    fn energy_identity(&self, dt: f64) -> EnergyIdentity {
+    fn energy_identity(&self, dt: f64) -> Option<EnergyIdentity> {
         let b = self.beta - 0.5 * self.gamma;
         let excess = self.gamma - 0.5;
-        EnergyIdentity {
+        Some(EnergyIdentity {
             inertia: 0.5 * b * dt * dt,
             old: 1.0 - self.gamma,
             new: self.gamma,
             velocity: 0.0,
             displacement: excess,
             acceleration: excess * b * dt * dt,
-        }
+        })
     }
 
     fn keeps_acceleration(&self) -> bool {

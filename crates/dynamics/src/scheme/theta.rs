@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{EnergyIdentity, TimeScheme};
-use crate::step_map::{Row, StepMap};
+use crate::step_map::{Impulse, Row, StepMap};
 
 /// Theta scheme with the velocity at the end of the step as unknown (Moreau-Jean without restitution when joined to the
 /// velocity law):
@@ -43,6 +43,7 @@ impl TimeScheme for Theta {
                 v: theta * (1.0 - theta) * dt,
                 a: 0.0,
                 x: theta * theta * dt,
+                c: 0.0,
             },
             force_fraction: theta,
             displacement: Row {
@@ -50,6 +51,7 @@ impl TimeScheme for Theta {
                 v: (1.0 - theta) * dt,
                 a: 0.0,
                 x: theta * dt,
+                c: 0.0,
             },
             velocity,
             acceleration,
@@ -58,19 +60,22 @@ impl TimeScheme for Theta {
                 ..Row::default()
             },
             rate: velocity,
+            contact: 1.0,
+            impulse: Impulse::weights(0.0, 1.0),
+            contact_impulse: Impulse::weights(0.0, 1.0),
         }
     }
 
-    fn energy_identity(&self, _dt: f64) -> EnergyIdentity {
+    fn energy_identity(&self, _dt: f64) -> Option<EnergyIdentity> {
         let excess = self.theta - 0.5;
-        EnergyIdentity {
+        Some(EnergyIdentity {
             inertia: 0.0,
             old: 0.0,
             new: 1.0,
             velocity: excess,
             displacement: excess,
             acceleration: 0.0,
-        }
+        })
     }
 
     fn keeps_acceleration(&self) -> bool {
