@@ -144,6 +144,9 @@ fn steps(driver: &mut Driver, count: usize) -> Result<Vec<Duration>, carom_dynam
     (0..count).map(step).collect()
 }
 
+/// Time of one phase.
+type Share = fn(&Phases) -> Duration;
+
 /// Takes steps and prints their median and the shares of their phases.
 fn report(
     driver: &mut Driver,
@@ -156,13 +159,13 @@ fn report(
     times.sort();
     let after = driver.costs();
     println!("step, {name:13}{:9.2} ms", milliseconds(times[count / 2]));
-    let shares: [(&str, fn(&Phases) -> Duration); 4] = [
+    let shares: [(&str, Share); 4] = [
         ("forces", |phases| phases.forces),
         ("sweeps", |phases| phases.sweeps),
         ("contact", |phases| phases.contact),
         ("balance", |phases| phases.balance),
     ];
-    let spent = |of: fn(&Phases) -> Duration| of(&after.phases) - of(&before.phases);
+    let spent = |of: Share| of(&after.phases) - of(&before.phases);
     let total: Duration = shares.iter().map(|share| spent(share.1)).sum();
     for (share, of) in shares {
         let part = spent(of).as_secs_f64();
