@@ -50,7 +50,10 @@ pub(crate) struct Interface {
     pub(crate) passes: usize,
     factor: Option<DenseCholesky>,
     factor_of: (u64, Vec<(u32, Status)>),
+    /// Points that are not open.
     closed: Vec<(u32, Status)>,
+    /// Those whose gap or rate depends on the forces of the step.
+    coupled: Vec<(u32, Status)>,
     rhs: Vec<f64>,
     product: Vec<f64>,
     reversals: Vec<u32>,
@@ -145,46 +148,44 @@ impl Interface {
         self.product.clear();
         self.product.resize(n, 0.0);
         let relation = |i: u32, status: Status| {
-            candidates[i as usize]
-                .law
-                .get()
-                .relation(status, &candidates[i as usize].local)
+            let candidate = &candidates[i as usize];
+            candidate.law.get().relation(status, &candidate.local)
         };
-        if self.factor.is_none() || self.factor_of.0 != version || self.factor_of.1 != self.closed {
-            let mut matrix = Vec::with_capacity(self.closed.len().pow(2));
-            for &(i, status) in &self.closed {
-                matrix.extend(self.closed.iter().map(|&(j, _)| {
-                    let own = if i == j {
-                        relation(i, status).compliance / scale(&relation(i, status), s)
-                    } else {
-                        0.0
-                    };
-                    d[i as usize * n + j as usize] + own
-                }));
+        let free = |i: u32, relation: &Relation| {
+            let candidate = &candidates[i as usize];
+            relation.gap * candidate.local.gap_free
+                + relation.rate * candidate.rate_free
+                + relation.offset
+        };
+        // Where neither gap nor rate depends on the forces of the step, a compliant law says its force at once.
+        self.coupled.clear();
+        for &(i, status) in &self.closed {
+            let relation = relation(i, status);
+            if scale(&relation, s) == 0.0 {
+                self.forces[i as usize] = -free(i, &relation) / relation.compliance;
+            } else {
+                self.coupled.push((i, status));
             }
-            let points = self.closed.len();
-            self.factor = match points {
-                0 => None,
-                _ => Some(
-                    DenseCholesky::new(points, &matrix)
-                        .map_err(|cause| Failure::Singular { points, cause })?,
-                ),
+        }
+        self.multiply(d);
+        if self.factor_of.0 != version || self.factor_of.1 != self.coupled {
+            let own = |i: u32, status| {
+                let relation = relation(i, status);
+                relation.compliance / scale(&relation, s)
             };
-            self.factor_of = (version, self.closed.clone());
+            self.factor = factor(&self.coupled, d, n, own)?;
+            self.factor_of = (version, self.coupled.clone());
         }
         let Some(factor) = &self.factor else {
             return Ok(());
         };
         self.rhs.clear();
-        self.rhs.extend(self.closed.iter().map(|&(i, status)| {
-            let (relation, candidate) = (relation(i, status), &candidates[i as usize]);
-            -(relation.gap * candidate.local.gap_free
-                + relation.rate * candidate.rate_free
-                + relation.offset)
-                / scale(&relation, s)
+        self.rhs.extend(self.coupled.iter().map(|&(i, status)| {
+            let relation = relation(i, status);
+            -free(i, &relation) / scale(&relation, s) - self.product[i as usize]
         }));
         factor.solve(&mut self.rhs);
-        for (&(i, _), &force) in self.closed.iter().zip(&self.rhs) {
+        for (&(i, _), &force) in self.coupled.iter().zip(&self.rhs) {
             self.forces[i as usize] = force;
         }
         self.multiply(d);
@@ -231,6 +232,35 @@ impl Interface {
             self.multiply(d);
         }
     }
+}
+
+/// Factor of D over some points of `n`, with their own compliance on the diagonal; `None` for no point.
+fn factor(
+    points: &[(u32, Status)],
+    d: &[f64],
+    n: usize,
+    own: impl Fn(u32, Status) -> f64,
+) -> Result<Option<DenseCholesky>, Failure> {
+    if points.is_empty() {
+        return Ok(None);
+    }
+    let mut matrix = Vec::with_capacity(points.len().pow(2));
+    for &(i, status) in points {
+        matrix.extend(points.iter().map(|&(j, _)| {
+            let entry = d[i as usize * n + j as usize];
+            if i == j {
+                entry + own(i, status)
+            } else {
+                entry
+            }
+        }));
+    }
+    DenseCholesky::new(points.len(), &matrix)
+        .map(Some)
+        .map_err(|cause| Failure::Singular {
+            points: points.len(),
+            cause,
+        })
 }
 
 /// Factor of D P in the relation of a law.
@@ -322,6 +352,33 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn a_force_that_the_step_cannot_change_is_told_by_its_law() {
+        let soft = |damping| {
+            Law::Damped(Damped {
+                stiffness: 2.0,
+                damping,
+                adhesion: Adhesion::AsPrinted,
+            })
+        };
+        // explicit: s_g = 0. The first point has no damper, so its force is 2 x 10; the second feels it through D.
+        let first = candidate(soft(0.0), -10.0);
+        let second = Candidate {
+            rate_free: -4.0,
+            ..candidate(soft(3.0), -10.0)
+        };
+        let mut interface = Interface::default();
+        let d = [1.0, 0.25, 0.25, 1.0];
+        interface
+            .solve(&[first, second], (&d, 1), [0.0, 1.0])
+            .unwrap();
+        let [p, q] = interface.forces[..] else {
+            panic!()
+        };
+        assert_eq!(p, 20.0);
+        assert!((q + 2.0 * -10.0 + 3.0 * (-4.0 + 0.25 * p + q)).abs() < 1e-12);
     }
 
     #[test]

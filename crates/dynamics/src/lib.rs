@@ -13,6 +13,7 @@ mod march;
 mod operator;
 mod records;
 pub mod scheme;
+mod stability;
 mod state;
 mod step_map;
 mod system;

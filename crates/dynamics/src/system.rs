@@ -273,16 +273,6 @@ impl System {
         }
     }
 
-    /// Critical step 2/ω of an explicit scheme from element eigenvalues, s: a lower bound.
-    pub fn critical_step(&self) -> f64 {
-        let bound = self
-            .bodies
-            .iter()
-            .map(Body::frequency_bound)
-            .fold(0.0, f64::max);
-        2.0 / bound
-    }
-
     /// Number of unknowns, held ones included.
     pub fn unknowns(&self) -> usize {
         self.fixed.len()

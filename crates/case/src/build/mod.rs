@@ -82,20 +82,20 @@ impl Builder<'_> {
             return None;
         }
         let contacts = self.contacts(&mesh, &bodies);
-        let dt = self.step(&mesh, &bodies)?;
         if !self.problems.is_empty() {
             return None;
         }
         let scheme = self.scheme();
-        let model = Model {
+        let mut model = Model {
             mesh,
             bodies,
             supports,
             gravity,
             contacts,
             scheme,
-            dt,
+            dt: f64::MIN_POSITIVE,
         };
+        model.dt = self.step(&model)?;
         let system = match System::new(model) {
             Ok(system) => system,
             Err(error) => {

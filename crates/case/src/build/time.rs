@@ -1,7 +1,7 @@
 //! Step and scheme, and what the scheme refuses.
 
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
-use carom_dynamics::{Error, ModelBody, Scheme, step_count};
+use carom_dynamics::{Error, Model, ModelBody, Scheme, System, step_count};
 use carom_mesh::Mesh;
 
 use super::Builder;
@@ -64,15 +64,16 @@ impl Builder<'_> {
     }
 
     /// The step in seconds.
-    pub(super) fn step(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Option<f64> {
+    pub(super) fn step(&mut self, model: &Model) -> Option<f64> {
         let end = self.case.time.end.0;
         let (path, dt) = match self.case.time.step {
             Step::Fixed(step) => ("time.step", step.0),
-            Step::FromMesh(StepRule::Courant(courant)) => {
-                ("time.step.courant", courant * crossing(mesh, bodies))
-            }
+            Step::FromMesh(StepRule::Courant(courant)) => (
+                "time.step.courant",
+                courant * crossing(&model.mesh, &model.bodies),
+            ),
             Step::FromMesh(StepRule::Critical(fraction)) => {
-                ("time.step.critical", fraction * critical(mesh, bodies))
+                ("time.step.critical", fraction * self.critical(model)?)
             }
         };
         let steps = step_count(end, dt);
@@ -91,6 +92,17 @@ impl Builder<'_> {
             return None;
         }
         Some(dt)
+    }
+
+    /// Critical step of the model, in s.
+    fn critical(&mut self, model: &Model) -> Option<f64> {
+        match System::new(model.clone()) {
+            Ok(system) => Some(system.critical_step()),
+            Err(error) => {
+                self.problems.push(self.refused(&error));
+                None
+            }
+        }
     }
 
     /// The problem behind an error of the system.
@@ -130,14 +142,4 @@ fn crossing(mesh: &Mesh, bodies: &[ModelBody]) -> f64 {
             .fold(f64::INFINITY, f64::min)
     };
     bodies.iter().map(time).fold(f64::INFINITY, f64::min)
-}
-
-/// Critical step 2/ω from element eigenvalues, in s.
-fn critical(mesh: &Mesh, bodies: &[ModelBody]) -> f64 {
-    let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
-    let bound = |body: &ModelBody| {
-        carom_bodies::Body::new(mesh, body.spec.clone(), &number)
-            .map_or(0.0, |body| body.frequency_bound())
-    };
-    2.0 / bodies.iter().map(bound).fold(0.0, f64::max)
 }

@@ -5,3 +5,4 @@
 
 mod allocation;
 mod momentum;
+mod stability;

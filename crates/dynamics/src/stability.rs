@@ -1,0 +1,96 @@
+//! The critical step of explicit schemes, contact stiffness included.
+
+use std::collections::BTreeMap;
+
+use carom_bodies::Body;
+use carom_contact::law::{Local, Status};
+use carom_contact::{Contact, Places, Rows, Search};
+
+use crate::system::System;
+
+impl System {
+    /// Critical step 2/ω of an explicit scheme, s: a lower bound.
+    ///
+    /// ω² is at most the largest eigenvalue of an element, plus that of the stiffness `Σ k_i n_i n_iᵀ` of compliant contact
+    /// laws against the lumped mass, which is bounded by the largest row sum of `sqrt(k_i k_j) n_i · M⁻¹ n_j` over points
+    /// i, j, paired as at the start. Points that face nothing then count with the lightest node of the system.
+    pub fn critical_step(&self) -> f64 {
+        let bodies = self
+            .bodies
+            .iter()
+            .map(Body::frequency_bound)
+            .fold(0.0, f64::max);
+        let contacts = self
+            .contacts
+            .iter()
+            .map(|contact| self.contact_bound(contact))
+            .sum::<f64>();
+        2.0 / (bodies * bodies + contacts).sqrt()
+    }
+
+    /// Bound of the eigenvalues of the stiffness of a contact against the lumped mass, 1/s².
+    fn contact_bound(&self, contact: &Contact) -> f64 {
+        let stiffness: Vec<f64> = contact
+            .points
+            .iter()
+            .map(|point| {
+                let local = Local {
+                    area: point.area,
+                    share: point.share,
+                    ..Local::default()
+                };
+                let relation = contact.law.get().relation(Status::Closed, &local);
+                if relation.compliance > 0.0 {
+                    relation.gap / relation.compliance
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        if stiffness.iter().all(|k| *k == 0.0) {
+            return 0.0;
+        }
+        let mut rows = Rows::default();
+        rows.clear();
+        let places = Places {
+            dim: self.dim,
+            x: &self.x,
+            u: &self.initial_displacement,
+        };
+        contact.pair(&places, &mut Search::default(), &mut rows);
+        let lightest = self
+            .mass
+            .lumped
+            .iter()
+            .copied()
+            .filter(|m| *m > 0.0)
+            .fold(f64::INFINITY, f64::min);
+        let mut by_unknown: BTreeMap<u32, f64> = BTreeMap::new();
+        for (i, k) in stiffness.iter().enumerate() {
+            let (dofs, coefficients) = rows.row(i);
+            for (&dof, n) in dofs.iter().zip(coefficients) {
+                *by_unknown.entry(dof).or_default() += k.sqrt() * n.abs();
+            }
+        }
+        let row_sum = |(i, k): (usize, &f64)| {
+            let (dofs, coefficients) = rows.row(i);
+            if dofs.is_empty() {
+                return 2.0 * k / lightest;
+            }
+            let terms = dofs
+                .iter()
+                .zip(coefficients)
+                .filter(|(dof, _)| !self.fixed[**dof as usize]);
+            terms
+                .map(|(dof, n)| {
+                    k.sqrt() * n.abs() * by_unknown[dof] / self.mass.lumped[*dof as usize]
+                })
+                .sum()
+        };
+        stiffness
+            .iter()
+            .enumerate()
+            .map(row_sum)
+            .fold(0.0, f64::max)
+    }
+}
