@@ -29,7 +29,7 @@ impl Observer for Progress {
         report: &StepReport,
     ) -> Result<(), Error> {
         // the text is renewed as rarely as the bar: formatting would show in small models
-        if report.step % 64 == 0 {
+        if report.step.is_multiple_of(64) {
             let ledger = &state.ledger;
             let relative =
                 ledger.balance.energy_residual / ledger.largest_energy.max(f64::MIN_POSITIVE);

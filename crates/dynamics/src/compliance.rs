@@ -4,7 +4,6 @@
 //! entry is a function of two columns only, taken in the order of the points, so that it does not depend on when a
 //! point was met first.
 
-use carom_algebra::Error;
 use carom_algebra::solver::SparseRow;
 use carom_contact::Rows;
 
@@ -48,14 +47,14 @@ impl Compliance {
         rows: &Rows,
         fixed: &[bool],
         operators: &mut Operators,
-    ) -> Result<(), Error> {
+    ) {
         let stale: Vec<u32> = candidates
             .iter()
             .copied()
             .filter(|&point| !self.is_current(point, rows))
             .collect();
         if stale.is_empty() && self.candidates == candidates {
-            return Ok(());
+            return;
         }
         self.compute(&stale, rows, fixed, operators);
         let n = candidates.len();
@@ -67,12 +66,17 @@ impl Compliance {
             Err(_) => before.binary_search(&point).ok(),
         };
         let places: Vec<Option<usize>> = candidates.iter().map(|&point| place(point)).collect();
+        let fresh = self.fresh(&stale, operators);
         let mut next = vec![0.0; n * n];
         for row in 0..n {
             for column in 0..=row {
+                let new = |point: u32| stale.binary_search(&point);
                 let entry = match (places[row], places[column]) {
                     (Some(i), Some(j)) => matrix[i * before.len() + j],
-                    _ => self.entry(candidates[column], candidates[row], operators),
+                    _ => match (new(candidates[row]), new(candidates[column])) {
+                        (Ok(i), Ok(j)) => fresh[i * stale.len() + j],
+                        _ => self.entry(candidates[column], candidates[row], operators),
+                    },
                 };
                 next[row * n + column] = entry;
                 next[column * n + row] = entry;
@@ -81,7 +85,6 @@ impl Compliance {
         self.matrix = next;
         self.candidates = candidates.to_vec();
         self.version += 1;
-        Ok(())
     }
 
     fn is_current(&self, point: u32, rows: &Rows) -> bool {
@@ -147,6 +150,27 @@ impl Compliance {
             }
         }
         sum
+    }
+
+    /// D over points whose columns have just been computed, row-major, with the bits of `entry`: part after part, each at
+    /// once.
+    fn fresh(&self, points: &[u32], operators: &Operators) -> Vec<f64> {
+        let mut matrix = vec![0.0; points.len().pow(2)];
+        for (part, operator) in operators.operators.iter().enumerate() {
+            let of_part = |&point: &u32| self.columns(point).iter().find(|(p, _)| *p == part);
+            let (places, columns): (Vec<usize>, Vec<&Column>) = points
+                .iter()
+                .enumerate()
+                .filter_map(|(k, point)| of_part(point).map(|(_, column)| (k, column)))
+                .unzip();
+            let block = operator.gram(&columns);
+            for (i, row) in places.iter().zip(block.chunks_exact(places.len().max(1))) {
+                for (j, entry) in places.iter().zip(row) {
+                    matrix[i * points.len() + j] += entry;
+                }
+            }
+        }
+        matrix
     }
 
     /// N x of a point for the free motion, from the y of `begin`.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
-use carom_algebra::solver::{Cholesky, FactorStats, Response, SparseRow};
+use carom_algebra::solver::{Cholesky, FactorStats, Response, SparseRow, gram};
 
 use crate::error::Error;
 use crate::system::{System, push_cliques};
@@ -98,6 +98,24 @@ impl Operator {
             }
             _ => unreachable!("columns are made by their own operator"),
         }
+    }
+
+    /// N A⁻¹ Nᵀ of all pairs of some columns, row-major, with the bits of `dot`.
+    pub(crate) fn gram(&self, columns: &[&Column]) -> Vec<f64> {
+        let responses: Vec<_> = columns
+            .iter()
+            .filter_map(|column| match column {
+                Column::Factored(response) => Some(response),
+                Column::Diagonal(_) => None,
+            })
+            .collect();
+        if responses.len() == columns.len() {
+            return gram(&responses);
+        }
+        columns
+            .iter()
+            .flat_map(|one| columns.iter().map(|other| self.dot(one, other)))
+            .collect()
     }
 
     /// N A⁻¹ r from the y of `begin`.

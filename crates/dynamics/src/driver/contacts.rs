@@ -113,14 +113,12 @@ impl Driver {
             points,
             cause,
         };
-        self.compliance
-            .update(
-                &self.candidates,
-                &self.rows,
-                &system.fixed,
-                &mut self.operators,
-            )
-            .map_err(|cause| interface_error(cause, self.candidates.len()))?;
+        self.compliance.update(
+            &self.candidates,
+            &self.rows,
+            &system.fixed,
+            &mut self.operators,
+        );
         self.candidate_data.clear();
         for &point in &self.candidates {
             let at = point as usize;
