@@ -130,9 +130,28 @@ fn print(summary: &Summary, folder: &Path) {
         "  energy residual {:.1e}, momentum residual {:.1e} (relative)",
         summary.energy.relative_residual, summary.momentum.relative_residual
     );
+    println!("  {}", cost(summary));
     println!("  {}", verdict(summary));
     println!("  report: {}", folder.join("report.html").display());
     println!("  figures: {}", folder.join("plots").display());
+}
+
+/// Factorisations, memory, time per step.
+fn cost(summary: &Summary) -> String {
+    let counts = &summary.counts;
+    let megabytes = |bytes: u64| format!("{:.3} MB", bytes as f64 / 1e6);
+    let factor = match counts.factorisations {
+        0 => "no factorisation".to_string(),
+        1 => format!("1 factorisation for the run, {}", megabytes(counts.factor_bytes)),
+        n => format!("{n} factorisations for the run, {}", megabytes(counts.factor_bytes)),
+    };
+    let step = summary.timings.get("per step").copied().unwrap_or(f64::NAN);
+    format!(
+        "{factor}; {} contact columns, {}; {} a step",
+        counts.contact_columns,
+        megabytes(counts.compliance_bytes),
+        quantity(step, "s")
+    )
 }
 
 fn verdict(summary: &Summary) -> String {
