@@ -142,8 +142,14 @@ fn cost(summary: &Summary) -> String {
     let megabytes = |bytes: u64| format!("{:.3} MB", bytes as f64 / 1e6);
     let factor = match counts.factorisations {
         0 => "no factorisation".to_string(),
-        1 => format!("1 factorisation for the run, {}", megabytes(counts.factor_bytes)),
-        n => format!("{n} factorisations for the run, {}", megabytes(counts.factor_bytes)),
+        1 => format!(
+            "1 factorisation for the run, {}",
+            megabytes(counts.factor_bytes)
+        ),
+        n => format!(
+            "{n} factorisations for the run, {}",
+            megabytes(counts.factor_bytes)
+        ),
     };
     let step = summary.timings.get("per step").copied().unwrap_or(f64::NAN);
     format!(

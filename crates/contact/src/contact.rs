@@ -228,7 +228,9 @@ mod tests {
             sliding: Sliding::Finite,
             points: vec![Point {
                 node: 25,
-                area: 1.0, share: 1.0 }],
+                area: 1.0,
+                share: 1.0,
+            }],
             target: Target::Surface(faces),
         };
         let mut rows = Rows::default();
