@@ -224,7 +224,7 @@ mod tests {
         x[25] = point;
         let contact = Contact {
             name: "patch".into(),
-            law: Law::Displacement(Displacement),
+            law: Law::Displacement(Displacement::default()),
             sliding: Sliding::Finite,
             points: vec![Point {
                 node: 25,

@@ -8,8 +8,13 @@ use super::{ContactLaw, End, Level, Local, Relation, Status};
 /// it is that of -g₊. The sign is strict, else points released at rest stick.
 ///
 /// Source: Ben Dhia, Zammali, Voldoire, Lamarche (2003), equations (2)-(4).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Displacement;
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Displacement {
+    /// Whether velocity and acceleration are projected on the admissible ones, `N v₊ >= 0` and `N a₊ >= 0`, at the end
+    /// of a step in which points close: the cure for the oscillation under Newmark's scheme. The law itself is the
+    /// same; the driver projects.
+    pub projection: bool,
+}
 
 impl ContactLaw for Displacement {
     fn name(&self) -> &'static str {

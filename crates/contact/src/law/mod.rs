@@ -8,15 +8,21 @@
 //!
 //! Adding a law: one file here, one variant of [`Law`], one arm of [`Law::get`].
 
+mod capture;
+mod compliance;
 mod damped;
 mod displacement;
+mod restitution;
 mod velocity;
 
 use serde::{Deserialize, Serialize};
 
+pub use capture::Capture;
+pub use compliance::Compliance;
 pub use damped::{Adhesion, Damped};
 pub use displacement::Displacement;
-pub use velocity::{Capture, Reading, Velocity};
+pub use restitution::Restitution;
+pub use velocity::{Reading, Velocity};
 
 /// Status of a contact point in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -136,15 +142,26 @@ pub enum Law {
     Damped(Damped),
     /// Velocity, sign fields S_d and S_v.
     Velocity(Velocity),
+    /// Compliance in velocity, sign fields S_d and S_v.
+    Compliance(Compliance),
+    /// Newton's restitution, sign fields S_d and S_v.
+    Restitution(Restitution),
 }
 
 impl Law {
+    /// Whether velocity and acceleration are projected when points of this law close.
+    pub fn projects(&self) -> bool {
+        matches!(self, Law::Displacement(Displacement { projection: true }))
+    }
+
     /// The law behind the choice.
     pub fn get(&self) -> &dyn ContactLaw {
         match self {
             Law::Displacement(law) => law,
             Law::Damped(law) => law,
             Law::Velocity(law) => law,
+            Law::Compliance(law) => law,
+            Law::Restitution(law) => law,
         }
     }
 }
@@ -174,7 +191,7 @@ mod tests {
 
     #[test]
     fn displacement_signs_close_on_penetration_and_open_on_tension() {
-        let law = Displacement;
+        let law = Displacement::default();
         assert_eq!(
             law.status(Status::Open, &end(1e-3, -1.0, 0.0), &LOCAL, 0),
             Status::Open
