@@ -60,17 +60,23 @@ impl ContactLaw for Damped {
     }
 
     fn status(&self, now: Status, end: &End, _local: &Local, reversals: u32) -> Status {
-        match now {
-            Status::Open if end.gap < 0.0 && reversals < 3 => Status::Closed,
-            Status::Open if end.gap < 0.0 => Status::Corner,
-            Status::Open => Status::Open,
-            Status::Closed | Status::Piece(_) if end.gap < 0.0 => Status::Closed,
-            _ if end.gap_released < 0.0 => Status::Corner,
-            _ => Status::Open,
-        }
+        pressing(now, end, self.damping > 0.0 && reversals >= 3)
     }
 
     fn clips(&self) -> bool {
         self.adhesion == Adhesion::Clip
+    }
+}
+
+/// Status of a compliant law that presses where the gap of `end` is negative. `cycles`: whether the point has turned
+/// too often to find a sign, which only a damper can cause; it then takes the corner.
+pub(super) fn pressing(now: Status, end: &End, cycles: bool) -> Status {
+    match now {
+        Status::Open if end.gap >= 0.0 => Status::Open,
+        Status::Open if cycles => Status::Corner,
+        Status::Open => Status::Closed,
+        Status::Closed | Status::Piece(_) if end.gap < 0.0 => Status::Closed,
+        _ if end.gap_released < 0.0 => Status::Corner,
+        _ => Status::Open,
     }
 }

@@ -12,7 +12,9 @@ mod capture;
 mod compliance;
 mod damped;
 mod displacement;
+mod penalty;
 mod restitution;
+mod stop;
 mod velocity;
 
 use serde::{Deserialize, Serialize};
@@ -21,7 +23,9 @@ pub use capture::Capture;
 pub use compliance::Compliance;
 pub use damped::{Adhesion, Damped};
 pub use displacement::Displacement;
+pub use penalty::Penalty;
 pub use restitution::Restitution;
+pub use stop::{Curve, CurveError, MOST_CURVE_POINTS, Stop};
 pub use velocity::{Reading, Velocity};
 
 /// Status of a contact point in a step.
@@ -134,6 +138,10 @@ pub trait ContactLaw {
 }
 
 /// A contact law, as chosen in the case file.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "laws are plain values that are copied; only the curve of a stop is large"
+)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
     /// Hybrid displacement, sign field S_g.
@@ -146,6 +154,10 @@ pub enum Law {
     Compliance(Compliance),
     /// Newton's restitution, sign fields S_d and S_v.
     Restitution(Restitution),
+    /// Penalty, sign field S_g.
+    Penalty(Penalty),
+    /// Stop with a force-penetration curve, sign field S_g.
+    Stop(Stop),
 }
 
 impl Law {
@@ -162,6 +174,8 @@ impl Law {
             Law::Velocity(law) => law,
             Law::Compliance(law) => law,
             Law::Restitution(law) => law,
+            Law::Penalty(law) => law,
+            Law::Stop(law) => law,
         }
     }
 }
