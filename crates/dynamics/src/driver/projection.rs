@@ -1,0 +1,204 @@
+//! The stage that follows a step in which points of a law with projection close.
+//!
+//! The velocity becomes the one closest, in the norm of the mass, to that without the contact impulses of the step,
+//! among those with `N v₊ >= 0` at the closed points; a closed point alone comes to rest:
+//! `v₊ ← v₊ - M⁻¹ Nᵀ (N M⁻¹ Nᵀ)⁻¹ N v₊`. The whole impulse of each point in the step, that of its forces and that of the
+//! projection, is compressive. The acceleration is projected in the same way at the points that stay, and their force
+//! becomes the one in balance with it, which the next step finds at its beginning.
+//!
+//! Source: derived here, as the inelastic impact of the nodes in contact (Moreau 1988), with the force that keeps the
+//! balance.
+
+use std::sync::Arc;
+
+use carom_algebra::reduce::dot;
+use carom_contact::law::Status;
+
+use super::balance::energies;
+use super::{Driver, Vectors};
+use crate::error::Error;
+use crate::ledger::{Jump, Resultant, reactions};
+
+/// What the projection of a step did, one entry per contact point.
+#[derive(Default)]
+pub(super) struct Projected {
+    /// Impulse, N s.
+    pub(super) impulse: Vec<f64>,
+    /// Work of the impulse, J.
+    pub(super) work: Vec<f64>,
+    points: Vec<u32>,
+    values: Vec<f64>,
+    present: Vec<f64>,
+}
+
+impl Projected {
+    pub(super) fn new(points: usize) -> Projected {
+        Projected {
+            impulse: vec![0.0; points],
+            work: vec![0.0; points],
+            ..Projected::default()
+        }
+    }
+
+    /// Impulse of a point, N s.
+    pub(super) fn impulse(&self, point: usize) -> f64 {
+        self.impulse.get(point).copied().unwrap_or(0.0)
+    }
+
+    /// Work of that impulse, J.
+    pub(super) fn work(&self, point: usize) -> f64 {
+        self.work.get(point).copied().unwrap_or(0.0)
+    }
+}
+
+impl Driver {
+    /// Projects the end of the step if points of laws with projection have closed in it. `strain`: its strain energy.
+    pub(super) fn project(&mut self, strain: f64) -> Result<(), Error> {
+        if self.impulses.is_none() || !self.projected_points() {
+            return Ok(());
+        }
+        let identity = self.identity.unwrap_or_default();
+        let mut jump = Jump {
+            impulses: self.project_velocity()?,
+            ..Jump::default()
+        };
+        let points = &self.projected.points;
+        jump.work = points
+            .iter()
+            .map(|&point| self.projected.work[point as usize])
+            .sum();
+        jump.dissipation = -identity.inertia * self.project_acceleration()?;
+        let system = Arc::clone(&self.system);
+        let (old, new) = (&self.state.motion, &self.next.motion);
+        let Vectors { work, inertia, .. } = &mut self.vectors;
+        let energies = energies(&system, new, strain, work, identity.inertia != 0.0);
+        system.mass.multiply(&new.a, inertia);
+        reactions(&system, &self.map, old, new, inertia, work);
+        jump.forces = [
+            Resultant::of(&system, &new.contact_force),
+            Resultant::of(&system, work),
+        ];
+        self.next.ledger.jump(&identity, &energies, &jump);
+        Ok(())
+    }
+
+    /// Lists the closed points of laws with projection; whether any of them has just closed.
+    fn projected_points(&mut self) -> bool {
+        let Projected {
+            points,
+            impulse,
+            work,
+            ..
+        } = &mut self.projected;
+        points.clear();
+        impulse.fill(0.0);
+        work.fill(0.0);
+        let [before, now] = [&self.state, &self.next].map(|state| &state.interface.status);
+        let mut closing = false;
+        for &point in &self.candidates {
+            let at = point as usize;
+            if now[at] != Status::Open && self.system.point(at).0.law.projects() {
+                points.push(point);
+                closing |= before[at] == Status::Open;
+            }
+        }
+        closing
+    }
+
+    /// Projects the velocity; impulses on the momentum from contacts and supports.
+    fn project_velocity(&mut self) -> Result<[Resultant; 2], Error> {
+        let system = Arc::clone(&self.system);
+        let weights = self.map.contact_impulse;
+        let [old, new] = [&self.state, &self.next].map(|state| &state.interface);
+        let rows = &self.rows;
+        let projected = &mut self.projected;
+        projected.values.clear();
+        projected.present.clear();
+        for &point in &projected.points {
+            let at = point as usize;
+            let rate = rows.product(at, &self.next.motion.v);
+            projected.values.push(rate);
+            let mean = weights.old * old.carried[at] + weights.new * new.force[at];
+            projected.present.push(system.dt * mean);
+        }
+        self.solve_impulses()?;
+        let Some(stage) = &self.impulses else {
+            return Ok([Resultant::default(); 2]);
+        };
+        let (motion, interface) = (&mut self.next.motion, &mut self.next.interface);
+        for (v, change) in motion.v.iter_mut().zip(&stage.change) {
+            *v += change;
+        }
+        let Vectors { known, work, .. } = &mut self.vectors;
+        known.fill(0.0);
+        let projected = &mut self.projected;
+        for (k, &point) in projected.points.iter().enumerate() {
+            let at = point as usize;
+            let impulse = stage.added[k];
+            let after = self.rows.product(at, &motion.v);
+            projected.impulse[at] = impulse;
+            projected.work[at] = 0.5 * impulse * (projected.values[k] + after);
+            self.rows.add_force(at, impulse, known);
+            // points that the projection lets go have no acceleration to lose: their force ends with the step
+            projected.values[k] = if stage.active[k] { 0.0 } else { f64::INFINITY };
+        }
+        for point in 0..system.points() {
+            interface.rate[point] = self.rows.product(point, &motion.v);
+        }
+        let contact = Resultant::of(&system, known);
+        system.mass.multiply(&stage.change, work);
+        for i in 0..work.len() {
+            work[i] = if system.fixed[i] {
+                work[i] - known[i]
+            } else {
+                0.0
+            };
+        }
+        Ok([contact, Resultant::of(&system, work)])
+    }
+
+    /// Projects the acceleration and the force that the next step begins with; change of |a|²_M.
+    fn project_acceleration(&mut self) -> Result<f64, Error> {
+        let projected = &mut self.projected;
+        projected.present.clear();
+        for (k, &point) in projected.points.iter().enumerate() {
+            let at = point as usize;
+            projected.values[k] += self.rows.product(at, &self.next.motion.a);
+            projected.present.push(self.next.interface.force[at]);
+        }
+        self.solve_impulses()?;
+        let Some(stage) = &self.impulses else {
+            return Ok(0.0);
+        };
+        let (motion, interface) = (&mut self.next.motion, &mut self.next.interface);
+        let Vectors { known, .. } = &mut self.vectors;
+        known.fill(0.0);
+        for (k, &point) in self.projected.points.iter().enumerate() {
+            interface.carried[point as usize] += stage.added[k];
+            self.rows.add_force(point as usize, stage.added[k], known);
+        }
+        let before = dot(known, &motion.a);
+        for (a, change) in motion.a.iter_mut().zip(&stage.change) {
+            *a += change;
+        }
+        for (f, change) in motion.contact_force.iter_mut().zip(known.iter()) {
+            *f += change;
+        }
+        // a vanishes at the supports, so that |a'|²_M - |a|²_M = Nᵀ Q · (a + a')
+        Ok(before + dot(known, &motion.a))
+    }
+
+    fn solve_impulses(&mut self) -> Result<(), Error> {
+        let Projected {
+            points,
+            values,
+            present,
+            ..
+        } = &self.projected;
+        let Some(stage) = &mut self.impulses else {
+            return Ok(());
+        };
+        let solved = stage.solve(&self.system, &self.rows, points, values, present);
+        solved.map_err(|failure| self.interface_error(failure, &self.projected.points))
+    }
+}
