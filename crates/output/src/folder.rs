@@ -90,6 +90,16 @@ impl Folder {
         Ok(path)
     }
 
+    /// Announces a results folder inside this one, which keeps a list of its own: the next run clears it by that list.
+    /// Returns where it is to be.
+    ///
+    /// # Errors
+    /// As [`Folder::file`].
+    pub fn nested(&mut self, name: &str) -> Result<PathBuf, Error> {
+        self.file(&format!("{name}/{LIST}"))?;
+        Ok(self.path.join(name))
+    }
+
     /// The files announced so far, sorted.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.names.iter().map(String::as_str)
@@ -127,6 +137,13 @@ fn clear(folder: &Path) -> Result<(), Error> {
         .collect();
     for name in &names {
         let path = folder.join(name);
+        if *name != LIST
+            && path.ends_with(LIST)
+            && path.is_file()
+            && let Some(nested) = path.parent()
+        {
+            clear(nested)?;
+        }
         match fs::remove_file(&path) {
             Err(cause) if cause.kind() != ErrorKind::NotFound => {
                 return Err(Error::file("remove the earlier result", &path)(cause));

@@ -8,6 +8,7 @@
 
 pub mod atomic;
 pub mod checkpoint;
+pub mod compare;
 pub mod folder;
 pub mod history;
 pub mod impacts;
@@ -16,7 +17,9 @@ pub mod pvd;
 pub mod report;
 pub mod results;
 pub mod rows;
+pub mod study;
 pub mod summary;
+pub mod table;
 pub mod vtu;
 pub mod window;
 

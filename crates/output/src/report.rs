@@ -13,7 +13,7 @@ use crate::summary::{Check, Summary};
 use crate::{Error, ImpactRow, atomic};
 
 /// What stands for a value that does not exist.
-const NOTHING: &str = "–";
+pub(crate) const NOTHING: &str = "–";
 
 /// What the page shows.
 #[derive(Clone, Copy, Debug)]
@@ -34,15 +34,7 @@ impl Report<'_> {
     /// # Errors
     /// [`Error::Template`], which would be a fault of the template.
     pub fn html(&self) -> Result<String, Error> {
-        let mut environment = Environment::new();
-        environment.add_filter("quantity", |value: Value, unit: &str| {
-            show(&value, |x| quantity(x, unit))
-        });
-        environment.add_filter("exact", |value: Value| show(&value, exact));
-        environment.add_filter("percent", |value: Value| {
-            show(&value, |x| format!("{:.2} %", 100.0 * x).replace('-', "−"))
-        });
-        environment.add_filter("bytes", |value: Value| show(&value, bytes));
+        let mut environment = environment()?;
         environment.add_template("report.html", include_str!("../templates/report.html"))?;
         let holding: Vec<bool> = self
             .summary
@@ -77,6 +69,27 @@ impl Report<'_> {
     pub fn write(&self, path: &Path) -> Result<(), Error> {
         atomic::write_text(path, &self.html()?)
     }
+}
+
+/// What all pages share: the style and the ways to show a number.
+///
+/// # Errors
+/// [`Error::Template`].
+pub(crate) fn environment() -> Result<Environment<'static>, Error> {
+    let mut environment = Environment::new();
+    environment.add_filter("quantity", |value: Value, unit: &str| {
+        show(&value, |x| quantity(x, unit))
+    });
+    environment.add_filter("exact", |value: Value| show(&value, exact));
+    environment.add_filter("percent", |value: Value| show(&value, percent));
+    environment.add_filter("bytes", |value: Value| show(&value, bytes));
+    environment.add_template("style.css", include_str!("../templates/style.css"))?;
+    Ok(environment)
+}
+
+/// A part as per cent.
+pub(crate) fn percent(part: f64) -> String {
+    format!("{:.2} %", 100.0 * part).replace('-', "−")
 }
 
 fn show(value: &Value, text: impl Fn(f64) -> String) -> String {

@@ -169,7 +169,7 @@ pub enum Cell<'a> {
 }
 
 impl Cell<'_> {
-    fn put(self, to: &mut Vec<u8>) {
+    pub(crate) fn put(self, to: &mut Vec<u8>) {
         match self {
             // `Debug` switches to powers of ten for very small and very large numbers, `Display` does not.
             Cell::Number(value) => to.extend_from_slice(format!("{value:?}").as_bytes()),

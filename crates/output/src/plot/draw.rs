@@ -20,42 +20,54 @@ const WIDTH: i32 = 960;
 const PANEL_HEIGHT: i32 = 310;
 const TITLE_HEIGHT: i32 = 34;
 const HEAD_HEIGHT: i32 = 46;
+/// Height of each further line of the legend.
+const LEGEND_LINE: i32 = 18;
 const X_LABELS: i32 = 50;
 const Y_LABELS: i32 = 66;
 const RIGHT_MARGIN: i32 = 18;
 
 const PAPER: RGBColor = RGBColor(0xff, 0xff, 0xff);
-const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
+pub(super) const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
 const FAINT_INK: RGBColor = RGBColor(0x66, 0x66, 0x66);
-const GRID: RGBColor = RGBColor(0xe4, 0xe4, 0xe4);
-const EXACT: RGBColor = RGBColor(0xf4, 0xc1, 0x5d);
+pub(super) const GRID: RGBColor = RGBColor(0xe4, 0xe4, 0xe4);
+pub(super) const EXACT: RGBColor = RGBColor(0xf4, 0xc1, 0x5d);
 /// Colours of computed curves, told apart by every kind of colour vision and on dark paper too.
-const COMPUTED: [RGBColor; 6] = [
+pub(super) const COMPUTED: [RGBColor; 12] = [
     RGBColor(0x1f, 0x6f, 0xc0),
     RGBColor(0xc8, 0x3e, 0x1d),
     RGBColor(0x1e, 0x94, 0x6c),
     RGBColor(0x9b, 0x5b, 0xb5),
     RGBColor(0x7a, 0x7a, 0x7a),
     RGBColor(0xa8, 0x7b, 0x10),
+    RGBColor(0x0b, 0x72, 0x85),
+    RGBColor(0xd6, 0x33, 0x6c),
+    RGBColor(0x5f, 0x3d, 0xc4),
+    RGBColor(0x5c, 0x94, 0x0d),
+    RGBColor(0x2b, 0x2b, 0x6f),
+    RGBColor(0x99, 0x58, 0x2a),
 ];
 
 type Area<'a, 'b> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 type Chart<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-type Outcome = Result<(), Box<dyn std::error::Error>>;
+pub(super) type Outcome = Result<(), Box<dyn std::error::Error>>;
 
 /// The figure as an SVG document; its curves are checked already.
 pub fn draw(figure: &Figure) -> Result<String, Error> {
     let rows = figure.panels.len().div_ceil(figure.columns.max(1)) as i32;
-    let height = TITLE_HEIGHT + rows * PANEL_HEIGHT;
+    let width = WIDTH / figure.columns.max(1) as i32;
+    let lines = figure.panels.iter().map(|panel| legend_lines(panel, width));
+    let head = HEAD_HEIGHT + LEGEND_LINE * (lines.max().unwrap_or(1) - 1);
+    let height = TITLE_HEIGHT + rows * (PANEL_HEIGHT - HEAD_HEIGHT + head);
     let mut svg = String::new();
-    draw_on(figure, rows, &mut svg, height).map_err(|cause| Error::Drawing {
+    draw_on(figure, (rows, head), &mut svg, height).map_err(|cause| Error::Drawing {
         figure: figure.title.clone(),
         cause: cause.to_string(),
     })?;
     Ok(shrink(&svg, &figure.title, height))
 }
 
-fn draw_on(figure: &Figure, rows: i32, svg: &mut String, height: i32) -> Outcome {
+/// `rows`: of panels; `head`: height of the head of each.
+fn draw_on(figure: &Figure, (rows, head): (i32, i32), svg: &mut String, height: i32) -> Outcome {
     let size = (fine(WIDTH) as u32, fine(height) as u32);
     let root = SVGBackend::with_string(svg, size).into_drawing_area();
     root.fill(&PAPER)?;
@@ -72,19 +84,19 @@ fn draw_on(figure: &Figure, rows: i32, svg: &mut String, height: i32) -> Outcome
         extremes(curves.flat_map(|curve| curve.x.iter().copied())).unwrap_or((0.0, 1.0));
     let x = Scale::new(figure.abscissa, first, last, false);
     for (panel, area) in figure.panels.iter().zip(&areas) {
-        draw_panel(panel, &x, area)?;
+        draw_panel(panel, &x, head, area)?;
     }
     root.present()?;
     Ok(())
 }
 
-fn draw_panel(panel: &Panel, x: &Scale, area: &Area) -> Outcome {
+fn draw_panel(panel: &Panel, x: &Scale, head: i32, area: &Area) -> Outcome {
     let shown = shown(panel);
     let y = Scale::new(panel.ordinate, shown.low, shown.high, true);
     draw_head(panel, &shown, area)?;
-    draw_names(x, &y, area)?;
+    draw_names([&x.label, &y.label], head, area)?;
     let mut chart = ChartBuilder::on(area)
-        .margin_top(fine(HEAD_HEIGHT))
+        .margin_top(fine(head))
         .margin_right(fine(RIGHT_MARGIN))
         .x_label_area_size(fine(X_LABELS))
         .y_label_area_size(fine(Y_LABELS))
@@ -127,40 +139,51 @@ fn draw_head(panel: &Panel, shown: &Shown, area: &Area) -> Outcome {
         );
         write(area, &note, (right, 12), NOTE)?;
     }
-    let mut left = Y_LABELS;
-    let mut named: Vec<&str> = Vec::new();
+    let width = area.dim_in_pixel().0 as i32 / FINE;
+    for (curve, colour, (left, y)) in legend(panel, width) {
+        let ends = vec![(fine(left), fine(y)), (fine(left + 22), fine(y))];
+        area.draw(&PathElement::new(ends, line(colour, curve.role)))?;
+        write(area, curve.name, (left + 28, y), LEGEND)?;
+    }
+    Ok(())
+}
+
+/// The first curve of each name with its colour, and where its entry begins, in displayed pixels: in as many lines as
+/// it takes.
+fn legend<'a, 'b>(panel: &'b Panel<'a>, width: i32) -> Vec<(&'b Curve<'a>, RGBColor, (i32, i32))> {
+    let (mut left, mut y) = (Y_LABELS, 33);
+    let mut entries: Vec<(&Curve, RGBColor, (i32, i32))> = Vec::new();
     // Computed curves first: the legend is read in the order of importance, the drawing is made in the reverse one.
     let (computed, exact): (Vec<_>, Vec<_>) = coloured(panel)
         .into_iter()
         .partition(|(curve, _)| curve.role == Role::Computed);
     for (curve, colour) in computed.into_iter().chain(exact) {
-        if named.contains(&curve.name) {
+        if entries.iter().any(|(named, ..)| named.name == curve.name) {
             continue;
         }
-        named.push(curve.name);
-        let ends = vec![(fine(left), fine(33)), (fine(left + 22), fine(33))];
-        area.draw(&PathElement::new(ends, line(colour, curve.role)))?;
-        write(area, curve.name, (left + 28, 33), LEGEND)?;
-        left += 28 + 7 * curve.name.chars().count() as i32 + 18;
+        let length = 28 + 7 * curve.name.chars().count() as i32;
+        if left > Y_LABELS && left + length > width - RIGHT_MARGIN {
+            (left, y) = (Y_LABELS, y + LEGEND_LINE);
+        }
+        entries.push((curve, colour, (left, y)));
+        left += length + 18;
     }
-    Ok(())
+    entries
+}
+
+fn legend_lines(panel: &Panel, width: i32) -> i32 {
+    let last = legend(panel, width).last().map_or(33, |(_, _, (_, y))| *y);
+    1 + (last - 33) / LEGEND_LINE
 }
 
 /// Names of the axes, with their units. (plotters would put them at the very edge.)
-fn draw_names(x: &Scale, y: &Scale, area: &Area) -> Outcome {
-    let width = area.dim_in_pixel().0 as i32 / FINE;
+fn draw_names([x, y]: [&str; 2], head: i32, area: &Area) -> Outcome {
+    let (width, height) = area.dim_in_pixel();
+    let (width, height) = (width as i32 / FINE, height as i32 / FINE);
     let middle = (Y_LABELS + width - RIGHT_MARGIN) / 2;
-    write(area, &x.label, (middle, PANEL_HEIGHT - X_LABELS + 33), NAME)?;
-    let half_height = (HEAD_HEIGHT + PANEL_HEIGHT - X_LABELS) / 2;
-    write(
-        area,
-        &y.label,
-        (14, half_height),
-        Font {
-            upright: true,
-            ..NAME
-        },
-    )
+    write(area, x, (middle, height - X_LABELS + 33), NAME)?;
+    let half_height = (head + height - X_LABELS) / 2;
+    write(area, y, (14, half_height), UPRIGHT)
 }
 
 fn draw_axes(chart: &mut Chart, x: &Scale, y: &Scale) -> Outcome {
@@ -180,16 +203,24 @@ fn draw_axes(chart: &mut Chart, x: &Scale, y: &Scale) -> Outcome {
     Ok(())
 }
 
-/// The curves in the order of drawing, exact ones first, each with its colour.
+/// The curves in the order of drawing, exact ones first, each with its colour: the same for computed curves of one name.
 fn coloured<'a, 'b>(panel: &'b Panel<'a>) -> Vec<(&'b Curve<'a>, RGBColor)> {
     let of = |role| panel.curves.iter().filter(move |curve| curve.role == role);
+    let mut names: Vec<&str> = Vec::new();
+    let mut colour = |name: &'a str| {
+        let known = names.iter().position(|known| *known == name);
+        let index = known.unwrap_or_else(|| {
+            names.push(name);
+            names.len() - 1
+        });
+        COMPUTED[index % COMPUTED.len()]
+    };
     let exact = of(Role::Exact).map(|curve| (curve, EXACT));
-    exact
-        .chain(of(Role::Computed).zip(COMPUTED.into_iter().cycle()))
-        .collect()
+    let computed = of(Role::Computed).map(|curve| (curve, colour(curve.name)));
+    exact.chain(computed).collect()
 }
 
-fn line(colour: RGBColor, role: Role) -> ShapeStyle {
+pub(super) fn line(colour: RGBColor, role: Role) -> ShapeStyle {
     match role {
         Role::Computed => colour.stroke_width((3 * FINE / 2) as u32),
         Role::Exact => colour.stroke_width((5 * FINE) as u32),
@@ -198,7 +229,7 @@ fn line(colour: RGBColor, role: Role) -> ShapeStyle {
 
 /// How a text is set.
 #[derive(Clone, Copy)]
-struct Font {
+pub(super) struct Font {
     size: f64,
     weight: FontStyle,
     colour: RGBColor,
@@ -207,14 +238,19 @@ struct Font {
 }
 
 /// Name of an axis, and the pattern of the other texts.
-const NAME: Font = Font {
+pub(super) const NAME: Font = Font {
     size: 12.0,
     weight: FontStyle::Normal,
     colour: INK,
     anchor: HPos::Center,
     upright: false,
 };
-const TITLE: Font = Font {
+/// Name of an ordinate.
+pub(super) const UPRIGHT: Font = Font {
+    upright: true,
+    ..NAME
+};
+pub(super) const TITLE: Font = Font {
     size: 16.0,
     weight: FontStyle::Bold,
     ..NAME
@@ -225,7 +261,7 @@ const HEAD: Font = Font {
     anchor: HPos::Left,
     ..NAME
 };
-const LEGEND: Font = Font {
+pub(super) const LEGEND: Font = Font {
     anchor: HPos::Left,
     ..NAME
 };
@@ -237,7 +273,7 @@ const NOTE: Font = Font {
 };
 
 /// Writes a text with its left end, middle or right end, at half height, at a place in displayed pixels.
-fn write(area: &Area, text: &str, at: (i32, i32), font: Font) -> Outcome {
+pub(super) fn write(area: &Area, text: &str, at: (i32, i32), font: Font) -> Outcome {
     let turn = if font.upright {
         FontTransform::Rotate270
     } else {
@@ -253,16 +289,16 @@ fn write(area: &Area, text: &str, at: (i32, i32), font: Font) -> Outcome {
 }
 
 /// The size to ask plotters for, which divides it by 1.24 in the SVG.
-fn font_size(pixels: f64) -> f64 {
+pub(super) fn font_size(pixels: f64) -> f64 {
     1.24 * pixels * f64::from(FINE)
 }
 
-fn fine(pixels: i32) -> i32 {
+pub(super) fn fine(pixels: i32) -> i32 {
     pixels * FINE
 }
 
 /// Shows the drawing at its size instead of [`FINE`] times that, scaling down to narrower pages, and names it.
-fn shrink(svg: &str, title: &str, height: i32) -> String {
+pub(super) fn shrink(svg: &str, title: &str, height: i32) -> String {
     let body = svg.split_once('>').map_or("", |(_, body)| body);
     let (fine_width, fine_height) = (fine(WIDTH), fine(height));
     let title = crate::vtu::escape(title);

@@ -6,12 +6,14 @@
 
 mod draw;
 mod figures;
+mod logarithmic;
 mod scale;
 mod thin;
 
 use std::path::Path;
 
 pub use figures::{ContactCurves, EnergyCurves, contact_figure, energy_figure};
+pub use logarithmic::{Logarithmic, Series};
 pub use scale::{digits, quantity, scientific};
 pub(crate) use thin::thin;
 

@@ -8,13 +8,13 @@
 //! What a run writes is complete whenever it is cut: tables grow by whole rows, all other files appear by one rename.
 
 mod conclusion;
-mod exact;
+pub(crate) mod exact;
 mod fields;
 mod figures;
 mod histories;
 mod impacts;
-mod sensor;
-mod trace;
+pub(crate) mod sensor;
+pub(crate) mod trace;
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -122,7 +122,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
             point: [0.0; 3],
             normal: [0.0, 0.0, 1.0],
         }),
-        law: Law::Displacement(Displacement),
+        law: Law::Displacement(Displacement::default()),
         sliding: Sliding::Small,
     };
     let model = Model {

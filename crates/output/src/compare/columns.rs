@@ -1,0 +1,199 @@
+//! The columns of the table of a comparison, each once: text, CSV and page are made from this list.
+
+use crate::compare::{Done, Variant};
+use crate::plot::quantity;
+use crate::report::{NOTHING, percent};
+use crate::rows::Cell;
+use crate::table::Table;
+
+/// A column.
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// Name in the CSV file, with the unit.
+    pub name: &'static str,
+    /// Head in the text and on the page; `None`: in the CSV file only.
+    pub head: Option<&'static str>,
+    /// How its numbers are shown.
+    pub form: Form,
+    /// Its value for a variant; `None` where it does not exist.
+    pub value: fn(&Done) -> Option<f64>,
+}
+
+/// How a number is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// A part, as per cent.
+    Percent,
+    /// A count.
+    Count,
+    /// A quantity of this unit.
+    Quantity(&'static str),
+}
+
+const fn column(
+    name: &'static str,
+    head: &'static str,
+    form: Form,
+    value: fn(&Done) -> Option<f64>,
+) -> Column {
+    Column {
+        name,
+        head: Some(head),
+        form,
+        value,
+    }
+}
+
+const fn hidden(name: &'static str, unit: &'static str, value: fn(&Done) -> Option<f64>) -> Column {
+    Column {
+        name,
+        head: None,
+        form: Form::Quantity(unit),
+        value,
+    }
+}
+
+/// All columns between the name of the variant and the verdict. Force positive in compression, energy change and work
+/// positive when the bodies gain, dissipation positive when lost, penetration positive.
+pub const COLUMNS: [Column; 21] = [
+    column("force_error", "force error", Form::Percent, |v| {
+        v.errors.force
+    }),
+    column("overshoot", "overshoot", Form::Percent, |v| {
+        v.errors.overshoot
+    }),
+    column("mean_overshoot", "of the mean", Form::Percent, |v| {
+        v.errors.mean_overshoot
+    }),
+    column("impulse_error", "impulse error", Form::Percent, |v| {
+        v.errors.impulse
+    }),
+    column("status_changes", "status changes", Form::Count, |v| {
+        v.contact().map(|c| c.status_changes as f64)
+    }),
+    column("energy_change", "energy", Form::Percent, |v| {
+        energy_change(v)
+    }),
+    column("work_contact_j", "by contact", Form::Quantity("J"), |v| {
+        work(v, "work of contact")
+    }),
+    column(
+        "dissipation_scheme_j",
+        "lost by scheme",
+        Form::Quantity("J"),
+        |v| work(v, "dissipation of the scheme").map(|gain| 0.0 - gain),
+    ),
+    column("restitution", "restitution", Form::Quantity(""), |v| {
+        restitution(v)
+    }),
+    column("penetration_m", "penetration", Form::Quantity("m"), |v| {
+        v.contact().map(|c| c.max_penetration)
+    }),
+    column(
+        "persistency_defect_j",
+        "persistency",
+        Form::Quantity("J"),
+        |v| v.contact().map(|c| c.persistency_defect),
+    ),
+    column("release_s", "release", Form::Quantity("s"), |v| {
+        v.contact()?.last_release
+    }),
+    column("steps", "steps", Form::Count, |v| {
+        Some(v.summary.time.steps as f64)
+    }),
+    column("factorisations", "factorisations", Form::Count, |v| {
+        Some(v.summary.counts.factorisations as f64)
+    }),
+    column("sweeps", "sweeps", Form::Count, |v| {
+        Some(v.summary.counts.sweeps as f64)
+    }),
+    column("wall_s", "wall time", Form::Quantity("s"), |v| {
+        v.summary.timings.get("total").copied()
+    }),
+    hidden("peak_force_n", "N", |v| v.contact().map(|c| c.peak_force)),
+    hidden("peak_mean_force_n", "N", |v| {
+        v.contact().map(|c| c.peak_mean_force)
+    }),
+    hidden("window_s", "s", |v| v.contact().map(|c| c.window)),
+    hidden("impulse_n_s", "N s", |v| v.contact().map(|c| c.impulse)),
+    hidden("energy_residual", "", |v| {
+        Some(v.summary.energy.relative_residual)
+    }),
+];
+
+/// Kinetic and strain energy at the end over that at the start, less one.
+fn energy_change(done: &Done) -> Option<f64> {
+    let energy = &done.summary.energy;
+    let start = energy.kinetic_initial + energy.strain_initial;
+    (start > 0.0).then(|| (energy.kinetic_final + energy.strain_final) / start - 1.0)
+}
+
+fn work(done: &Done, name: &str) -> Option<f64> {
+    done.summary.energy.works.get(name).copied()
+}
+
+/// From the mean velocities: at the end of the run where there is an exact solution to compare it with, else of the last
+/// complete impact.
+fn restitution(done: &Done) -> Option<f64> {
+    let exact = done.summary.exact.as_ref().and_then(|e| e.restitution);
+    exact.or_else(|| done.contact()?.restitution)
+}
+
+impl Form {
+    fn show(self, value: Option<f64>) -> String {
+        match (value, self) {
+            (None, _) => NOTHING.to_owned(),
+            (Some(value), Form::Percent) => percent(value),
+            (Some(value), Form::Count) => format!("{value}"),
+            (Some(value), Form::Quantity(unit)) => quantity(value, unit),
+        }
+    }
+}
+
+/// The table for people: the columns with a head, between the names and the verdicts.
+pub(crate) fn table(variants: &[Variant]) -> Table {
+    let shown = || COLUMNS.iter().filter_map(|c| Some((c, c.head?)));
+    let heads = shown().map(|(_, head)| head.to_owned());
+    let row = |variant: &Variant| {
+        let done = variant.done();
+        let cells = shown().map(|(c, _)| match done {
+            Some(done) => c.form.show((c.value)(done)),
+            None => String::new(),
+        });
+        let name = std::iter::once(variant.name.clone());
+        let verdict = variant.verdict().0.to_owned();
+        name.chain(cells).chain([verdict]).collect()
+    };
+    Table {
+        heads: std::iter::once(String::new())
+            .chain(heads)
+            .chain(["verdict".to_owned()])
+            .collect(),
+        rows: variants.iter().map(row).collect(),
+    }
+}
+
+/// Names of the columns of `comparison.csv`.
+pub(crate) fn names() -> Vec<&'static str> {
+    let own = COLUMNS.iter().map(|column| column.name);
+    ["variant", "scheme", "law"]
+        .into_iter()
+        .chain(own)
+        .chain(["verdict", "reason"])
+        .collect()
+}
+
+/// A row of `comparison.csv`; `reason`: that of the verdict.
+pub(crate) fn cells<'a>(variant: &'a Variant, reason: &'a str) -> Vec<Cell<'a>> {
+    let done = variant.done();
+    let text = |text: Option<&'a str>| text.map_or(Cell::Empty, Cell::Text);
+    let mut cells = vec![
+        Cell::Text(&variant.name),
+        text(done.map(|done| done.summary.scheme.as_str())),
+        text(done.and_then(|done| Some(done.contact()?.law.as_str()))),
+    ];
+    cells.extend(COLUMNS.iter().map(|c| Cell::from(done.and_then(c.value))));
+    cells.push(Cell::Text(variant.verdict().0));
+    cells.push(text((!reason.is_empty()).then_some(reason)));
+    cells
+}

@@ -1,0 +1,142 @@
+//! The figures of a comparison: each quantity against time, all variants over the exact solution.
+
+use crate::Error;
+use crate::compare::{Comparison, Done};
+use crate::plot::{Axis, Curve, Figure, Panel, Role};
+use crate::results::exact::{Polyline, force_curve, motion_curves};
+use crate::results::trace::Trace;
+
+/// Names of the variants with their curves.
+type Curves<'a> = Vec<(&'a str, Polyline)>;
+
+/// Title, curves, exact curve.
+type Part<'a> = (String, Curves<'a>, Option<Polyline>);
+
+const fn axis(quantity: &'static str, unit: &'static str) -> Axis {
+    Axis { quantity, unit }
+}
+
+/// File names and figures as SVG; a quantity that no variant has is left out.
+pub(crate) fn figures(comparison: &Comparison) -> Vec<(&'static str, Result<String, Error>)> {
+    let done = comparison.variants.iter();
+    let done: Vec<(&str, &Done)> = done
+        .filter_map(|v| Some((v.name.as_str(), v.done()?)))
+        .collect();
+    let end = done.iter().map(|(_, d)| d.summary.time.end);
+    let end = end.fold(0.0, f64::max);
+    let force = axis("contact force", "N");
+    let displacement = axis("displacement", "m");
+    let velocity = axis("velocity", "m/s");
+    let all = [
+        ("plots/force.svg", force, forces(comparison, &done, end)),
+        (
+            "plots/displacement.svg",
+            displacement,
+            motions(comparison, &done, end, 0),
+        ),
+        (
+            "plots/velocity.svg",
+            velocity,
+            motions(comparison, &done, end, 1),
+        ),
+        ("plots/energy.svg", axis("energy", "J"), energies(&done)),
+    ];
+    let draw = |(file, axis, parts): (&'static str, Axis, Vec<Part>)| {
+        // a scheme that chatters must not hide the others
+        let clip = file == "plots/force.svg";
+        let panels = parts.iter().filter(|(_, curves, _)| !curves.is_empty());
+        let panels: Vec<Panel> = panels.map(|part| panel(part, axis, clip)).collect();
+        let figure = Figure {
+            title: comparison.title.clone(),
+            abscissa: Axis {
+                quantity: "time",
+                unit: "s",
+            },
+            columns: panels.len().min(2),
+            panels,
+        };
+        (!figure.panels.is_empty()).then(|| (file, figure.svg()))
+    };
+    all.into_iter().filter_map(draw).collect()
+}
+
+/// The curves of the variants that have one.
+fn curves<'a>(
+    done: &[(&'a str, &Done)],
+    trace: impl for<'d> Fn(&'d Done) -> Option<&'d Trace>,
+) -> Curves<'a> {
+    let all = done.iter();
+    let traces = all.filter_map(|(name, done)| Some((*name, trace(done)?)));
+    let drawn = traces.filter(|(_, trace)| !trace.is_empty());
+    drawn.map(|(name, trace)| (name, trace.columns())).collect()
+}
+
+fn forces<'a>(comparison: &Comparison, done: &[(&'a str, &Done)], end: f64) -> Vec<Part<'a>> {
+    let exact = comparison.exact.as_ref();
+    vec![(
+        "Contact force".to_owned(),
+        curves(done, |d| {
+            d.history.contact.as_ref().map(|_| &d.history.force_curve)
+        }),
+        exact.map(|exact| force_curve(&exact.solution, end)),
+    )]
+}
+
+/// Displacement (0) or velocity (1) of the contact points, one part for each side.
+fn motions<'a>(
+    comparison: &Comparison,
+    done: &[(&'a str, &Done)],
+    end: f64,
+    derivative: usize,
+) -> Vec<Part<'a>> {
+    let sides = done.first().map_or(&[][..], |(_, d)| &d.history.sides);
+    let part = |(side, (name, _)): (usize, &(String, [Trace; 2]))| {
+        let exact = comparison.exact.as_ref().map(|exact| &exact.solution);
+        let exact = exact.filter(|solution| side < solution.motions().len());
+        (
+            format!("Contact point of {name}"),
+            curves(done, |d| Some(&d.history.sides.get(side)?.1[derivative])),
+            exact.map(|solution| motion_curves(solution, side, end)[derivative].clone()),
+        )
+    };
+    sides.iter().enumerate().map(part).collect()
+}
+
+fn energies<'a>(done: &[(&'a str, &Done)]) -> Vec<Part<'a>> {
+    let part = |title: &str, curves| (title.to_owned(), curves, None);
+    vec![
+        part(
+            "Kinetic and strain energy",
+            curves(done, |d| Some(&d.history.energy)),
+        ),
+        part(
+            "Lost by the scheme",
+            curves(done, |d| Some(&d.history.dissipation)),
+        ),
+        part(
+            "Work of the contact",
+            curves(done, |d| Some(&d.history.work_of_contact)),
+        ),
+    ]
+}
+
+fn panel<'a>((title, curves, exact): &'a Part, ordinate: Axis, clip: bool) -> Panel<'a> {
+    let exact = exact.iter().map(|(x, y)| Curve {
+        name: "exact",
+        x,
+        y,
+        role: Role::Exact,
+    });
+    let computed = curves.iter().map(|(name, (x, y))| Curve {
+        name,
+        x,
+        y,
+        role: Role::Computed,
+    });
+    Panel {
+        title: title.clone(),
+        ordinate,
+        curves: exact.chain(computed).collect(),
+        clip,
+    }
+}

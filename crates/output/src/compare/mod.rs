@@ -1,0 +1,183 @@
+//! One model computed in several ways: the figures of merit of each way in one table, their curves in one figure per
+//! quantity, and a page with both.
+//!
+//! The variants are plain data here: how they are made and run is known to the case, their names are the user's. A
+//! variant that was refused or failed keeps its row, with the reason.
+
+mod columns;
+mod figures;
+mod history;
+pub(crate) mod page;
+
+pub use columns::{COLUMNS, Column, Form};
+pub use history::{History, Recorder, StepForce};
+
+use crate::results::Reference;
+use crate::summary::{Contact, Summary};
+
+/// All variants, in the order of the table.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Title of the case.
+    pub title: String,
+    /// What force, overshoot and impulse are compared with.
+    pub standard: Standard,
+    /// The exact solution, drawn under the curves; `None` where the case names none.
+    pub exact: Option<Reference>,
+    /// The variants.
+    pub variants: Vec<Variant>,
+}
+
+/// What the variants are compared with.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Standard {
+    /// The exact solution that the case names.
+    Exact,
+    /// The variant of this name.
+    Run(String),
+    /// Nothing: the columns that need it stay empty.
+    Nothing,
+}
+
+/// One way to compute the model.
+#[derive(Clone, Debug)]
+pub struct Variant {
+    /// Its name, which is that of its folder too.
+    pub name: String,
+    /// What it changes in the case: `key.path=value`.
+    pub overrides: Vec<String>,
+    /// What became of it.
+    pub outcome: Outcome,
+}
+
+/// What became of a variant.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// It was computed.
+    Done(Box<Done>),
+    /// The case does not allow it: why.
+    Refused(String),
+    /// It failed while it ran: why. Its folder holds what was computed before.
+    Failed(String),
+    /// Somebody stopped the comparison before its end.
+    Stopped,
+}
+
+/// A variant that was computed.
+#[derive(Clone, Debug)]
+pub struct Done {
+    /// Its summary.
+    pub summary: Summary,
+    /// Its histories.
+    pub history: History,
+    /// Its distance from the standard; filled by [`Comparison::judge`].
+    pub errors: Errors,
+}
+
+/// Distance from the standard. Relative; `None` where there is nothing to be relative to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// L² error of the force, step by step against the mean of the standard over the step, on the steps in which the
+    /// standard has a force.
+    pub force: Option<f64>,
+    /// Largest force of a single step over the largest of the standard, less one. The largest of the standard is the
+    /// exact one, or the largest mean over the window of a reference run: its raw peak is no standard.
+    pub overshoot: Option<f64>,
+    /// The same of the largest mean of the force over the window.
+    pub mean_overshoot: Option<f64>,
+    /// Error of the impulse.
+    pub impulse: Option<f64>,
+}
+
+impl Variant {
+    /// The result, if there is one.
+    pub fn done(&self) -> Option<&Done> {
+        match &self.outcome {
+            Outcome::Done(done) => Some(done),
+            Outcome::Refused(_) | Outcome::Failed(_) | Outcome::Stopped => None,
+        }
+    }
+
+    /// One word and the reason for it: `good`, `bad`, `refused`, `failed`, `stopped`.
+    pub fn verdict(&self) -> (&'static str, String) {
+        match &self.outcome {
+            Outcome::Done(done) if done.summary.verdict.good => ("good", String::new()),
+            Outcome::Done(done) => ("bad", done.summary.verdict.reasons.join("; ")),
+            Outcome::Refused(reason) => ("refused", reason.clone()),
+            Outcome::Failed(reason) => ("failed", reason.clone()),
+            Outcome::Stopped => ("stopped", "the comparison was interrupted".to_owned()),
+        }
+    }
+}
+
+impl Done {
+    /// A result not yet judged.
+    pub fn new(summary: Summary, history: History) -> Done {
+        Done {
+            summary,
+            history,
+            errors: Errors::default(),
+        }
+    }
+
+    /// The contact that is compared.
+    pub fn contact(&self) -> Option<&Contact> {
+        self.summary.contacts.get(self.history.contact.as_ref()?)
+    }
+
+    fn against_exact(&self) -> Errors {
+        let exact = self.summary.exact.as_ref();
+        Errors {
+            force: exact.and_then(|exact| exact.force_error),
+            overshoot: exact.and_then(|exact| exact.overshoot),
+            mean_overshoot: exact.and_then(|exact| exact.mean_overshoot),
+            impulse: exact.map(|exact| exact.impulse_error),
+        }
+    }
+
+    fn against_run(&self, standard: &Done) -> Errors {
+        let over = |value: f64, of: f64| (of > 0.0).then(|| value / of - 1.0);
+        let both = self.contact().zip(standard.contact());
+        Errors {
+            force: self.history.force.distance(&standard.history.force),
+            overshoot: both.and_then(|(own, its)| over(own.peak_force, its.peak_mean_force)),
+            mean_overshoot: both
+                .and_then(|(own, its)| over(own.peak_mean_force, its.peak_mean_force)),
+            impulse: both.and_then(|(own, its)| over(own.impulse, its.impulse)),
+        }
+    }
+}
+
+impl Comparison {
+    /// Fills the errors of all variants against the standard. A standard that was not computed leaves them empty.
+    pub fn judge(&mut self) {
+        let standard = match &self.standard {
+            Standard::Run(name) => {
+                let named = self.variants.iter().find(|variant| variant.name == *name);
+                named.and_then(Variant::done).cloned()
+            }
+            Standard::Exact | Standard::Nothing => None,
+        };
+        for variant in &mut self.variants {
+            if let Outcome::Done(done) = &mut variant.outcome {
+                done.errors = match (&self.standard, &standard) {
+                    (Standard::Exact, _) => done.against_exact(),
+                    (Standard::Run(_), Some(standard)) => done.against_run(standard),
+                    (Standard::Run(_), None) | (Standard::Nothing, _) => Errors::default(),
+                };
+            }
+        }
+    }
+
+    /// The standard in words.
+    pub fn standard_text(&self) -> String {
+        match &self.standard {
+            Standard::Exact => {
+                let name = self.exact.as_ref().map_or("", |exact| &exact.name);
+                format!("the exact solution `{name}`")
+            }
+            Standard::Run(name) => format!("the run `{name}`"),
+            Standard::Nothing => "nothing".to_owned(),
+        }
+    }
+}

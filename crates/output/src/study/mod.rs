@@ -1,0 +1,110 @@
+//! One model computed with several values of a key: how its results depend on it, and how fast they converge.
+//!
+//! The runs are plain data here. Where the case names an exact solution the errors are distances from it; elsewhere the
+//! order comes from the differences of neighbouring runs, which needs values in a constant ratio.
+
+mod orders;
+mod page;
+mod quantities;
+
+pub use orders::{Fit, consecutive, differences, fit};
+pub use quantities::{Measure, Quantity};
+
+use crate::compare::Variant;
+
+/// All runs, in the order of the table.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// Title of the case.
+    pub title: String,
+    /// Keys that vary together, with their values, one per run.
+    pub keys: Vec<(String, Vec<String>)>,
+    /// What the orders are taken against.
+    pub abscissa: Abscissa,
+    /// The runs.
+    pub runs: Vec<Run>,
+}
+
+/// What the orders are taken against.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Abscissa {
+    /// The time step, s.
+    Step,
+    /// The value of the first key.
+    Key,
+    /// Nothing: the key has no numbers.
+    Nothing,
+}
+
+/// One run.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Name, outcome and overrides.
+    pub variant: Variant,
+    /// Abscissa of the orders; `None` if there is none.
+    pub x: Option<f64>,
+    /// Mean of the exact force over the exact contact, N, where the case names an exact solution.
+    pub exact_mean_force: Option<f64>,
+}
+
+/// What is known of the convergence of one quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Order {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// From what the order is taken.
+    pub source: Source,
+    /// Abscissae and errors (or differences), by rising abscissa.
+    pub points: Vec<(f64, f64)>,
+    /// Least squares over all points.
+    pub fit: Option<Fit>,
+    /// Orders between neighbours.
+    pub consecutive: Vec<Option<f64>>,
+}
+
+/// From what an order is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// Distances from the exact solution.
+    Exact,
+    /// Differences between neighbouring runs.
+    Differences,
+}
+
+impl Study {
+    /// Orders of all quantities that have some: at least two points. The raw peak has none where the exact force jumps,
+    /// and is never given one.
+    pub fn orders(&self) -> Vec<Order> {
+        let quantities = Quantity::ALL.into_iter();
+        let converging = quantities.filter(|quantity| *quantity != Quantity::PeakForce);
+        converging
+            .filter_map(|quantity| self.order(quantity))
+            .collect()
+    }
+
+    fn order(&self, quantity: Quantity) -> Option<Order> {
+        let measured = self
+            .runs
+            .iter()
+            .filter_map(|run| Some((run.x?, quantity.of(run)?)));
+        let mut measured: Vec<(f64, Measure)> = measured.collect();
+        measured.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let x: Vec<f64> = measured.iter().map(|(x, _)| *x).collect();
+        let exact: Option<Vec<f64>> = measured.iter().map(|(_, m)| m.error()).collect();
+        let (source, x, errors) = match exact {
+            Some(errors) => (Source::Exact, x, errors),
+            None => {
+                let values: Vec<f64> = measured.iter().map(|(_, m)| m.value).collect();
+                let (x, errors) = differences(&x, &values)?;
+                (Source::Differences, x, errors)
+            }
+        };
+        (x.len() > 1).then(|| Order {
+            quantity,
+            source,
+            fit: fit(&x, &errors),
+            consecutive: consecutive(&x, &errors),
+            points: x.into_iter().zip(errors).collect(),
+        })
+    }
+}

@@ -1,0 +1,221 @@
+//! Tables, figure and page of a study.
+
+use std::path::PathBuf;
+
+use minijinja::{Value, context};
+
+use crate::compare::page::inner;
+use crate::plot::{Logarithmic, Series, quantity};
+use crate::report::{NOTHING, environment};
+use crate::rows::Cell;
+use crate::study::{Abscissa, Order, Quantity, Run, Source, Study};
+use crate::table::{Table, write_csv};
+use crate::{Error, Folder, atomic};
+
+/// What is said wherever the raw peak is shown.
+pub const RAW_PEAK: &str =
+    "the raw peak of a single step does not converge at a step front; read the peak of the mean";
+
+impl Study {
+    /// The runs for people: values of the keys, step, quantities.
+    pub fn table(&self) -> Table {
+        let keys = self.keys.iter().map(|(key, _)| short(key).to_owned());
+        let quantities = self.shown();
+        let names = quantities.iter().map(|quantity| quantity.name().to_owned());
+        let heads = [String::new()].into_iter().chain(keys);
+        let heads = heads.chain(["step".to_owned()]).chain(names);
+        let row = |(k, run): (usize, &Run)| {
+            let keys = self.keys.iter().map(|(_, values)| values[k].clone());
+            let step = run.variant.done().map(|d| d.summary.time.largest_step);
+            let step = step.map_or(NOTHING.to_owned(), |step| quantity(step, "s"));
+            let cells = quantities.iter().map(|q| match q.of(run) {
+                Some(measure) => quantity(measure.value, q.unit()),
+                None => NOTHING.to_owned(),
+            });
+            let name = [run.variant.name.clone()].into_iter();
+            let cells = name.chain(keys).chain([step]).chain(cells);
+            cells.chain([run.variant.verdict().0.to_owned()]).collect()
+        };
+        Table {
+            heads: heads.chain(["verdict".to_owned()]).collect(),
+            rows: self.runs.iter().enumerate().map(row).collect(),
+        }
+    }
+
+    /// The orders for people.
+    pub fn order_table(&self) -> Table {
+        let row = |order: &Order| {
+            let number =
+                |value: Option<f64>| value.map_or(NOTHING.to_owned(), |v| format!("{v:.2}"));
+            let error_bar = order.fit.and_then(|fit| fit.error_bar);
+            let between: Vec<String> = order.consecutive.iter().map(|p| number(*p)).collect();
+            vec![
+                order.quantity.name().to_owned(),
+                number(order.fit.map(|fit| fit.order)),
+                error_bar.map_or(NOTHING.to_owned(), |bar| format!("± {bar:.2}")),
+                between.join(", "),
+                order.source.text().to_owned(),
+            ]
+        };
+        Table {
+            heads: ["", "order", "error bar", "between neighbours", "from"]
+                .map(str::to_owned)
+                .to_vec(),
+            rows: self.orders().iter().map(row).collect(),
+        }
+    }
+
+    /// What the orders are taken against, with its unit.
+    pub fn abscissa_text(&self) -> String {
+        match (&self.abscissa, self.keys.first()) {
+            (Abscissa::Step, _) => "time step (s)".to_owned(),
+            (Abscissa::Key, Some((key, _))) => key.clone(),
+            (Abscissa::Key, None) | (Abscissa::Nothing, _) => String::new(),
+        }
+    }
+
+    /// Writes `study.csv`, `orders.csv`, `plots/orders.svg` (if there is an order) and `report.html` into the folder; returns
+    /// the path of the page.
+    ///
+    /// # Errors
+    /// The first file that could not be written.
+    pub fn write(&self, folder: &mut Folder) -> Result<PathBuf, Error> {
+        self.write_runs(folder)?;
+        let orders = self.orders();
+        self.write_orders(folder, &orders)?;
+        let figure = self.figure(&orders);
+        let drawn = figure.series.iter().any(|series| !series.points.is_empty());
+        let svg = if drawn { figure.svg().ok() } else { None };
+        if let Some(svg) = &svg {
+            atomic::write_text(&folder.file("plots/orders.svg")?, svg)?;
+        }
+        let page = folder.file("report.html")?;
+        atomic::write_text(&page, &self.html(svg)?)?;
+        Ok(page)
+    }
+
+    /// The quantities that at least one run has.
+    fn shown(&self) -> Vec<Quantity> {
+        let exists = |q: &Quantity| self.runs.iter().any(|run| q.of(run).is_some());
+        Quantity::ALL.into_iter().filter(exists).collect()
+    }
+
+    fn write_runs(&self, folder: &mut Folder) -> Result<(), Error> {
+        let keys = self.keys.iter().map(|(key, _)| key.clone());
+        let mut names: Vec<String> = ["run".to_owned()].into_iter().chain(keys).collect();
+        names.push("step_s".to_owned());
+        for quantity in Quantity::ALL {
+            names.push(quantity.column().to_owned());
+            names.push(format!("exact.{}", quantity.column()));
+        }
+        names.extend(["wall_s", "verdict", "reason"].map(str::to_owned));
+        let verdicts: Vec<_> = self.runs.iter().map(|run| run.variant.verdict()).collect();
+        let row = |(k, run): (usize, &'_ Run)| {
+            let done = run.variant.done();
+            let mut cells = vec![Cell::Text(&self.runs[k].variant.name)];
+            cells.extend(self.keys.iter().map(|(_, values)| Cell::Text(&values[k])));
+            cells.push(done.map(|d| d.summary.time.largest_step).into());
+            for quantity in Quantity::ALL {
+                let measure = quantity.of(run);
+                cells.push(measure.map(|m| m.value).into());
+                cells.push(measure.and_then(|m| m.exact).into());
+            }
+            let wall = done.and_then(|d| d.summary.timings.get("total").copied());
+            let (verdict, reason) = &verdicts[k];
+            cells.extend([wall.into(), Cell::Text(verdict), Cell::Text(reason)]);
+            cells
+        };
+        let rows: Vec<Vec<Cell>> = self.runs.iter().enumerate().map(row).collect();
+        write_csv(&folder.file("study.csv")?, &names, &rows)
+    }
+
+    fn write_orders(&self, folder: &mut Folder, orders: &[Order]) -> Result<(), Error> {
+        let names = [
+            "quantity",
+            "order",
+            "standard_error",
+            "factor",
+            "from",
+            "points",
+        ];
+        let row = |order: &Order| {
+            vec![
+                Cell::Text(order.quantity.column()),
+                order.fit.map(|fit| fit.order).into(),
+                order.fit.and_then(|fit| fit.error_bar).into(),
+                order.fit.map(|fit| fit.factor).into(),
+                Cell::Text(order.source.text()),
+                Cell::Number(order.points.len() as f64),
+            ]
+        };
+        let rows: Vec<Vec<Cell>> = orders.iter().map(row).collect();
+        write_csv(&folder.file("orders.csv")?, &names, &rows)
+    }
+
+    fn figure(&self, orders: &[Order]) -> Logarithmic {
+        let series = |order: &Order| {
+            let name = order.quantity.name();
+            Series {
+                name: match order.fit {
+                    Some(fit) => format!("{name}, order {:.2}", fit.order).replace('-', "−"),
+                    None => name.to_owned(),
+                },
+                points: order.points.clone(),
+                law: order.fit.map(|fit| (fit.order, fit.factor)),
+            }
+        };
+        Logarithmic {
+            title: format!("{}: errors", self.title),
+            abscissa: self.abscissa_text(),
+            ordinate: "error, or difference of neighbours".to_owned(),
+            series: orders.iter().map(series).collect(),
+        }
+    }
+
+    fn html(&self, figure: Option<String>) -> Result<String, Error> {
+        let mut environment = environment()?;
+        environment.add_template("study.html", include_str!("../../templates/study.html"))?;
+        let (table, orders) = (self.table(), self.order_table());
+        let run = |(run, cells): (&Run, &Vec<String>)| {
+            let (verdict, reason) = run.variant.verdict();
+            context! {
+                name => run.variant.name.clone(),
+                page => run.variant.done().is_some(),
+                cells => inner(cells),
+                verdict,
+                reason,
+            }
+        };
+        let runs: Vec<Value> = self.runs.iter().zip(&table.rows).map(run).collect();
+        let page = environment.get_template("study.html")?.render(context! {
+            title => self.title.clone(),
+            keys => self.keys.iter().map(|(key, _)| key.clone()).collect::<Vec<_>>(),
+            abscissa => self.abscissa_text(),
+            heads => inner(&table.heads),
+            runs,
+            order_heads => orders.heads[1..].to_vec(),
+            orders => orders.rows,
+            raw_peak => RAW_PEAK,
+            version => env!("CARGO_PKG_VERSION"),
+            figure => figure.map(Value::from_safe_string),
+        })?;
+        Ok(page)
+    }
+}
+
+impl Source {
+    /// For people.
+    pub fn text(self) -> &'static str {
+        match self {
+            Source::Exact => "exact solution",
+            Source::Differences => "differences",
+        }
+    }
+}
+
+/// The last two parts of a key path.
+fn short(key: &str) -> &str {
+    key.rmatch_indices('.')
+        .nth(1)
+        .map_or(key, |(at, _)| &key[at + 1..])
+}
