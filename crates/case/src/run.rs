@@ -133,5 +133,13 @@ fn scheme(scheme: &Scheme) -> String {
         ),
         Scheme::Theta(theta) => format!("theta, theta = {}", theta.theta),
         Scheme::CentralDifference(_) => "central-difference".to_string(),
+        Scheme::GeneralisedAlpha(scheme) => {
+            format!("generalised-alpha, rho-inf = {}", scheme.rho_inf)
+        }
+        Scheme::Hht(scheme) => format!("hht, alpha = {}", scheme.alpha),
+        Scheme::TchamwaWielgosz(scheme) => format!("tchamwa-wielgosz, phi = {}", scheme.phi),
+        Scheme::PaoliSchatzman(_) => "paoli-schatzman".to_string(),
+        Scheme::LaursenChawla(_) => "laursen-chawla".to_string(),
+        Scheme::Kane(kane) => format!("kane, beta = {}, gamma = {}", kane.beta, kane.gamma),
     }
 }

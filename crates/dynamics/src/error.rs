@@ -69,8 +69,10 @@ pub enum Error {
         critical: f64,
     },
     /// A scheme that needs a diagonal mass meets a consistent one.
-    #[error("the explicit scheme needs lumped mass, but body '{body}' has consistent mass")]
+    #[error("the scheme {scheme} needs lumped mass, but body '{body}' has consistent mass")]
     ConsistentMass {
+        /// Name of the scheme.
+        scheme: &'static str,
         /// Name of the body.
         body: String,
     },
@@ -81,6 +83,24 @@ pub enum Error {
     DisplacementLaw {
         /// Name of the contact.
         contact: String,
+    },
+    /// A projection at closure with a scheme that does not hold the balance at the end of the step.
+    #[error(
+        "contact '{contact}': the projection at closure keeps velocity, acceleration and force of the end of the step in balance, which only Newmark's scheme holds there"
+    )]
+    Projection {
+        /// Name of the contact.
+        contact: String,
+    },
+    /// A law in the rate on a scheme whose contact forces are those that keep the displacement.
+    #[error(
+        "contact '{contact}': in the scheme {scheme} contact forces keep the displacement at the end of the step, so only the displacement law can hold"
+    )]
+    RateLaw {
+        /// Name of the contact.
+        contact: String,
+        /// Name of the scheme.
+        scheme: &'static str,
     },
     /// A saved state that does not belong to this system.
     #[error("the saved state cannot be read: {cause}")]

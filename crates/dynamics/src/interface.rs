@@ -335,7 +335,7 @@ mod tests {
             let (d, q) = random_problem(n, &mut seed);
             let candidates: Vec<_> = q
                 .iter()
-                .map(|&q| candidate(Law::Displacement(Displacement), q))
+                .map(|&q| candidate(Law::Displacement(Displacement::default()), q))
                 .collect();
             let mut interface = Interface::default();
             interface.solve(&candidates, (&d, 0), [1.0, 0.0]).unwrap();

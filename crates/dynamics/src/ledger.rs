@@ -85,11 +85,11 @@ pub struct Balance {
     pub kinetic: f64,
     /// Strain energy U(u).
     pub strain: f64,
-    /// The term `inertia |a|²_M` that the scheme adds to the energy it balances.
+    /// What the energy that the scheme balances has beside these two: `inertia |a|²_M + U(u - lag v) - U(u)`.
     pub scheme_energy: f64,
     /// Work of the loads.
     pub work_loads: f64,
-    /// Work of the contact forces; minus the energy lost in impact.
+    /// Work of the contact forces, and of the impulses of a projection; minus the energy lost in impact.
     pub work_contact: f64,
     /// Dissipation of the scheme.
     pub dissipation_scheme: f64,
@@ -132,9 +132,13 @@ pub struct Ledger {
     work_loads: Sum,
     work_contact: Sum,
     dissipation: Sum,
-    impulses: [[Sum; 6]; 3],
-    forces: [Resultant; 3],
+    impulses: [[Sum; 6]; 4],
+    forces: Forces,
 }
+
+/// Resultants of the forces of a step: loads, contacts, supports, supports against contact forces where these have an
+/// impulse of their own.
+pub(crate) type Forces = [Resultant; 4];
 
 /// Energies of a state, J.
 #[derive(Clone, Copy, Debug)]
@@ -143,29 +147,57 @@ pub(crate) struct Energies {
     pub(crate) strain: f64,
     /// |a|²_M.
     pub(crate) acceleration: f64,
+    /// U(u - lag v) - U(u).
+    pub(crate) lagged: f64,
     /// Momentum.
     pub(crate) momentum: Resultant,
 }
 
-/// What changed in a step: |Δv|²_M, |Δu|²_K, |Δa|²_M.
+/// What a projection after the step does.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Jump {
+    /// Work of its impulses on the mean of the velocities around it, J.
+    pub(crate) work: f64,
+    /// What the scheme's term in |a|² loses, J.
+    pub(crate) dissipation: f64,
+    /// Its impulses, from contacts and supports.
+    pub(crate) impulses: [Resultant; 2],
+    /// Forces of contacts and supports that the next step begins with.
+    pub(crate) forces: [Resultant; 2],
+}
+
+/// What changed in a step: |Δv|²_M, |Δu|²_K, |Δa|²_M, Δu·MΔa, Δa·NᵀP.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Squares {
     pub(crate) velocity: f64,
     pub(crate) displacement: f64,
     pub(crate) acceleration: f64,
+    pub(crate) mixed: f64,
+    pub(crate) contact: f64,
+}
+
+impl EnergyIdentity {
+    /// The term of the energy that the scheme balances beside kinetic and strain energy, J.
+    fn stored(&self, energies: &Energies) -> f64 {
+        self.inertia * energies.acceleration + energies.lagged
+    }
+
+    fn dissipation(&self, squares: &Squares) -> f64 {
+        self.velocity * squares.velocity
+            + self.displacement * squares.displacement
+            + self.acceleration * squares.acceleration
+            + self.mixed * squares.mixed
+            + self.contact * squares.contact
+    }
 }
 
 impl Ledger {
-    /// The balance at the start. `forces`: resultants of loads, contacts and supports there.
-    pub(crate) fn start(
-        energies: &Energies,
-        identity: &EnergyIdentity,
-        forces: [Resultant; 3],
-    ) -> Ledger {
+    /// The balance at the start, with the forces there.
+    pub(crate) fn start(energies: &Energies, identity: &EnergyIdentity, forces: Forces) -> Ledger {
         let balance = Balance {
             kinetic: energies.kinetic,
             strain: energies.strain,
-            scheme_energy: identity.inertia * energies.acceleration,
+            scheme_energy: identity.stored(energies),
             momentum: energies.momentum,
             ..Balance::default()
         };
@@ -186,18 +218,14 @@ impl Ledger {
         energies: &Energies,
         works: [f64; 2],
         squares: &Squares,
-        forces: [Resultant; 3],
+        forces: Forces,
     ) {
         self.work_loads.add(works[0]);
         self.work_contact.add(works[1]);
-        self.dissipation.add(
-            identity.velocity * squares.velocity
-                + identity.displacement * squares.displacement
-                + identity.acceleration * squares.acceleration,
-        );
+        self.dissipation.add(identity.dissipation(squares));
         for (k, force) in forces.iter().enumerate() {
-            // loads, contacts, supports
-            let impulse = impulses[usize::from(k == 1)];
+            // contacts, and supports against them, in their own way
+            let impulse = impulses[k % 2];
             let before = self.forces[k];
             let force = force.combine(impulse.gain, &before, -impulse.carry);
             self.forces[k] = force;
@@ -207,6 +235,25 @@ impl Ledger {
                 self.impulses[k][3 + i].add(mean.angular[i]);
             }
         }
+        self.close(energies, identity);
+    }
+
+    /// Adds a projection after the step just added.
+    pub(crate) fn jump(&mut self, identity: &EnergyIdentity, energies: &Energies, jump: &Jump) {
+        self.work_contact.add(jump.work);
+        self.dissipation.add(jump.dissipation);
+        for (k, impulse) in jump.impulses.iter().enumerate() {
+            for i in 0..3 {
+                self.impulses[1 + k][i].add(impulse.linear[i]);
+                self.impulses[1 + k][3 + i].add(impulse.angular[i]);
+            }
+            self.forces[1 + k] = jump.forces[k];
+        }
+        self.close(energies, identity);
+    }
+
+    /// The balance from the sums, and the largest of its terms so far.
+    fn close(&mut self, energies: &Energies, identity: &EnergyIdentity) {
         self.balance = self.closed(energies, identity);
         self.largest_energy = self.largest_energy.max(self.balance.energy());
         self.largest_energy_residual = self
@@ -238,13 +285,13 @@ impl Ledger {
         };
         let (work_loads, work_contact) = (self.work_loads.get(), self.work_contact.get());
         let dissipation_scheme = self.dissipation.get();
-        let scheme_energy = identity.inertia * energies.acceleration;
+        let scheme_energy = identity.stored(energies);
         let start = &self.initial;
         let change = (energies.kinetic - start.kinetic)
             + (energies.strain - start.strain)
             + (scheme_energy - start.scheme_energy);
-        let [impulse_loads, impulse_contact, impulse_supports] =
-            [impulse(0), impulse(1), impulse(2)];
+        let [impulse_loads, impulse_contact] = [impulse(0), impulse(1)];
+        let impulse_supports = impulse(2).combine(1.0, &impulse(3), 1.0);
         let impulses =
             impulse_loads
                 .combine(1.0, &impulse_contact, 1.0)
@@ -267,7 +314,9 @@ impl Ledger {
     }
 }
 
-/// Forces of the supports, N: what the momentum balance of the step leaves at the held unknowns; zero elsewhere.
+/// Forces of the supports, N: what the momentum balance of the step leaves at the held unknowns; zero elsewhere. Without
+/// the contact forces if these have an impulse of their own. `out` holds the internal forces of the balance where the map
+/// has no fraction for them.
 pub(crate) fn reactions(
     system: &System,
     map: &StepMap,
@@ -276,12 +325,17 @@ pub(crate) fn reactions(
     inertia: &[f64],
     out: &mut [f64],
 ) {
-    let fraction = map.force_fraction;
+    let contact = if map.impulse == map.contact_impulse {
+        map.contact
+    } else {
+        0.0
+    };
     for (i, out) in out.iter_mut().enumerate() {
         *out = if system.fixed[i] {
-            let internal =
-                (1.0 - fraction) * old.internal_force[i] + fraction * new.internal_force[i];
-            inertia[i] + internal - system.load[i] - map.contact * new.contact_force[i]
+            let internal = map.force_fraction.map_or(*out, |fraction| {
+                (1.0 - fraction) * old.internal_force[i] + fraction * new.internal_force[i]
+            });
+            inertia[i] + internal - system.load[i] - contact * new.contact_force[i]
         } else {
             0.0
         };

@@ -100,8 +100,11 @@ pub(crate) struct Step<'a> {
     pub(crate) impulse: Impulse,
     /// What the contact did.
     pub(crate) report: &'a ContactReport,
-    /// Work of the contact's forces, J.
+    /// Work of the contact's forces and impulses, J.
     pub(crate) work: f64,
+    /// Of a projection after the step: impulse in N s, and change of the force that the next step begins with in N; each
+    /// as a sum over the points and as a vector on the secondary body.
+    pub(crate) jump: [(f64, [f64; 3]); 2],
 }
 
 impl Records {
@@ -131,8 +134,13 @@ impl Records {
         let before = record.last;
         let force = taken(report.force, before.0);
         let resultant = [0, 1, 2].map(|i| taken(report.resultant[i], before.1[i]));
-        record.last = (force, resultant);
+        let [projected, change] = step.jump;
+        record.last = (
+            force + change.0,
+            [0, 1, 2].map(|i| resultant[i] + change.1[i]),
+        );
         record.impulse.add(mean(before.0, force));
+        record.impulse.add(projected.0);
         record.defect.add(report.persistency_defect);
         record.status_changes += report.status_changes as u64;
         if report.gap.is_finite() {
@@ -156,6 +164,7 @@ impl Records {
             open.work.add(step.work);
             for i in 0..3 {
                 open.impulse[i].add(mean(before.1[i], resultant[i]));
+                open.impulse[i].add(projected.1[i]);
             }
             if !active {
                 let impact = open.finished(system, contact, step.span[1], new_velocity);

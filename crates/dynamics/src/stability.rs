@@ -9,7 +9,7 @@ use carom_contact::{Contact, Places, Rows, Search};
 use crate::system::System;
 
 impl System {
-    /// Critical step 2/ω of an explicit scheme, s: a lower bound.
+    /// Critical step of an explicit scheme, s: its critical ω dt, or that of central differences, 2, over a bound of ω.
     ///
     /// ω² is at most the largest eigenvalue of an element, plus that of the stiffness `Σ k_i n_i n_iᵀ` of compliant contact
     /// laws against the lumped mass, which is bounded by the largest row sum of `sqrt(k_i k_j) n_i · M⁻¹ n_j` over points
@@ -25,7 +25,7 @@ impl System {
             .iter()
             .map(|contact| self.contact_bound(contact))
             .sum::<f64>();
-        2.0 / (bodies * bodies + contacts).sqrt()
+        self.scheme.get().critical().unwrap_or(2.0) / (bodies * bodies + contacts).sqrt()
     }
 
     /// Bound of the eigenvalues of the stiffness of a contact against the lumped mass, 1/s².

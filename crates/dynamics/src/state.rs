@@ -35,7 +35,7 @@ pub struct Motion {
     pub a: Vec<f64>,
     /// Internal force f(u), N.
     pub internal_force: Vec<f64>,
-    /// Contact force Nᵀ P of the last step, N.
+    /// Contact force Nᵀ P at the end of the last step, N: after a projection the one in balance with the acceleration.
     pub contact_force: Vec<f64>,
 }
 
@@ -44,6 +44,9 @@ pub struct Motion {
 pub struct InterfaceState {
     /// Contact force P of the last step, N, compressive positive.
     pub force: Vec<f64>,
+    /// Contact force that stands at the beginning of the next step, N: that of the last step, or after a projection the
+    /// one in balance with the acceleration.
+    pub carried: Vec<f64>,
     /// Gap at the end of the step, m, open positive; infinite where a point faces nothing.
     pub gap: Vec<f64>,
     /// Gap rate that a law in the rate constrains, m/s, opening positive.

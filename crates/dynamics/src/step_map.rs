@@ -78,8 +78,9 @@ pub struct StepMap {
     pub inertia: Row,
     /// The displacement at which internal forces are taken.
     pub force: Row,
-    /// The same displacement as a fraction of the way from u_k to u_{k+1}.
-    pub force_fraction: f64,
+    /// The same displacement as a fraction of the way from u_k to u_{k+1}; `None` where it is not on that way: internal
+    /// forces are then taken there once more for the forces of the supports.
+    pub force_fraction: Option<f64>,
     /// Displacement at the end of the step.
     pub displacement: Row,
     /// Velocity at the end of the step.
@@ -99,6 +100,19 @@ pub struct StepMap {
 }
 
 impl StepMap {
+    /// Whether the momentum balance holds between acceleration and forces of the end of the step, whose weights in the
+    /// impulse are those of the forces themselves.
+    pub fn balances_at_the_end(&self) -> bool {
+        let forces_stand = |impulse: &Impulse| impulse.gain == 1.0 && impulse.carry == 0.0;
+        self.inertia == self.acceleration
+            && self.force == self.displacement
+            && self.force.x != 0.0
+            && self.acceleration.x == 1.0
+            && self.contact == 1.0
+            && forces_stand(&self.impulse)
+            && forces_stand(&self.contact_impulse)
+    }
+
     /// Whether any vector of the step needs the contact acceleration.
     pub fn uses_contact_acceleration(&self) -> bool {
         let rows = [self.displacement, self.velocity, self.acceleration];

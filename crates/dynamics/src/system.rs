@@ -245,25 +245,38 @@ impl System {
     }
 
     fn check_scheme(&self, bodies: &[ModelBody]) -> Result<(), Error> {
-        if !self.scheme.get().is_explicit() {
-            return Ok(());
-        }
-        if let Some(body) = bodies.iter().find(|body| body.mass == MassKind::Consistent) {
+        let scheme = self.scheme.get();
+        let mut bodies = bodies.iter();
+        if scheme.needs_lumped_mass()
+            && let Some(body) = bodies.find(|body| body.mass == MassKind::Consistent)
+        {
             return Err(Error::ConsistentMass {
+                scheme: scheme.name(),
                 body: body.spec.name.clone(),
             });
         }
-        if let Some(contact) = self
-            .contacts
-            .iter()
-            .find(|contact| contact.law.get().level() == Level::Gap)
+        let refused = |contact: &&Contact| !scheme.takes(contact.law.get().level());
+        if let Some(contact) = self.contacts.iter().find(refused) {
+            return Err(match contact.law.get().level() {
+                Level::Gap => Error::DisplacementLaw {
+                    contact: contact.name.clone(),
+                },
+                Level::Rate | Level::GapAndRate => Error::RateLaw {
+                    contact: contact.name.clone(),
+                    scheme: scheme.name(),
+                },
+            });
+        }
+        let projects = |contact: &&Contact| contact.law.projects();
+        if let Some(contact) = self.contacts.iter().find(projects)
+            && !scheme.step_map(self.dt).balances_at_the_end()
         {
-            return Err(Error::DisplacementLaw {
+            return Err(Error::Projection {
                 contact: contact.name.clone(),
             });
         }
         let critical = self.critical_step();
-        if self.dt > critical {
+        if scheme.is_explicit() && self.dt > critical {
             Err(Error::Unstable {
                 dt: self.dt,
                 critical,

@@ -1,6 +1,10 @@
 //! Step and scheme, and what the scheme refuses.
 
-use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
+use carom_contact::law::Level;
+use carom_dynamics::scheme::{
+    CentralDifference, GeneralisedAlpha, Hht, Kane, LaursenChawla, Newmark, PaoliSchatzman,
+    TchamwaWielgosz, Theta,
+};
 use carom_dynamics::{Error, Model, ModelBody, Scheme, System, step_count};
 use carom_mesh::Mesh;
 
@@ -20,43 +24,70 @@ impl Builder<'_> {
             }),
             schema::Scheme::Theta(theta) => Scheme::Theta(Theta { theta: theta.theta }),
             schema::Scheme::CentralDifference(_) => Scheme::CentralDifference(CentralDifference),
+            schema::Scheme::GeneralisedAlpha(alpha) => Scheme::GeneralisedAlpha(GeneralisedAlpha {
+                rho_inf: alpha.rho_inf,
+            }),
+            schema::Scheme::Hht(hht) => Scheme::Hht(Hht { alpha: hht.alpha }),
+            schema::Scheme::TchamwaWielgosz(scheme) => {
+                Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: scheme.phi })
+            }
+            schema::Scheme::PaoliSchatzman(_) => Scheme::PaoliSchatzman(PaoliSchatzman),
+            schema::Scheme::LaursenChawla(_) => Scheme::LaursenChawla(LaursenChawla),
+            schema::Scheme::Kane(kane) => Scheme::Kane(Kane {
+                beta: kane.beta,
+                gamma: kane.gamma,
+            }),
         }
     }
 
     /// Refuses what the scheme cannot take, one problem a reason.
     pub(super) fn scheme_and_laws(&mut self) {
-        if !self.scheme().get().is_explicit() {
-            if let Step::FromMesh(StepRule::Critical(_)) = self.case.time.step {
-                let problem = Problem::new(
-                    "time.step.critical",
-                    "only an explicit scheme has a critical step",
-                );
-                self.problems.push(
-                    problem
-                        .found(self.scheme().get().name())
-                        .accepted(["step = { courant = ... }", "a fixed step"]),
-                );
-            }
-            return;
+        let scheme = self.scheme();
+        let scheme = scheme.get();
+        if let Step::FromMesh(StepRule::Critical(_)) = self.case.time.step
+            && !scheme.is_explicit()
+        {
+            let problem = Problem::new(
+                "time.step.critical",
+                "only an explicit scheme has a critical step",
+            );
+            self.problems.push(
+                problem
+                    .found(scheme.name())
+                    .accepted(["step = { courant = ... }", "a fixed step"]),
+            );
         }
         for (name, contact) in self.case.contact.iter() {
-            if let Law::Displacement(_) = contact.law {
+            let displacement = matches!(contact.law, Law::Displacement(_));
+            if displacement && !scheme.takes(Level::Gap) {
                 let message = "an explicit scheme knows the displacement at the end of the step before the contact force, so this law cannot hold";
                 let problem = Problem::new(format!("contact.{name}.law.displacement"), message);
                 self.problems.push(
                     problem
-                        .found("displacement with central-difference")
+                        .found(format!("displacement with {}", scheme.name()))
                         .accepted(["velocity", "damped"]),
                 );
             }
+            if !displacement && !scheme.takes(Level::Rate) {
+                let message = "the contact forces of this scheme keep the displacement at the end of the step, so no other law can hold";
+                let problem = Problem::new(format!("contact.{name}.law"), message);
+                self.problems.push(
+                    problem
+                        .found(format!("another law with {}", scheme.name()))
+                        .accepted(["displacement"]),
+                );
+            }
+        }
+        if !scheme.needs_lumped_mass() {
+            return;
         }
         for (name, body) in self.case.body.iter() {
             if body.mass == Mass::Consistent {
-                let message = "an explicit scheme divides by the mass: it must be diagonal";
+                let message = "the scheme divides by the mass: it must be diagonal";
                 let problem = Problem::new(format!("body.{name}.mass"), message);
                 self.problems.push(
                     problem
-                        .found("consistent with central-difference")
+                        .found(format!("consistent with {}", scheme.name()))
                         .accepted(["lumped"]),
                 );
             }

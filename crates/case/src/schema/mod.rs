@@ -32,7 +32,10 @@ pub use quantity::{
     Acceleration, Area, Coordinate, Density, Duration, Length, Modulus, SurfaceDamping,
     SurfaceStiffness, Vector, Velocity,
 };
-pub use time::{CentralDifference, Newmark, Scheme, Step, StepRule, Theta, Time};
+pub use time::{
+    CentralDifference, GeneralisedAlpha, Hht, Kane, LaursenChawla, Newmark, PaoliSchatzman, Scheme,
+    Step, StepRule, TchamwaWielgosz, Theta, Time,
+};
 
 /// A case: bodies, what joins them, and the time to simulate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -47,6 +47,19 @@ pub enum Scheme {
     Theta(Theta),
     /// Central difference, explicit; lumped mass.
     CentralDifference(CentralDifference),
+    /// The generalised-alpha scheme in displacement (Chung, Hulbert).
+    GeneralisedAlpha(GeneralisedAlpha),
+    /// The scheme of Hilber, Hughes and Taylor in displacement.
+    Hht(Hht),
+    /// The dissipative scheme of Tchamwa and Wielgosz, explicit; lumped mass.
+    TchamwaWielgosz(TchamwaWielgosz),
+    /// The two-step scheme of Paoli and Schatzman, without restitution; made for the displacement law.
+    PaoliSchatzman(PaoliSchatzman),
+    /// The mid-point rule with contact on the mean rate (Laursen, Chawla): exact energy, useless force; made for the
+    /// velocity law.
+    LaursenChawla(LaursenChawla),
+    /// Newmark's scheme with implicit contact forces (Kane, Repetto, Ortiz, Marsden); lumped mass, displacement law only.
+    Kane(Kane),
 }
 
 /// Newmark's scheme.
@@ -78,10 +91,77 @@ pub struct Theta {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct CentralDifference {}
 
+/// The generalised-alpha scheme.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct GeneralisedAlpha {
+    /// Spectral radius at infinite frequency: 1 damps nothing, 0 most.
+    #[serde(default = "four_fifths")]
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub rho_inf: f64,
+}
+
+/// The scheme of Hilber, Hughes and Taylor.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Hht {
+    /// Internal forces act at (1 + alpha) u+ - alpha u: 0 damps nothing, -1/3 most. Others count it positive.
+    #[serde(default = "minus_tenth")]
+    #[schemars(extend("minimum" = -1.0 / 3.0, "maximum" = 0.0))]
+    pub alpha: f64,
+}
+
+/// The scheme of Tchamwa and Wielgosz.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct TchamwaWielgosz {
+    /// Factor of dt² a in the displacement: 1 damps nothing; the damping ratio is (phi - 1) omega dt / 2, and the critical
+    /// step 2 / (omega sqrt(2 phi - 1)).
+    #[serde(default = "usual_phi")]
+    #[schemars(extend("minimum" = 1.0, "maximum" = 2.0))]
+    pub phi: f64,
+}
+
+/// The scheme of Paoli and Schatzman: nothing to give.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct PaoliSchatzman {}
+
+/// The scheme of Laursen and Chawla: nothing to give.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct LaursenChawla {}
+
+/// The scheme of Kane, Repetto, Ortiz and Marsden.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Kane {
+    /// Weight of the end acceleration in the displacement, as in Newmark's scheme.
+    #[serde(default = "quarter")]
+    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))]
+    pub beta: f64,
+    /// Weight of the end acceleration in the velocity, as in Newmark's scheme.
+    #[serde(default = "half")]
+    #[schemars(extend("minimum" = 0.5, "maximum" = 1.0))]
+    pub gamma: f64,
+}
+
 fn quarter() -> f64 {
     0.25
 }
 
 fn half() -> f64 {
     0.5
+}
+
+fn four_fifths() -> f64 {
+    0.8
+}
+
+fn minus_tenth() -> f64 {
+    -0.1
+}
+
+fn usual_phi() -> f64 {
+    1.033
 }

@@ -1,58 +1,58 @@
 //! The balance of a step, the records of its contacts, and its report.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use carom_algebra::reduce::dot;
 use carom_contact::Rows;
 
-use super::{Driver, Vectors};
+use super::{Driver, Forces, Vectors};
 use crate::error::Error;
 use crate::ledger::{Energies, Resultant, Squares, reactions};
 use crate::records::Step;
+use crate::scheme::EnergyIdentity;
 use crate::state::{ContactReport, InterfaceState, Motion, State};
 use crate::step_map::Impulse;
 use crate::system::System;
 
 impl Driver {
-    /// Energy and momentum of the step, then the records of the contacts.
+    /// Energy and momentum of the step.
     pub(super) fn balance(&mut self, strain: f64) {
         let system = Arc::clone(&self.system);
         let identity = self.identity.unwrap_or_default();
-        let [before, now] = self.work_weights();
+        let new = &self.next.motion;
+        let lagged = lagged(
+            &system,
+            &identity,
+            (new, strain),
+            &mut self.vectors,
+            &mut self.forces,
+        );
+        let work = &mut self.vectors.work;
+        let energies = Energies {
+            lagged,
+            ..energies(&system, new, strain, work, identity.inertia != 0.0)
+        };
+        let [supports, held] = self.reactions();
         let (old, new) = (&self.state.motion, &self.next.motion);
-        let Vectors {
-            x,
-            known,
-            work,
-            inertia,
-            contact_acceleration,
-            ..
-        } = &mut self.vectors;
-        let energies = energies(&system, new, strain, work, identity.inertia != 0.0);
-        let mut squares = Squares::default();
-        if identity.velocity != 0.0 {
-            squares.velocity = change_squared(&system, &old.v, &new.v, known, work);
-        }
-        if identity.acceleration != 0.0 {
-            squares.acceleration = change_squared(&system, &old.a, &new.a, known, work);
-        }
-        self.map.inertia.whole(old, x, contact_acceleration, known);
-        system.mass.multiply(known, inertia);
-        reactions(&system, &self.map, old, new, inertia, work);
-        let supports = Resultant::of(&system, work);
         let contact = Resultant::of(&system, &new.contact_force);
         let loads = Resultant::of(&system, &system.load);
-        for i in 0..known.len() {
-            known[i] = new.u[i] - old.u[i];
+        let weights = self.work_weights();
+        let Vectors {
+            residual: travel,
+            known,
+            work,
+            ..
+        } = &mut self.vectors;
+        let squares = squares(&system, &identity, (old, new), (travel, known, work));
+        if identity.lag != 0.0 {
+            for i in 0..travel.len() {
+                travel[i] -= identity.lag * (new.v[i] - old.v[i]);
+            }
         }
-        if identity.displacement != 0.0 {
-            // K is linear and symmetric: |Δu|²_K = Δu · Δf
-            squares.displacement =
-                dot(known, &new.internal_force) - dot(known, &old.internal_force);
-        }
-        let work_contact =
-            before * dot(known, &old.contact_force) + now * dot(known, &new.contact_force);
-        let work_loads = dot(known, &system.load);
+        let work_contact = weights.old * dot(travel, &old.contact_force)
+            + weights.new * dot(travel, &new.contact_force);
+        let work_loads = dot(travel, &system.load);
         self.next.ledger.clone_from(&self.state.ledger);
         self.next.ledger.add(
             (
@@ -63,19 +63,57 @@ impl Driver {
             &energies,
             [work_loads, work_contact],
             &squares,
-            [loads, contact, supports],
+            [loads, contact, supports, held],
         );
-        self.record();
     }
 
-    /// Weights of the forces at the start and of the step in the work on Δu: those of the energy identity, or of the
+    /// Resultants of the forces of the supports in the step; apart, those against contact forces that act in the
+    /// impulse in their own way.
+    fn reactions(&mut self) -> [Resultant; 2] {
+        let system = &*self.system;
+        let (old, new) = (&self.state.motion, &self.next.motion);
+        let Vectors {
+            half,
+            x,
+            known,
+            work,
+            inertia,
+            contact_acceleration: c,
+            ..
+        } = &mut self.vectors;
+        if self.map.force_fraction.is_none() {
+            self.map.force.whole(old, x, c, known);
+            self.forces.evaluate(system, known, work);
+        }
+        self.map.inertia.whole(old, x, c, known);
+        system.mass.multiply(known, inertia);
+        reactions(system, &self.map, old, new, inertia, work);
+        let supports = Resultant::of(system, work);
+        if self.map.impulse == self.map.contact_impulse {
+            return [supports, Resultant::default()];
+        }
+        for (i, held) in half.iter_mut().enumerate() {
+            *held = match system.fixed[i] {
+                true => -new.contact_force[i],
+                false => 0.0,
+            };
+        }
+        [supports, Resultant::of(system, half)]
+    }
+
+    /// Weights of the contact forces at the start and of the step in their work: those of the energy identity, or of the
     /// impulse where there is none.
-    fn work_weights(&self) -> [f64; 2] {
+    fn work_weights(&self) -> WorkWeights {
         let Impulse { old, new, .. } = self.map.contact_impulse;
-        self.identity
-            .map_or([old, new], |identity| [identity.old, identity.new])
+        let of_impulse = WorkWeights { old, new, lag: 0.0 };
+        self.identity.map_or(of_impulse, |identity| WorkWeights {
+            old: identity.old,
+            new: identity.new,
+            lag: identity.lag,
+        })
     }
 
+    /// Records of the contacts.
     pub(super) fn record(&mut self) {
         let system = Arc::clone(&self.system);
         self.next.records.follow(&self.state.records);
@@ -88,11 +126,23 @@ impl Driver {
                 &self.next.interface,
             );
             let weights = self.work_weights();
+            let interface = &self.next.interface;
             let step = Step {
                 span: [self.state.time, self.next.time],
                 impulse: self.map.contact_impulse,
                 report: &report,
-                work: contact_work(&system, k, &self.rows, weights, (&self.state, &self.next)),
+                work: contact_work(&system, k, &self.rows, weights, (&self.state, &self.next))
+                    + points(&system, k)
+                        .map(|point| self.projected.work(point))
+                        .sum::<f64>(),
+                jump: [
+                    total(&system, k, &self.rows, |point| {
+                        self.projected.impulse(point)
+                    }),
+                    total(&system, k, &self.rows, |point| {
+                        interface.carried[point] - interface.force[point]
+                    }),
+                ],
             };
             let State {
                 motion, records, ..
@@ -164,23 +214,64 @@ pub(super) fn energies(
         kinetic,
         strain,
         acceleration,
+        lagged: 0.0,
         momentum,
     }
 }
 
-/// |new - old|²_M.
-fn change_squared(
+/// U(u - lag v) - U(u), J.
+pub(super) fn lagged(
     system: &System,
-    old: &[f64],
-    new: &[f64],
-    change: &mut [f64],
-    work: &mut [f64],
+    identity: &EnergyIdentity,
+    (motion, strain): (&Motion, f64),
+    Vectors { known, work, .. }: &mut Vectors,
+    forces: &mut Forces,
 ) -> f64 {
+    if identity.lag == 0.0 {
+        return 0.0;
+    }
+    for i in 0..known.len() {
+        known[i] = motion.u[i] - identity.lag * motion.v[i];
+    }
+    forces.evaluate(system, known, work) - strain
+}
+
+/// What changed from the old to the new motion, as far as the identity asks for it. Leaves Δu in `travel`.
+fn squares(
+    system: &System,
+    identity: &EnergyIdentity,
+    (old, new): (&Motion, &Motion),
+    (travel, change, work): (&mut [f64], &mut [f64], &mut [f64]),
+) -> Squares {
+    let mut squares = Squares::default();
+    difference(&old.u, &new.u, travel);
+    if identity.velocity != 0.0 {
+        difference(&old.v, &new.v, change);
+        system.mass.multiply(change, work);
+        squares.velocity = dot(change, work);
+    }
+    if identity.acceleration != 0.0 || identity.mixed != 0.0 {
+        difference(&old.a, &new.a, change);
+        system.mass.multiply(change, work);
+        squares.acceleration = dot(change, work);
+        squares.mixed = dot(travel, work);
+    }
+    if identity.contact != 0.0 {
+        difference(&old.a, &new.a, change);
+        squares.contact = dot(change, &new.contact_force);
+    }
+    if identity.displacement != 0.0 {
+        // K is linear and symmetric: |Δu|²_K = Δu · Δf
+        squares.displacement = dot(travel, &new.internal_force) - dot(travel, &old.internal_force);
+    }
+    squares
+}
+
+/// new - old.
+fn difference(old: &[f64], new: &[f64], change: &mut [f64]) {
     for i in 0..change.len() {
         change[i] = new[i] - old[i];
     }
-    system.mass.multiply(change, work);
-    dot(change, work)
 }
 
 fn contact_report(
@@ -194,7 +285,7 @@ fn contact_report(
         gap: f64::INFINITY,
         ..ContactReport::default()
     };
-    for point in system.first_point[contact]..system.first_point[contact + 1] {
+    for point in points(system, contact) {
         let force = new.force[point];
         report.force += force;
         for (sum, n) in report.resultant.iter_mut().zip(rows.normal(point)) {
@@ -210,20 +301,60 @@ fn contact_report(
     report
 }
 
+/// How contact forces work in the energy balance.
+#[derive(Clone, Copy)]
+struct WorkWeights {
+    /// Weight of the forces at the start.
+    old: f64,
+    /// Weight of the forces of the step.
+    new: f64,
+    /// How far the displacements on which they work lie back along the velocity, s.
+    lag: f64,
+}
+
 /// Work of the forces of one contact on the motion of the step, J. `states`: at its start and end.
 fn contact_work(
     system: &System,
     contact: usize,
     rows: &Rows,
-    weights: [f64; 2],
+    weights: WorkWeights,
     (old, new): (&State, &State),
 ) -> f64 {
-    let points = system.first_point[contact]..system.first_point[contact + 1];
-    points
+    let place = |point: usize, motion: &Motion| {
+        let u = rows.product(point, &motion.u);
+        match weights.lag == 0.0 {
+            true => u,
+            false => u - weights.lag * rows.product(point, &motion.v),
+        }
+    };
+    points(system, contact)
         .map(|point| {
-            let force =
-                weights[0] * old.interface.force[point] + weights[1] * new.interface.force[point];
-            force * (rows.product(point, &new.motion.u) - rows.product(point, &old.motion.u))
+            let force = weights.old * old.interface.carried[point]
+                + weights.new * new.interface.force[point];
+            force * (place(point, &new.motion) - place(point, &old.motion))
         })
         .sum()
+}
+
+/// Contact points of a contact.
+fn points(system: &System, contact: usize) -> Range<usize> {
+    system.first_point[contact]..system.first_point[contact + 1]
+}
+
+/// Sum of a normal force or impulse over the points of a contact, and its resultant on the secondary body.
+fn total(
+    system: &System,
+    contact: usize,
+    rows: &Rows,
+    of_point: impl Fn(usize) -> f64,
+) -> (f64, [f64; 3]) {
+    let (mut sum, mut resultant) = (0.0, [0.0; 3]);
+    for point in points(system, contact) {
+        let value = of_point(point);
+        sum += value;
+        for (sum, n) in resultant.iter_mut().zip(rows.normal(point)) {
+            *sum += value * n;
+        }
+    }
+    (sum, resultant)
 }

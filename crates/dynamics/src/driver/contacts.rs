@@ -108,11 +108,6 @@ impl Driver {
     pub(super) fn solve_interface(&mut self) -> Result<(), Error> {
         let system = &*self.system;
         let motion = &self.state.motion;
-        let interface_error = |cause, points| Error::Interface {
-            step: self.state.step + 1,
-            points,
-            cause,
-        };
         self.compliance.update(
             &self.candidates,
             &self.rows,
@@ -152,20 +147,7 @@ impl Driver {
             (&self.compliance.matrix, self.compliance.version),
             factors,
         );
-        if let Err(failure) = solved {
-            return Err(match failure {
-                Failure::Singular { points, cause } => interface_error(cause, points),
-                Failure::Cycling { passes, candidate } => {
-                    let (contact, point) = system.point(self.candidates[candidate] as usize);
-                    Error::Statuses {
-                        step: self.state.step + 1,
-                        passes,
-                        contact: contact.name.clone(),
-                        point,
-                    }
-                }
-            });
-        }
+        solved.map_err(|failure| self.interface_error(failure, &self.candidates))?;
         for (&point, &force) in self.candidates.iter().zip(&self.interface.forces) {
             if force != 0.0 {
                 self.compliance.add(
@@ -177,6 +159,27 @@ impl Driver {
             }
         }
         Ok(())
+    }
+
+    /// The error behind a failure of the interface problem of some points.
+    pub(super) fn interface_error(&self, failure: Failure, candidates: &[u32]) -> Error {
+        let step = self.state.step + 1;
+        match failure {
+            Failure::Singular { points, cause } => Error::Interface {
+                step,
+                points,
+                cause,
+            },
+            Failure::Cycling { passes, candidate } => {
+                let (contact, point) = self.system.point(candidates[candidate] as usize);
+                Error::Statuses {
+                    step,
+                    passes,
+                    contact: contact.name.clone(),
+                    point,
+                }
+            }
+        }
     }
 
     /// Adds the points that were no candidates and whose law asks for a force at the end of the step; whether there are any.

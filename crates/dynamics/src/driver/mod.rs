@@ -5,6 +5,8 @@
 
 mod balance;
 mod contacts;
+mod impulse;
+mod projection;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -12,20 +14,22 @@ use std::time::{Duration, Instant};
 use carom_algebra::solver::FactorStats;
 use carom_bodies::Scratch;
 use carom_contact::law::Status;
-use carom_contact::{Rows, Search};
+use carom_contact::{Contact, Rows, Search};
 
 use crate::compliance::Compliance;
 use crate::error::Error;
 use crate::interface::{Candidate, Interface};
-use crate::ledger::{Ledger, Resultant, reactions};
+use crate::ledger::{Energies, Ledger, Resultant, reactions};
 use crate::operator::Operators;
 use crate::records::{ContactRecord, Records};
 use crate::scheme::EnergyIdentity;
 use crate::state::{ContactReport, InterfaceState, Motion, State, StepReport};
 use crate::step_map::{Row, StepMap};
 use crate::system::System;
-use balance::energies;
+use balance::{energies, lagged};
 use contacts::on_row;
+use impulse::Impulses;
+use projection::Projected;
 
 /// Takes steps.
 pub struct Driver {
@@ -36,6 +40,9 @@ pub struct Driver {
     compliance: Compliance,
     interface: Interface,
     forces: Forces,
+    /// Solver of the stages with the mass alone; none where there is no such stage.
+    impulses: Option<Impulses>,
+    projected: Projected,
     /// Rows at zero displacement of contacts with small sliding.
     initial_rows: Vec<Option<Rows>>,
     search: Vec<Search>,
@@ -126,6 +133,11 @@ impl Driver {
         let factorisation = begin.elapsed();
         let (n, points) = (system.unknowns(), system.points());
         let zeros = || vec![0.0; n];
+        let projects = |contact: &Contact| contact.law.projects();
+        let impulses = match system.contacts.iter().any(projects) {
+            true => Some(Impulses::new(&system)?),
+            false => None,
+        };
         let mut driver = Driver {
             map,
             identity,
@@ -136,6 +148,8 @@ impl Driver {
                 scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
                 sweeps: 0,
             },
+            impulses,
+            projected: Projected::new(points),
             initial_rows: Vec::new(),
             search: system.contacts.iter().map(|_| Search::default()).collect(),
             rows: Rows::default(),
@@ -164,7 +178,8 @@ impl Driver {
             system,
         };
         driver.pair_initially();
-        driver.start()?;
+        let system = Arc::clone(&driver.system);
+        driver.restart(&system.initial_displacement, &system.initial_velocity)?;
         Ok(driver)
     }
 
@@ -177,6 +192,24 @@ impl Driver {
         driver.next.clone_from(&state);
         driver.state = state;
         Ok(driver)
+    }
+
+    /// Begins anew from another initial motion: displacement in m and velocity in m/s, one entry per unknown; those of
+    /// held unknowns are zero whatever is given.
+    ///
+    /// # Errors
+    /// As [`Driver::new`].
+    pub fn restart(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<(), Error> {
+        self.state = empty_state(&self.system);
+        let held = |values: &[f64], fixed: &[bool], out: &mut [f64]| {
+            for i in 0..out.len() {
+                out[i] = if fixed[i] { 0.0 } else { values[i] };
+            }
+        };
+        let motion = &mut self.state.motion;
+        held(displacement, &self.system.fixed, &mut motion.u);
+        held(velocity, &self.system.fixed, &mut motion.v);
+        self.start()
     }
 
     /// The system.
@@ -210,13 +243,12 @@ impl Driver {
         }
     }
 
-    /// Initial state: internal forces, the acceleration in balance without contact forces, gaps, energies.
+    /// Completes the initial state from its displacement and velocity: internal forces, the acceleration in balance without
+    /// contact forces, gaps, energies.
     fn start(&mut self) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
         let identity = self.identity.unwrap_or_default();
         let motion = &mut self.state.motion;
-        motion.u.copy_from_slice(&system.initial_displacement);
-        motion.v.copy_from_slice(&system.initial_velocity);
         let strain = self
             .forces
             .evaluate(&system, &motion.u, &mut motion.internal_force);
@@ -229,30 +261,34 @@ impl Driver {
             mass.begin(&self.vectors.residual, &mut self.vectors.half);
             mass.end(&mut self.vectors.half, &mut motion.a);
         }
-        let energies = energies(
-            &system,
-            motion,
-            strain,
-            &mut self.vectors.work,
-            identity.inertia != 0.0,
-        );
-        system.mass.multiply(&motion.a, &mut self.vectors.inertia);
         let motion = &self.state.motion;
+        let lagged = lagged(
+            &system,
+            &identity,
+            (motion, strain),
+            &mut self.vectors,
+            &mut self.forces,
+        );
+        let work = &mut self.vectors.work;
+        let energies = Energies {
+            lagged,
+            ..energies(&system, motion, strain, work, identity.inertia != 0.0)
+        };
+        system.mass.multiply(&motion.a, &mut self.vectors.inertia);
+        work.copy_from_slice(&motion.internal_force);
         reactions(
             &system,
             &self.map,
             motion,
             motion,
             &self.vectors.inertia,
-            &mut self.vectors.work,
+            work,
         );
-        let supports = Resultant::of(&system, &self.vectors.work);
+        let supports = Resultant::of(&system, work);
         let loads = Resultant::of(&system, &system.load);
-        self.state.ledger = Ledger::start(
-            &energies,
-            &identity,
-            [loads, Resultant::default(), supports],
-        );
+        let none = Resultant::default();
+        let forces = [loads, none, supports, none];
+        self.state.ledger = Ledger::start(&energies, &identity, forces);
         self.state.records = Records {
             contacts: vec![ContactRecord::default(); system.contacts.len()],
             impacts: Vec::new(),
@@ -297,6 +333,8 @@ impl Driver {
         let strain = self.end_forces(predicted);
         let ended = Instant::now();
         self.balance(strain);
+        self.project(strain)?;
+        self.record();
         self.finite()?;
         self.phases.forces += (forces - begin) + (ended - solved);
         self.phases.sweeps += sweeps;
@@ -366,6 +404,7 @@ impl Driver {
             interface.force[point as usize] = self.interface.forces[k];
             interface.status[point as usize] = self.interface.statuses[k];
         }
+        interface.carried.clone_from(&interface.force);
         for point in 0..system.points() {
             interface.gap[point] =
                 self.rows.gap(point) + on_row(&self.rows, point, &self.ahead[point], old, [x, c]);
@@ -400,6 +439,7 @@ fn empty_state(system: &System) -> State {
         },
         interface: InterfaceState {
             force: vec![0.0; points],
+            carried: vec![0.0; points],
             gap: vec![0.0; points],
             rate: vec![0.0; points],
             status: vec![Status::Open; points],

@@ -37,7 +37,7 @@ impl TimeScheme for CentralDifference {
         StepMap {
             inertia: acceleration,
             force: displacement,
-            force_fraction: 1.0,
+            force_fraction: Some(1.0),
             displacement,
             velocity: Row {
                 u: 0.0,
@@ -66,9 +66,7 @@ impl TimeScheme for CentralDifference {
             inertia: -0.125 * dt * dt,
             old: 0.5,
             new: 0.5,
-            velocity: 0.0,
-            displacement: 0.0,
-            acceleration: 0.0,
+            ..EnergyIdentity::default()
         })
     }
 
@@ -76,7 +74,11 @@ impl TimeScheme for CentralDifference {
         true
     }
 
-    fn is_explicit(&self) -> bool {
-        true
+    fn order(&self) -> u32 {
+        2
+    }
+
+    fn critical(&self) -> Option<f64> {
+        Some(2.0)
     }
 }

@@ -3,30 +3,48 @@
 //! Adding a scheme: one file here, one variant of [`Scheme`], one arm of [`Scheme::get`].
 
 mod central_difference;
+mod generalised_alpha;
+mod hht;
+mod kane;
+mod laursen_chawla;
 mod newmark;
+mod paoli_schatzman;
+mod tchamwa_wielgosz;
 mod theta;
 
+use carom_contact::law::Level;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::StepMap;
 
 pub use central_difference::CentralDifference;
+pub use generalised_alpha::GeneralisedAlpha;
+pub use hht::Hht;
+pub use kane::Kane;
+pub use laursen_chawla::LaursenChawla;
 pub use newmark::Newmark;
+pub use paoli_schatzman::PaoliSchatzman;
+pub use tchamwa_wielgosz::TchamwaWielgosz;
 pub use theta::Theta;
 
-/// The exact energy balance of one step of a linear system without damping. With E = ½|v|²_M + U(u), F the sum of
-/// external and contact forces and Δ the change over the step,
+/// The exact energy balance of one step of a linear system without damping. With ū = u - lag v, E = ½|v|²_M + U(ū), G the
+/// dead loads, P the contact forces and Δ the change over the step,
 ///
-/// `Δ(E + inertia |a|²_M) = Δu · (old F_k + new F_{k+1}) - (velocity |Δv|²_M + displacement |Δu|²_K + acceleration |Δa|²_M)`
+/// `Δ(E + inertia |a|²_M) = Δū · (G + Nᵀ (old P_k + new P_{k+1})) - D`
 ///
-/// The bracket is the dissipation of the scheme.
+/// `D = velocity |Δv|²_M + displacement |Δu|²_K + acceleration |Δa|²_M + mixed Δu·MΔa + contact Δa·NᵀP_{k+1}`
+///
+/// D is the dissipation of the scheme. Where its factors have no common sign, D gives back in some steps what it took in
+/// others.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyIdentity {
+    /// How far the displacements that the scheme balances lie back along the velocity, in s; zero for most schemes.
+    pub lag: f64,
     /// Factor of |a|²_M in the energy that the scheme conserves, in s².
     pub inertia: f64,
-    /// Weight of the forces at the start of the step.
+    /// Weight of the contact forces at the start of the step.
     pub old: f64,
-    /// Weight of the forces of the step.
+    /// Weight of the contact forces of the step.
     pub new: f64,
     /// Dissipation factor of |Δv|²_M.
     pub velocity: f64,
@@ -34,6 +52,10 @@ pub struct EnergyIdentity {
     pub displacement: f64,
     /// Dissipation factor of |Δa|²_M, in s².
     pub acceleration: f64,
+    /// Dissipation factor of Δu·MΔa.
+    pub mixed: f64,
+    /// Dissipation factor of Δa·NᵀP_{k+1}, in s².
+    pub contact: f64,
 }
 
 /// What a time scheme must answer.
@@ -47,8 +69,23 @@ pub trait TimeScheme {
     fn energy_identity(&self, dt: f64) -> Option<EnergyIdentity>;
     /// Whether the state holds an acceleration in balance, which needs one at the start.
     fn keeps_acceleration(&self) -> bool;
-    /// Whether end displacements are known before the forces: no linear solve, lumped mass only, a critical step.
-    fn is_explicit(&self) -> bool;
+    /// Order of convergence in the step of displacement and velocity at the same instant, without contact.
+    fn order(&self) -> u32;
+    /// The critical ω dt of a scheme whose end displacements are known before the forces; `None` of one that solves for
+    /// them.
+    fn critical(&self) -> Option<f64>;
+    /// Whether end displacements are known before the forces: no linear solve, a critical step.
+    fn is_explicit(&self) -> bool {
+        self.critical().is_some()
+    }
+    /// Whether the mass must be diagonal.
+    fn needs_lumped_mass(&self) -> bool {
+        self.is_explicit()
+    }
+    /// Whether a contact law that constrains this quantity can hold.
+    fn takes(&self, level: Level) -> bool {
+        !(self.is_explicit() && level == Level::Gap)
+    }
 }
 
 /// A time scheme, as chosen in the case file.
@@ -60,6 +97,18 @@ pub enum Scheme {
     Theta(Theta),
     /// Central differences.
     CentralDifference(CentralDifference),
+    /// Generalised-alpha.
+    GeneralisedAlpha(GeneralisedAlpha),
+    /// Hilber, Hughes, Taylor.
+    Hht(Hht),
+    /// Explicit and dissipative, Tchamwa and Wielgosz.
+    TchamwaWielgosz(TchamwaWielgosz),
+    /// Two-step, Paoli and Schatzman.
+    PaoliSchatzman(PaoliSchatzman),
+    /// Mid-point rule with contact on the mean rate, Laursen and Chawla.
+    LaursenChawla(LaursenChawla),
+    /// Newmark with implicit contact forces, Kane, Repetto, Ortiz and Marsden.
+    Kane(Kane),
 }
 
 impl Scheme {
@@ -69,6 +118,12 @@ impl Scheme {
             Scheme::Newmark(scheme) => scheme,
             Scheme::Theta(scheme) => scheme,
             Scheme::CentralDifference(scheme) => scheme,
+            Scheme::GeneralisedAlpha(scheme) => scheme,
+            Scheme::Hht(scheme) => scheme,
+            Scheme::TchamwaWielgosz(scheme) => scheme,
+            Scheme::PaoliSchatzman(scheme) => scheme,
+            Scheme::LaursenChawla(scheme) => scheme,
+            Scheme::Kane(scheme) => scheme,
         }
     }
 
@@ -86,6 +141,15 @@ impl Scheme {
             Scheme::Theta(Theta { theta: 0.5 }),
             Scheme::Theta(Theta { theta: 0.75 }),
             Scheme::CentralDifference(CentralDifference),
+            Scheme::GeneralisedAlpha(GeneralisedAlpha { rho_inf: 0.8 }),
+            Scheme::Hht(Hht { alpha: -0.1 }),
+            Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: 1.033 }),
+            Scheme::PaoliSchatzman(PaoliSchatzman),
+            Scheme::LaursenChawla(LaursenChawla),
+            Scheme::Kane(Kane {
+                beta: 0.25,
+                gamma: 0.5,
+            }),
         ]
     }
 }

@@ -51,7 +51,7 @@ impl TimeScheme for Newmark {
         StepMap {
             inertia: acceleration,
             force: displacement,
-            force_fraction: 1.0,
+            force_fraction: Some(1.0),
             displacement,
             velocity,
             acceleration,
@@ -73,9 +73,9 @@ impl TimeScheme for Newmark {
             inertia: 0.5 * b * dt * dt,
             old: 1.0 - self.gamma,
             new: self.gamma,
-            velocity: 0.0,
             displacement: excess,
             acceleration: excess * b * dt * dt,
+            ..EnergyIdentity::default()
         })
     }
 
@@ -83,7 +83,11 @@ impl TimeScheme for Newmark {
         true
     }
 
-    fn is_explicit(&self) -> bool {
-        false
+    fn order(&self) -> u32 {
+        if self.gamma == 0.5 { 2 } else { 1 }
+    }
+
+    fn critical(&self) -> Option<f64> {
+        None
     }
 }

@@ -45,7 +45,7 @@ impl TimeScheme for Theta {
                 x: theta * theta * dt,
                 c: 0.0,
             },
-            force_fraction: theta,
+            force_fraction: Some(theta),
             displacement: Row {
                 u: 1.0,
                 v: (1.0 - theta) * dt,
@@ -69,12 +69,10 @@ impl TimeScheme for Theta {
     fn energy_identity(&self, _dt: f64) -> Option<EnergyIdentity> {
         let excess = self.theta - 0.5;
         Some(EnergyIdentity {
-            inertia: 0.0,
-            old: 0.0,
             new: 1.0,
             velocity: excess,
             displacement: excess,
-            acceleration: 0.0,
+            ..EnergyIdentity::default()
         })
     }
 
@@ -82,7 +80,11 @@ impl TimeScheme for Theta {
         false
     }
 
-    fn is_explicit(&self) -> bool {
-        false
+    fn order(&self) -> u32 {
+        if self.theta == 0.5 { 2 } else { 1 }
+    }
+
+    fn critical(&self) -> Option<f64> {
+        None
     }
 }

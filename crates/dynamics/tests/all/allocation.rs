@@ -89,7 +89,7 @@ fn a_step_in_contact_allocates_nothing() {
                 beta: 0.49,
                 gamma: 0.9,
             }),
-            Law::Displacement(Displacement),
+            Law::Displacement(Displacement::default()),
         ),
         (Scheme::CentralDifference(CentralDifference), velocity),
     ];
