@@ -14,9 +14,9 @@ pub enum Capture {
     Now,
     /// g_k + dt/2 ġ_k. Penetration up to (3/2 - θ) v₀ dt.
     Half,
-    /// g_k + dt ġ_k: may start contact a step too early. Penetration up to (1 - θ) v₀ dt.
+    /// g_k + dt ġ_k: may start contact a step too early, and then lets go of a point at rest. Penetration up to v₀ dt.
     Full,
-    /// The end of the step without any contact force. As `Full`, with the forces inside the bodies.
+    /// The end of the step without any contact force: may start contact a step too early. Penetration up to (1 - θ) v₀ dt.
     Free,
     /// None is tested: in any point the gap itself is the target, ġ₊ + g_k/dt >= 0 instead of ġ₊ >= 0. Penetration up
     /// to (1 - θ) v₀ dt, and what has penetrated is pushed out.

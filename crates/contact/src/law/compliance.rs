@@ -1,5 +1,7 @@
 //! The compliance in velocity: a one-sided damper on closed points.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Capture, ContactLaw, End, Level, Local, Relation, Status};
 
 /// Compliance in velocity: on closed points, `p = C_n max(0, -ġ₊)` for the rate at the END of the step; the velocity
@@ -10,7 +12,7 @@ use super::{Capture, ContactLaw, End, Level, Local, Relation, Status};
 /// 400 ρc.
 ///
 /// Source: Ben Dhia, Zammali, Voldoire, Lamarche (2003), Remark 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compliance {
     /// C_n in Pa s/m.
     pub damping: f64,

@@ -20,7 +20,7 @@ pub enum Adhesion {
 /// the law's force positive, the point takes the corner g₊ = 0.
 ///
 /// Source: Ben Dhia, Zammali, Voldoire, Lamarche (2003), equation (6), with a compliance instead of its multiplier.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Damped {
     /// k_p in Pa/m.
     pub stiffness: f64,

@@ -1,5 +1,7 @@
 //! The hybrid displacement law: exact Signorini conditions in the gap.
 
+use serde::{Deserialize, Serialize};
+
 use super::{ContactLaw, End, Level, Local, Relation, Status};
 
 /// Hybrid displacement law, `p = S_g (p - r g)` with S_g = 1 where `p - r g > 0`: the gap at the end of the step is
@@ -8,7 +10,7 @@ use super::{ContactLaw, End, Level, Local, Relation, Status};
 /// it is that of -g₊. The sign is strict, else points released at rest stick.
 ///
 /// Source: Ben Dhia, Zammali, Voldoire, Lamarche (2003), equations (2)-(4).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Displacement {
     /// Whether velocity and acceleration are projected on the admissible ones, `N v₊ >= 0` and `N a₊ >= 0`, at the end
     /// of a step in which points close: the cure for the oscillation under Newmark's scheme. The law itself is the

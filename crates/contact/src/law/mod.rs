@@ -43,7 +43,7 @@ pub enum Status {
 }
 
 /// What is known of a point before the forces of the step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Local {
     /// Surface that the point stands for, m².
     pub area: f64,
@@ -142,7 +142,7 @@ pub trait ContactLaw {
     clippy::large_enum_variant,
     reason = "laws are plain values that are copied; only the curve of a stop is large"
 )]
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Law {
     /// Hybrid displacement, sign field S_g.
     Displacement(Displacement),

@@ -1,12 +1,14 @@
 //! The penalty law: a given stiffness, with or without a damper.
 
+use serde::{Deserialize, Serialize};
+
 use super::{ContactLaw, Damped, End, Level, Local, Relation, Status};
 
 /// Penalty, `p = k max(0, -g₊)`, with a damper if one is given: the damped law, whose stiffness and damping here are
 /// the user's and not the material's. Bodies penetrate by p/k.
 ///
 /// Source: Wriggers, Computational Contact Mechanics (2006), chapter on penalty methods.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Penalty(
     /// k in Pa/m, damping in Pa s/m or zero, and what becomes of tension.
     pub Damped,

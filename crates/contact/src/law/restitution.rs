@@ -1,16 +1,18 @@
 //! Newton's restitution: the velocity law with a rebound.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Capture, ContactLaw, End, Level, Local, Relation, Status};
 
 /// Newton's restitution in Moreau's form: on closed points, `0 <= ġ₊ + e ġ_k ⟂ P >= 0` with ġ₊ at the END of the step
 /// and ġ_k at its start; e = 0 is the velocity law.
 ///
-/// Dissipative with the theta scheme for θ <= 1/(1 + e). The coefficient belongs to contact points: an elastic body
-/// has a rebound of its own besides, so that in bars only e = 0 gives the exact impact; e is for bodies that are rigid at
-/// the time scale of the step.
+/// Dissipative with the theta scheme for θ <= 1/(1 + e), where points that press approach. The coefficient belongs to
+/// contact points: an elastic body has a rebound of its own besides, so that in bars only e = 0 gives the exact impact; e
+/// is for bodies that are rigid at the time scale of the step.
 ///
 /// Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988), section on restitution.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Restitution {
     /// e, from 0 to 1.
     pub coefficient: f64,

@@ -1,5 +1,7 @@
 //! The stop of engineering structures: a clearance, a curve of force over penetration, a dashpot.
 
+use serde::{Deserialize, Serialize};
+
 use super::damped::pressing;
 use super::{Adhesion, ContactLaw, End, Level, Local, Relation, Status};
 
@@ -8,7 +10,8 @@ pub const MOST_CURVE_POINTS: usize = 16;
 
 /// Force over penetration of a whole contact, linear in pieces from (0, 0) through increasing points; beyond the last
 /// point the last piece goes on. A fixed array, so that laws stay plain values.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<[f64; 2]>", into = "Vec<[f64; 2]>")]
 pub struct Curve {
     points: [[f64; 2]; MOST_CURVE_POINTS],
     pieces: u16,
@@ -106,6 +109,20 @@ impl Curve {
     }
 }
 
+impl TryFrom<Vec<[f64; 2]>> for Curve {
+    type Error = CurveError;
+
+    fn try_from(points: Vec<[f64; 2]>) -> Result<Curve, CurveError> {
+        Curve::new(&points)
+    }
+}
+
+impl From<Curve> for Vec<[f64; 2]> {
+    fn from(curve: Curve) -> Vec<[f64; 2]> {
+        curve.points[..usize::from(curve.pieces)].to_vec()
+    }
+}
+
 /// Stop: `P = share (F(δ) - C ġ₊)` where the penetration `δ = -(g₊ + j)` is positive, F a curve that is linear in
 /// pieces, j the clearance. Elastic: unloading follows the same curve. As in the damped law a point whose damper leaves
 /// it no sign takes the corner δ = 0.
@@ -114,7 +131,7 @@ impl Curve {
 /// settled: for one point the solution is always on that side, since force and compliance increase.
 ///
 /// Source: the force-gap elements of structural codes; the pieces are solved as signs of a semi-smooth Newton method.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// j in m, zero or more.
     pub clearance: f64,

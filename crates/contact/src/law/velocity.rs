@@ -19,7 +19,7 @@ pub enum Reading {
 /// With the gap as target, `0 <= ġ₊ + g_k/dt ⟂ P >= 0` in all points.
 ///
 /// Source: Ben Dhia, Zammali, Voldoire, Lamarche (2003), equation (7).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Velocity {
     /// Which configuration is tested for closure.
     pub capture: Capture,
