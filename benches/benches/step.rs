@@ -111,6 +111,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
             reading: Reading::Closed,
         }),
         sliding: Sliding::Finite,
+        massless: false,
     };
     Ok(Model {
         mesh,

@@ -92,6 +92,22 @@ pub enum Error {
         /// Name of the contact.
         contact: String,
     },
+    /// Contact nodes that cannot be without mass.
+    #[error("body '{body}' cannot have contact nodes without mass: {cause}")]
+    Massless {
+        /// Name of the body.
+        body: String,
+        /// Why.
+        cause: &'static str,
+    },
+    /// A contact that cannot have nodes without mass.
+    #[error("contact '{contact}' cannot have nodes without mass: {cause}")]
+    MasslessContact {
+        /// Name of the contact.
+        contact: String,
+        /// Why.
+        cause: &'static str,
+    },
     /// A law in the rate on a scheme whose contact forces are those that keep the displacement.
     #[error(
         "contact '{contact}': in the scheme {scheme} contact forces keep the displacement at the end of the step, so only the displacement law can hold"

@@ -10,6 +10,7 @@ mod error;
 mod interface;
 mod ledger;
 mod march;
+mod massless;
 mod operator;
 mod records;
 pub mod scheme;

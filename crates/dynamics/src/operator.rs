@@ -178,8 +178,15 @@ impl Operators {
         stiffness_factor: f64,
         matrix: &'static str,
     ) -> Result<Operators, Error> {
+        let mut held = system.fixed.clone();
+        if stiffness_factor == 0.0 {
+            // nothing moves what has neither mass nor stiffness
+            for &unknown in &system.massless {
+                held[unknown as usize] = true;
+            }
+        }
         let operator = |part: &Range<usize>| {
-            let fixed = &system.fixed[part.clone()];
+            let fixed = &held[part.clone()];
             if stiffness_factor == 0.0 && system.mass.consistent.is_none() {
                 let lumped = system.mass.lumped[part.clone()].iter();
                 let diagonal: Vec<f64> = lumped.map(|m| mass_factor * m).collect();

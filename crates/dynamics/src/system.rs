@@ -10,6 +10,7 @@ use carom_contact::law::Level;
 use carom_contact::{Contact, Law, Plane, Point, Sliding, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
 
+use crate::massless::redistribute;
 use crate::{Error, Scheme};
 
 /// Everything from which a system is built; names are those of the case file.
@@ -66,6 +67,8 @@ pub struct ModelContact {
     pub law: Law,
     /// Extent of the sliding.
     pub sliding: Sliding,
+    /// Whether the nodes of both surfaces give their mass to the other nodes of their bodies.
+    pub massless: bool,
 }
 
 /// What a secondary surface faces.
@@ -122,6 +125,8 @@ pub struct System {
     pub body_masses: Vec<Vec<(u32, f64)>>,
     /// Mass matrix.
     pub mass: Mass,
+    /// Unknowns of contact nodes without mass, ascending: they follow their equilibrium.
+    pub massless: Vec<u32>,
     /// Whether an unknown is held at zero.
     pub fixed: Vec<bool>,
     /// Dead load, N.
@@ -180,11 +185,13 @@ impl System {
                 }
             }
         }
-        let mass = mass(&bodies, &model.bodies, dim, x.len());
-        let body_masses: Vec<_> = bodies
+        let mut mass = mass(&bodies, &model.bodies, dim, x.len());
+        let mut body_masses: Vec<_> = bodies
             .iter()
             .map(|body| node_masses(body, dim, x.len()))
             .collect();
+        let masses = (&mut mass, &mut body_masses[..]);
+        let massless = redistribute(&model, &bodies, &number, &x, masses)?;
         let mut load = vec![0.0; dim * x.len()];
         for &(node, m) in body_masses.iter().flatten() {
             for i in 0..dim {
@@ -228,6 +235,7 @@ impl System {
             bodies,
             body_masses,
             mass,
+            massless,
             fixed,
             load,
             contacts,
@@ -241,7 +249,35 @@ impl System {
             mesh: model.mesh,
         };
         system.check_scheme(&model.bodies)?;
+        system.check_massless(&model.contacts)?;
         Ok(Arc::new(system))
+    }
+
+    fn check_massless(&self, contacts: &[ModelContact]) -> Result<(), Error> {
+        let scheme = self.scheme.get();
+        let cause = |contact: &ModelContact| {
+            if scheme.is_explicit() {
+                Some("an explicit scheme divides by the mass of each node")
+            } else if scheme.needs_lumped_mass() {
+                Some("the scheme divides the contact forces by the mass of their nodes")
+            } else if contact.law.get().level() != Level::Gap {
+                Some(
+                    "the rate of a node without mass is no unknown: only the displacement law can hold",
+                )
+            } else if contact.law.projects() {
+                Some("there is no mass on which velocities could be projected, and no need to")
+            } else {
+                None
+            }
+        };
+        let mut refused = contacts.iter().filter(|contact| contact.massless);
+        match refused.find_map(|contact| Some((contact, cause(contact)?))) {
+            None => Ok(()),
+            Some((contact, cause)) => Err(Error::MasslessContact {
+                contact: contact.name.clone(),
+                cause,
+            }),
+        }
     }
 
     fn check_scheme(&self, bodies: &[ModelBody]) -> Result<(), Error> {

@@ -397,6 +397,9 @@ impl Driver {
         map.displacement.whole(old, x, c, &mut new.u);
         map.velocity.whole(old, x, c, &mut new.v);
         map.acceleration.whole(old, x, c, &mut new.a);
+        for i in system.massless.iter().map(|&unknown| unknown as usize) {
+            (new.v[i], new.a[i]) = ((new.u[i] - old.u[i]) / system.dt, 0.0);
+        }
         let interface = &mut self.next.interface;
         interface.force.fill(0.0);
         interface.status.fill(Status::Open);
@@ -408,7 +411,10 @@ impl Driver {
         for point in 0..system.points() {
             interface.gap[point] =
                 self.rows.gap(point) + on_row(&self.rows, point, &self.ahead[point], old, [x, c]);
-            interface.rate[point] = on_row(&self.rows, point, &map.rate, old, [x, c]);
+            interface.rate[point] = match system.massless.is_empty() {
+                true => on_row(&self.rows, point, &map.rate, old, [x, c]),
+                false => self.rows.product(point, &new.v),
+            };
         }
         self.next.step = self.state.step + 1;
         self.next.time = self.next.step as f64 * system.dt;

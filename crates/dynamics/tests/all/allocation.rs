@@ -68,6 +68,7 @@ fn resting_cube(scheme: Scheme, law: Law, dt: f64) -> Driver {
             }),
             law,
             sliding: Sliding::Finite,
+            massless: false,
         }],
         scheme,
         dt,

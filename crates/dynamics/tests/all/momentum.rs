@@ -42,6 +42,7 @@ fn a_cylinder_that_bulges_as_it_strikes_keeps_its_axial_momentum_balance() {
                 reading: Reading::Closed,
             }),
             sliding: Sliding::Finite,
+            massless: false,
         }],
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt: 5e-5,

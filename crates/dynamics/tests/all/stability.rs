@@ -38,6 +38,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         primary: ModelTarget::Surface(surface("b.left", 1)),
         law,
         sliding: Sliding::Small,
+        massless: false,
     }];
     let model = Model {
         bodies: bodies.clone(),

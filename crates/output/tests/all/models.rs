@@ -66,6 +66,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         primary: ModelTarget::Surface(surface("target.left", &bodies[1])),
         law: velocity_law(),
         sliding: Sliding::Small,
+        massless: false,
     }];
     let model = Model {
         bodies,
@@ -124,6 +125,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         }),
         law: Law::Displacement(Displacement::default()),
         sliding: Sliding::Small,
+        massless: false,
     };
     let model = Model {
         bodies: vec![body],
