@@ -29,6 +29,7 @@ pub(crate) fn laws(material: &Elastic, size: f64) -> Vec<(&'static str, Law)> {
 /// Whether a scheme cannot take a law: with an explicit one the end displacement does not depend on the force.
 pub(crate) fn is_senseless(scheme: Scheme, law: Law) -> bool {
     scheme.get().is_explicit() && law == DISPLACEMENT
+        || matches!(scheme, Scheme::Kane(_)) && law != DISPLACEMENT
 }
 
 /// Pairs of runs that must end in the same bytes.
@@ -53,7 +54,10 @@ impl Battery {
         self.senseless += usize::from(senseless);
         match System::new(model) {
             Ok(system) => Ok(Some(system)),
-            Err(carom_dynamics::Error::DisplacementLaw { .. }) if senseless => {
+            Err(
+                carom_dynamics::Error::DisplacementLaw { .. }
+                | carom_dynamics::Error::RateLaw { .. },
+            ) if senseless => {
                 self.refused += 1;
                 Ok(None)
             }

@@ -18,6 +18,7 @@ mod bars_central_difference;
 mod bars_convergence;
 mod bars_damped;
 mod bars_newmark;
+mod bars_schemes;
 mod bars_theta;
 mod block_drop;
 mod blocks;
@@ -29,6 +30,7 @@ mod order;
 mod resume;
 mod sdnl111;
 mod shapes;
+mod supports;
 mod threads;
 
 use std::io::{self, Write};
@@ -62,6 +64,7 @@ registry! {
     bars_convergence
     bars_damped
     bars_newmark
+    bars_schemes
     bars_theta
     block_drop
     blocks
@@ -73,6 +76,7 @@ registry! {
     resume
     sdnl111
     shapes
+    supports
     threads
 }
 

@@ -11,6 +11,8 @@ use crate::step_map::{Impulse, Row, StepMap};
 ///
 /// β > 0 here; β = 0, γ = ½ is [`CentralDifference`](super::CentralDifference), which takes the contact rate half a step
 /// later. Unconditionally stable without contact for 2β >= γ >= ½. The paper's sets are (¼, ½), (½, ½), (0.49, 0.9).
+/// Chaudhary and Bathe (1986) join Newmark's scheme to multipliers for the displacement law at the end of the step; their
+/// text was not at hand, so that their β and γ, believed to be the second set, could not be verified.
 ///
 /// Energy identity with b = β - γ/2: `Δ(E + b dt²/2 |a|²_M) = Δu · ((1 - γ) F_k + γ F_{k+1}) - (γ - ½)(|Δu|²_K + b dt² |Δa|²_M)`.
 ///

@@ -5,13 +5,16 @@ use serde::{Deserialize, Serialize};
 use super::{EnergyIdentity, TimeScheme};
 use crate::step_map::{Impulse, Row, StepMap};
 
-/// Theta scheme with the velocity at the end of the step as unknown (Moreau-Jean without restitution when joined to the
-/// velocity law):
+/// Theta scheme with the velocity at the end of the step as unknown; the scheme of Moreau and Jean when joined to the
+/// velocity law, or to the law of restitution:
 ///
 /// `M (v₊ - v)/dt + f(u_θ) = p_ext + Nᵀ P`, `v_θ = (1 - θ) v + θ v₊`, `u_θ = u + θ dt v_θ`, `u₊ = u + dt v_θ`.
 ///
 /// Energy identity: `ΔE = Δu · F - (θ - ½)(|Δv|²_M + |Δu|²_K)`. The acceleration reported is the mean of the step,
 /// (v₊ - v)/dt.
+///
+/// A scheme in state space with mean values and a balanced damping α, `M Δv + dt f(ū + ½α Δu) = dt F` and
+/// `Δu = dt (v̄ + ½α Δv)`, is this one with θ = (1 + α)/2.
 ///
 /// Source: Ben Dhia et al. (2003), equation (7) and Remark 2; Moreau (1988), Jean (1999).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -94,12 +94,21 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         value,
         bound,
     };
-    let checks = vec![
-        check(
+    let mut warnings = settings.warnings.clone();
+    let mut checks = Vec::new();
+    if system.scheme.get().energy_identity(system.dt).is_some() {
+        checks.push(check(
             "energy residual / largest energy",
             energy.relative_residual,
             BOUND,
-        ),
+        ));
+    } else {
+        warnings.push(format!(
+            "no energy identity is known of the scheme {}: the energy residual holds what the scheme dissipates, and is not checked",
+            system.scheme.get().name()
+        ));
+    }
+    checks.extend([
         check(
             "momentum residual / largest momentum",
             momentum.relative_residual,
@@ -107,7 +116,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         ),
         check("energy gained / largest energy", gained(last), GAIN),
         check("states that are not finite", totals.not_finite as f64, 0.0),
-    ];
+    ]);
     let names = results.folder.names().map(str::to_owned);
     let own = ["report.html", "summary.json"];
     // the collection names the field files, which may be thousands
@@ -131,7 +140,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
             .map(|comparison| against_exact(results, comparison)),
         counts: counts(ending.costs, totals.passes),
         timings: timings(results, ending),
-        warnings: settings.warnings.clone(),
+        warnings,
         outputs: names.filter(there).collect(),
     }
 }
