@@ -8,6 +8,7 @@
 
 use carom_bodies::MassKind;
 use carom_dynamics::Scheme;
+use carom_dynamics::scheme::{GeneralisedAlpha, Hht, Kane, TchamwaWielgosz};
 
 use crate::Error;
 use crate::bars::{Run, SLOW};
@@ -39,6 +40,26 @@ fn work_of_history() -> Result<Row, Error> {
     ))
 }
 
+/// Other parameters of schemes whose terms depend on them.
+fn more() -> Vec<Scheme> {
+    let alpha = |rho_inf| Scheme::GeneralisedAlpha(GeneralisedAlpha { rho_inf });
+    vec![
+        alpha(0.0),
+        alpha(0.5),
+        alpha(1.0),
+        Scheme::Hht(Hht { alpha: -1.0 / 3.0 }),
+        Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: 1.3 }),
+        Scheme::Kane(Kane {
+            beta: 0.49,
+            gamma: 0.9,
+        }),
+        Scheme::Kane(Kane {
+            beta: 0.5,
+            gamma: 0.5,
+        }),
+    ]
+}
+
 pub(crate) const CHECK: Check = Check {
     name: "energy-identity",
     fact: "every scheme with every law keeps its energy identity and the momentum",
@@ -46,6 +67,7 @@ pub(crate) const CHECK: Check = Check {
         let mut schemes = Scheme::registered();
         schemes.extend(PAPER_SETS.map(|[beta, gamma]| newmark(beta, gamma)));
         schemes.push(theta(1.0));
+        schemes.extend(more());
         let mut rows = vec![work_of_history()?];
         for scheme in schemes {
             for (law_name, law) in laws(&SLOW.material(), SLOW.length / ELEMENTS as f64) {
