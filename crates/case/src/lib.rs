@@ -8,6 +8,7 @@ pub mod schema;
 pub mod units;
 
 mod build;
+mod compare;
 mod describe;
 mod error;
 mod facts;
@@ -17,16 +18,21 @@ mod locate;
 mod reference;
 mod rules;
 mod run;
+mod study;
+mod sweep;
 mod tree;
 mod validate;
 
 pub use build::{Built, BuiltProbe, ExactReference, build};
+pub use compare::{Choices, compare};
 pub use error::{Place, Problem};
 pub use facts::{Fact, facts};
 pub use input::{Input, Source};
 pub use locate::Locator;
 pub use reference::reference_page;
 pub use run::{Failed, Finished, run};
+pub use study::{Vary, study};
+pub use sweep::{Sweep, SweepError};
 
 /// Reads a case: syntax, overrides, schema.
 ///

@@ -115,14 +115,19 @@ fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Setti
                 stress: has(Field::Stress),
             }
         }),
-        reference: built.reference.as_ref().map(|reference| Reference {
-            name: reference.name.to_string(),
-            solution: reference.solution.clone(),
-            contact: reference.contact,
-            axis: reference.axis,
-        }),
+        reference: reference(built),
         warnings: built.warnings.clone(),
     }
+}
+
+/// The exact solution of a built case, for the output.
+pub(crate) fn reference(built: &Built) -> Option<Reference> {
+    built.reference.as_ref().map(|reference| Reference {
+        name: reference.name.to_string(),
+        solution: reference.solution.clone(),
+        contact: reference.contact,
+        axis: reference.axis,
+    })
 }
 
 fn scheme(scheme: &Scheme) -> String {

@@ -1,14 +1,17 @@
-//! The executable: `carom run`, `check`, `schema`, `new`, `verify`.
+//! The executable: `carom run`, `compare`, `study`, `check`, `schema`, `new`, `verify`.
 //!
 //! Exit codes: 0 done and the verdict good, 2 bad input, 3 the run failed with the last good state on disk, 4 done but a
 //! balance is out of its bound, 130 interrupted.
 // The program talks to people: printing is its job.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod compare;
 mod diagnostics;
 mod new;
 mod progress;
 mod run;
+mod study;
+mod sweep;
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -29,6 +32,10 @@ struct Arguments {
 enum Command {
     /// Check a case, run it, and leave its results folder
     Run(run::Arguments),
+    /// Run a case under several schemes and contact laws: one table, one figure per quantity, one report
+    Compare(compare::Arguments),
+    /// Run a case over the values of a key: orders of convergence with error bars
+    Study(study::Arguments),
     /// Say everything that can be said of a case before a run
     Check {
         /// The case file
@@ -77,6 +84,8 @@ fn main() -> ExitCode {
         .init();
     let code = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Study(arguments) => study::study(&arguments),
         Command::Check { case, set } => check(&case, &set),
         Command::Schema { reference } => schema(reference),
         Command::New { template, file } => new::new(template.as_deref(), &file),

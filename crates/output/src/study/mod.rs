@@ -8,6 +8,7 @@ mod page;
 mod quantities;
 
 pub use orders::{Fit, consecutive, differences, fit};
+pub use page::RAW_PEAK;
 pub use quantities::{Measure, Quantity};
 
 use crate::compare::Variant;

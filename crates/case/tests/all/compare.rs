@@ -1,0 +1,298 @@
+//! Comparisons and studies of the two bars, as a user of the library makes them.
+
+use std::path::Path;
+
+use carom_case::{Choices, Input, Sweep, SweepError, Vary, compare, study};
+use carom_dynamics::{Observer, State, StepReport, System};
+use carom_output::Summary;
+use carom_output::compare::{COLUMNS, Comparison, Outcome, Standard};
+use carom_output::study::{Quantity, Source, Study};
+
+/// Two equal bars of `n` elements each, theta 1/2, Courant number 1/2.
+fn two_bars(n: usize, reference: &str) -> Input {
+    let text = format!(
+        r#"
+carom = 1
+title = "Two bars"
+mesh.generate.one.line = {{ from = ["-254 mm"], to = [0.0], elements = {n} }}
+mesh.generate.two.line = {{ from = [0.0], to = ["254 mm"], elements = {n} }}
+material.steel = {{ density = 7844.0, elastic = {{ young = "207 GPa", poisson = 0.0 }} }}
+body.one = {{ region = "one", material = "steel", section.bar.area = "645 mm^2", initial.velocity = [5.1359] }}
+body.two = {{ region = "two", material = "steel", section.bar.area = "645 mm^2" }}
+contact.shock = {{ secondary = "one.right", primary = "two.left", law.velocity.capture = "half" }}
+time = {{ end = "150 us", step.courant = 0.5, scheme.theta.theta = 0.5 }}
+{reference}
+"#
+    );
+    Input::from_text("case.toml", &text, &[])
+}
+
+const EXACT: &str = "[reference.two-bars]";
+
+struct Nobody;
+
+impl Observer for Nobody {
+    fn accepted(
+        &mut self,
+        _: &System,
+        _: &State,
+        _: &StepReport,
+    ) -> Result<(), carom_dynamics::Error> {
+        Ok(())
+    }
+    fn finish(&mut self, _: &System, _: &State) -> Result<(), carom_dynamics::Error> {
+        Ok(())
+    }
+}
+
+fn sweep<T>(folder: &Path, jobs: usize, work: impl FnOnce(&Sweep) -> T) -> T {
+    work(&Sweep {
+        folder,
+        jobs,
+        watch: &|_, _| Box::new(Nobody),
+        stop: &|| false,
+    })
+}
+
+fn words(texts: &[&str]) -> Vec<String> {
+    texts.iter().map(|text| (*text).to_owned()).collect()
+}
+
+fn compared(folder: &Path, input: &Input, choices: &Choices) -> Comparison {
+    sweep(folder, 1, |sweep| compare(input, choices, sweep))
+        .unwrap()
+        .0
+}
+
+fn value(comparison: &Comparison, variant: &str, column: &str) -> Option<f64> {
+    let variant = comparison
+        .variants
+        .iter()
+        .find(|v| v.name == variant)
+        .unwrap();
+    let column = COLUMNS.iter().find(|c| c.name == column).unwrap();
+    (column.value)(variant.done().unwrap())
+}
+
+#[test]
+fn figures_of_a_variant_are_those_of_its_own_summary() {
+    let work = tempfile::tempdir().unwrap();
+    let folder = work.path().join("case.compare");
+    let choices = Choices {
+        schemes: words(&["case", "theta={theta=1.0}", "newmark={beta=0.5}"]),
+        laws: words(&["velocity", "damped"]),
+        reference: None,
+    };
+    let comparison = compared(&folder, &two_bars(40, EXACT), &choices);
+    assert_eq!(comparison.standard, Standard::Exact);
+    let names: Vec<&str> = comparison
+        .variants
+        .iter()
+        .map(|v| v.name.as_str())
+        .collect();
+    assert_eq!(
+        names,
+        [
+            "case_velocity",
+            "case_damped",
+            "theta-theta-1.0_velocity",
+            "theta-theta-1.0_damped",
+            "newmark-beta-0.5_velocity",
+            "newmark-beta-0.5_damped"
+        ]
+    );
+    for name in names {
+        let text = std::fs::read_to_string(folder.join(name).join("summary.json")).unwrap();
+        let own = Summary::from_json(&text).unwrap();
+        let (shock, exact) = (&own.contacts["shock"], own.exact.unwrap());
+        let of = |column| value(&comparison, name, column);
+        assert_eq!(of("force_error"), exact.force_error, "{name}");
+        assert_eq!(of("overshoot"), exact.overshoot);
+        assert_eq!(of("mean_overshoot"), exact.mean_overshoot);
+        assert_eq!(of("impulse_error"), Some(exact.impulse_error));
+        assert_eq!(of("restitution"), exact.restitution);
+        assert_eq!(of("status_changes"), Some(shock.status_changes as f64));
+        assert_eq!(of("penetration_m"), Some(shock.max_penetration));
+        assert_eq!(of("persistency_defect_j"), Some(shock.persistency_defect));
+        assert_eq!(of("release_s"), shock.last_release);
+        assert_eq!(
+            of("work_contact_j"),
+            Some(own.energy.works["work of contact"])
+        );
+        assert_eq!(of("steps"), Some(own.time.steps as f64));
+        let start = own.energy.kinetic_initial + own.energy.strain_initial;
+        let end = own.energy.kinetic_final + own.energy.strain_final;
+        assert_eq!(of("energy_change"), Some(end / start - 1.0));
+    }
+    // numerical and mechanical dissipation are told apart: theta = 1 damps, theta = 1/2 does not; the damper does
+    let of = |name, column| value(&comparison, name, column).unwrap();
+    let energy = 0.5 * 7844.0 * 645e-6 * 0.254 * 5.1359 * 5.1359;
+    assert!(of("case_velocity", "dissipation_scheme_j").abs() < 1e-9 * energy);
+    assert!(of("theta-theta-1.0_velocity", "dissipation_scheme_j") > 0.01 * energy);
+    assert!(of("case_damped", "work_contact_j") < 0.0);
+}
+
+#[test]
+fn a_run_is_at_no_distance_from_itself_and_the_finest_has_a_quarter_of_the_step() {
+    let work = tempfile::tempdir().unwrap();
+    let input = two_bars(40, EXACT);
+    let choices = |reference: &str| Choices {
+        schemes: words(&["theta", "theta={theta=0.6}"]),
+        laws: Vec::new(),
+        reference: Some(reference.to_owned()),
+    };
+    let folder = work.path().join("a");
+    let own = compared(&folder, &input, &choices("theta"));
+    assert_eq!(own.standard, Standard::Run("theta".to_owned()));
+    assert_eq!(value(&own, "theta", "force_error"), Some(0.0));
+    assert_eq!(value(&own, "theta", "impulse_error"), Some(0.0));
+    assert!(value(&own, "theta-theta-0.6", "force_error").unwrap() > 0.0);
+    let finest = compared(&folder, &input, &choices("finest"));
+    let last = finest.variants.last().unwrap();
+    assert_eq!(last.name, "finest");
+    let steps = |name: &str| value(&finest, name, "steps").unwrap();
+    // the last of the four may be one too many
+    assert_eq!((steps("finest") / 4.0).ceil(), steps("theta"));
+    // the same folder again: what the last comparison left and this one does not have is gone
+    assert!(folder.join("finest/summary.json").is_file());
+    compared(&folder, &input, &choices("none"));
+    assert!(!folder.join("finest").exists());
+    assert!(folder.join("theta/summary.json").is_file());
+}
+
+#[test]
+fn parallel_runs_give_the_numbers_of_runs_one_by_one() {
+    let work = tempfile::tempdir().unwrap();
+    let choices = Choices {
+        schemes: words(&["theta", "theta={theta=0.6}", "newmark"]),
+        ..Choices::default()
+    };
+    let input = two_bars(20, EXACT);
+    let table = |jobs: usize| {
+        let folder = work.path().join(jobs.to_string());
+        let comparison = sweep(&folder, jobs, |sweep| compare(&input, &choices, sweep))
+            .unwrap()
+            .0;
+        let mut table = comparison.table();
+        let wall = table
+            .heads
+            .iter()
+            .position(|head| head == "wall time")
+            .unwrap();
+        table.rows.iter_mut().for_each(|row| drop(row.remove(wall)));
+        table.rows
+    };
+    assert_eq!(table(1), table(3));
+}
+
+#[test]
+fn refused_pairs_keep_their_rows_and_wrong_words_are_bad_input() {
+    let work = tempfile::tempdir().unwrap();
+    let folder = work.path().join("case.compare");
+    let input = two_bars(10, EXACT);
+    let choices = Choices {
+        schemes: words(&["theta", "central-difference"]),
+        laws: words(&["displacement", "velocity"]),
+        reference: None,
+    };
+    let comparison = compared(&folder, &input, &choices);
+    let refused = &comparison.variants[2];
+    assert_eq!(refused.name, "central-difference_displacement");
+    assert!(matches!(&refused.outcome, Outcome::Refused(reason) if reason.contains("explicit")));
+    let done = comparison.variants.iter().filter(|v| v.done().is_some());
+    assert_eq!(done.count(), 3);
+    let nothing = work.path().join("nothing");
+    let wrong = |scheme: &[&str], law: &[&str], reference: Option<&str>| {
+        let choices = Choices {
+            schemes: words(scheme),
+            laws: words(law),
+            reference: reference.map(str::to_owned),
+        };
+        match sweep(&nothing, 1, |sweep| compare(&input, &choices, sweep)) {
+            Err(SweepError::Input { problems, .. }) => problems[0].clone(),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(
+        wrong(&["newmrk"], &[], None).nearest.as_deref(),
+        Some("newmark")
+    );
+    assert_eq!(
+        wrong(&["theta={thta=1}"], &[], None).nearest.as_deref(),
+        Some("theta")
+    );
+    assert_eq!(
+        wrong(&["theta"], &[], Some("thet")).nearest.as_deref(),
+        Some("theta")
+    );
+    // no pair at all can be run
+    assert!(
+        wrong(&["central-difference"], &["displacement"], None)
+            .message
+            .contains("explicit")
+    );
+    assert!(!nothing.exists());
+}
+
+fn studied(folder: &Path, input: &Input, vary: &[&str]) -> Study {
+    let vary: Vec<Vary> = vary.iter().map(|text| Vary::read(text).unwrap()).collect();
+    sweep(folder, 1, |sweep| study(input, &vary, sweep))
+        .unwrap()
+        .0
+}
+
+#[test]
+fn impulse_and_restitution_of_two_bars_converge_with_the_width_of_the_front() {
+    let work = tempfile::tempdir().unwrap();
+    let elements = "50,100,200,400";
+    let vary = ["one", "two"].map(|bar| format!("mesh.generate.{bar}.line.elements={elements}"));
+    let study = studied(
+        work.path().join("s").as_path(),
+        &two_bars(10, EXACT),
+        &[&vary[0], &vary[1]],
+    );
+    let orders = study.orders();
+    let of = |quantity| {
+        orders
+            .iter()
+            .find(|order| order.quantity == quantity)
+            .unwrap()
+    };
+    // the impulse and the restitution lack the dispersed front, which is as wide as h^0.69 over these sizes
+    for quantity in [Quantity::Impulse, Quantity::Restitution] {
+        let fit = of(quantity).fit.unwrap();
+        assert!((fit.order - 0.69).abs() < 0.02, "{quantity:?}: {fit:?}");
+        assert!(fit.error_bar.unwrap() < 0.02, "{quantity:?}: {fit:?}");
+        assert_eq!(of(quantity).source, Source::Exact);
+        assert_eq!(of(quantity).consecutive.len(), 3);
+    }
+    let force = of(Quantity::ForceError).fit.unwrap();
+    assert!((force.order - 0.36).abs() < 0.03, "{force:?}");
+    let energy = of(Quantity::EnergyChange).fit.unwrap();
+    assert!((energy.order - 1.0).abs() < 0.02, "{energy:?}");
+    assert!(
+        orders
+            .iter()
+            .all(|order| order.quantity != Quantity::PeakForce)
+    );
+}
+
+#[test]
+fn without_an_exact_solution_the_order_comes_from_differences() {
+    let work = tempfile::tempdir().unwrap();
+    let elements = "50,100,200,400";
+    let vary = ["one", "two"].map(|bar| format!("mesh.generate.{bar}.line.elements={elements}"));
+    let folder = work.path().join("s");
+    let study = studied(&folder, &two_bars(10, ""), &[&vary[0], &vary[1]]);
+    let orders = study.orders();
+    let energy = orders
+        .iter()
+        .find(|o| o.quantity == Quantity::EnergyChange)
+        .unwrap();
+    assert_eq!(energy.source, Source::Differences);
+    assert!((energy.fit.unwrap().order - 1.0).abs() < 0.05, "{energy:?}");
+    for file in ["study.csv", "orders.csv", "plots/orders.svg", "report.html"] {
+        assert!(folder.join(file).is_file(), "{file}");
+    }
+    assert!(folder.join("1-elements-50/summary.json").is_file());
+}

@@ -1,0 +1,54 @@
+//! `carom compare`.
+
+use carom_case::{Choices, Input};
+
+use crate::sweep;
+
+/// Arguments of `carom compare`.
+#[derive(clap::Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    common: sweep::Arguments,
+    /// Time schemes: `newmark`, `"newmark={beta=0.5,gamma=0.9}"`, or `case` for that of the case
+    #[arg(long, num_args = 1.., value_name = "SCHEME")]
+    with: Vec<String>,
+    /// Contact laws, for all contacts: `displacement`, `"damped={adhesion='clip'}"`, or `case`
+    #[arg(long, num_args = 1.., value_name = "LAW")]
+    law: Vec<String>,
+    /// What to compare with: `exact`, `finest` (a run with a quarter of the step), `none`, or a variant of the table;
+    /// default: the exact solution that the case names, else `finest`
+    #[arg(long, value_name = "NAME")]
+    reference: Option<String>,
+}
+
+/// Compares; returns the exit code.
+pub fn compare(arguments: &Arguments) -> u8 {
+    let common = &arguments.common;
+    let input = match Input::read(&common.case, &common.set) {
+        Ok(input) => input,
+        Err(problems) => return crate::refuse(&[], &problems),
+    };
+    let choices = Choices {
+        schemes: arguments.with.clone(),
+        laws: arguments.law.clone(),
+        reference: arguments.reference.clone(),
+    };
+    let folder = common.folder("compare");
+    let compared = common.sweep(&folder, |sweep| {
+        carom_case::compare(&input, &choices, sweep)
+    });
+    let (comparison, page) = match compared {
+        Ok(compared) => compared,
+        Err(error) => return sweep::refuse(&error),
+    };
+    println!("{}", comparison.title);
+    println!("Errors against {}.\n", comparison.standard_text());
+    println!("{}", comparison.table().text(sweep::WIDTH));
+    let variants = || comparison.variants.iter();
+    sweep::reasons(variants());
+    println!(
+        "  the overshoot of a single step does not converge at a step front; that of the mean does"
+    );
+    println!("  report: {}", page.display());
+    sweep::code(variants())
+}

@@ -1,0 +1,96 @@
+//! What `carom compare` and `carom study` share: runs one after another, Ctrl-C, outcomes as exit codes.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use carom_case::{Sweep, SweepError};
+use carom_dynamics::Observer;
+use carom_output::compare::{Outcome, Variant};
+
+use crate::progress::Progress;
+use crate::{FAILED, INTERRUPTED};
+
+/// Letters in a line of a table.
+pub const WIDTH: usize = 120;
+
+/// Arguments of both commands.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The case file
+    pub case: PathBuf,
+    /// Replace a value of the case in every run: `--set time.end="200 us"`
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Common results folder; default: the case file's name with the ending `.compare` or `.study`, beside it
+    #[arg(long, value_name = "FOLDER")]
+    pub results: Option<PathBuf>,
+    /// Runs at one time; wall times are comparable with 1 only
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    pub jobs: usize,
+    /// No progress bar
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+impl Arguments {
+    /// The results folder: the one given, or the case with this ending.
+    pub fn folder(&self, ending: &str) -> PathBuf {
+        let given = self.results.clone();
+        given.unwrap_or_else(|| self.case.with_extension(ending))
+    }
+
+    /// Gives `work` the way to make the runs: with a progress bar each, until Ctrl-C.
+    pub fn sweep<T>(&self, folder: &Path, work: impl FnOnce(&Sweep) -> T) -> T {
+        let stopped = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&stopped);
+        if let Err(error) = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)) {
+            tracing::warn!("Ctrl-C will not leave a table: {error}");
+        }
+        let hidden = self.quiet || self.jobs > 1 || !std::io::stderr().is_terminal();
+        let watch = |name: &str, steps: u64| -> Box<dyn Observer> {
+            if !hidden {
+                eprintln!("{name}");
+            }
+            Box::new(Progress::new(steps, hidden))
+        };
+        work(&Sweep {
+            folder,
+            jobs: self.jobs,
+            watch: &watch,
+            stop: &|| stopped.load(Ordering::Relaxed),
+        })
+    }
+}
+
+/// Prints why there is no table; returns the exit code.
+pub fn refuse(error: &SweepError) -> u8 {
+    match error {
+        SweepError::Input { sources, problems } => crate::refuse(sources, problems),
+        SweepError::Output(error) => {
+            eprintln!("error: {error}");
+            FAILED
+        }
+    }
+}
+
+/// Prints the reasons of what is not good.
+pub fn reasons<'a>(variants: impl Iterator<Item = &'a Variant>) {
+    for variant in variants {
+        let (verdict, reason) = variant.verdict();
+        if !reason.is_empty() {
+            println!("  {} {verdict}: {reason}", variant.name);
+        }
+    }
+}
+
+/// Exit code: interrupted, failed in running, or done.
+pub fn code<'a>(variants: impl Iterator<Item = &'a Variant>) -> u8 {
+    let code = |variant: &Variant| match &variant.outcome {
+        Outcome::Stopped => INTERRUPTED,
+        Outcome::Failed(_) => FAILED,
+        Outcome::Done(_) | Outcome::Refused(_) => 0,
+    };
+    variants.map(code).max().unwrap_or(0)
+}

@@ -1,0 +1,235 @@
+//! `compare` and `study`: files, tables, exit codes.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::commands::{carom, project, text};
+
+/// The two bars with fewer elements.
+fn case(work: &Path) {
+    let path = project().join("cases/two-bars/case.toml");
+    let text = fs::read_to_string(path).unwrap();
+    fs::write(
+        work.join("case.toml"),
+        text.replace("elements = 200", "elements = 20"),
+    )
+    .unwrap();
+}
+
+#[test]
+fn a_comparison_leaves_its_table_its_figures_and_the_results_of_each_variant() {
+    let work = tempfile::tempdir().unwrap();
+    case(work.path());
+    let arguments = [
+        "compare",
+        "case.toml",
+        "--with",
+        "theta",
+        "newmark={beta=0.49,gamma=0.9}",
+    ];
+    let output = carom(work.path(), &arguments);
+    let said = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    for word in [
+        "force error",
+        "restitution",
+        "the exact solution `two-bars`",
+        "does not converge",
+    ] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let folder = work.path().join("case.compare");
+    let variants = ["theta", "newmark-beta-0.49-gamma-0.9"];
+    for variant in variants {
+        for file in ["summary.json", "report.html", "histories.csv"] {
+            assert!(
+                folder.join(variant).join(file).is_file(),
+                "{variant}/{file}"
+            );
+        }
+    }
+    let csv = fs::read_to_string(folder.join("comparison.csv")).unwrap();
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(lines.len(), 3);
+    assert!(lines[0].starts_with("variant,scheme,law,force_error,overshoot,"));
+    assert!(
+        lines[1].starts_with("theta,\"theta, theta = 0.5\",velocity,0."),
+        "{}",
+        lines[1]
+    );
+    let page = fs::read_to_string(folder.join("report.html")).unwrap();
+    for quantity in ["force", "displacement", "velocity", "energy"] {
+        let figure = fs::read_to_string(folder.join(format!("plots/{quantity}.svg"))).unwrap();
+        for variant in variants {
+            assert!(figure.contains(variant), "{quantity}");
+        }
+        assert!(page.contains(&figure), "{quantity} is on the page");
+    }
+    assert!(
+        fs::read_to_string(folder.join("plots/force.svg"))
+            .unwrap()
+            .contains("exact")
+    );
+    // the summary of a variant can be had again by `run`
+    let copy = fs::read_to_string(folder.join(variants[1]).join("case.toml")).unwrap();
+    assert!(
+        copy.starts_with("# --set time.scheme={ newmark={beta=0.49,gamma=0.9} }\n"),
+        "{copy}"
+    );
+}
+
+#[test]
+fn a_pair_that_is_refused_is_in_the_table_with_its_reason() {
+    let work = tempfile::tempdir().unwrap();
+    case(work.path());
+    let arguments = [
+        "compare",
+        "case.toml",
+        "--with",
+        "theta",
+        "central-difference",
+    ];
+    let output = carom(
+        work.path(),
+        &[&arguments[..], &["--law", "displacement"]].concat(),
+    );
+    let said = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let name = "central-difference_displacement";
+    assert!(
+        said.contains(&format!("{name} refused: contact.shock.law.displacement: ")),
+        "{said}"
+    );
+    let csv = fs::read_to_string(work.path().join("case.compare/comparison.csv")).unwrap();
+    assert!(
+        csv.lines()
+            .any(|line| line.starts_with(name) && line.contains(",refused,")),
+        "{csv}"
+    );
+}
+
+#[test]
+fn bad_input_exits_2_and_leaves_nothing() {
+    let work = tempfile::tempdir().unwrap();
+    case(work.path());
+    let wrong: [&[&str]; 7] = [
+        &["compare", "case.toml", "--with", "newmrk"],
+        &[
+            "compare",
+            "case.toml",
+            "--with",
+            "theta",
+            "--reference",
+            "thet",
+        ],
+        &["compare", "none.toml", "--with", "theta"],
+        &[
+            "compare",
+            "case.toml",
+            "--with",
+            "central-difference",
+            "--law",
+            "displacement",
+        ],
+        &["study", "case.toml", "--vary", "time.step"],
+        &["study", "case.toml", "--vary", "time.step.courant=1,0"],
+        &[
+            "study",
+            "case.toml",
+            "--vary",
+            "time.step.courant=1,0.5",
+            "--vary",
+            "time.end=1e-4",
+        ],
+    ];
+    for arguments in wrong {
+        let output = carom(work.path(), arguments);
+        assert_eq!(
+            output.status.code(),
+            Some(2),
+            "{arguments:?}: {}",
+            text(&output)
+        );
+        assert_eq!(
+            fs::read_dir(work.path()).unwrap().count(),
+            1,
+            "{arguments:?}"
+        );
+    }
+    let message = text(&carom(work.path(), wrong[0]));
+    assert!(message.contains("did you mean `newmark`?"), "{message}");
+}
+
+#[test]
+fn a_variant_that_fails_in_running_exits_3_and_the_others_are_kept() {
+    let work = tempfile::tempdir().unwrap();
+    case(work.path());
+    // the limit on the size of files lets the run of few steps through
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 250; exec '{}' study case.toml --vary time.step.courant=1,0.05",
+        env!("CARGO_BIN_EXE_carom")
+    );
+    let mut command = Command::new("bash");
+    let output = command
+        .args(["-c", &script])
+        .current_dir(work.path())
+        .output()
+        .unwrap();
+    let said = text(&output);
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    let csv = fs::read_to_string(work.path().join("case.study/study.csv")).unwrap();
+    let lines: Vec<&str> = csv.lines().collect();
+    assert!(
+        lines[1].contains(",good,") && lines[2].contains(",failed,"),
+        "{csv}"
+    );
+}
+
+#[test]
+fn a_study_gives_orders_with_error_bars_and_a_figure() {
+    let work = tempfile::tempdir().unwrap();
+    case(work.path());
+    let elements =
+        ["striker", "target"].map(|bar| format!("mesh.generate.{bar}.line.elements=20,40,80"));
+    let output = carom(
+        work.path(),
+        &[
+            "study",
+            "case.toml",
+            "--vary",
+            &elements[0],
+            "--vary",
+            &elements[1],
+        ],
+    );
+    let said = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    for word in [
+        "against time step (s)",
+        "± 0.",
+        "raw peak of a single step does not converge",
+    ] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let folder = work.path().join("case.study");
+    let orders = fs::read_to_string(folder.join("orders.csv")).unwrap();
+    assert!(
+        orders
+            .lines()
+            .any(|line| line.starts_with("impulse_n_s,0.7")),
+        "{orders}"
+    );
+    assert!(
+        !orders.contains("\npeak_force_n,"),
+        "the raw peak has no order"
+    );
+    let figure = fs::read_to_string(folder.join("plots/orders.svg")).unwrap();
+    assert!(figure.contains("impulse, order 0.71"));
+    assert!(
+        fs::read_to_string(folder.join("report.html"))
+            .unwrap()
+            .contains(&figure)
+    );
+    assert!(folder.join("3-elements-80/summary.json").is_file());
+}
