@@ -170,10 +170,14 @@ fn accepted_choice(root: &Value, schema: &Value, alternatives: &[&Value]) -> Str
 }
 
 fn accepted_array(root: &Value, schema: &Value) -> String {
-    let items = schema
-        .get("items")
-        .map(|items| accepted(root, items))
-        .unwrap_or_default();
+    let items = schema.get("items").map(|items| {
+        let required = texts(resolve(root, items), "required");
+        match accepted(root, items).as_str() {
+            "a table" if !required.is_empty() => format!("a table of {}", required.join(", ")),
+            other => other.to_owned(),
+        }
+    });
+    let items = items.unwrap_or_default();
     let bound = |keyword: &str| schema.get(keyword).and_then(Value::as_u64);
     let count = match (bound("minItems"), bound("maxItems")) {
         (Some(least), Some(most)) if least == most => format!("{least} values"),

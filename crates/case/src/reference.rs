@@ -105,8 +105,12 @@ impl<'a> Page<'a> {
                 || target
                     .get("additionalProperties")
                     .is_some_and(Value::is_object);
+            let item = target.get("items").map(|item| resolve(self.root, item));
             if is_table || !self.choices(target).is_empty() {
                 self.table(&format!("{path}.{key}"), inner, (level + 1).min(3));
+            } else if let Some(item) = item.filter(|item| item.get("properties").is_some()) {
+                let title = format!("Each table of `{path}.{key}`");
+                self.keys(&title, &description(item), item, (level + 1).min(3));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Rules between several values of a case, which the schema cannot say; still without a look at any mesh.
 
 use crate::error::Problem;
-use crate::schema::{Case, Contact, Count, Line, Obstacle, Part, Step};
+use crate::schema::{Capture, Case, Contact, Count, Law, Line, Obstacle, Part, Sign, Step};
 
 /// Most nodes of a generated part: beyond it a case is a slip of the pen.
 const MOST_NODES: f64 = 1e8;
@@ -87,5 +87,29 @@ fn check_contact(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
             "a normal of no length",
         );
         problems.push(problem.accepted(["a vector that is not zero"]));
+    }
+    check_capture(path, &contact.law, problems);
+}
+
+/// Captures that a law cannot have.
+fn check_capture(path: &str, law: &Law, problems: &mut Vec<Problem>) {
+    let (path, capture, message, accepted) = match law {
+        Law::Restitution(law) => (
+            format!("{path}.law.restitution.capture"),
+            law.capture.filter(|capture| *capture == Capture::GapTarget),
+            "the gap as target takes the rebound away",
+            &["now", "half", "full", "free"][..],
+        ),
+        Law::Velocity(law) if law.sign == Sign::AsPrinted => (
+            format!("{path}.law.velocity.capture"),
+            law.capture
+                .filter(|capture| matches!(capture, Capture::Free | Capture::GapTarget)),
+            "the sign as printed needs a gap that is known before the step",
+            &["now", "half", "full"][..],
+        ),
+        _ => return,
+    };
+    if capture.is_some() {
+        problems.push(Problem::new(path, message).accepted(accepted.iter().copied()));
     }
 }

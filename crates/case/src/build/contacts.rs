@@ -1,14 +1,14 @@
-//! Contacts: surfaces on the bodies, laws with their defaults from the material, no penetration at the start.
+//! Contacts: surfaces on the bodies, no penetration at the start, advice.
 
-use carom_bodies::height;
-use carom_contact::law::{Adhesion, Capture, Damped, Displacement, Reading, Velocity};
+use carom_contact::law::{Displacement, Reading, Restitution, Velocity};
 use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{ElementId, Mesh, Surface};
 
 use super::Builder;
+use super::laws::sides;
 use crate::error::Problem;
-use crate::schema::{self, Contact, DampedLaw, Obstacle, Scheme};
+use crate::schema::{self, Obstacle, Scheme};
 
 impl Builder<'_> {
     pub(super) fn contacts(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Vec<ModelContact> {
@@ -37,7 +37,10 @@ impl Builder<'_> {
             let (Some(secondary), Some(primary)) = (secondary, primary) else {
                 continue;
             };
-            let law = self.law(mesh, bodies, contact, &secondary, &primary);
+            let sides = sides(mesh, bodies, &secondary, &primary);
+            let Some(law) = self.law(name, &contact.law, &sides) else {
+                continue;
+            };
             let sliding = match contact.sliding {
                 schema::Sliding::Small => Sliding::Small,
                 schema::Sliding::Finite => Sliding::Finite,
@@ -48,6 +51,7 @@ impl Builder<'_> {
                 primary,
                 law,
                 sliding,
+                massless: contact.nodes == schema::Nodes::Massless,
             });
         }
         contacts
@@ -93,38 +97,6 @@ impl Builder<'_> {
             point,
             normal: normal.map(|n| n / length),
         })
-    }
-
-    fn law(
-        &self,
-        mesh: &Mesh,
-        bodies: &[ModelBody],
-        contact: &Contact,
-        secondary: &Surface,
-        primary: &ModelTarget,
-    ) -> Law {
-        match &contact.law {
-            schema::Law::Displacement(_) => Law::Displacement(Displacement),
-            schema::Law::Velocity(velocity) => Law::Velocity(Velocity {
-                capture: match velocity.capture {
-                    Some(schema::Capture::Now) => Capture::Now,
-                    Some(schema::Capture::Half) => Capture::Half,
-                    Some(schema::Capture::Full) => Capture::Full,
-                    None => default_capture(&self.case.time.scheme),
-                },
-                reading: match velocity.sign {
-                    schema::Sign::Closed => Reading::Closed,
-                    schema::Sign::AsPrinted => Reading::AsPrinted,
-                },
-            }),
-            schema::Law::Damped(damped) => {
-                let mut sides = vec![side(mesh, bodies, secondary)];
-                if let ModelTarget::Surface(primary) = primary {
-                    sides.push(side(mesh, bodies, primary));
-                }
-                Law::Damped(damped_law(damped, &sides))
-            }
-        }
     }
 
     /// Refuses contacts that penetrate at the start, in the initial displacement.
@@ -184,78 +156,21 @@ impl Builder<'_> {
                     "contact `{name}`: with sign = \"as-printed\" bodies pass through each other"
                 ));
             }
-            if let (Law::Displacement(_), Scheme::Newmark(newmark)) =
+            if let (Law::Restitution(Restitution { coefficient, .. }), Scheme::Theta(theta)) =
+                (contact.law, &self.case.time.scheme)
+                && theta.theta * (1.0 + coefficient) > 1.0
+            {
+                self.warnings.push(format!(
+                    "contact `{name}`: impacts can gain energy where theta is above 1 / (1 + e) = {:.4}",
+                    1.0 / (1.0 + coefficient)
+                ));
+            }
+            if let (Law::Displacement(Displacement { projection: false }), Scheme::Newmark(newmark)) =
                 (contact.law, &self.case.time.scheme)
                 && newmark.beta == 0.25
             {
                 self.warnings.push(format!("contact `{name}`: the trapezoid with the displacement law gains energy below a Courant number of about 4; look at the ledger"));
             }
         }
-    }
-}
-
-/// Half for theta = 1/2, now otherwise: what each scheme needs to close without a false start.
-fn default_capture(scheme: &Scheme) -> Capture {
-    match scheme {
-        Scheme::Theta(theta) if theta.theta == 0.5 => Capture::Half,
-        Scheme::Theta(_) | Scheme::Newmark(_) | Scheme::CentralDifference(_) => Capture::Now,
-    }
-}
-
-/// One side of a contact: Young's modulus (Pa), impedance per area rho c (Pa s/m), element size normal to it (m).
-struct Side {
-    young: f64,
-    impedance: f64,
-    size: f64,
-}
-
-/// The side with the thickest cells and the material of the first.
-fn side(mesh: &Mesh, bodies: &[ModelBody], surface: &Surface) -> Side {
-    let mut side = Side {
-        young: 0.0,
-        impedance: 0.0,
-        size: 0.0,
-    };
-    for face in &surface.faces {
-        side.size = side
-            .size
-            .max(height(mesh, face.parent, face.kind, face.corners()));
-    }
-    let owner = surface.faces.first().and_then(|face| {
-        bodies
-            .iter()
-            .find(|body| body.spec.cells.binary_search(&face.parent).is_ok())
-    });
-    if let Some(body) = owner {
-        let material = &body.spec.material;
-        side.young = material.young;
-        side.impedance = material.density * material.wave_speed(body.spec.kinematics.plane());
-    }
-    side
-}
-
-/// k_p = E/h_e and C_n = c_f sqrt(k_p h_e / E) rho c of the softer side, unless the case gives them.
-fn damped_law(law: &DampedLaw, sides: &[Side]) -> Damped {
-    let softness = |side: &Side| side.size / side.young;
-    let soft = sides
-        .iter()
-        .max_by(|a, b| softness(a).total_cmp(&softness(b)));
-    let stiffness = law
-        .stiffness
-        .map(|k| k.0)
-        .or(soft.map(|side| side.young / side.size))
-        .unwrap_or(0.0);
-    let damping = law.damping.map(|c| c.0).or(soft.map(|side| {
-        law.damping_factor.unwrap_or(0.5)
-            * (stiffness * side.size / side.young).sqrt()
-            * side.impedance
-    }));
-    Damped {
-        stiffness,
-        damping: damping.unwrap_or(0.0),
-        adhesion: match law.adhesion {
-            schema::Adhesion::Clip => Adhesion::Clip,
-            schema::Adhesion::AsPrinted => Adhesion::AsPrinted,
-        },
     }
 }

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod contacts;
+mod laws;
 mod mesh;
 mod reference;
 mod time;

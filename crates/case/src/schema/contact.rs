@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::quantity::{Coordinate, SurfaceDamping, SurfaceStiffness, Vector};
+use super::quantity::{
+    Clearance, Coordinate, Damping, Force, Length, SurfaceDamping, SurfaceStiffness, Vector,
+};
 
 /// Contact between two surfaces, or between a surface and a rigid obstacle; without friction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -24,6 +26,21 @@ pub struct Contact {
     /// Where the contact condition is imposed.
     #[serde(default)]
     pub integration: Integration,
+    /// Whether the nodes of the two surfaces keep their mass.
+    #[serde(default)]
+    pub nodes: Nodes,
+}
+
+/// Whether nodes in contact have a mass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Nodes {
+    /// They keep their mass.
+    #[default]
+    Heavy,
+    /// Their mass goes to the other nodes of their bodies; mass and centre of mass stay, and as far as possible the
+    /// moments of inertia. For the displacement law with implicit schemes and lumped mass.
+    Massless,
 }
 
 /// A rigid obstacle that does not move.
@@ -67,12 +84,28 @@ pub enum Law {
     /// Exact impenetrability in velocity: where the gap is closed, 0 <= gap rate, 0 <= p, and p times the gap rate = 0 at the end of
     /// each step.
     Velocity(VelocityLaw),
+    /// A one-sided damper: where the gap is closed, p = C max(0, -gap rate) at the end of each step. Absorbs energy: 1 % of the
+    /// striker's at 100 times the impedance per area of two equal bars, at 400 times that of a bar on a rigid obstacle.
+    Compliance(ComplianceLaw),
+    /// Newton's restitution: where the gap is closed, the gap rate at the end of each step is at least -e times that at its start,
+    /// and exactly that where there is pressure. For bodies that are rigid at the time scale of the step.
+    Restitution(RestitutionLaw),
+    /// A given stiffness: p = k max(0, -g), less C times the gap rate while the gap is closed.
+    Penalty(PenaltyLaw),
+    /// A stop of engineering structures, given for the contact as a whole: a clearance, a curve of force over penetration, a
+    /// dashpot.
+    Stop(StopLaw),
 }
 
-/// Exact non-penetration: nothing to give.
+/// Exact non-penetration.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct DisplacementLaw {}
+pub struct DisplacementLaw {
+    /// Whether velocity and acceleration of closed points are projected at the end of a step in which points close: the
+    /// cure for the oscillation of the force under Newmark's scheme, and for that scheme only.
+    #[serde(default)]
+    pub projection: bool,
+}
 
 /// A compliant law with a damper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -113,6 +146,71 @@ pub struct VelocityLaw {
     pub sign: Sign,
 }
 
+/// A compliance in velocity.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("oneOf" = [{ "required": ["damping"] }, { "required": ["damping-factor"] }]))]
+pub struct ComplianceLaw {
+    /// Damping per area C.
+    pub damping: Option<SurfaceDamping>,
+    /// C over the impedance per area of the softer side, in place of `damping`.
+    #[schemars(extend("minimum" = 0.0))]
+    pub damping_factor: Option<f64>,
+    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, `now` otherwise.
+    pub capture: Option<Capture>,
+}
+
+/// Newton's restitution.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct RestitutionLaw {
+    /// Coefficient e: 0 is the velocity law, 1 the elastic rebound of rigid bodies.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub coefficient: f64,
+    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, `now` otherwise.
+    pub capture: Option<Capture>,
+}
+
+/// A penalty law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct PenaltyLaw {
+    /// Stiffness per area k.
+    pub stiffness: SurfaceStiffness,
+    /// Damping per area C. Default: 0.
+    pub damping: Option<SurfaceDamping>,
+    /// What becomes of a pressure that the damper makes tensile.
+    #[serde(default)]
+    pub adhesion: Adhesion,
+}
+
+/// A stop, for the contact as a whole: its points share the force by their areas.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct StopLaw {
+    /// Clearance that the mesh does not show: the stop presses where the gap is below minus this. Default: 0.
+    pub clearance: Option<Clearance>,
+    /// Points of force over penetration, both increasing, after (0, 0), which is not written; linear between them, and beyond the
+    /// last one as before it. One point gives a spring.
+    #[schemars(extend("minItems" = 1, "maxItems" = 16))]
+    pub curve: Vec<CurvePoint>,
+    /// Dashpot. Default: 0.
+    pub damping: Option<Damping>,
+    /// What becomes of a force that the dashpot makes tensile.
+    #[serde(default)]
+    pub adhesion: Adhesion,
+}
+
+/// A point of the curve of a stop.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct CurvePoint {
+    /// Penetration, beyond the clearance.
+    pub penetration: Length,
+    /// Force of the whole contact.
+    pub force: Force,
+}
+
 /// The gap that decides whether a point is closed in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -121,8 +219,13 @@ pub enum Capture {
     Now,
     /// The gap predicted for the middle of the step.
     Half,
-    /// The gap predicted for the end of the step.
+    /// The gap predicted for the end of the step from the gap rate at its start.
     Full,
+    /// The gap at the end of the step without any contact force.
+    Free,
+    /// None: in all points the gap rate at the end of the step is at least -g / dt, g at its start, so that what has penetrated is
+    /// pushed out (Stewart and Trinkle). Not for the restitution law.
+    GapTarget,
 }
 
 /// Which gaps switch the velocity condition on.

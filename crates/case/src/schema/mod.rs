@@ -23,14 +23,15 @@ pub use body::{
     PlaneSection, Section, Support,
 };
 pub use contact::{
-    Adhesion, Capture, Contact, DampedLaw, DisplacementLaw, Integration, Law, NormalVector,
-    Obstacle, Plane, Sign, Sliding, VelocityLaw,
+    Adhesion, Capture, ComplianceLaw, Contact, CurvePoint, DampedLaw, DisplacementLaw, Integration,
+    Law, Nodes, NormalVector, Obstacle, PenaltyLaw, Plane, RestitutionLaw, Sign, Sliding, StopLaw,
+    VelocityLaw,
 };
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};
 pub use quantity::{
-    Acceleration, Area, Coordinate, Density, Duration, Length, Modulus, SurfaceDamping,
-    SurfaceStiffness, Vector, Velocity,
+    Acceleration, Area, Clearance, Coordinate, Damping, Density, Duration, Force, Length, Modulus,
+    SurfaceDamping, SurfaceStiffness, Vector, Velocity,
 };
 pub use time::{
     CentralDifference, GeneralisedAlpha, Hht, Kane, LaursenChawla, Newmark, PaoliSchatzman, Scheme,

@@ -89,6 +89,14 @@ quantity!(
     "A length greater than zero, m."
 );
 quantity!(
+    Clearance,
+    "length",
+    "m",
+    "2 mm",
+    NOT_NEGATIVE,
+    "A length, zero or more, m."
+);
+quantity!(
     Area,
     "area",
     "m^2",
@@ -153,6 +161,23 @@ quantity!(
     "A damping per area, zero or more, Pa s/m."
 );
 
+quantity!(
+    Force,
+    "force",
+    "N",
+    "10 kN",
+    POSITIVE,
+    "A force greater than zero, N."
+);
+quantity!(
+    Damping,
+    "damping",
+    "N*s/m",
+    "20 kN*s/m",
+    NOT_NEGATIVE,
+    "A damping, zero or more, N s/m."
+);
+
 /// One to three components of a vector; those left out are zero.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Vector<Q>(pub Vec<Q>);
@@ -191,4 +216,4 @@ macro_rules! into_si {
     };
 }
 
-into_si!(Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping);
+into_si!(Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping);

@@ -1,0 +1,208 @@
+//! Contact laws, with their defaults from the material of the two sides.
+
+use carom_bodies::height;
+use carom_contact::Law;
+use carom_contact::law::{
+    Adhesion, Capture, Compliance, Curve, CurveError, Damped, Displacement, Penalty, Reading,
+    Restitution, Stop, Velocity,
+};
+use carom_dynamics::{ModelBody, ModelTarget};
+use carom_mesh::{Mesh, Surface};
+
+use super::Builder;
+use crate::error::Problem;
+use crate::schema::{self, ComplianceLaw, DampedLaw, Scheme, StopLaw};
+
+/// Part of the energy of an impact from which on the loss in a compliance is worth a warning.
+const LOSS: f64 = 0.01;
+
+impl Builder<'_> {
+    /// The law of the contact `name`; `sides`: one for each deformable surface, the softer one first.
+    pub(super) fn law(&mut self, name: &str, law: &schema::Law, sides: &[Side]) -> Option<Law> {
+        let capture =
+            |given| capture(given).unwrap_or_else(|| default_capture(&self.case.time.scheme));
+        Some(match law {
+            schema::Law::Displacement(law) => Law::Displacement(Displacement {
+                projection: law.projection,
+            }),
+            schema::Law::Velocity(velocity) => Law::Velocity(Velocity {
+                capture: capture(velocity.capture),
+                reading: match velocity.sign {
+                    schema::Sign::Closed => Reading::Closed,
+                    schema::Sign::AsPrinted => Reading::AsPrinted,
+                },
+            }),
+            schema::Law::Compliance(compliance) => {
+                let law = Compliance {
+                    damping: compliance_damping(compliance, sides),
+                    capture: capture(compliance.capture),
+                };
+                self.warn_of_loss(name, law.damping, sides);
+                Law::Compliance(law)
+            }
+            schema::Law::Restitution(restitution) => Law::Restitution(Restitution {
+                coefficient: restitution.coefficient,
+                capture: capture(restitution.capture),
+            }),
+            schema::Law::Damped(damped) => Law::Damped(damped_law(damped, sides)),
+            schema::Law::Penalty(penalty) => Law::Penalty(Penalty(Damped {
+                stiffness: penalty.stiffness.0,
+                damping: penalty.damping.map_or(0.0, |damping| damping.0),
+                adhesion: adhesion(penalty.adhesion),
+            })),
+            schema::Law::Stop(stop) => Law::Stop(self.stop(name, stop)?),
+        })
+    }
+
+    fn stop(&mut self, name: &str, law: &StopLaw) -> Option<Stop> {
+        let points: Vec<[f64; 2]> = law
+            .curve
+            .iter()
+            .map(|point| [point.penetration.0, point.force.0])
+            .collect();
+        match Curve::new(&points) {
+            Ok(curve) => Some(Stop {
+                clearance: law.clearance.map_or(0.0, |clearance| clearance.0),
+                curve,
+                damping: law.damping.map_or(0.0, |damping| damping.0),
+                adhesion: adhesion(law.adhesion),
+            }),
+            Err(error) => {
+                self.problems.push(no_curve(name, &error));
+                None
+            }
+        }
+    }
+
+    /// Warns where a compliance absorbs more than a part [`LOSS`] of an impact: 2 φ (1 - φ) between equal bars and twice
+    /// that on an obstacle, φ = C / (C + Z).
+    fn warn_of_loss(&mut self, name: &str, damping: f64, sides: &[Side]) {
+        let impedance = 1.0 / sides.iter().map(|side| 1.0 / side.impedance).sum::<f64>();
+        let phi = damping / (damping + impedance);
+        let loss = phi * (1.0 - phi) * if sides.len() == 1 { 4.0 } else { 2.0 };
+        if loss > LOSS {
+            let enough = if sides.len() == 1 { 400.0 } else { 200.0 } * impedance;
+            self.warnings.push(format!(
+                "contact `{name}`: the compliance absorbs {:.2} % of the energy of an impact between bars; {enough:.3e} Pa s/m absorbs 1 %",
+                100.0 * loss
+            ));
+        }
+    }
+}
+
+fn no_curve(name: &str, error: &CurveError) -> Problem {
+    let path = format!("contact.{name}.law.stop.curve");
+    match error {
+        CurveError::Count { points } => Problem::new(path, error.to_string()).found(points),
+        CurveError::NotIncreasing {
+            point,
+            found,
+            before,
+        } => Problem::new(
+            format!("{path}[{}]", point - 1),
+            "the points of the curve must increase in penetration and in force",
+        )
+        .found(format!("{} m, {} N", found[0], found[1]))
+        .accepted([format!("more than {} m and {} N", before[0], before[1])]),
+    }
+}
+
+fn capture(given: Option<schema::Capture>) -> Option<Capture> {
+    given.map(|capture| match capture {
+        schema::Capture::Now => Capture::Now,
+        schema::Capture::Half => Capture::Half,
+        schema::Capture::Full => Capture::Full,
+        schema::Capture::Free => Capture::Free,
+        schema::Capture::GapTarget => Capture::GapTarget,
+    })
+}
+
+fn adhesion(given: schema::Adhesion) -> Adhesion {
+    match given {
+        schema::Adhesion::Clip => Adhesion::Clip,
+        schema::Adhesion::AsPrinted => Adhesion::AsPrinted,
+    }
+}
+
+/// Half for theta = 1/2, now otherwise: what each scheme needs to close without a false start.
+fn default_capture(scheme: &Scheme) -> Capture {
+    match scheme {
+        Scheme::Theta(theta) if theta.theta == 0.5 => Capture::Half,
+        Scheme::Theta(_)
+        | Scheme::Newmark(_)
+        | Scheme::CentralDifference(_)
+        | Scheme::GeneralisedAlpha(_)
+        | Scheme::Hht(_)
+        | Scheme::TchamwaWielgosz(_)
+        | Scheme::PaoliSchatzman(_)
+        | Scheme::LaursenChawla(_)
+        | Scheme::Kane(_) => Capture::Now,
+    }
+}
+
+/// The deformable sides of a contact, the softer one first.
+pub(super) fn sides(
+    mesh: &Mesh,
+    bodies: &[ModelBody],
+    secondary: &Surface,
+    primary: &ModelTarget,
+) -> Vec<Side> {
+    let mut sides = vec![side(mesh, bodies, secondary)];
+    if let ModelTarget::Surface(primary) = primary {
+        sides.push(side(mesh, bodies, primary));
+    }
+    let softness = |side: &Side| side.size / side.young;
+    sides.sort_by(|a, b| softness(b).total_cmp(&softness(a)));
+    sides
+}
+
+/// One side of a contact: Young's modulus (Pa), impedance per area rho c (Pa s/m), element size normal to it (m).
+pub(super) struct Side {
+    young: f64,
+    impedance: f64,
+    size: f64,
+}
+
+/// The side with the thickest cells and the material of the first.
+fn side(mesh: &Mesh, bodies: &[ModelBody], surface: &Surface) -> Side {
+    let mut side = Side {
+        young: 0.0,
+        impedance: 0.0,
+        size: 0.0,
+    };
+    for face in &surface.faces {
+        side.size = side
+            .size
+            .max(height(mesh, face.parent, face.kind, face.corners()));
+    }
+    let owner = surface.faces.first().and_then(|face| {
+        bodies
+            .iter()
+            .find(|body| body.spec.cells.binary_search(&face.parent).is_ok())
+    });
+    if let Some(body) = owner {
+        let material = &body.spec.material;
+        side.young = material.young;
+        side.impedance = material.density * material.wave_speed(body.spec.kinematics.plane());
+    }
+    side
+}
+
+/// k_p = E/h_e and C_n = c_f sqrt(k_p h_e / E) rho c of the softer side, unless the case gives them.
+fn damped_law(law: &DampedLaw, sides: &[Side]) -> Damped {
+    let soft = &sides[0];
+    let stiffness = law.stiffness.map_or(soft.young / soft.size, |k| k.0);
+    let factor = law.damping_factor.unwrap_or(0.5);
+    let from_factor = factor * (stiffness * soft.size / soft.young).sqrt() * soft.impedance;
+    Damped {
+        stiffness,
+        damping: law.damping.map_or(from_factor, |damping| damping.0),
+        adhesion: adhesion(law.adhesion),
+    }
+}
+
+/// C, given or as a multiple of rho c of the softer side.
+fn compliance_damping(law: &ComplianceLaw, sides: &[Side]) -> f64 {
+    let from_factor = law.damping_factor.unwrap_or(0.0) * sides[0].impedance;
+    law.damping.map_or(from_factor, |damping| damping.0)
+}
