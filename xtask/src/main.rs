@@ -1,4 +1,5 @@
-//! The project's checks: `cargo xtask check` is what a contributor runs before a commit and what CI runs.
+//! The project's checks: `cargo xtask check` is what a contributor runs before a commit and what CI runs. `cargo xtask
+//! chapter` makes the measured tables of the manual anew.
 //!
 //! Quick things first: what the repository holds (`files`), the documentation (`docs`), who uses whom (`layers`), format,
 //! lints, pages of the API, one build of the dependencies for all commands (`builds`), then the README's test command.
@@ -7,6 +8,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod builds;
+mod chapter;
 mod docs;
 mod files;
 mod layers;
@@ -42,10 +44,17 @@ fn main() -> ExitCode {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     match arguments.first().map(String::as_str) {
         Some("check") => check(&root, &arguments[1..]),
+        Some("chapter") => match chapter::write(&root) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                eprintln!("error: {error}");
+                ExitCode::FAILURE
+            }
+        },
         _ => {
             let names: Vec<&str> = CHECKS.iter().map(|(name, _)| *name).collect();
             eprintln!(
-                "usage: cargo xtask check [NAME]...\nchecks: {}",
+                "usage: cargo xtask check [NAME]... | chapter\nchecks: {}",
                 names.join(", ")
             );
             ExitCode::from(2)
