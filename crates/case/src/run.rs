@@ -57,6 +57,14 @@ pub fn run(
         Ok(Outcome::Interrupted) => Some("the run was interrupted".to_string()),
         Err(error) => Some(error.to_string()),
     };
+    let kept = match driver.failed_problem() {
+        Some(problem) => {
+            let text =
+                serde_json::to_string_pretty(problem).unwrap_or_else(|cause| cause.to_string());
+            results.attach(&format!("interface-{}.json", problem.step), &text)
+        }
+        None => Ok(()),
+    };
     let ending = Ending {
         unfinished,
         costs: &driver.costs(),
@@ -65,6 +73,7 @@ pub fn run(
     let summary = results.conclude(&ending);
     // the first cause is the one to report
     let outcome = outcome.map_err(Failed::Step)?;
+    kept?;
     Ok(Finished {
         summary: summary?,
         interrupted: outcome == Outcome::Interrupted,

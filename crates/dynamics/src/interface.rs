@@ -10,30 +10,86 @@
 use carom_algebra::dense::DenseCholesky;
 use carom_contact::Law;
 use carom_contact::law::{End, Local, Relation, Status};
+use serde::{Deserialize, Serialize};
+use thiserror::Error as ThisError;
 
 /// A candidate before the solve.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Candidate {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
     /// Its law.
-    pub(crate) law: Law,
+    pub law: Law,
     /// What is known of it before the forces; holds g_f.
-    pub(crate) local: Local,
+    pub local: Local,
     /// ġ_f, m/s.
-    pub(crate) rate_free: f64,
+    pub rate_free: f64,
     /// Status at the end of the last step.
-    pub(crate) status: Status,
+    pub status: Status,
 }
 
 /// Why the problem was not solved.
-#[derive(Debug)]
-pub(crate) enum Failure {
+#[derive(Debug, ThisError)]
+pub enum Failure {
     /// The closed points' matrix is not positive definite.
+    #[error("the matrix of {points} closed points is singular: {cause}")]
     Singular {
+        /// Closed points.
         points: usize,
+        /// Cause.
         cause: carom_algebra::Error,
     },
-    /// A candidate still changes after the given number of passes.
-    Cycling { passes: usize, candidate: usize },
+    /// A candidate still changes after all passes.
+    #[error("candidate {candidate} still changes after {passes} passes")]
+    Cycling {
+        /// Passes made.
+        passes: usize,
+        /// The candidate.
+        candidate: usize,
+    },
+}
+
+/// An interface problem by itself: what a failed step leaves on disk, to be looked at and solved again.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InterfaceProblem {
+    /// Number of the step.
+    pub step: u64,
+    /// Contact, point and mesh node of each candidate.
+    pub names: Vec<String>,
+    /// The candidates.
+    pub candidates: Vec<Candidate>,
+    /// D over the candidates, row-major.
+    pub compliance: Vec<f64>,
+    /// Factors [s_g, s_v] of D P in the gap and in the rate.
+    pub factors: [f64; 2],
+}
+
+/// Solution of an interface problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InterfaceSolution {
+    /// Force of each candidate, N.
+    pub forces: Vec<f64>,
+    /// Status of each candidate.
+    pub statuses: Vec<Status>,
+    /// Passes of the status loop.
+    pub passes: usize,
+    /// Whether blocks of changes went in circles, so that statuses then changed one at a time.
+    pub circled: bool,
+}
+
+impl InterfaceProblem {
+    /// Solves the problem as the step would.
+    ///
+    /// # Errors
+    /// A singular problem, or statuses that do not settle.
+    pub fn solve(&self) -> Result<InterfaceSolution, Failure> {
+        let mut interface = Interface::default();
+        interface.solve(&self.candidates, (&self.compliance, 1), self.factors)?;
+        Ok(InterfaceSolution {
+            forces: interface.forces,
+            statuses: interface.statuses,
+            passes: interface.passes,
+            circled: interface.circled.is_some(),
+        })
+    }
 }
 
 /// Blocks of changes without progress before single changes.
@@ -48,6 +104,8 @@ pub(crate) struct Interface {
     pub(crate) statuses: Vec<Status>,
     /// Passes of the last solve.
     pub(crate) passes: usize,
+    /// The candidate from which on statuses changed one at a time, if blocks of changes went in circles.
+    pub(crate) circled: Option<usize>,
     factor: Option<DenseCholesky>,
     factor_of: (u64, Vec<(u32, Status)>),
     /// Points that are not open.
@@ -82,6 +140,7 @@ impl Interface {
             }));
         self.reversals.clear();
         self.reversals.resize(n, 0);
+        self.circled = None;
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
         let limit = 50 + 10 * n;
         for pass in 1..=limit {
@@ -97,6 +156,7 @@ impl Interface {
             } else if patience > 0 {
                 patience -= 1;
             } else {
+                self.circled.get_or_insert(last as usize);
                 self.changes.clear();
                 self.changes.push(last);
             }

@@ -174,6 +174,8 @@ pub(crate) struct Squares {
     pub(crate) acceleration: f64,
     pub(crate) mixed: f64,
     pub(crate) contact: f64,
+    /// What a stage before the step takes, J.
+    pub(crate) stage: f64,
 }
 
 impl EnergyIdentity {
@@ -188,6 +190,7 @@ impl EnergyIdentity {
             + self.acceleration * squares.acceleration
             + self.mixed * squares.mixed
             + self.contact * squares.contact
+            + squares.stage
     }
 }
 

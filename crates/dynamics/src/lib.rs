@@ -21,6 +21,7 @@ mod system;
 
 pub use driver::{Costs, Driver, Phases};
 pub use error::Error;
+pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Resultant};
 pub use march::{Observer, Outcome, march, step_count};
 pub use records::{ContactRecord, Impact, Records};

@@ -258,6 +258,8 @@ impl System {
         let cause = |contact: &ModelContact| {
             if scheme.is_explicit() {
                 Some("an explicit scheme divides by the mass of each node")
+            } else if scheme.projects_predictor() {
+                Some("the scheme projects its predictor with the mass of the nodes in contact")
             } else if scheme.needs_lumped_mass() {
                 Some("the scheme divides the contact forces by the mass of their nodes")
             } else if contact.law.get().level() != Level::Gap {

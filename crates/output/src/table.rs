@@ -101,10 +101,10 @@ mod tests {
             heads: row(["", "one", "two", "three"]),
             rows: vec![row(["a", "1", "22", "3"]), row(["bb", "", "5", "666666"])],
         };
-        let whole = "    one  two   three\na     1   22       3\nbb          5  666666\n";
+        let whole = "    one  two   three\na     1   22       3\nbb         5  666666\n";
         assert_eq!(table.text(80), whole);
         let split =
-            "    one  two\na     1   22\nbb          5\n\n     three\na        3\nbb  666666\n";
+            "    one  two\na     1   22\nbb         5\n\n     three\na        3\nbb  666666\n";
         assert_eq!(table.text(12), split);
         // a column is never left out, however narrow the page
         assert_eq!(table.text(0).matches("bb").count(), 3);

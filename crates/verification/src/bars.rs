@@ -2,7 +2,7 @@
 
 use carom_bodies::{Kinematics, MassKind};
 use carom_contact::Law;
-use carom_dynamics::{Model, ModelBody, ModelTarget, Scheme};
+use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme};
 use carom_exact::{Bar, Impact, Solution};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
@@ -110,6 +110,8 @@ pub(crate) struct Run {
     pub(crate) gap: f64,
     /// Mass.
     pub(crate) mass: MassKind,
+    /// Whether the nodes in contact have no mass.
+    pub(crate) massless: bool,
     /// Time scheme.
     pub(crate) scheme: Scheme,
     /// Contact law.
@@ -130,6 +132,7 @@ impl Run {
             against: Against::Bar,
             gap: 0.0,
             mass: MassKind::Lumped,
+            massless: false,
             scheme: theta(0.5),
             law: HALF,
             courant: 0.5,
@@ -238,7 +241,10 @@ impl Run {
         };
         let secondary = surface(&mesh, &format!("striker.{last}"), &bodies[0])?;
         Ok(Model {
-            contacts: vec![contact(secondary, primary, self.law)],
+            contacts: vec![ModelContact {
+                massless: self.massless,
+                ..contact(secondary, primary, self.law)
+            }],
             bodies,
             supports: Vec::new(),
             gravity: [0.0; 3],

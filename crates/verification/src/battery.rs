@@ -3,33 +3,63 @@
 use std::sync::Arc;
 
 use carom_contact::Law;
-use carom_contact::law::{Adhesion, Capture};
+use carom_contact::law::{Adhesion, Capture, Curve, Damped, Penalty, Restitution, Stop};
 use carom_dynamics::{Model, Scheme, State, System};
 use carom_materials::Elastic;
 
 use crate::Error;
-use crate::build::{DISPLACEMENT, damped, velocity};
+use crate::build::{DISPLACEMENT, PROJECTION, compliance, damped, velocity};
 use crate::check::Row;
 
-/// Every law with usual parameters, for elements of the given size in m; without the closed field as printed, which is a
-/// negative control with a case of its own.
-pub(crate) fn laws(material: &Elastic, size: f64) -> Vec<(&'static str, Law)> {
+/// Every law with usual parameters, for elements of the given size in m under a contact of the given area in m²;
+/// without the closed field as printed, which is a negative control with a case of its own.
+pub(crate) fn laws(
+    material: &Elastic,
+    size: f64,
+    area: f64,
+) -> Result<Vec<(&'static str, Law)>, Error> {
     // where the damper may pull, a strong one leaves two statuses possible and the last one decides
     let damped = |part, adhesion| damped(material, size, part, adhesion);
-    vec![
+    let penalty = Penalty(Damped {
+        stiffness: 0.5 * material.young / size,
+        damping: 0.0,
+        adhesion: Adhesion::Clip,
+    });
+    // slopes of 0.5, 0.8 and 1 times E A / h, the two corners below the penetration of usual speeds
+    let curve = [[2e-4, 1e-4], [5e-4, 3.4e-4], [1e-3, 8.4e-4]];
+    let stop = Stop {
+        clearance: 1e-4 * size,
+        curve: Curve::new(&curve.map(|[x, f]| [x * size, f * material.young * area]))?,
+        damping: 0.1 * material.density * (material.young / material.density).sqrt() * area,
+        adhesion: Adhesion::Clip,
+    };
+    let restitution = Restitution {
+        coefficient: 0.5,
+        capture: Capture::Half,
+    };
+    Ok(vec![
         ("displacement", DISPLACEMENT),
+        ("displacement, projection", PROJECTION),
         ("damped, clip", damped(0.5, Adhesion::Clip)),
         ("damped, as printed", damped(50.0, Adhesion::AsPrinted)),
         ("velocity, now", velocity(Capture::Now)),
         ("velocity, half", velocity(Capture::Half)),
         ("velocity, full", velocity(Capture::Full)),
-    ]
+        ("velocity, free", velocity(Capture::Free)),
+        ("velocity, gap-target", velocity(Capture::GapTarget)),
+        ("compliance", compliance(material, 10.0, Capture::Half)),
+        ("restitution", Law::Restitution(restitution)),
+        ("penalty", Law::Penalty(penalty)),
+        ("stop", Law::Stop(stop)),
+    ])
 }
 
-/// Whether a scheme cannot take a law: with an explicit one the end displacement does not depend on the force.
+/// Whether a scheme cannot take a law: with an explicit one the end displacement does not depend on the force, and the
+/// projection at closure belongs to Newmark's scheme.
 pub(crate) fn is_senseless(scheme: Scheme, law: Law) -> bool {
     scheme.get().is_explicit() && law == DISPLACEMENT
-        || matches!(scheme, Scheme::Kane(_)) && law != DISPLACEMENT
+        || matches!(scheme, Scheme::Kane(_) | Scheme::ContactStabilised(_)) && law != DISPLACEMENT
+        || law.projects() && !matches!(scheme, Scheme::Newmark(_))
 }
 
 /// Pairs of runs that must end in the same bytes.
@@ -56,7 +86,8 @@ impl Battery {
             Ok(system) => Ok(Some(system)),
             Err(
                 carom_dynamics::Error::DisplacementLaw { .. }
-                | carom_dynamics::Error::RateLaw { .. },
+                | carom_dynamics::Error::RateLaw { .. }
+                | carom_dynamics::Error::Projection { .. },
             ) if senseless => {
                 self.refused += 1;
                 Ok(None)

@@ -27,6 +27,8 @@ pub(crate) const RUBBER: Elastic = Elastic {
     poisson: 0.3,
 };
 const SPEED: f64 = 5.0;
+/// Lower face of the upper block, m².
+pub(crate) const FACE: f64 = SIZES[0][0] * SIZES[0][1];
 const SIZES: [[f64; 3]; 2] = [[0.6, 0.6, 0.4], [1.0, 1.0, 0.5]];
 const ORIGINS: [[f64; 3]; 2] = [[0.1, 0.25, 0.0], [0.0, 0.0, -0.5]];
 
@@ -46,6 +48,12 @@ pub(crate) const SMALLEST: Blocks = Blocks {
     dim: 3,
     elements: [[3, 3, 2], [2, 2, 2]],
     simplices: [false; 2],
+};
+
+/// Meshes of enough layers to take the mass of those in contact.
+pub(crate) const FINER: Blocks = Blocks {
+    elements: [[4, 4, 4], [4, 4, 3]],
+    ..SMALLEST
 };
 
 impl Blocks {

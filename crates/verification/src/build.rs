@@ -1,7 +1,7 @@
 //! Parts of models, in few words.
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
-use carom_contact::law::{Adhesion, Capture, Damped, Displacement, Reading, Velocity};
+use carom_contact::law::{Adhesion, Capture, Compliance, Damped, Displacement, Reading, Velocity};
 use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Scheme, Support};
@@ -27,7 +27,10 @@ pub(crate) const PAPER_SETS: [[f64; 2]; 3] = [[0.25, 0.5], [0.5, 0.5], [0.49, 0.
 pub(crate) const CENTRAL: Scheme = Scheme::CentralDifference(CentralDifference);
 
 /// The displacement law.
-pub(crate) const DISPLACEMENT: Law = Law::Displacement(Displacement);
+pub(crate) const DISPLACEMENT: Law = Law::Displacement(Displacement { projection: false });
+
+/// The displacement law with projection of velocity and acceleration where points close.
+pub(crate) const PROJECTION: Law = Law::Displacement(Displacement { projection: true });
 
 /// The velocity law with closure taken as it stands.
 pub(crate) const NOW: Law = velocity(Capture::Now);
@@ -40,6 +43,15 @@ pub(crate) const fn velocity(capture: Capture) -> Law {
     Law::Velocity(Velocity {
         capture,
         reading: Reading::Closed,
+    })
+}
+
+/// The compliance in velocity with C_n = `part` ρ c.
+pub(crate) fn compliance(material: &Elastic, part: f64, capture: Capture) -> Law {
+    let wave_speed = (material.young / material.density).sqrt();
+    Law::Compliance(Compliance {
+        damping: part * material.density * wave_speed,
+        capture,
     })
 }
 
@@ -93,6 +105,7 @@ pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> Mod
         primary,
         law,
         sliding: Sliding::Finite,
+        massless: false,
     }
 }
 

@@ -70,7 +70,8 @@ pub(crate) const CHECK: Check = Check {
         schemes.extend(more());
         let mut rows = vec![work_of_history()?];
         for scheme in schemes {
-            for (law_name, law) in laws(&SLOW.material(), SLOW.length / ELEMENTS as f64) {
+            for (law_name, law) in laws(&SLOW.material(), SLOW.length / ELEMENTS as f64, SLOW.area)?
+            {
                 for mass in [MassKind::Lumped, MassKind::Consistent] {
                     let consistent = mass == MassKind::Consistent;
                     if is_senseless(scheme, law) || consistent && scheme.get().needs_lumped_mass() {

@@ -18,6 +18,9 @@ pub enum Error {
     /// A pool of threads could not be started.
     #[error(transparent)]
     Threads(#[from] rayon::ThreadPoolBuildError),
+    /// Points that make no curve of a stop.
+    #[error(transparent)]
+    Curve(#[from] carom_contact::law::CurveError),
     /// A mesh lacks a group.
     #[error("the mesh has no group '{name}'")]
     Group {

@@ -13,11 +13,17 @@ mod check;
 mod error;
 mod figures;
 
+mod bar_dropped;
+mod bar_on_stop;
 mod bar_on_wall;
 mod bars_central_difference;
+mod bars_compliance;
+mod bars_contact_stabilised;
 mod bars_convergence;
 mod bars_damped;
+mod bars_massless;
 mod bars_newmark;
+mod bars_projection;
 mod bars_schemes;
 mod bars_theta;
 mod block_drop;
@@ -25,13 +31,17 @@ mod blocks;
 mod closed_field_as_printed;
 mod energy_identity;
 mod first_force;
+mod interface_problems;
 mod invariance;
+pub mod long_run;
 mod order;
+mod restitution;
 mod resume;
 mod sdnl111;
 mod shapes;
 mod supports;
 mod threads;
+mod viability;
 
 use std::io::{self, Write};
 
@@ -59,11 +69,17 @@ macro_rules! registry {
 }
 
 registry! {
+    bar_on_stop
+    bar_dropped
     bar_on_wall
     bars_central_difference
+    bars_compliance
+    bars_contact_stabilised
     bars_convergence
     bars_damped
+    bars_massless
     bars_newmark
+    bars_projection
     bars_schemes
     bars_theta
     block_drop
@@ -71,13 +87,17 @@ registry! {
     closed_field_as_printed
     energy_identity
     first_force
+    interface_problems
     invariance
+    long_run
     order
+    restitution
     resume
     sdnl111
     shapes
     supports
     threads
+    viability
 }
 
 /// Runs all cases, or those whose name contains `filter`, and writes one line per row.

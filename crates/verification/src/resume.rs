@@ -14,7 +14,8 @@ use carom_dynamics::{Driver, Scheme, State, System};
 use crate::Error;
 use crate::bars::{Run, SLOW};
 use crate::battery::{Battery, is_senseless, laws};
-use crate::blocks::{RUBBER, SMALLEST};
+use crate::blocks::{FACE, FINER, RUBBER, SMALLEST};
+use crate::build::{DISPLACEMENT, newmark};
 use crate::check::{Check, Row};
 
 /// Steps of the bars' runs, and where they are cut: contact lasts 80 steps.
@@ -29,7 +30,7 @@ pub(crate) const CHECK: Check = Check {
         let (mut bars, mut solids) = (Battery::default(), Battery::default());
         let mut combinations = 0;
         for scheme in Scheme::registered() {
-            for (_, law) in laws(&SLOW.material(), SLOW.length / 20.0) {
+            for (_, law) in laws(&SLOW.material(), SLOW.length / 20.0, SLOW.area)? {
                 combinations += usize::from(!is_senseless(scheme, law));
                 let case = Run {
                     scheme,
@@ -40,13 +41,24 @@ pub(crate) const CHECK: Check = Check {
                     cuts(&mut bars, &system, BARS)?;
                 }
             }
-            for (_, law) in laws(&RUBBER, 0.2) {
+            for (_, law) in laws(&RUBBER, 0.2, FACE)? {
                 let model = SMALLEST.model(scheme, law, Sliding::Finite)?;
                 if let Some(system) = solids.system(model)? {
                     cuts(&mut solids, &system, BLOCKS)?;
                 }
             }
         }
+        combinations += 1;
+        let massless = Run {
+            scheme: newmark(0.25, 0.5),
+            law: DISPLACEMENT,
+            massless: true,
+            ..Run::slow(20)
+        };
+        cuts(&mut bars, &System::new(massless.model()?)?, BARS)?;
+        let mut model = FINER.model(massless.scheme, DISPLACEMENT, Sliding::Finite)?;
+        model.contacts[0].massless = true;
+        cuts(&mut solids, &System::new(model)?, BLOCKS)?;
         let mut rows: Vec<Row> = bars.rows("bars", 4 * combinations);
         rows.extend(solids.rows("blocks", 4 * combinations));
         Ok(rows)

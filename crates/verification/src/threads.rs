@@ -14,7 +14,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::Error;
 use crate::battery::{Battery, is_senseless, laws};
-use crate::blocks::{Blocks, RUBBER, SMALLEST};
+use crate::blocks::{Blocks, FACE, RUBBER, SMALLEST};
 use crate::check::{Check, Size};
 use crate::resume::advance;
 
@@ -36,7 +36,7 @@ pub(crate) const CHECK: Check = Check {
         let mut combinations = 0;
         for scheme in Scheme::registered() {
             let mut kinds = Vec::new();
-            for (_, law) in laws(&RUBBER, 0.4 / 36.0) {
+            for (_, law) in laws(&RUBBER, 0.4 / 36.0, FACE)? {
                 let kind = law.get().name();
                 kinds.push(kind);
                 if kinds.iter().filter(|other| **other == kind).count() > parameters {

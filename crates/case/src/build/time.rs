@@ -157,6 +157,16 @@ impl Builder<'_> {
                     "step = { critical = 0.9 }".to_string(),
                 ])
             }
+            Error::Projection { contact } => Problem::new(
+                format!("contact.{contact}.law.displacement.projection"),
+                error.to_string(),
+            ),
+            Error::MasslessContact { contact, .. } => {
+                Problem::new(format!("contact.{contact}.nodes"), error.to_string())
+            }
+            Error::Massless { body, .. } => {
+                Problem::new(format!("body.{body}.mass"), error.to_string())
+            }
             other => Problem::new("time", other.to_string()),
         }
     }

@@ -134,3 +134,42 @@ fn an_interrupted_run_leaves_a_summary_that_says_so() {
         "{verdict}"
     );
 }
+
+#[test]
+fn a_contact_problem_without_solution_ends_the_run_and_is_kept() {
+    let work = tempfile::tempdir().unwrap();
+    case("two-bars", work.path());
+    let file = work.path().join("case.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    // the same contact twice: the forces of the two cannot be told apart
+    let (start, end) = (
+        text.find("[contact.shock]").unwrap(),
+        text.find("[time]").unwrap(),
+    );
+    let twice = text[start..end].replace("shock", "again");
+    let text = text
+        .replace("[time]", &format!("{twice}[time]"))
+        .replace("[reference.two-bars]", "");
+    fs::write(&file, text).unwrap();
+    let output = carom(work.path(), &["run", "case.toml"]);
+    assert_eq!(
+        output.status.code(),
+        Some(3),
+        "{}",
+        crate::commands::text(&output)
+    );
+    assert!(
+        crate::commands::text(&output).contains("singular"),
+        "{}",
+        crate::commands::text(&output)
+    );
+    let kept = fs::read(work.path().join("case.carom/interface-1.json")).unwrap();
+    let problem: serde_json::Value = serde_json::from_slice(&kept).unwrap();
+    assert_eq!(problem["compliance"].as_array().unwrap().len(), 4);
+    assert_eq!(summary(work.path())["verdict"]["good"], false);
+    assert!(
+        work.path()
+            .join("case.carom/checkpoints/last.state")
+            .is_file()
+    );
+}

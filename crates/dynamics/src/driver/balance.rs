@@ -38,13 +38,17 @@ impl Driver {
         let contact = Resultant::of(&system, &new.contact_force);
         let loads = Resultant::of(&system, &system.load);
         let weights = self.work_weights();
+        let stage = self.predictor_loss();
         let Vectors {
             residual: travel,
             known,
             work,
             ..
         } = &mut self.vectors;
-        let squares = squares(&system, &identity, (old, new), (travel, known, work));
+        let squares = Squares {
+            stage,
+            ..squares(&system, &identity, (old, new), (travel, known, work))
+        };
         if identity.lag != 0.0 {
             for i in 0..travel.len() {
                 travel[i] -= identity.lag * (new.v[i] - old.v[i]);

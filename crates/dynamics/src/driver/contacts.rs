@@ -7,7 +7,7 @@ use carom_contact::{Places, Rows, Sliding};
 
 use super::Driver;
 use crate::error::Error;
-use crate::interface::{Candidate, Failure};
+use crate::interface::{Candidate, Failure, InterfaceProblem};
 use crate::state::Motion;
 use crate::step_map::Row;
 
@@ -147,7 +147,17 @@ impl Driver {
             (&self.compliance.matrix, self.compliance.version),
             factors,
         );
-        solved.map_err(|failure| self.interface_error(failure, &self.candidates))?;
+        if let Err(failure) = solved {
+            self.failed = Some(self.problem(factors));
+            return Err(self.interface_error(failure, &self.candidates));
+        }
+        if let Some(candidate) = self.interface.circled {
+            let name = self.name(self.candidates[candidate]);
+            tracing::warn!(
+                "step {}: contact statuses go in circles at {name}; they now change one at a time",
+                self.state.step + 1
+            );
+        }
         for (&point, &force) in self.candidates.iter().zip(&self.interface.forces) {
             if force != 0.0 {
                 self.compliance.add(
@@ -159,6 +169,28 @@ impl Driver {
             }
         }
         Ok(())
+    }
+
+    /// Contact, place in it and mesh node of a contact point.
+    fn name(&self, point: u32) -> String {
+        let (contact, place) = self.system.point(point as usize);
+        let node = self.system.mesh_node[contact.points[place].node as usize];
+        format!("contact `{}`, point {place}, node {node}", contact.name)
+    }
+
+    /// The interface problem as it stands.
+    fn problem(&self, factors: [f64; 2]) -> InterfaceProblem {
+        InterfaceProblem {
+            step: self.state.step + 1,
+            names: self
+                .candidates
+                .iter()
+                .map(|&point| self.name(point))
+                .collect(),
+            candidates: self.candidate_data.clone(),
+            compliance: self.compliance.matrix.clone(),
+            factors,
+        }
     }
 
     /// The error behind a failure of the interface problem of some points.

@@ -6,6 +6,7 @@
 mod balance;
 mod contacts;
 mod impulse;
+mod predictor;
 mod projection;
 
 use std::sync::Arc;
@@ -18,7 +19,7 @@ use carom_contact::{Contact, Rows, Search};
 
 use crate::compliance::Compliance;
 use crate::error::Error;
-use crate::interface::{Candidate, Interface};
+use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::ledger::{Energies, Ledger, Resultant, reactions};
 use crate::operator::Operators;
 use crate::records::{ContactRecord, Records};
@@ -29,6 +30,7 @@ use crate::system::System;
 use balance::{energies, lagged};
 use contacts::on_row;
 use impulse::Impulses;
+use predictor::Predictor;
 use projection::Projected;
 
 /// Takes steps.
@@ -43,6 +45,7 @@ pub struct Driver {
     /// Solver of the stages with the mass alone; none where there is no such stage.
     impulses: Option<Impulses>,
     projected: Projected,
+    predictor: Predictor,
     /// Rows at zero displacement of contacts with small sliding.
     initial_rows: Vec<Option<Rows>>,
     search: Vec<Search>,
@@ -51,6 +54,8 @@ pub struct Driver {
     ahead: Vec<Row>,
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,
+    /// The interface problem that made the last step fail.
+    failed: Option<InterfaceProblem>,
     state: State,
     next: State,
     report: StepReport,
@@ -134,7 +139,8 @@ impl Driver {
         let (n, points) = (system.unknowns(), system.points());
         let zeros = || vec![0.0; n];
         let projects = |contact: &Contact| contact.law.projects();
-        let impulses = match system.contacts.iter().any(projects) {
+        let predicts = scheme.projects_predictor() && points > 0;
+        let impulses = match predicts || system.contacts.iter().any(projects) {
             true => Some(Impulses::new(&system)?),
             false => None,
         };
@@ -150,12 +156,14 @@ impl Driver {
             },
             impulses,
             projected: Projected::new(points),
+            predictor: Predictor::default(),
             initial_rows: Vec::new(),
             search: system.contacts.iter().map(|_| Search::default()).collect(),
             rows: Rows::default(),
             ahead: Vec::new(),
             candidates: Vec::new(),
             candidate_data: Vec::new(),
+            failed: None,
             state: empty_state(&system),
             next: empty_state(&system),
             report: StepReport {
@@ -225,6 +233,11 @@ impl Driver {
     /// What the last step did.
     pub fn report(&self) -> &StepReport {
         &self.report
+    }
+
+    /// The interface problem that made a step fail, to be kept and solved by itself.
+    pub fn failed_problem(&self) -> Option<&InterfaceProblem> {
+        self.failed.as_ref()
     }
 
     /// What the run cost so far.
@@ -308,7 +321,16 @@ impl Driver {
     /// # Errors
     /// A contact problem without solution, or a motion that is not finite. The state is then the one before the step.
     pub fn step(&mut self) -> Result<(), Error> {
+        let taken = self.attempt();
+        if taken.is_err() {
+            self.forget_predictor();
+        }
+        taken
+    }
+
+    fn attempt(&mut self) -> Result<(), Error> {
         let begin = Instant::now();
+        self.predict()?;
         let predicted = self.residual();
         let forces = Instant::now();
         self.place(false);

@@ -3,6 +3,7 @@
 //! Adding a scheme: one file here, one variant of [`Scheme`], one arm of [`Scheme::get`].
 
 mod central_difference;
+mod contact_stabilised;
 mod generalised_alpha;
 mod hht;
 mod kane;
@@ -18,6 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::step_map::StepMap;
 
 pub use central_difference::CentralDifference;
+pub use contact_stabilised::ContactStabilised;
 pub use generalised_alpha::GeneralisedAlpha;
 pub use hht::Hht;
 pub use kane::Kane;
@@ -82,6 +84,10 @@ pub trait TimeScheme {
     fn needs_lumped_mass(&self) -> bool {
         self.is_explicit()
     }
+    /// Whether the displacement predicted without forces is projected on the admissible ones before the step.
+    fn projects_predictor(&self) -> bool {
+        false
+    }
     /// Whether a contact law that constrains this quantity can hold.
     fn takes(&self, level: Level) -> bool {
         !(self.is_explicit() && level == Level::Gap)
@@ -109,6 +115,8 @@ pub enum Scheme {
     LaursenChawla(LaursenChawla),
     /// Newmark with implicit contact forces, Kane, Repetto, Ortiz and Marsden.
     Kane(Kane),
+    /// Trapezoid with a projected predictor, Deuflhard, Krause and Ertel.
+    ContactStabilised(ContactStabilised),
 }
 
 impl Scheme {
@@ -124,6 +132,7 @@ impl Scheme {
             Scheme::PaoliSchatzman(scheme) => scheme,
             Scheme::LaursenChawla(scheme) => scheme,
             Scheme::Kane(scheme) => scheme,
+            Scheme::ContactStabilised(scheme) => scheme,
         }
     }
 
@@ -150,6 +159,7 @@ impl Scheme {
                 beta: 0.25,
                 gamma: 0.5,
             }),
+            Scheme::ContactStabilised(ContactStabilised),
         ]
     }
 }

@@ -249,6 +249,14 @@ impl Results {
         checkpoint::write(&path, &summary::hash(&self.settings.case_text), state)
     }
 
+    /// Writes one more file into the folder, atomically.
+    ///
+    /// # Errors
+    /// A name that leaves the folder; the file cannot be written.
+    pub fn attach(&mut self, name: &str, text: &str) -> Result<(), Error> {
+        atomic::write_text(&self.folder.file(name)?, text)
+    }
+
     /// Writes figures, report and summary, after the run has told its end to the observers
     /// ([`carom_dynamics::march`] does, after a failed run too).
     ///

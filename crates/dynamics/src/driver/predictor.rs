@@ -1,0 +1,125 @@
+//! The stage before a step whose predictor is projected on the admissible displacements.
+//!
+//! `u* = u + dt v + w`, w = M⁻¹ Nᵀ R, `0 <= g(u*) ⟂ R >= 0`, on the rows of the step. The step finds 2 w/dt² where other
+//! schemes have the acceleration at its start.
+
+use super::Driver;
+use crate::error::Error;
+
+/// Points and forces of the stage.
+#[derive(Default)]
+pub(super) struct Predictor {
+    points: Vec<u32>,
+    /// R of each point, kg m.
+    forces: Vec<f64>,
+    /// Gap of each contact point at u + dt v, m.
+    gaps: Vec<f64>,
+    values: Vec<f64>,
+    present: Vec<f64>,
+    /// The acceleration of the state before the step.
+    kept: Vec<f64>,
+}
+
+impl Driver {
+    /// Projects the predictor.
+    pub(super) fn predict(&mut self) -> Result<(), Error> {
+        if !self.system.scheme.get().projects_predictor() {
+            return Ok(());
+        }
+        self.place(false);
+        let dt = self.system.dt;
+        let Self {
+            predictor,
+            rows,
+            state,
+            ..
+        } = self;
+        let motion = &mut state.motion;
+        predictor.kept.clone_from(&motion.a);
+        motion.a.fill(0.0);
+        predictor.gaps.clear();
+        predictor.gaps.extend(
+            (0..rows.len()).map(|point| rows.gap(point) + dt * rows.product(point, &motion.v)),
+        );
+        predictor.points.clear();
+        predictor.forces.clear();
+        while self.add_penetrating() {
+            self.solve_predictor()?;
+        }
+        let Some(stage) = &self.impulses else {
+            return Ok(());
+        };
+        if !self.predictor.points.is_empty() {
+            for (a, w) in self.state.motion.a.iter_mut().zip(&stage.change) {
+                *a = 2.0 / (dt * dt) * w;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the points that the projection so far leaves behind the surface; whether there are any.
+    fn add_penetrating(&mut self) -> bool {
+        let Some(stage) = &self.impulses else {
+            return false;
+        };
+        let (rows, predictor) = (&self.rows, &mut self.predictor);
+        let before = predictor.points.len();
+        for point in 0..rows.len() as u32 {
+            let at = point as usize;
+            let moved = match before {
+                0 => 0.0,
+                _ => rows.product(at, &stage.change),
+            };
+            if predictor.gaps[at] + moved < 0.0
+                && predictor.points[..before].binary_search(&point).is_err()
+            {
+                predictor.points.push(point);
+            }
+        }
+        predictor.points.sort_unstable();
+        predictor.points.len() > before
+    }
+
+    fn solve_predictor(&mut self) -> Result<(), Error> {
+        let predictor = &mut self.predictor;
+        let Some(stage) = &mut self.impulses else {
+            return Ok(());
+        };
+        predictor.values.clear();
+        let gaps = predictor
+            .points
+            .iter()
+            .map(|&point| predictor.gaps[point as usize]);
+        predictor.values.extend(gaps);
+        predictor.present.clear();
+        predictor.present.resize(predictor.points.len(), 0.0);
+        let (values, present) = (&predictor.values, &predictor.present);
+        let solved = stage.solve(&self.system, &self.rows, &predictor.points, values, present);
+        predictor.forces.clone_from(&stage.added);
+        solved.map_err(|failure| self.interface_error(failure, &self.predictor.points))
+    }
+
+    /// What the projection of the predictor takes in the step, (2/dt²) R · (g(u₊) - g(u*)) in J.
+    pub(super) fn predictor_loss(&self) -> f64 {
+        let Some(stage) = &self.impulses else {
+            return 0.0;
+        };
+        let (old, new, dt) = (&self.state.motion, &self.next.motion, self.system.dt);
+        let predictor = &self.predictor;
+        let terms = predictor.points.iter().zip(&predictor.forces);
+        let sum: f64 = terms
+            .map(|(&point, force)| {
+                let on = |x: &[f64]| self.rows.product(point as usize, x);
+                force * (on(&new.u) - on(&old.u) - dt * on(&old.v) - on(&stage.change))
+            })
+            .sum();
+        2.0 / (dt * dt) * sum
+    }
+
+    /// Gives the state back what a failed step has changed in it.
+    pub(super) fn forget_predictor(&mut self) {
+        if self.predictor.kept.len() == self.state.motion.a.len() {
+            self.state.motion.a.copy_from_slice(&self.predictor.kept);
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! How deep the velocity law lets bodies penetrate, for impacts at any instant of a step.
+//!
+//! Problem: two bars of the set "slow", n = 20, at CFL 0.5 and 0.25, met at 20 instants spread over a step, each capture,
+//! theta ½, ¾ and 1, until half of the contact. Closed solution: no penetration beyond (2 - θ) v0 dt with capture "now",
+//! (3/2 - θ) v0 dt with "half", (1 - θ) v0 dt where the gap at the end of the step decides ("free", "gap-target"): the
+//! approach of the part of the step that comes before the captured instant, and of the part (1 - θ) that the theta scheme
+//! moves with the old rate. "Full" closes too early, then predicts that a point at rest stays there and lets go of it: up to
+//! v0 dt whatever θ. Reference: the formulas. Tolerance: 1e-9 of v0 dt, round-off; the largest penetration
+//! over the instants at least 0.9 of the bound where the first step of contact makes it (20 instants come within a
+//! fiftieth of a twentieth of the worst one), so that it halves with dt.
+
+use carom_contact::law::Capture;
+
+use crate::Error;
+use crate::bars::Run;
+use crate::build::{theta, velocity};
+use crate::check::{Check, Row};
+use crate::figures::drive;
+
+const INSTANTS: usize = 20;
+
+/// Captures with their bound in v0 dt as a function of θ, and whether the first step of contact reaches it.
+const CAPTURES: [(&str, Capture, fn(f64) -> f64, bool); 5] = [
+    ("now", Capture::Now, |theta| 2.0 - theta, true),
+    ("half", Capture::Half, |theta| 1.5 - theta, true),
+    ("full", Capture::Full, |_| 1.0, false),
+    ("free", Capture::Free, |theta| 1.0 - theta, true),
+    ("gap-target", Capture::GapTarget, |theta| 1.0 - theta, true),
+];
+
+/// Largest penetration over the instants, in v0 dt.
+fn deepest(capture: Capture, value: f64, courant: f64) -> Result<f64, Error> {
+    let mut deepest: f64 = 0.0;
+    for instant in 0..INSTANTS {
+        let mut case = Run {
+            scheme: theta(value),
+            law: velocity(capture),
+            courant,
+            end: 0.5,
+            ..Run::slow(20)
+        };
+        let step = case.set.speed * case.dt();
+        case.gap = (3.0 + (instant as f64 + 0.02) / INSTANTS as f64) * step;
+        let (driver, _) = drive(&case)?;
+        deepest = deepest.max(driver.state().records.contacts[0].penetration / step);
+    }
+    Ok(deepest)
+}
+
+pub(crate) const CHECK: Check = Check {
+    name: "viability",
+    fact: "penetration keeps the bound of each capture at every instant of impact, and halves with the step",
+    run: |_| {
+        let mut rows = Vec::new();
+        for (name, capture, bound, reached) in CAPTURES {
+            for value in [0.5, 0.75, 1.0] {
+                let bound = bound(value);
+                for courant in [0.5, 0.25] {
+                    let name =
+                        format!("{name}, theta {value}, CFL {courant}: penetration / (v0 dt)");
+                    let found = deepest(capture, value, courant)?;
+                    rows.push(Row::at_most(&name, found, bound + 1e-9));
+                    if reached {
+                        rows.push(Row::at_least(name, found, 0.9 * bound));
+                    }
+                }
+            }
+        }
+        Ok(rows)
+    },
+};
