@@ -76,6 +76,10 @@ impl Verdict {
     }
 }
 
+/// Name of the check on the energy residual; not among the checks of a scheme without an energy identity, whose residual
+/// holds what the scheme dissipates.
+pub const ENERGY_CHECK: &str = "energy residual / largest energy";
+
 /// A quantity with the bound that it must not pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Check {

@@ -12,6 +12,9 @@ type Curves<'a> = Vec<(&'a str, Polyline)>;
 /// Title, curves, exact curve.
 type Part<'a> = (String, Curves<'a>, Option<Polyline>);
 
+/// Variants whose names fit over half a page.
+const FEW: usize = 4;
+
 const fn axis(quantity: &'static str, unit: &'static str) -> Axis {
     Axis { quantity, unit }
 }
@@ -19,9 +22,12 @@ const fn axis(quantity: &'static str, unit: &'static str) -> Axis {
 /// File names and figures as SVG; a quantity that no variant has is left out.
 pub(crate) fn figures(comparison: &Comparison) -> Vec<(&'static str, Result<String, Error>)> {
     let done = comparison.variants.iter();
-    let done: Vec<(&str, &Done)> = done
+    let mut done: Vec<(&str, &Done)> = done
         .filter_map(|v| Some((v.name.as_str(), v.done()?)))
         .collect();
+    // what chatters is drawn first, under the others, which it would hide
+    let changes = |done: &Done| done.contact().map(|contact| contact.status_changes);
+    done.sort_by_key(|(_, done)| std::cmp::Reverse(changes(done)));
     let end = done.iter().map(|(_, d)| d.summary.time.end);
     let end = end.fold(0.0, f64::max);
     let force = axis("contact force", "N");
@@ -52,7 +58,11 @@ pub(crate) fn figures(comparison: &Comparison) -> Vec<(&'static str, Result<Stri
                 quantity: "time",
                 unit: "s",
             },
-            columns: panels.len().min(2),
+            columns: if done.len() > FEW {
+                1
+            } else {
+                panels.len().min(2)
+            },
             panels,
         };
         (!figure.panels.is_empty()).then(|| (file, figure.svg()))

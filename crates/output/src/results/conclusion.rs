@@ -9,7 +9,8 @@ use crate::results::exact;
 use crate::results::impacts::ContactTotals;
 use crate::results::{Comparison, Ending, Last, Results};
 use crate::summary::{
-    Check, Contact, Counts, Energy, Exact, Model, Momentum, Summary, Time, Verdict, hash,
+    Check, Contact, Counts, ENERGY_CHECK, Energy, Exact, Model, Momentum, Summary, Time, Verdict,
+    hash,
 };
 use crate::{Error, Report, atomic};
 
@@ -97,11 +98,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
     let mut warnings = settings.warnings.clone();
     let mut checks = Vec::new();
     if system.scheme.get().energy_identity(system.dt).is_some() {
-        checks.push(check(
-            "energy residual / largest energy",
-            energy.relative_residual,
-            BOUND,
-        ));
+        checks.push(check(ENERGY_CHECK, energy.relative_residual, BOUND));
     } else {
         warnings.push(format!(
             "no energy identity is known of the scheme {}: the energy residual holds what the scheme dissipates, and is not checked",

@@ -19,7 +19,7 @@ pub const RAW_PEAK: &str =
 impl Study {
     /// The runs for people: values of the keys, step, quantities.
     pub fn table(&self) -> Table {
-        let keys = self.keys.iter().map(|(key, _)| short(key).to_owned());
+        let keys = self.keys.iter().map(|(key, _)| self.head(key).to_owned());
         let quantities = self.shown();
         let names = quantities.iter().map(|quantity| quantity.name().to_owned());
         let heads = [String::new()].into_iter().chain(keys);
@@ -46,13 +46,13 @@ impl Study {
     pub fn order_table(&self) -> Table {
         let row = |order: &Order| {
             let number =
-                |value: Option<f64>| value.map_or(NOTHING.to_owned(), |v| format!("{v:.2}"));
+                |value: Option<f64>| value.map_or(NOTHING.to_owned(), |v| format!("{v:.3}"));
             let error_bar = order.fit.and_then(|fit| fit.error_bar);
             let between: Vec<String> = order.consecutive.iter().map(|p| number(*p)).collect();
             vec![
                 order.quantity.name().to_owned(),
                 number(order.fit.map(|fit| fit.order)),
-                error_bar.map_or(NOTHING.to_owned(), |bar| format!("± {bar:.2}")),
+                error_bar.map_or(NOTHING.to_owned(), |bar| format!("± {bar:.3}")),
                 between.join(", "),
                 order.source.text().to_owned(),
             ]
@@ -92,6 +92,23 @@ impl Study {
         let page = folder.file("report.html")?;
         atomic::write_text(&page, &self.html(svg)?)?;
         Ok(page)
+    }
+
+    /// The last two parts of a key path, or all of it where another key ends in the same way.
+    fn head<'a>(&self, key: &'a str) -> &'a str {
+        let short = |key: &'a str| match key.rmatch_indices('.').nth(1) {
+            Some((at, _)) => &key[at..],
+            None => key,
+        };
+        let same = self
+            .keys
+            .iter()
+            .filter(|(other, _)| other.ends_with(short(key)));
+        if same.count() > 1 {
+            key
+        } else {
+            short(key).trim_start_matches('.')
+        }
     }
 
     /// The quantities that at least one run has.
@@ -211,11 +228,4 @@ impl Source {
             Source::Differences => "differences",
         }
     }
-}
-
-/// The last two parts of a key path.
-fn short(key: &str) -> &str {
-    key.rmatch_indices('.')
-        .nth(1)
-        .map_or(key, |(at, _)| &key[at + 1..])
 }
