@@ -154,6 +154,7 @@ fn scheme(scheme: &Scheme) -> String {
         Scheme::TchamwaWielgosz(scheme) => format!("tchamwa-wielgosz, phi = {}", scheme.phi),
         Scheme::PaoliSchatzman(_) => "paoli-schatzman".to_string(),
         Scheme::LaursenChawla(_) => "laursen-chawla".to_string(),
+        Scheme::ContactStabilised(_) => "contact-stabilised".to_string(),
         Scheme::Kane(kane) => format!("kane, beta = {}, gamma = {}", kane.beta, kane.gamma),
     }
 }

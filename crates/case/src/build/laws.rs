@@ -136,7 +136,8 @@ fn default_capture(scheme: &Scheme) -> Capture {
         | Scheme::TchamwaWielgosz(_)
         | Scheme::PaoliSchatzman(_)
         | Scheme::LaursenChawla(_)
-        | Scheme::Kane(_) => Capture::Now,
+        | Scheme::Kane(_)
+        | Scheme::ContactStabilised(_) => Capture::Now,
     }
 }
 

@@ -2,8 +2,8 @@
 
 use carom_contact::law::Level;
 use carom_dynamics::scheme::{
-    CentralDifference, GeneralisedAlpha, Hht, Kane, LaursenChawla, Newmark, PaoliSchatzman,
-    TchamwaWielgosz, Theta,
+    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, LaursenChawla, Newmark,
+    PaoliSchatzman, TchamwaWielgosz, Theta,
 };
 use carom_dynamics::{Error, Model, ModelBody, Scheme, System, step_count};
 use carom_mesh::Mesh;
@@ -33,6 +33,7 @@ impl Builder<'_> {
             }
             schema::Scheme::PaoliSchatzman(_) => Scheme::PaoliSchatzman(PaoliSchatzman),
             schema::Scheme::LaursenChawla(_) => Scheme::LaursenChawla(LaursenChawla),
+            schema::Scheme::ContactStabilised(_) => Scheme::ContactStabilised(ContactStabilised),
             schema::Scheme::Kane(kane) => Scheme::Kane(Kane {
                 beta: kane.beta,
                 gamma: kane.gamma,

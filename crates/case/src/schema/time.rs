@@ -60,6 +60,9 @@ pub enum Scheme {
     LaursenChawla(LaursenChawla),
     /// Newmark's scheme with implicit contact forces (Kane, Repetto, Ortiz, Marsden); lumped mass, displacement law only.
     Kane(Kane),
+    /// The trapezoid with a predictor that is projected on the admissible displacements (contact-stabilised Newmark: Deuflhard,
+    /// Krause, Ertel); displacement law only. Its energy never grows.
+    ContactStabilised(ContactStabilised),
 }
 
 /// Newmark's scheme.
@@ -145,6 +148,11 @@ pub struct Kane {
     #[schemars(extend("minimum" = 0.5, "maximum" = 1.0))]
     pub gamma: f64,
 }
+
+/// The contact-stabilised Newmark scheme: nothing to give.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ContactStabilised {}
 
 fn quarter() -> f64 {
     0.25
