@@ -101,7 +101,8 @@ pub fn study(input: &Input, vary: &[Vary], sweep: &Sweep) -> Result<(Study, Path
         let overrides = vary
             .iter()
             .map(|vary| format!("{}={}", vary.key, vary.values[k]));
-        Job::new(&run_name(vary, k), input, overrides.collect())
+        let name = run_name(&vary[0].key, &vary[0].values[k], k);
+        Job::new(&name, input, overrides.collect())
     };
     let jobs = (0..count).map(job).collect::<Result<Vec<Job>, _>>()?;
     let mut folder = prepare(&jobs, sweep)?;
@@ -110,17 +111,10 @@ pub fn study(input: &Input, vary: &[Vary], sweep: &Sweep) -> Result<(Study, Path
     Ok((study, page))
 }
 
-/// Number, last part of the first key, value: `2-courant-0.5`.
-fn run_name(vary: &[Vary], k: usize) -> String {
-    let first = vary.first().map_or((String::new(), ""), |vary| {
-        let key = vary.key.rsplit('.').next().unwrap_or_default();
-        (folder_name(&vary.values[k]), key)
-    });
-    format!(
-        "{}-{}",
-        k + 1,
-        folder_name(&format!("{} {}", first.1, first.0))
-    )
+/// Number, last part of the key, value: `2-courant-0.5`.
+pub(crate) fn run_name(key: &str, value: &str, k: usize) -> String {
+    let last = key.rsplit('.').next().unwrap_or_default();
+    format!("{}-{}", k + 1, folder_name(&format!("{last} {value}")))
 }
 
 fn gather(title: String, vary: &[Vary], ended: Vec<Ended>) -> Study {

@@ -1,9 +1,9 @@
 //! `carom study`.
 
-use carom_case::{Input, Vary};
+use carom_case::{Fit, Goal, Input, SweepError, Vary};
 use carom_output::study::RAW_PEAK;
 
-use crate::sweep;
+use crate::{FAILED, sweep};
 
 /// Arguments of `carom study`.
 #[derive(clap::Args)]
@@ -11,8 +11,23 @@ pub struct Arguments {
     #[command(flatten)]
     common: sweep::Arguments,
     /// A key of the case with its values, `time.step.courant=1,0.5,0.25`; several keys vary together
-    #[arg(long, required = true, value_name = "KEY=VALUES")]
+    #[arg(long, required_unless_present = "fit", value_name = "KEY=VALUES")]
     vary: Vec<String>,
+    /// A key to find the value of, so that the case gives what `--to` wants
+    #[arg(
+        long,
+        requires = "between",
+        requires = "to",
+        conflicts_with = "vary",
+        value_name = "KEY"
+    )]
+    fit: Option<String>,
+    /// The least and the largest value to try, SI
+    #[arg(long, requires = "fit", value_name = "A,B", allow_hyphen_values = true)]
+    between: Option<String>,
+    /// What to fit to: `restitution=0.98`, any other column of `study.csv`, or `force=FILE.csv`
+    #[arg(long, requires = "fit", value_name = "GOAL")]
+    to: Option<String>,
 }
 
 /// Runs the study; returns the exit code.
@@ -22,6 +37,11 @@ pub fn study(arguments: &Arguments) -> u8 {
         Ok(input) => input,
         Err(problems) => return crate::refuse(&[], &problems),
     };
+    if let (Some(key), Some(between), Some(to)) =
+        (&arguments.fit, &arguments.between, &arguments.to)
+    {
+        return fit(common, &input, Fit::read(key, between, to));
+    }
     let vary = arguments.vary.iter().map(|text| Vary::read(text));
     let vary = match vary.collect::<Result<Vec<Vary>, _>>() {
         Ok(vary) => vary,
@@ -45,4 +65,37 @@ pub fn study(arguments: &Arguments) -> u8 {
     println!("  {RAW_PEAK}");
     println!("  report: {}", page.display());
     sweep::code(variants())
+}
+
+fn fit(common: &sweep::Arguments, input: &Input, fit: Result<Fit, SweepError>) -> u8 {
+    let fit = match fit {
+        Ok(fit) => fit,
+        Err(error) => return sweep::refuse(&error),
+    };
+    let folder = common.folder("study");
+    let fitted = common.sweep(&folder, |sweep| carom_case::fit(input, &fit, sweep));
+    let fitted = match fitted {
+        Ok(fitted) => fitted,
+        Err(error) => return sweep::refuse(&error),
+    };
+    println!("{}\n", fitted.study.title);
+    println!("{}", fitted.study.table().text(sweep::WIDTH));
+    let what = match &fit.goal {
+        Goal::Quantity(quantity, _) => quantity.name(),
+        Goal::Force(_) => "relative distance of the force",
+    };
+    let variants = || fitted.study.runs.iter().map(|run| &run.variant);
+    sweep::reasons(variants());
+    let code = match &fitted.found {
+        Ok((value, reached)) => {
+            println!("  {} = {value:.7}: {what} {reached:.7}", fit.key);
+            0
+        }
+        Err(reason) => {
+            eprintln!("error: {reason}");
+            FAILED
+        }
+    };
+    println!("  report: {}", fitted.page.display());
+    code.max(sweep::code(variants()))
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use carom_case::{Choices, Input, Sweep, SweepError, Vary, compare, study};
+use carom_case::{Choices, Fit, Input, Sweep, SweepError, Vary, compare, fit, study};
 use carom_dynamics::{Observer, State, StepReport, System};
 use carom_output::Summary;
 use carom_output::compare::{COLUMNS, Comparison, Outcome, Standard};
@@ -295,4 +295,59 @@ fn without_an_exact_solution_the_order_comes_from_differences() {
         assert!(folder.join(file).is_file(), "{file}");
     }
     assert!(folder.join("1-elements-50/summary.json").is_file());
+}
+
+#[test]
+fn a_fit_finds_the_parameter_that_made_the_result() {
+    let work = tempfile::tempdir().unwrap();
+    let input = two_bars(20, EXACT);
+    let truth = 0.7;
+    let folder = work.path().join("truth");
+    let choices = Choices {
+        schemes: vec![format!("theta={{theta={truth}}}")],
+        ..Choices::default()
+    };
+    let made = compared(&folder, &input, &choices);
+    let name = made.variants[0].name.clone();
+    let restitution = value(&made, &name, "restitution").unwrap();
+    let histories = folder.join(name).join("histories.csv");
+    let goals = [
+        (format!("restitution={restitution}"), 1e-6),
+        (format!("force={}", histories.display()), 1e-3),
+    ];
+    for (goal, tolerance) in goals {
+        let wanted = Fit::read("time.scheme.theta.theta", "0.5,1.0", &goal).unwrap();
+        let fitted = sweep(&work.path().join("fit"), 1, |sweep| {
+            fit(&input, &wanted, sweep)
+        });
+        let fitted = fitted.unwrap();
+        let (theta, _) = fitted.found.unwrap();
+        assert!((theta - truth).abs() < tolerance, "{goal}: {theta}");
+        assert!(fitted.study.runs.len() < 25, "{}", fitted.study.runs.len());
+        assert!(fitted.page.is_file());
+    }
+    let far = Fit::read("time.scheme.theta.theta", "0.5,1.0", "restitution=0.2").unwrap();
+    let fitted = sweep(&work.path().join("fit"), 1, |sweep| {
+        fit(&input, &far, sweep)
+    })
+    .unwrap();
+    assert!(fitted.found.is_err());
+}
+
+#[test]
+fn a_goal_that_is_none_is_refused() {
+    for (between, goal) in [
+        ("1,0", "restitution=0.5"),
+        ("0", "restitution=0.5"),
+        ("0,1", "restitution"),
+        ("0,1", "restitution=much"),
+        ("0,1", "rest=0.5"),
+        ("0,1", "force=nowhere.csv"),
+    ] {
+        let read = Fit::read("time.scheme.theta.theta", between, goal);
+        assert!(
+            matches!(read, Err(SweepError::Input { .. })),
+            "{between} {goal}"
+        );
+    }
 }

@@ -233,3 +233,31 @@ fn a_study_gives_orders_with_error_bars_and_a_figure() {
     );
     assert!(folder.join("3-elements-80/summary.json").is_file());
 }
+
+#[test]
+fn a_fit_prints_the_value_that_it_found() {
+    let work = tempfile::tempdir().unwrap();
+    case(work.path());
+    let fit = |goal: &str| {
+        let key = "time.scheme.theta.theta";
+        let arguments = [
+            "study",
+            "case.toml",
+            "--fit",
+            key,
+            "--between",
+            "0.5,1",
+            "--to",
+            goal,
+        ];
+        carom(work.path(), &arguments)
+    };
+    let output = fit("restitution=0.92");
+    let said = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("time.scheme.theta.theta = 0."), "{said}");
+    assert!(said.contains("restitution 0.9200000"), "{said}");
+    let output = fit("restitution=0.1");
+    assert_eq!(output.status.code(), Some(3), "{}", text(&output));
+    assert_eq!(fit("rest=0.1").status.code(), Some(2));
+}
