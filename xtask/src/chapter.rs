@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Time schemes of the table, as `carom compare --with` takes them.
-const SCHEMES: [&str; 11] = [
+const SCHEMES: [&str; 12] = [
     "theta",
     "theta={theta=0.6}",
     "theta={theta=1.0}",
@@ -17,6 +17,7 @@ const SCHEMES: [&str; 11] = [
     "paoli-schatzman",
     "laursen-chawla",
     "kane",
+    "contact-stabilised",
 ];
 
 /// Contact laws of the table.
