@@ -52,12 +52,7 @@ pub fn run(arguments: &Arguments) -> u8 {
             }
         }
         Err(error) => {
-            eprintln!("error: {error}");
-            let mut cause: &dyn std::error::Error = &error;
-            while let Some(source) = cause.source() {
-                eprintln!("  because: {source}");
-                cause = source;
-            }
+            tell(&error, &folder);
             FAILED
         }
     }
@@ -134,6 +129,24 @@ fn print(summary: &Summary, folder: &Path) {
     println!("  {}", verdict(summary));
     println!("  report: {}", folder.join("report.html").display());
     println!("  figures: {}", folder.join("plots").display());
+}
+
+/// The error and those of its causes that it does not already say; where the results so far are.
+fn tell(error: &carom_case::Failed, folder: &Path) {
+    let mut said = error.to_string();
+    eprintln!("error: {said}");
+    let mut cause: &dyn std::error::Error = error;
+    while let Some(source) = cause.source() {
+        let text = source.to_string();
+        if !said.contains(&text) {
+            eprintln!("  because: {text}");
+            said = text;
+        }
+        cause = source;
+    }
+    if let carom_case::Failed::Step(_) = error {
+        eprintln!("what was computed before is in {}", folder.display());
+    }
 }
 
 /// Factorisations, memory, time per step.
