@@ -1,0 +1,345 @@
+//! The common refinement of two meshes: cells of one cut by cells of the other, as pieces with quadrature points.
+//!
+//! A piece keeps only the two cells; its geometry is computed again where it is needed, so that memory does not grow
+//! with the number of vertices. A cell that lies wholly in one of the other model is not cut at all and integrated
+//! on its own reference cell.
+
+use carom_mesh::ElementId;
+
+use crate::cell::{Cell, Convex};
+use crate::error::Error;
+use crate::model::Cells;
+use crate::polytope::{Plane, Polytope};
+use crate::rule::Rule;
+
+/// Pieces of less than this fraction of the smaller of their two cells are round-off.
+const NOTHING: f64 = 1e-13;
+/// By how much the degree of the quadrature is raised where a cell is not affine: shape functions are then no
+/// polynomials of the position, and the error of the rule falls geometrically with its degree.
+const RAISED: usize = 6;
+
+/// What a cell of one model and one of the other have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Piece {
+    /// Index of the inner cell in its model.
+    pub inner: u32,
+    /// Index of the outer cell in its model.
+    pub outer: u32,
+    /// Measure common to both cells.
+    pub common: f64,
+    /// Measure of the part in the region of the overlap.
+    pub measure: f64,
+    shape: Shape,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Shape {
+    /// The whole inner cell.
+    Inner,
+    /// The whole outer cell.
+    Outer,
+    /// A part of both.
+    Cut,
+}
+
+impl Piece {
+    /// The same piece under another number of its outer cell.
+    pub fn renumbered(self, outer: u32) -> Piece {
+        Piece { outer, ..self }
+    }
+}
+
+/// A quadrature point of a piece.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point {
+    pub x: [f64; 3],
+    /// Weight times Jacobian, in length^dim.
+    pub weight: f64,
+    /// Reference coordinates in the inner cell.
+    pub inner: [f64; 3],
+    /// Reference coordinates in the outer cell.
+    pub outer: [f64; 3],
+}
+
+/// Which part of a piece is meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Part {
+    /// All that the two cells have in common.
+    Common,
+    /// The part in the overlap.
+    Overlap,
+}
+
+/// Quadrature rules of one degree, and of a raised one for cells that are not affine.
+pub(crate) struct Rules {
+    exact: [Rule; 2],
+    raised: [Rule; 2],
+}
+
+impl Rules {
+    pub fn new(dim: usize, degree: usize) -> Rules {
+        let pair = |degree| [Rule::simplex(dim, degree), Rule::cube(dim, degree)];
+        Rules {
+            exact: pair(degree),
+            raised: pair(degree + RAISED),
+        }
+    }
+
+    /// The rule for one cell by itself.
+    pub fn of_cell(&self, cell: &Cell, affine: bool) -> &Rule {
+        let rules = if affine { &self.exact } else { &self.raised };
+        match cell.degree() {
+            1 if cell.kind.table().dim > 1 => &rules[0],
+            _ => &rules[1],
+        }
+    }
+
+    fn of_simplices(&self, affine: bool) -> &Rule {
+        if affine {
+            &self.exact[0]
+        } else {
+            &self.raised[0]
+        }
+    }
+}
+
+/// Two models and the pieces that they have in common.
+#[derive(Clone, Debug)]
+pub(crate) struct Refinement<'a> {
+    pub inner: Cells<'a>,
+    pub outer: Cells<'a>,
+    /// Sides of the region, where it is a box.
+    pub sides: Vec<Plane>,
+    /// Sorted by outer cell, then by inner cell.
+    pub pieces: Vec<Piece>,
+}
+
+impl<'a> Refinement<'a> {
+    /// All pieces of two models. `counts`: whether a pair (inner, outer) belongs to the region; `sides`: planes that
+    /// bound the region besides.
+    pub fn new(
+        inner: Cells<'a>,
+        outer: Cells<'a>,
+        sides: Vec<Plane>,
+        counts: impl Fn(ElementId, ElementId) -> bool,
+    ) -> Refinement<'a> {
+        let mut refinement = Refinement {
+            inner,
+            outer,
+            sides,
+            pieces: Vec::new(),
+        };
+        let (mut pieces, mut found) = (Vec::new(), Vec::new());
+        for o in 0..refinement.outer.len() {
+            refinement.inner.near(&refinement.outer, o, &mut found);
+            if found.is_empty() {
+                continue;
+            }
+            let cut = Cutter::new(refinement.outer.cell(o));
+            for &i in &found {
+                let ids = (refinement.inner.ids[i as usize], refinement.outer.ids[o]);
+                pieces.extend(refinement.piece(i, o as u32, &cut, counts(ids.0, ids.1)));
+            }
+        }
+        refinement.pieces = pieces;
+        refinement
+    }
+
+    /// The piece of two cells, if they have a volume in common.
+    fn piece(&self, inner: u32, outer: u32, cut: &Cutter, counts: bool) -> Option<Piece> {
+        let cell = Cutter::new(self.inner.cell(inner as usize));
+        let smaller = self.inner.measures[inner as usize].min(self.outer.measures[outer as usize]);
+        let shape = if cut.holds(&cell.cell) {
+            Shape::Inner
+        } else if cell.holds(&cut.cell) {
+            Shape::Outer
+        } else {
+            Shape::Cut
+        };
+        let polytopes = match shape {
+            Shape::Inner => polytopes_of(&cell),
+            Shape::Outer => polytopes_of(cut),
+            Shape::Cut => cell.common(cut),
+        };
+        let common = match shape {
+            Shape::Inner => self.inner.measures[inner as usize],
+            Shape::Outer => self.outer.measures[outer as usize],
+            Shape::Cut => measure(&polytopes),
+        };
+        let size = cell.cell.size.min(cut.cell.size);
+        let measure = match counts {
+            false => 0.0,
+            true if self.sides.is_empty() => common,
+            true => measure(&clip_all(polytopes, &self.sides, 1e-12 * size)),
+        };
+        (common > NOTHING * smaller).then_some(Piece {
+            inner,
+            outer,
+            common,
+            measure: if measure > NOTHING * smaller {
+                measure
+            } else {
+                0.0
+            },
+            shape,
+        })
+    }
+
+    /// The convex bodies that make up a part of a piece.
+    pub fn polytopes(&self, piece: &Piece, part: Part) -> Vec<Polytope> {
+        let inner = Cutter::new(self.inner.cell(piece.inner as usize));
+        let outer = Cutter::new(self.outer.cell(piece.outer as usize));
+        let size = inner.cell.size.min(outer.cell.size);
+        let common = match piece.shape {
+            Shape::Inner => polytopes_of(&inner),
+            Shape::Outer => polytopes_of(&outer),
+            Shape::Cut => inner.common(&outer),
+        };
+        match part {
+            Part::Common => common,
+            Part::Overlap => clip_all(common, &self.sides, 1e-12 * size),
+        }
+    }
+
+    /// Quadrature points of a part of a piece, into `points`, which is cleared first.
+    ///
+    /// Errors: a distorted cell cannot be inverted at a point.
+    pub fn points(
+        &self,
+        piece: &Piece,
+        part: Part,
+        rules: &Rules,
+        points: &mut Vec<Point>,
+    ) -> Result<(), Error> {
+        points.clear();
+        let (i, o) = (piece.inner as usize, piece.outer as usize);
+        let (inner, outer) = (self.inner.cell(i), self.outer.cell(o));
+        let affine = inner.is_affine() && outer.is_affine();
+        let inverse = |cells: &Cells, k: usize, cell: &Cell, x: &[f64; 3]| {
+            cell.reference(x)
+                .ok_or(Error::InverseMap { cell: cells.ids[k] })
+        };
+        // The box cuts nothing off a piece that lies wholly in it.
+        let whole =
+            part == Part::Common || (piece.common - piece.measure).abs() <= 1e-12 * piece.common;
+        match piece.shape {
+            Shape::Inner if whole => {
+                for (xi, weight) in inner.points(rules.of_cell(&inner, affine)) {
+                    let x = inner.point(&xi);
+                    points.push(Point {
+                        x,
+                        weight,
+                        inner: xi,
+                        outer: inverse(&self.outer, o, &outer, &x)?,
+                    });
+                }
+            }
+            Shape::Outer if whole => {
+                for (xi, weight) in outer.points(rules.of_cell(&outer, affine)) {
+                    let x = outer.point(&xi);
+                    points.push(Point {
+                        x,
+                        weight,
+                        inner: inverse(&self.inner, i, &inner, &x)?,
+                        outer: xi,
+                    });
+                }
+            }
+            _ => {
+                for (x, weight) in simplex_points(
+                    &self.polytopes(piece, part),
+                    rules.of_simplices(affine),
+                    self.inner.mesh.dim,
+                ) {
+                    points.push(Point {
+                        x,
+                        weight,
+                        inner: inverse(&self.inner, i, &inner, &x)?,
+                        outer: inverse(&self.outer, o, &outer, &x)?,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A cell with its convex parts.
+struct Cutter {
+    cell: Cell,
+    parts: Vec<Convex>,
+}
+
+impl Cutter {
+    fn new(cell: Cell) -> Cutter {
+        Cutter {
+            parts: cell.parts(),
+            cell,
+        }
+    }
+
+    /// Whether a cell lies wholly in this one, which must be convex.
+    fn holds(&self, cell: &Cell) -> bool {
+        let tolerance = tolerance(&self.cell, cell);
+        let below = |plane: &Plane| cell.x().iter().all(|x| plane.distance(x) <= tolerance);
+        self.parts.len() == 1 && self.parts[0].planes.iter().all(below)
+    }
+
+    /// What two cells have in common.
+    fn common(&self, other: &Cutter) -> Vec<Polytope> {
+        let tolerance = tolerance(&self.cell, &other.cell);
+        let mut common = Vec::new();
+        for part in &self.parts {
+            for by in &other.parts {
+                let clipped = by
+                    .planes
+                    .iter()
+                    .try_fold(part.shape.clone(), |shape, plane| {
+                        shape.clip(plane, tolerance)
+                    });
+                common.extend(clipped);
+            }
+        }
+        common
+    }
+}
+
+/// Distance below which a vertex counts as lying on a plane: round-off of cells of these sizes and positions.
+fn tolerance(a: &Cell, b: &Cell) -> f64 {
+    let largest = a.x().iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+    1e-12 * a.size.max(b.size) + 1e-15 * largest
+}
+
+fn polytopes_of(cutter: &Cutter) -> Vec<Polytope> {
+    cutter.parts.iter().map(|part| part.shape.clone()).collect()
+}
+
+fn clip_all(polytopes: Vec<Polytope>, planes: &[Plane], tolerance: f64) -> Vec<Polytope> {
+    let clip = |shape: Polytope| {
+        planes
+            .iter()
+            .try_fold(shape, |shape, plane| shape.clip(plane, tolerance))
+    };
+    polytopes.into_iter().filter_map(clip).collect()
+}
+
+fn measure(polytopes: &[Polytope]) -> f64 {
+    polytopes.iter().map(Polytope::measure).sum()
+}
+
+/// Points and weights of a simplex rule on every simplex of some bodies.
+fn simplex_points(polytopes: &[Polytope], rule: &Rule, dim: usize) -> Vec<([f64; 3], f64)> {
+    let reference = [1.0, 1.0, 2.0, 6.0][dim];
+    let mut points = Vec::new();
+    for polytope in polytopes {
+        polytope.simplices(|x, measure| {
+            for (xi, w) in rule.points.iter().zip(&rule.weights) {
+                let last = 1.0 - xi[0] - xi[1] - xi[2];
+                let at = [0, 1, 2]
+                    .map(|i| last * x[0][i] + (0..dim).map(|k| xi[k] * x[k + 1][i]).sum::<f64>());
+                points.push((at, w * reference * measure));
+            }
+        });
+    }
+    points
+}
