@@ -94,6 +94,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
             cells,
             kinematics: Kinematics::Solid,
             material: RUBBER,
+            weights: None,
         },
         mass: MassKind::Lumped,
         velocity: [0.0, 0.0, -SPEED],

@@ -105,6 +105,7 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
                 cells: cells.clone(),
                 kinematics: Kinematics::Bar { area: 1.0 },
                 material,
+                weights: None,
             },
             mass: MassKind::Lumped,
             velocity: [0.0; 3],

@@ -85,6 +85,7 @@ pub(crate) fn body(
             cells: group(mesh, name)?.elements.clone(),
             kinematics,
             material,
+            weights: None,
         },
         mass: MassKind::Lumped,
         velocity: [0.0; 3],

@@ -107,6 +107,7 @@ pub fn bounces(
                     young: 1.0,
                     poisson: 0.0,
                 },
+                weights: None,
             },
             mass: MassKind::Lumped,
             velocity: [0.0; 3],

@@ -14,3 +14,4 @@ mod sample;
 mod sizes;
 mod stiffness;
 mod threads;
+mod weights;

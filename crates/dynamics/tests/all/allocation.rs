@@ -52,6 +52,7 @@ fn resting_cube(scheme: Scheme, law: Law, dt: f64) -> Driver {
                     young: 1e9,
                     poisson: 0.3,
                 },
+                weights: None,
             },
             mass: MassKind::Lumped,
             velocity: [0.0, 0.0, -1.0],

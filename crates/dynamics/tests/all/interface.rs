@@ -36,6 +36,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
                     young: 1.0,
                     poisson: 0.0,
                 },
+                weights: None,
             },
             mass: MassKind::Lumped,
             velocity: [-1.0, 0.0, 0.0],

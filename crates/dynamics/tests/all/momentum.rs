@@ -23,6 +23,7 @@ fn a_cylinder_that_bulges_as_it_strikes_keeps_its_axial_momentum_balance() {
                     young: 1e9,
                     poisson: 0.3,
                 },
+                weights: None,
             },
             mass: MassKind::Lumped,
             velocity: [0.0, -5.0, 0.0],

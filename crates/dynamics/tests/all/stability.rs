@@ -23,6 +23,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
                 young: 1.0,
                 poisson: 0.0,
             },
+            weights: None,
         },
         mass: MassKind::Lumped,
         velocity: [speed, 0.0, 0.0],
