@@ -248,7 +248,7 @@ impl Cell {
             let middle = Polytope::mean(&corners);
             for (i, &a) in corners.iter().enumerate() {
                 let b = corners[(i + 1) % corners.len()];
-                parts.push(tetrahedron(&[centre, middle, b, a]));
+                parts.push(tetrahedron(&[centre, middle, a, b]));
             }
         }
         parts
@@ -292,4 +292,39 @@ fn multiply(a: &[[f64; 3]; 3], x: &[f64; 3]) -> [f64; 3] {
 
 pub(crate) fn norm(a: &[f64; 3]) -> f64 {
     dot(a, a).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use carom_mesh::generate;
+
+    /// A cube of side 2 with one corner moved: three faces are warped.
+    fn warped() -> Cell {
+        let mut mesh = generate::box_("a", [-1.0; 3], [2.0; 3], [1; 3], false);
+        mesh.nodes[7] = [1.2, 1.3, 0.9];
+        Cell::new(&mesh, mesh.groups["a"].elements[0])
+    }
+
+    #[test]
+    fn the_parts_of_a_warped_hexahedron_have_its_volume_each_positive() {
+        let cell = warped();
+        let volumes: Vec<f64> = cell.parts().iter().map(|p| p.shape.measure()).collect();
+        assert_eq!(volumes.len(), 24);
+        assert!(volumes.iter().all(|&v| v > 0.0));
+        // Four triangles around the middle of a bilinear face hold the volume below it.
+        assert!((volumes.iter().sum::<f64>() - cell.measure()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_inverse_map_finds_reference_points_inside_and_just_outside() {
+        let cell = warped();
+        assert!(!cell.is_affine());
+        for xi in [[0.3, -0.8, 0.5], [1.0, 1.0, 1.0], [1.05, -1.02, 0.4]] {
+            let found = cell.reference(&cell.point(&xi)).unwrap();
+            assert!((0..3).all(|i| (found[i] - xi[i]).abs() < 1e-13));
+        }
+        assert!(cell.contains(&[0.0, 0.0, 0.9]));
+        assert!(!cell.contains(&[0.0, 0.0, 1.3]));
+    }
 }

@@ -54,6 +54,8 @@ pub enum Region {
 #[derive(Clone, Debug)]
 pub struct Overlap<'a> {
     pub(crate) refinement: Refinement<'a>,
+    /// Cells of the region, where it is a group.
+    group: Option<BTreeSet<ElementId>>,
     /// Pieces by cell of each model: offsets, then indices of pieces.
     pub(crate) by_inner: (Vec<usize>, Vec<u32>),
     pub(crate) by_outer: (Vec<usize>, Vec<u32>),
@@ -88,23 +90,24 @@ impl<'a> Overlap<'a> {
         let inner = Cells::new(models.mesh, Model::Inner, models.inner)?;
         let outer = Cells::new(models.mesh, Model::Outer, models.outer)?;
         refuse_shared_nodes(&inner, &outer)?;
-        let group: BTreeSet<ElementId> = match region {
-            Region::Cells(cells) => cells.iter().copied().collect(),
-            _ => BTreeSet::new(),
+        let group = match region {
+            Region::Cells(cells) => Some(cells.iter().copied().collect()),
+            _ => None,
         };
-        let everywhere = !matches!(region, Region::Cells(_));
-        let in_group = |i, o| everywhere || group.contains(&i) || group.contains(&o);
         let sides = box_sides(region, models.mesh.dim);
-        let full = Refinement::new(inner, outer, sides, in_group);
+        let full = Refinement::new(inner, outer, sides, |i, o| in_group(&group, (i, o)));
         if !full.pieces.iter().any(|piece| piece.measure > 0.0) {
             return Err(Error::Empty);
         }
-        refuse_uncovered(&full, &group)?;
+        if let Some(group) = &group {
+            refuse_uncovered(&full, group)?;
+        }
         let (refinement, removed) = without_inside_cells(full)?;
         let mut overlap = Overlap {
             by_inner: grouped(refinement.inner.len(), &refinement.pieces, |p| p.inner),
             by_outer: grouped(refinement.outer.len(), &refinement.pieces, |p| p.outer),
             refinement,
+            group,
             parts: Vec::new(),
             part_of: Vec::new(),
             removed,
@@ -306,15 +309,9 @@ impl<'a> Overlap<'a> {
             .sides
             .iter()
             .all(|side| side.distance(x) <= 0.0);
-        let counted = |i: usize, o: usize| {
-            let mut pieces = self.pieces_of(Model::Inner, i);
-            pieces.any(|p| {
-                let piece = &self.refinement.pieces[p];
-                piece.outer as usize == o && piece.measure > 0.0
-            })
-        };
+        let ids = |i: usize, o: usize| (self.refinement.inner.ids[i], self.refinement.outer.ids[o]);
         let region = match (inner, outer) {
-            (Some(i), Some(o)) => in_box && counted(i, o),
+            (Some(i), Some(o)) => in_box && in_group(&self.group, ids(i, o)),
             _ => false,
         };
         Presence {
@@ -423,6 +420,12 @@ fn face_of(cell: &Cell, face: usize) -> Facet {
         normal: plane.normal,
         measure: 1.0,
     }
+}
+
+/// Whether a pair of cells (inner, outer) belongs to a group, if there is one.
+fn in_group(group: &Option<BTreeSet<ElementId>>, pair: (ElementId, ElementId)) -> bool {
+    let has = |group: &BTreeSet<ElementId>| group.contains(&pair.0) || group.contains(&pair.1);
+    group.as_ref().is_none_or(has)
 }
 
 fn box_sides(region: &Region, dim: usize) -> Vec<Plane> {

@@ -14,9 +14,10 @@ use crate::rule::Rule;
 
 /// Pieces of less than this fraction of the smaller of their two cells are round-off.
 const NOTHING: f64 = 1e-13;
-/// By how much the degree of the quadrature is raised where a cell is not affine: shape functions are then no
-/// polynomials of the position, and the error of the rule falls geometrically with its degree.
-const RAISED: usize = 6;
+/// By how much the degree of the quadrature is raised, by dimension, where a cell is not affine: shape functions are then
+/// no polynomials of the position, and the error of the rule falls geometrically with its degree. Less in space, where
+/// pieces of such cells are cut small.
+const RAISED: [usize; 4] = [0, 0, 6, 2];
 
 /// What a cell of one model and one of the other have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +82,7 @@ impl Rules {
         let pair = |degree| [Rule::simplex(dim, degree), Rule::cube(dim, degree)];
         Rules {
             exact: pair(degree),
-            raised: pair(degree + RAISED),
+            raised: pair(degree + RAISED[dim]),
         }
     }
 
@@ -342,4 +343,161 @@ fn simplex_points(polytopes: &[Polytope], rule: &Rule, dim: usize) -> Vec<([f64;
         });
     }
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Model;
+    use carom_mesh::{Mesh, generate};
+
+    /// SplitMix64. Steele, Lea and Flood (2014).
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = *state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Two meshes in one: the first as it stands, the second turned by angles about z and x, and moved.
+    fn meshes(
+        a: Mesh,
+        mut b: Mesh,
+        angles: [f64; 2],
+        shift: [f64; 3],
+    ) -> (Mesh, Vec<ElementId>, Vec<ElementId>) {
+        for x in &mut b.nodes {
+            let (s, c) = angles[0].sin_cos();
+            *x = [c * x[0] - s * x[1], s * x[0] + c * x[1], x[2]];
+            let (s, c) = angles[1].sin_cos();
+            *x = [x[0], c * x[1] - s * x[2], s * x[1] + c * x[2]];
+            (0..3).for_each(|i| x[i] += shift[i]);
+        }
+        b.groups = b
+            .groups
+            .into_iter()
+            .map(|(name, group)| (format!("b{name}"), group))
+            .collect();
+        let mut mesh = a;
+        mesh.merge("b", b).unwrap();
+        let cells = |name: &str| mesh.groups[name].elements.clone();
+        let (inner, outer) = (cells("a"), cells("ba"));
+        (mesh, inner, outer)
+    }
+
+    fn refinement<'a>(mesh: &'a Mesh, inner: &[ElementId], outer: &[ElementId]) -> Refinement<'a> {
+        let inner = Cells::new(mesh, Model::Inner, inner).unwrap();
+        let outer = Cells::new(mesh, Model::Outer, outer).unwrap();
+        Refinement::new(inner, outer, Vec::new(), |_, _| true)
+    }
+
+    /// Models of which the second covers the first, turned at random.
+    fn covered(
+        seed: u64,
+        dim: usize,
+        simplices: [bool; 2],
+    ) -> (Mesh, Vec<ElementId>, Vec<ElementId>) {
+        let mut state = seed;
+        let turn = 6.3 * random(&mut state);
+        let shift = [0, 1, 2].map(|i| {
+            if i < dim {
+                0.2 * random(&mut state)
+            } else {
+                0.0
+            }
+        });
+        match dim {
+            2 => {
+                let a = generate::rectangle("a", [-0.5; 2], [1.0; 2], [3, 4], simplices[0]);
+                let b = generate::rectangle("a", [-1.5; 2], [3.0; 2], [7, 5], simplices[1]);
+                meshes(a, b, [turn, 0.0], shift)
+            }
+            _ => {
+                let a = generate::box_("a", [-0.5; 3], [1.0; 3], [2, 3, 2], simplices[0]);
+                let b = generate::box_("a", [-1.7; 3], [3.4; 3], [4, 5, 3], simplices[1]);
+                meshes(a, b, [turn, 0.7 * turn], shift)
+            }
+        }
+    }
+
+    const KINDS: [[bool; 2]; 4] = [[false, false], [false, true], [true, false], [true, true]];
+
+    #[test]
+    fn the_pieces_of_every_covered_cell_fill_it_and_have_its_moments() {
+        for (dim, seeds) in [(2, 20), (3, 2)] {
+            let rules = Rules::new(dim, 4);
+            for (seed, kinds) in (0..seeds).flat_map(|s| KINDS.map(|kinds| (s, kinds))) {
+                let (mesh, inner, outer) = covered(seed, dim, kinds);
+                let refinement = refinement(&mesh, &inner, &outer);
+                let (mut points, mut sums) = (Vec::new(), vec![[0.0; 3]; inner.len()]);
+                for piece in &refinement.pieces {
+                    let i = piece.inner as usize;
+                    sums[i][0] += piece.common;
+                    refinement
+                        .points(piece, Part::Common, &rules, &mut points)
+                        .unwrap();
+                    for p in &points {
+                        sums[i][1] += p.weight;
+                        sums[i][2] += p.weight * p.x[0].powi(2) * p.x[1] * (1.0 + p.x[dim - 1]);
+                        let at = refinement.outer.cell(piece.outer as usize).point(&p.outer);
+                        assert!((0..3).all(|k| (at[k] - p.x[k]).abs() < 1e-14));
+                    }
+                }
+                for (i, sum) in sums.iter().enumerate() {
+                    let cell = refinement.inner.cell(i);
+                    let moment: f64 = cell
+                        .points(rules.of_cell(&cell, true))
+                        .map(|(xi, w)| {
+                            let x = cell.point(&xi);
+                            w * x[0].powi(2) * x[1] * (1.0 + x[dim - 1])
+                        })
+                        .sum();
+                    let whole = refinement.inner.measures[i];
+                    // Vertices are snapped to planes within 1e-12 of a cell's size.
+                    for (found, exact) in sum.iter().zip([whole, whole, moment]) {
+                        assert!(
+                            (found - exact).abs() < 1e-11 * whole,
+                            "{seed} {kinds:?} {i}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_tree_finds_the_pairs_that_trying_all_finds() {
+        for (dim, kinds) in [(2, KINDS[0]), (2, KINDS[3]), (3, KINDS[1])] {
+            let (mesh, inner, outer) = covered(11, dim, kinds);
+            let refinement = refinement(&mesh, &inner, &outer);
+            let mut all = Vec::new();
+            for o in 0..outer.len() {
+                let cut = Cutter::new(refinement.outer.cell(o));
+                for i in 0..inner.len() {
+                    all.extend(refinement.piece(i as u32, o as u32, &cut, true));
+                }
+            }
+            assert!(refinement.pieces == all && all.len() > inner.len());
+        }
+    }
+
+    #[test]
+    fn nested_cells_are_not_cut_and_equal_meshes_have_one_piece_a_cell() {
+        let a = generate::box_("a", [0.0; 3], [1.0; 3], [4, 4, 4], false);
+        let b = generate::box_("a", [0.0; 3], [1.0; 3], [2, 2, 2], false);
+        let (mesh, inner, outer) = meshes(a.clone(), b, [0.0; 2], [0.0; 3]);
+        let nested = refinement(&mesh, &inner, &outer);
+        assert_eq!(nested.pieces.len(), 64);
+        assert!(nested.pieces.iter().all(|p| p.shape == Shape::Inner));
+        let (mesh, inner, outer) = meshes(a.clone(), a, [0.0; 2], [0.0; 3]);
+        let equal = refinement(&mesh, &inner, &outer);
+        assert!(
+            equal
+                .pieces
+                .iter()
+                .all(|p| p.inner == p.outer && p.shape == Shape::Inner)
+        );
+        assert_eq!(equal.pieces.len(), 64);
+    }
 }

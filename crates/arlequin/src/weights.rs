@@ -53,7 +53,9 @@ impl Default for Weighting {
 }
 
 /// Weights of the cells of one model: for each cell in the order of [`Overlap::cells`] one value per node, in the node
-/// order of its kind. Inside a cell the weight is Σ_a w_a N_a; it is not continuous from cell to cell.
+/// order of its kind. Inside a cell the weight is Σ_a w_a N_a; it is not continuous from cell to cell. Values at nodes
+/// may be slightly negative or above one; at the points of the kind's mass rule (α) and stiffness rule (δ) they are not
+/// negative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellWeights {
     /// α, dimensionless.
@@ -87,8 +89,9 @@ pub struct Weights {
     pub outer: CellWeights,
     /// What is doubtful about them.
     pub warnings: Vec<Warning>,
-    /// Cells whose projection went below zero and was flattened towards its mean: there ∫ w is kept, ∫ w N_a is not.
-    /// This happens where a border of S cuts cells of the model that ends there.
+    /// Cells whose projection went below zero at an integration point of masses or stiffness and was flattened towards
+    /// its mean: there ∫ w is kept, ∫ w N_a is not. This happens where a border of S cuts cells of the model that ends
+    /// there, and leaves them little of it.
     pub flattened: Vec<ElementId>,
 }
 
@@ -180,8 +183,8 @@ impl Overlap<'_> {
             };
             let (mut alpha, mut delta) = (values[0], values[1]);
             let flat = [
-                flatten(&cell, &mut alpha[..nodes], false),
-                flatten(&cell, &mut delta[..nodes], true),
+                flatten(&cell, &mut alpha[..nodes], cell.kind.table().mass_rule),
+                flatten(&cell, &mut delta[..nodes], cell.kind.table().stiffness_rule),
             ];
             if flat.contains(&true) {
                 flattened.push(side.ids[i]);
@@ -370,20 +373,15 @@ impl Sums {
     }
 }
 
-/// Shrinks the weight of a cell towards its mean until it is nowhere negative: at the nodes for the inertia, at the
-/// points of the stiffness rule for the stiffness. Returns whether it was. The mean is kept.
-fn flatten(cell: &Cell, values: &mut [f64], stiffness: bool) -> bool {
+/// Shrinks the weight of a cell towards its mean until it is not negative at the points of a rule, where masses and
+/// stiffness take it. Returns whether it was. The mean is kept.
+fn flatten(cell: &Cell, values: &mut [f64], rule: &carom_elements::Rule) -> bool {
     let mean = mean(cell, values);
-    let mut least = f64::MAX;
-    if stiffness {
-        for xi in cell.kind.table().stiffness_rule.points {
-            let mut n = [0.0; MAX_NODES];
-            let n = cell.shape(xi, &mut n);
-            least = least.min(n.iter().zip(&*values).map(|(n, w)| n * w).sum());
-        }
-    } else {
-        least = values.iter().fold(least, |least, &w| least.min(w));
-    }
+    let least = rule.points.iter().fold(f64::MAX, |least, xi| {
+        let mut n = [0.0; MAX_NODES];
+        let n = cell.shape(xi, &mut n);
+        least.min(n.iter().zip(&*values).map(|(n, w)| n * w).sum())
+    });
     // Round-off of zero weights is no reason.
     if least >= -1e-12 {
         return false;

@@ -4,8 +4,6 @@ use carom_arlequin::{Model, Models, Overlap, Row, Rows};
 use carom_elements::{MAX_NODES, map};
 use carom_mesh::{ElementId, Mesh, gather, generate};
 
-pub use carom_elements::Kind;
-
 /// SplitMix64. Steele, Lea and Flood (2014).
 pub struct Random(pub u64);
 
@@ -220,6 +218,29 @@ pub fn imbalance(rows: &Rows, force: &[f64], counts: &[bool]) -> f64 {
         gamma = next;
     }
     r.iter().fold(0.0, |m: f64, f| m.max(f.abs())) / largest
+}
+
+/// Residual |f - Cᵀ L| over the largest |f|, on the unknowns that count, for the best L that is the same at every
+/// mediator node.
+pub fn imbalance_of_constant(rows: &Rows, force: &[f64], counts: &[bool], dim: usize) -> f64 {
+    let mut columns = vec![vec![0.0; force.len()]; dim];
+    for row in &rows.rows {
+        for (key, value) in entries(row).into_iter().filter(|e| counts[e.0]) {
+            columns[row.component as usize][key] += value;
+        }
+    }
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let gram = columns
+        .iter()
+        .map(|a| columns.iter().map(|b| dot(a, b)).collect());
+    let right = columns.iter().map(|a| dot(a, force));
+    let multiplier = solve(gram.collect(), right.collect());
+    let largest = force.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+    let left = (0..force.len()).filter(|&i| counts[i]).map(|i| {
+        let carried: f64 = columns.iter().zip(&multiplier).map(|(c, l)| c[i] * l).sum();
+        (force[i] - carried).abs()
+    });
+    left.fold(0.0, f64::max) / largest
 }
 
 /// Solution of a dense system by Gauss elimination with row pivoting.
