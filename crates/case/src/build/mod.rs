@@ -1,211 +1,238 @@
-//! Bodies: regions, sections, materials, sound elements, initial state.
+//! Stage two: names resolved, meshes read, ranges that need the mesh checked; a system, or every problem found.
+
+mod bodies;
+mod contacts;
+mod laws;
+mod mesh;
+mod reference;
+mod time;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
-use carom_dynamics::ModelBody;
-use carom_materials::Elastic;
-use carom_mesh::{ElementId, Mesh};
+use carom_dynamics::{Model, System};
+use carom_mesh::{Group, Mesh};
 
-use super::Builder;
 use crate::error::Problem;
-use crate::schema::{Body, Mass, Section};
+use crate::input::Input;
+use crate::locate::Locator;
+use crate::schema::{Case, Motion, Vector};
 
-/// Defects of elements listed in one message; the others are counted.
-const LISTED: usize = 3;
+pub use reference::ExactReference;
+
+/// What a case amounts to.
+#[derive(Debug)]
+pub struct Built {
+    /// The system, ready to be driven.
+    pub system: Arc<System>,
+    /// Time at the end, s.
+    pub end: f64,
+    /// Probes, in the order of their names.
+    pub probes: Vec<BuiltProbe>,
+    /// The exact solution that the case names.
+    pub reference: Option<ExactReference>,
+    /// What is strange but not wrong.
+    pub warnings: Vec<String>,
+}
+
+/// A probe with its nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BuiltProbe {
+    /// Name.
+    pub name: String,
+    /// Nodes of the mesh.
+    pub nodes: Vec<u32>,
+    /// What is recorded.
+    pub record: Vec<Motion>,
+}
+
+/// Builds the system of a case.
+///
+/// # Errors
+/// All problems that stage two can tell, with their places.
+pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
+    let mut builder = Builder {
+        case,
+        problems: Vec::new(),
+        warnings: Vec::new(),
+    };
+    let built = builder.build(input);
+    match built {
+        Some(built) if builder.problems.is_empty() => Ok(built),
+        _ => Err(locator.locate_all(builder.problems)),
+    }
+}
+
+/// Collects problems while it builds.
+struct Builder<'a> {
+    case: &'a Case,
+    problems: Vec<Problem>,
+    warnings: Vec<String>,
+}
 
 impl Builder<'_> {
-    pub(super) fn bodies(
-        &mut self,
-        mesh: &Mesh,
-        materials: &BTreeMap<String, Elastic>,
-    ) -> Vec<ModelBody> {
-        let mut bodies: Vec<ModelBody> = Vec::new();
-        for (name, body) in self.case.body.iter() {
-            let path = format!("body.{name}");
-            let material = materials.get(&body.material).copied();
-            if material.is_none() {
-                let problem = Problem::new(format!("{path}.material"), "no material of this name");
+    fn build(&mut self, input: &Input) -> Option<Built> {
+        let materials = self.materials();
+        self.scheme_and_laws();
+        let mesh = self.mesh(input)?;
+        let bodies = self.bodies(&mesh, &materials);
+        let supports = self.supports(&mesh);
+        let gravity = self.gravity(&mesh);
+        let probes = self.probes(&mesh);
+        if !self.problems.is_empty() {
+            return None;
+        }
+        let contacts = self.contacts(&mesh, &bodies);
+        if !self.problems.is_empty() {
+            return None;
+        }
+        let scheme = self.scheme();
+        let mut model = Model {
+            mesh,
+            bodies,
+            supports,
+            gravity,
+            contacts,
+            scheme,
+            dt: f64::MIN_POSITIVE,
+        };
+        model.dt = self.step(&model)?;
+        let system = match System::new(model) {
+            Ok(system) => system,
+            Err(error) => {
+                self.problems.push(self.refused(&error));
+                return None;
+            }
+        };
+        self.penetration(&system);
+        self.advise(&system);
+        let end = self.case.time.end.0;
+        let reference = self.reference(&system, end);
+        Some(Built {
+            system,
+            end,
+            probes,
+            reference,
+            warnings: std::mem::take(&mut self.warnings),
+        })
+    }
+
+    /// The group called `name`, or a problem at `path`.
+    fn group<'m>(&mut self, mesh: &'m Mesh, path: &str, name: &str) -> Option<&'m Group> {
+        match mesh.groups.get(name) {
+            None => {
+                let problem = Problem::new(path, "no group of this name in the mesh");
                 self.problems
-                    .push(problem.unknown(&body.material, materials.keys().map(String::as_str)));
+                    .push(problem.unknown(name, mesh.groups.keys().map(String::as_str)));
+                None
             }
-            let Some(group) = self.group(mesh, &format!("{path}.region"), &body.region) else {
-                continue;
-            };
-            let Some(kinematics) = self.kinematics(mesh, &path, body, group.dim) else {
-                continue;
-            };
-            let cells = group.elements.clone();
-            self.sound(mesh, &path, &cells);
-            self.apart(&path, &cells, &bodies);
-            let (mut velocity, mut displacement) = ([0.0; 3], [0.0; 3]);
-            if let Some(initial) = &body.initial {
-                if let Some(vector) = &initial.velocity {
-                    velocity = self.vector(mesh, &format!("{path}.initial.velocity"), vector);
-                }
-                if let Some(vector) = &initial.displacement {
-                    displacement =
-                        self.vector(mesh, &format!("{path}.initial.displacement"), vector);
-                }
+            Some(group) if group.elements.is_empty() => {
+                let problem = Problem::new(path, "this group of the mesh is empty").found(name);
+                self.problems
+                    .push(problem.accepted(["a group with elements"]));
+                None
             }
-            let Some(material) = material else { continue };
-            bodies.push(ModelBody {
-                spec: BodySpec {
-                    name: name.to_string(),
-                    cells,
-                    kinematics,
-                    material,
-                    weights: None,
-                },
-                mass: match body.mass {
-                    Mass::Lumped => MassKind::Lumped,
-                    Mass::Consistent => MassKind::Consistent,
-                },
-                velocity,
-                displacement,
-            });
-        }
-        self.one_plane(&bodies);
-        bodies
-    }
-
-    /// Refuses axisymmetric bodies beside plane ones: the same coordinate would be a radius and none.
-    fn one_plane(&mut self, bodies: &[ModelBody]) {
-        let turns = |body: &&ModelBody| body.spec.kinematics == Kinematics::Axisymmetric;
-        let (round, flat) = (
-            bodies.iter().find(turns),
-            bodies.iter().find(|body| !turns(body)),
-        );
-        if let (Some(round), Some(flat)) = (round, flat) {
-            let message = format!(
-                "body `{}` is axisymmetric, this one is not",
-                round.spec.name
-            );
-            let problem = Problem::new(format!("body.{}.section", flat.spec.name), message);
-            self.problems.push(
-                problem
-                    .found(flat.spec.kinematics.name())
-                    .accepted(["section.axisymmetric"]),
-            );
+            Some(group) => Some(group),
         }
     }
 
-    /// The kinematics that a section gives to cells of dimension `dim`.
-    fn kinematics(
+    /// The components of a vector, or a problem where it has more than the mesh.
+    fn vector<Q: Copy + Into<f64>>(
         &mut self,
         mesh: &Mesh,
         path: &str,
-        body: &Body,
-        dim: usize,
-    ) -> Option<Kinematics> {
-        let kinematics = match &body.section {
-            None => Kinematics::Solid,
-            Some(Section::Bar(bar)) => Kinematics::Bar { area: bar.area.0 },
-            Some(Section::PlaneStrain(plane)) => Kinematics::PlaneStrain {
-                thickness: plane.thickness.0,
-            },
-            Some(Section::PlaneStress(plane)) => Kinematics::PlaneStress {
-                thickness: plane.thickness.0,
-            },
-            Some(Section::Axisymmetric(_)) => Kinematics::Axisymmetric,
-        };
-        let kind = |dim: usize| ["points", "bars", "plane cells", "solid cells"][dim.min(3)];
-        let takes: &[&str] = match dim {
-            1 => &["section.bar"],
-            2 => &[
-                "section.plane-strain",
-                "section.plane-stress",
-                "section.axisymmetric",
-            ],
-            _ => &["no section"],
-        };
-        let problem = if dim == 0 || (dim == 2 && mesh.dim == 3) {
-            let problem = Problem::new(
-                format!("{path}.region"),
-                format!("a body cannot be made of {} here", kind(dim)),
-            );
-            Some(problem.found(&body.region).accepted([format!(
-                "a group of cells of a mesh of {}",
-                super::dimensions(mesh.dim)
-            )]))
-        } else if kinematics.dim() == dim {
-            None
-        } else if body.section.is_none() {
+        vector: &Vector<Q>,
+    ) -> [f64; 3] {
+        let components = vector.si();
+        if components[mesh.dim..].iter().any(|c| *c != 0.0) {
             let message = format!(
-                "the group `{}` holds {}, which need a section",
-                body.region,
-                kind(dim)
+                "a component beyond the {} of the mesh",
+                dimensions(mesh.dim)
             );
-            Some(
-                Problem::new(path, message)
-                    .found("no section")
-                    .accepted(takes.to_vec()),
-            )
-        } else {
-            let message = format!(
-                "this section does not go with the {} of the group `{}`",
-                kind(dim),
-                body.region
-            );
-            let problem = Problem::new(format!("{path}.section"), message);
-            Some(problem.found(kinematics.name()).accepted(takes.to_vec()))
-        };
-        let sound = problem.is_none();
-        self.problems.extend(problem);
-        sound.then_some(kinematics)
+            let problem = Problem::new(path, message).found(format!("{components:?}"));
+            self.problems.push(problem.accepted([format!(
+                "{}, or zeros after it",
+                plural(mesh.dim, "component")
+            )]));
+        }
+        components
     }
 
-    fn sound(&mut self, mesh: &Mesh, path: &str, cells: &[ElementId]) {
-        let defects = mesh.check(cells);
-        if defects.is_empty() {
-            return;
-        }
-        let message = match defects.len() {
-            1 => "one element of the region is unfit".to_string(),
-            count => format!("{count} elements of the region are unfit"),
-        };
-        let mut problem = Problem::new(format!("{path}.region"), message);
-        for defect in defects.iter().take(LISTED) {
-            let element = defect.element();
-            let nodes = mesh.element_nodes(element);
-            let middle = [0, 1, 2].map(|i| {
-                nodes
-                    .iter()
-                    .map(|&node| mesh.nodes[node as usize][i])
-                    .sum::<f64>()
-                    / nodes.len() as f64
-            });
-            let name = mesh.kind(element).table().name;
-            let at = format!("({:.6}, {:.6}, {:.6}) m", middle[0], middle[1], middle[2]);
-            problem = problem.note(format!(
-                "{name} number {} about {at}: {defect}",
-                element.index
-            ));
-        }
-        if defects.len() > LISTED {
-            problem = problem.note(format!("and {} more", defects.len() - LISTED));
-        }
-        self.problems.push(problem);
-    }
-
-    /// Refuses cells that a body before has.
-    fn apart(&mut self, path: &str, cells: &[ElementId], bodies: &[ModelBody]) {
-        for other in bodies {
-            let shared = cells
+    fn supports(&mut self, mesh: &Mesh) -> Vec<carom_dynamics::Support> {
+        let mut supports = Vec::new();
+        for (name, support) in self.case.support.iter() {
+            for (k, axis) in support
+                .fix
                 .iter()
-                .filter(|cell| other.spec.cells.binary_search(cell).is_ok())
-                .count();
-            if shared > 0 {
+                .enumerate()
+                .filter(|(_, axis)| axis.index() >= mesh.dim)
+            {
                 let message = format!(
-                    "{} of this region belong to the body `{}` too",
-                    super::plural(shared, "cell"),
-                    other.spec.name
+                    "a direction beyond the {} of the mesh",
+                    dimensions(mesh.dim)
                 );
+                let problem = Problem::new(format!("support.{name}.fix[{k}]"), message);
                 self.problems.push(
-                    Problem::new(format!("{path}.region"), message)
-                        .accepted(["a region of its own"]),
+                    problem
+                        .found(["x", "y", "z"][axis.index()])
+                        .accepted(["x", "y", "z"][..mesh.dim].to_vec()),
                 );
             }
+            if let Some(group) = self.group(mesh, &format!("support.{name}.on"), &support.on) {
+                let mut fix = [false; 3];
+                support.fix.iter().for_each(|axis| fix[axis.index()] = true);
+                supports.push(carom_dynamics::Support {
+                    nodes: mesh.group_nodes(group),
+                    fix,
+                });
+            }
         }
+        supports
+    }
+
+    fn gravity(&mut self, mesh: &Mesh) -> [f64; 3] {
+        match &self.case.load.gravity {
+            None => [0.0; 3],
+            Some(gravity) => self.vector(mesh, "load.gravity.acceleration", &gravity.acceleration),
+        }
+    }
+
+    fn probes(&mut self, mesh: &Mesh) -> Vec<BuiltProbe> {
+        let mut probes = Vec::new();
+        for (name, probe) in self.case.probe.iter() {
+            if let Some(group) = self.group(mesh, &format!("probe.{name}.on"), &probe.on) {
+                let nodes = mesh.group_nodes(group);
+                probes.push(BuiltProbe {
+                    name: name.to_string(),
+                    nodes,
+                    record: probe.record.clone(),
+                });
+            }
+        }
+        probes
+    }
+
+    fn materials(&mut self) -> BTreeMap<String, carom_materials::Elastic> {
+        let of = |(name, material): (&str, &crate::schema::Material)| {
+            let elastic = carom_materials::Elastic {
+                density: material.density.0,
+                young: material.elastic.young.0,
+                poisson: material.elastic.poisson,
+            };
+            (name.to_string(), elastic)
+        };
+        self.case.material.iter().map(of).collect()
+    }
+}
+
+fn dimensions(dim: usize) -> String {
+    plural(dim, "dimension")
+}
+
+fn plural(count: usize, noun: &str) -> String {
+    if count == 1 {
+        format!("1 {noun}")
+    } else {
+        format!("{count} {noun}s")
     }
 }

@@ -144,7 +144,10 @@ impl Builder<'_> {
                 let name = match cause {
                     carom_bodies::Error::Empty { body }
                     | carom_bodies::Error::WrongElement { body, .. }
-                    | carom_bodies::Error::NegativeRadius { body, .. } => body,
+                    | carom_bodies::Error::NegativeRadius { body, .. }
+                    | carom_bodies::Error::WeightCount { body, .. }
+                    | carom_bodies::Error::NegativeMass { body, .. }
+                    | carom_bodies::Error::NegativeStiffness { body, .. } => body,
                 };
                 Problem::new(format!("body.{name}.region"), cause.to_string())
             }
