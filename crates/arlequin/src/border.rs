@@ -4,8 +4,6 @@
 //! lies in one plane is extended to all of it: the feet of perpendiculars from a point near the side of a body on an
 //! oblique border lie outside the body, and the distance to the border alone would not be affine there.
 
-use std::cell::Cell as Memory;
-
 use carom_mesh::{Bounds, BoxTree};
 
 use crate::cell::norm;
@@ -18,8 +16,6 @@ pub(crate) struct Border {
     pub plane: Option<Plane>,
     facets: Vec<Facet>,
     tree: BoxTree,
-    /// The facet that was nearest last: its distance bounds the next search.
-    last: Memory<usize>,
 }
 
 impl Border {
@@ -36,37 +32,39 @@ impl Border {
             plane: flat.then_some(plane),
             tree: BoxTree::new(&bounds),
             facets,
-            last: Memory::new(0),
         })
     }
 
     /// Distance of a position.
-    pub fn distance(&self, x: &[f64; 3]) -> f64 {
+    pub fn distance(&self, x: &[f64; 3], hint: &mut usize) -> f64 {
         match &self.plane {
             Some(plane) => plane.distance(x).abs(),
-            None => norm(&sub(x, &self.nearest(x))),
+            None => norm(&sub(x, &self.nearest(x, hint))),
         }
     }
 
-    /// The nearest point of the border.
-    pub fn nearest(&self, x: &[f64; 3]) -> [f64; 3] {
+    /// The nearest point of the border. `hint`: a facet that is probably near, such as that of the last position; it
+    /// becomes the nearest one and decides only how long the search takes.
+    pub fn nearest(&self, x: &[f64; 3], hint: &mut usize) -> [f64; 3] {
         if let Some(plane) = &self.plane {
             let d = plane.distance(x);
             return [0, 1, 2].map(|i| x[i] - d * plane.normal[i]);
         }
-        let mut best = nearest_on(&self.facets[self.last.get()].vertices, x);
-        let mut least = norm(&sub(x, &best));
-        let mut found = Vec::new();
-        self.tree.near(x, least, &mut found);
+        let foot = |i: usize| {
+            let point = nearest_on(&self.facets[i].vertices, x);
+            (norm(&sub(x, &point)), point)
+        };
+        *hint = (*hint).min(self.facets.len() - 1);
+        let (mut best, mut found) = (foot(*hint), Vec::new());
+        // Whatever is nearer than the hint lies within its distance, which is small if the hint is good.
+        self.tree.near(x, best.0, &mut found);
         for &i in &found {
-            let point = nearest_on(&self.facets[i as usize].vertices, x);
-            let distance = norm(&sub(x, &point));
-            if distance < least {
-                (best, least) = (point, distance);
-                self.last.set(i as usize);
+            let other = foot(i as usize);
+            if other.0 < best.0 {
+                (best, *hint) = (other, i as usize);
             }
         }
-        best
+        best.1
     }
 }
 
@@ -80,11 +78,9 @@ fn nearest_on(vertices: &[[f64; 3]], x: &[f64; 3]) -> [f64; 3] {
     }
     let edges = if n == 2 { 1 } else { n };
     let feet = (0..edges).map(|i| foot_on_segment(&vertices[i], &vertices[(i + 1) % n], x));
-    let first = vertices[0];
-    feet.fold(first, |best, foot| {
-        let nearer = norm(&sub(x, &foot)) < norm(&sub(x, &best));
-        if nearer { foot } else { best }
-    })
+    let distance = |point: &[f64; 3]| norm(&sub(x, point));
+    feet.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .unwrap_or(vertices[0])
 }
 
 /// The foot of the perpendicular on a convex polygon, if it lies in it.
@@ -118,7 +114,7 @@ mod tests {
             measure: 1.0,
         };
         let flat = Border::new(vec![edge([1.0, 0.0], [1.0, 1.0])], 1.0).unwrap();
-        assert_eq!(flat.distance(&[3.0, 7.0, 0.0]), 2.0);
+        assert_eq!(flat.distance(&[3.0, 7.0, 0.0], &mut 0), 2.0);
         let bent = vec![edge([1.0, 0.0], [1.0, 1.0]), edge([1.0, 1.0], [0.0, 1.0])];
         let bent = Border::new(bent, 1.0).unwrap();
         assert!(bent.plane.is_none());
@@ -128,7 +124,10 @@ mod tests {
             ([0.9, 0.2], 0.1),
             ([0.2, 0.9], 0.1),
         ] {
-            assert!((bent.distance(&[x[0], x[1], 0.0]) - expected).abs() < 1e-15);
+            for mut hint in [0, 1, 9] {
+                let found = bent.distance(&[x[0], x[1], 0.0], &mut hint);
+                assert!((found - expected).abs() < 1e-15);
+            }
         }
         assert!(Border::new(Vec::new(), 1.0).is_none());
     }

@@ -80,6 +80,23 @@ impl Cell {
         fits.then(|| (origin, inverse(&j, det)))
     }
 
+    /// Whether two quadrilaterals or hexahedra are parallelograms or parallelepipeds with the same axes, up to their
+    /// order and sense: shape functions of one are then linear in each reference coordinate of the other.
+    pub fn is_aligned(&self, other: &Cell) -> bool {
+        let Some((_, inverse)) = &other.affine else {
+            return false;
+        };
+        if !self.is_affine() || self.degree() == 1 || other.degree() == 1 {
+            return false;
+        }
+        let (j, _) = self.jacobian(&[0.0; 3]);
+        inverse.iter().all(|row| {
+            let to = [0, 1, 2].map(|k| (0..3).map(|i| row[i] * j[i][k]).sum::<f64>().abs());
+            let largest = to.iter().fold(0.0, |m: f64, &t| m.max(t));
+            to.iter().filter(|&&t| t > 1e-13 * largest).count() == 1
+        })
+    }
+
     /// x(ξ).
     pub fn point(&self, xi: &[f64; 3]) -> [f64; 3] {
         let mut n = [0.0; MAX_NODES];

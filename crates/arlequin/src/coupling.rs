@@ -85,7 +85,7 @@ impl Default for Coupling {
 impl Overlap<'_> {
     /// The rows of the coupling condition, one per mediator function and component.
     ///
-    /// Errors: no mediator function left; a distorted cell that cannot be inverted.
+    /// Errors: κ negative or not finite; a sliver fraction outside [0, 1]; no mediator function left; a distorted cell that cannot be inverted.
     pub fn rows(&self, coupling: &Coupling) -> Result<Rows, Error> {
         let model = match coupling.mediator {
             Mediator::Coarser => self.coarser(),
@@ -95,6 +95,8 @@ impl Overlap<'_> {
             Bracket::L2 => None,
             Bracket::H1 { kappa } => Some(kappa.unwrap_or_else(|| self.size(Model::Outer))),
         };
+        in_range("kappa", kappa.unwrap_or(0.0), f64::MAX)?;
+        in_range("the fraction of a sliver", coupling.sliver, 1.0)?;
         let supports = self.supports(model);
         let slivers = self.slivers(model, &supports, coupling);
         let mut assembly = Assembly::new(self, model, kappa, &supports, &slivers);
@@ -170,7 +172,7 @@ impl Overlap<'_> {
                 let models = [Model::Inner, Model::Outer];
                 let ids = models.iter().flat_map(|&m| self.cells(m));
                 let degrees = ids.map(|&id| degree(self.mesh().kind(id)));
-                let rules = Rules::new(self.mesh().dim, 2 * degrees.fold(1, usize::max));
+                let rules = Rules::new(self.mesh().dim, 2 * degrees.fold(1, usize::max), 2);
                 let mut points = Vec::new();
                 for piece in self.refinement.pieces.iter().filter(|p| p.measure > 0.0) {
                     self.refinement
@@ -218,6 +220,19 @@ impl Overlap<'_> {
                 }
             }
         }
+    }
+}
+
+/// Refuses a value that is negative, not a number, or above a bound.
+fn in_range(what: &'static str, value: f64, to: f64) -> Result<(), Error> {
+    match (0.0..=to).contains(&value) {
+        true => Ok(()),
+        false => Err(Error::Range {
+            what,
+            value,
+            from: 0.0,
+            to,
+        }),
     }
 }
 
@@ -289,7 +304,7 @@ impl<'a> Assembly<'a> {
                 for (b, &node) in nodes[of].iter().enumerate() {
                     for k in 0..c {
                         for l in 0..c {
-                            let value = block[(a * MAX_NODES + b) * 9 + 3 * k + l];
+                            let value = block[((a * MAX_NODES + b) * c + k) * c + l];
                             let key = node * c as u32 + l as u32;
                             self.sums[of][row as usize * c + k].add(key, value);
                         }
@@ -299,11 +314,11 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Products <N_A e_k, N_b e_l> over some points, at (A·MAX_NODES + b)·9 + 3k + l; `of`: 0 for shape functions of the
+    /// Products <N_A e_k, N_b e_l> over some points, at ((A·MAX_NODES + b)·c + k)·c + l with c components; `of`: 0 for shape functions of the
     /// inner cell, 1 for those of the outer one.
     fn block(&self, cells: &[Cell; 2], of: usize, points: &[Point]) -> Vec<f64> {
-        let mut block = vec![0.0; 9 * MAX_NODES * MAX_NODES];
         let (mediator, c) = (self.model as usize, self.components);
+        let mut block = vec![0.0; c * c * MAX_NODES * MAX_NODES];
         for point in points {
             let xi = [&point.inner, &point.outer];
             let (mut m, mut n) = ([0.0; MAX_NODES], [0.0; MAX_NODES]);
@@ -311,8 +326,8 @@ impl<'a> Assembly<'a> {
             let n = cells[of].shape(xi[of], &mut n);
             for (a, m) in m.iter().enumerate() {
                 for (b, n) in n.iter().enumerate() {
-                    let at = (a * MAX_NODES + b) * 9;
-                    (0..c).for_each(|k| block[at + 4 * k] += point.weight * m * n);
+                    let at = (a * MAX_NODES + b) * c * c;
+                    (0..c).for_each(|k| block[at + (c + 1) * k] += point.weight * m * n);
                 }
             }
             let Some(kappa) = self.kappa else { continue };
@@ -322,11 +337,11 @@ impl<'a> Assembly<'a> {
             let dn = cells[of].gradients(xi[of], &mut dn);
             for (a, dm) in dm.iter().enumerate() {
                 for (b, dn) in dn.iter().enumerate() {
-                    let at = (a * MAX_NODES + b) * 9;
+                    let at = (a * MAX_NODES + b) * c * c;
                     let both = half * dot(dm, dn);
                     for k in 0..c {
-                        block[at + 4 * k] += both;
-                        (0..c).for_each(|l| block[at + 3 * k + l] += half * dm[l] * dn[k]);
+                        block[at + (c + 1) * k] += both;
+                        (0..c).for_each(|l| block[at + c * k + l] += half * dm[l] * dn[k]);
                     }
                 }
             }

@@ -99,7 +99,7 @@ pub enum Error {
         /// The model without an end there.
         model: Model,
     },
-    /// A constant weight outside (0, 1), or a floor outside [0, 0.5).
+    /// A number out of its range.
     #[error("{what} is {value}, which is not between {from} and {to}")]
     Range {
         /// What is out of range.

@@ -29,6 +29,7 @@
 mod border;
 mod cell;
 mod coupling;
+mod ends;
 mod error;
 mod model;
 mod overlap;

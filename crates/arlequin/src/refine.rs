@@ -74,15 +74,28 @@ pub(crate) enum Part {
 /// Quadrature rules of one degree, and of a raised one for cells that are not affine.
 pub(crate) struct Rules {
     exact: [Rule; 2],
+    /// For quadrilaterals and hexahedra whose axes are those of the other cell.
+    aligned: Rule,
     raised: [Rule; 2],
 }
 
 impl Rules {
-    pub fn new(dim: usize, degree: usize) -> Rules {
+    /// `degree`: total degree of what is integrated; `along`: its degree in each reference coordinate, where the axes of
+    /// the two cells agree.
+    pub fn new(dim: usize, degree: usize, along: usize) -> Rules {
         let pair = |degree| [Rule::simplex(dim, degree), Rule::cube(dim, degree)];
         Rules {
             exact: pair(degree),
+            aligned: Rule::cube(dim, along),
             raised: pair(degree + RAISED[dim]),
+        }
+    }
+
+    /// The rule for a whole cell within one of the other model.
+    fn of_whole(&self, cell: &Cell, within: &Cell) -> &Rule {
+        match cell.is_aligned(within) {
+            true => &self.aligned,
+            false => self.of_cell(cell, cell.is_affine() && within.is_affine()),
         }
     }
 
@@ -225,7 +238,7 @@ impl<'a> Refinement<'a> {
             part == Part::Common || (piece.common - piece.measure).abs() <= 1e-12 * piece.common;
         match piece.shape {
             Shape::Inner if whole => {
-                for (xi, weight) in inner.points(rules.of_cell(&inner, affine)) {
+                for (xi, weight) in inner.points(rules.of_whole(&inner, &outer)) {
                     let x = inner.point(&xi);
                     points.push(Point {
                         x,
@@ -236,7 +249,7 @@ impl<'a> Refinement<'a> {
                 }
             }
             Shape::Outer if whole => {
-                for (xi, weight) in outer.points(rules.of_cell(&outer, affine)) {
+                for (xi, weight) in outer.points(rules.of_whole(&outer, &inner)) {
                     let x = outer.point(&xi);
                     points.push(Point {
                         x,
@@ -426,7 +439,7 @@ mod tests {
     #[test]
     fn the_pieces_of_every_covered_cell_fill_it_and_have_its_moments() {
         for (dim, seeds) in [(2, 20), (3, 2)] {
-            let rules = Rules::new(dim, 4);
+            let rules = Rules::new(dim, 4, 4);
             for (seed, kinds) in (0..seeds).flat_map(|s| KINDS.map(|kinds| (s, kinds))) {
                 let (mesh, inner, outer) = covered(seed, dim, kinds);
                 let refinement = refinement(&mesh, &inner, &outer);

@@ -58,6 +58,9 @@ pub struct Rows {
     pub slivers: Vec<Sliver>,
 }
 
+/// Entries (row, coefficient) of each unknown: outer model or not, node, component.
+type Columns = BTreeMap<(bool, u32, u32), Vec<(u32, f64)>>;
+
 /// How far some rows are from dependence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rank {
@@ -146,12 +149,8 @@ impl Rows {
     }
 
     /// Entries (row, coefficient) of every free unknown, those of the two models apart, and the length of each row.
-    #[allow(clippy::type_complexity)]
-    fn columns(
-        &self,
-        blocked: impl Fn(u32, u32) -> bool,
-    ) -> (BTreeMap<(bool, u32, u32), Vec<(u32, f64)>>, Vec<f64>) {
-        let mut columns: BTreeMap<_, Vec<(u32, f64)>> = BTreeMap::new();
+    fn columns(&self, blocked: impl Fn(u32, u32) -> bool) -> (Columns, Vec<f64>) {
+        let mut columns = Columns::new();
         let mut squares = vec![0.0; self.rows.len()];
         for (i, row) in self.rows.iter().enumerate() {
             for (side, terms) in [(false, &row.inner), (true, &row.outer)] {

@@ -169,17 +169,18 @@ impl Overlap<'_> {
             true => weighting.degree(),
             false => CURVED_DEGREE,
         };
-        let rules = Rules::new(dim, largest + profile.max(largest));
+        let rules = Rules::new(dim, largest + profile.max(largest), 1 + profile.max(1));
         let mut weights = CellWeights {
             inertia: Vec::new(),
             stiffness: Vec::new(),
         };
+        let mut hints = [0; 2];
         for i in 0..side.len() {
             let cell = side.cell(i);
             let nodes = cell.x().len();
             let values = match self.pieces_of(model, i).next() {
                 None => [[1.0; MAX_NODES]; 2],
-                Some(_) => self.project(model, i, weighting, &rules)?,
+                Some(_) => self.project(model, i, weighting, &rules, &mut hints)?,
             };
             let (mut alpha, mut delta) = (values[0], values[1]);
             let flat = [
@@ -204,6 +205,7 @@ impl Overlap<'_> {
         i: usize,
         weighting: &Weighting,
         rules: &Rules,
+        hints: &mut [usize; 2],
     ) -> Result<[[f64; MAX_NODES]; 2], Error> {
         let side = self.side(model);
         let cell = side.cell(i);
@@ -225,7 +227,7 @@ impl Overlap<'_> {
             self.refinement
                 .points(piece, Part::Overlap, rules, &mut points)?;
             for point in &points {
-                let inner = self.inner_weights(p, point, weighting);
+                let inner = self.inner_weights(p, point, weighting, hints);
                 let (xi, rest) = match model {
                     Model::Inner => (&point.inner, inner.map(|w| 1.0 - w)),
                     Model::Outer => (&point.outer, inner.map(|w| w - 1.0)),
@@ -245,11 +247,20 @@ impl Overlap<'_> {
     }
 
     /// Weights (α, δ) of the inner model at a point of a piece in S.
-    fn inner_weights(&self, piece: usize, point: &Point, weighting: &Weighting) -> [f64; 2] {
+    fn inner_weights(
+        &self,
+        piece: usize,
+        point: &Point,
+        weighting: &Weighting,
+        hints: &mut [usize; 2],
+    ) -> [f64; 2] {
         let borders = &self.parts[self.part_of[piece] as usize];
         let s = match (&borders.inner_end, &borders.outer_end) {
             (Some(inner_end), Some(outer_end)) => {
-                let (d_i, d_o) = (inner_end.distance(&point.x), outer_end.distance(&point.x));
+                let (d_i, d_o) = (
+                    inner_end.distance(&point.x, &mut hints[0]),
+                    outer_end.distance(&point.x, &mut hints[1]),
+                );
                 d_i / (d_i + d_o).max(f64::MIN_POSITIVE)
             }
             // Only constant profiles get here, and they do not ask.

@@ -244,7 +244,7 @@ fn distorted_cells_pass_to_the_error_of_their_quadrature() {
         ),
         (
             "cut outer block under tets",
-            blocks([10, 3, 4], [true, false]).shaken(amount, Model::Outer),
+            blocks([5, 2, 2], [true, false]).shaken(amount, Model::Outer),
         ),
     ] {
         let coupling = Coupling::default();

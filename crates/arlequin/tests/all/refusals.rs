@@ -1,7 +1,8 @@
 //! What is refused, and what is named; rank.
 
 use carom_arlequin::{
-    Coupling, Error, Mediator, Model, Models, Overlap, Profile, Region, SliverRule, Weighting,
+    Bracket, Coupling, Error, Mediator, Model, Models, Overlap, Profile, Region, SliverRule,
+    Weighting,
 };
 
 use crate::support::{Pair, Random, line, plate};
@@ -234,6 +235,13 @@ fn the_mediator_is_the_coarser_model_or_the_one_chosen() {
         };
         overlap.rows(&coupling).unwrap().rows.len()
     };
+    for kappa in [-1.0, f64::NAN, f64::INFINITY] {
+        let coupling = Coupling {
+            bracket: Bracket::H1 { kappa: Some(kappa) },
+            ..Coupling::default()
+        };
+        assert!(matches!(overlap.rows(&coupling), Err(Error::Range { .. })));
+    }
     assert_eq!(count(Mediator::Coarser), 6);
     assert_eq!(count(Mediator::Of(Model::Outer)), 6);
     assert_eq!(count(Mediator::Of(Model::Inner)), 21);

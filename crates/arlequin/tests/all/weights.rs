@@ -211,3 +211,104 @@ fn two_separate_overlaps_have_borders_of_their_own() {
         }
     }
 }
+
+#[test]
+fn the_partition_holds_where_borders_turn_a_corner() {
+    let plates = Pair::new(
+        plate([0.0, 0.0], [2.0, 2.0], [9, 10], true),
+        keep(plate([0.0, 0.0], [4.0, 4.0], [12, 12], false), |x| {
+            x[0] > 1.0 || x[1] > 1.0
+        }),
+    );
+    let blocks = Pair::new(
+        block([0.0; 3], [2.0; 3], [5, 5, 5], true),
+        keep(block([0.0; 3], [4.0; 3], [8, 8, 8], false), |x| {
+            x.iter().any(|&x| x > 1.0)
+        }),
+    );
+    for (pair, measure) in [(plates, 3.0), (blocks, 7.0)] {
+        let dim = pair.mesh.dim;
+        let overlap = Overlap::new(pair.models(), &Region::Intersection).unwrap();
+        assert!((overlap.measure() - measure).abs() < 1e-11 && !overlap.is_strip());
+        // Two cells of 1/2 along the axes; the diagonal of a corner counts its cells along itself.
+        assert!(
+            overlap.layers() > 1.4 && overlap.layers() < 3.1,
+            "{}",
+            overlap.layers()
+        );
+        let weights = overlap.weights(&Weighting::default()).unwrap();
+        let body = 4f64.powi(dim as i32);
+        for sums in total(&overlap, &weights) {
+            for (found, exact) in
+                sums[..=dim]
+                    .iter()
+                    .zip([body, 2.0 * body, 2.0 * body, 2.0 * body])
+            {
+                assert!(
+                    (found - exact).abs() < 1e-10 * body,
+                    "{dim}: {found} {exact}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_group_of_inner_cells_bounds_s_within_outer_ones() {
+    // S = [0.9, 2]: the outer mesh, of step 0.2, is cut at 0.9.
+    let pair = Pair::new(line(0.0, 2.0, 20), line(0.0, 4.0, 20));
+    let region = Region::Cells(pair.inner[9..].to_vec());
+    let overlap = Overlap::new(pair.models(), &region).unwrap();
+    assert!((overlap.measure() - 1.1).abs() < 1e-13);
+    assert_eq!(overlap.removed(), &pair.outer[..4]);
+    assert!((overlap.touched(Model::Outer)[0].1 - 0.5).abs() < 1e-12);
+    let weights = overlap.weights(&Weighting::default()).unwrap();
+    // In the cell cut in half the projection is negative where the mass is integrated: its mass is kept, not its centre.
+    assert_eq!(weights.flattened, [pair.outer[4]]);
+    let [inertia, stiffness] = total(&overlap, &weights);
+    assert!((inertia[0] - 4.0).abs() < 1e-12 && (inertia[1] - 8.0).abs() > 1e-6);
+    assert!((stiffness[0] - 4.0).abs() < 1e-12 && (stiffness[1] - 8.0).abs() < 1e-12);
+}
+
+#[test]
+fn meshes_that_differ_along_a_curved_side_still_make_a_strip() {
+    // Sides swell by a tenth: the outer polygon cuts corners that the inner one follows, and the other way round.
+    let swell = |x: [f64; 3]| {
+        let factor = 1.0 + 0.1 * (1.1 * x[0]).sin();
+        [x[0], factor * x[1], factor * x[2]]
+    };
+    let plates = Pair::new(
+        plate([0.0, -0.5], [3.2, 0.5], [25, 7], true),
+        plate([2.0, -0.5], [6.0, 0.5], [8, 2], false),
+    );
+    let blocks = Pair::new(
+        block([0.0, -0.5, -0.5], [3.2, 0.5, 0.5], [13, 3, 3], true),
+        block([2.0, -0.5, -0.5], [6.0, 0.5, 0.5], [8, 2, 2], false),
+    );
+    for pair in [plates.mapped(swell), blocks.mapped(swell)] {
+        let overlap = Overlap::new(pair.models(), &Region::Intersection).unwrap();
+        assert!(overlap.is_strip());
+        assert!(
+            (overlap.layers() - 2.4).abs() < 1e-6,
+            "{}",
+            overlap.layers()
+        );
+        let weights = overlap.weights(&Weighting::default()).unwrap();
+        // The inner model keeps the thin parts that the outer one lacks, and the other way round: together they fill
+        // their union.
+        let mesh = &pair.mesh;
+        let whole = |cells: &[ElementId]| {
+            let mut sum = 0.0;
+            at_points(mesh, cells, true, |_, _, _, w| sum += w);
+            sum
+        };
+        let union = whole(&pair.inner) + whole(&pair.outer) - overlap.measure();
+        for sums in total(&overlap, &weights) {
+            assert!(
+                (sums[0] - union).abs() < 1e-7 * union,
+                "{} {union}",
+                sums[0]
+            );
+        }
+    }
+}
