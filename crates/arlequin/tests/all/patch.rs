@@ -225,35 +225,40 @@ fn distorted_cells_pass_to_the_error_of_their_quadrature() {
         let outer = plate([2.0, 0.0], [6.0, 2.0], [8, 4], false);
         Body::new(inner, outer, &[6.0, 2.0], Region::Intersection)
     };
-    for (name, body) in [
+    let outer = 2.0 * amount;
+    let cut = || plates([16, 11], [false, false]);
+    // Distorted cells whose borders the overlap follows miss by the error of their rule; those that it cuts, by what a
+    // weight with a kink loses when it is given at four or eight nodes.
+    for (name, body, least, largest) in [
+        ("inner", cut().shaken(amount, Model::Inner), 0.0, 1e-8),
         (
-            "inner plate",
-            plates([16, 11], [false, false]).shaken(amount, Model::Inner),
+            "outer",
+            aligned(false).shaken(outer, Model::Outer),
+            0.0,
+            1e-8,
         ),
         (
-            "outer plate",
-            aligned(false).shaken(2.0 * amount, Model::Outer),
+            "under triangles",
+            aligned(true).shaken(outer, Model::Outer),
+            0.0,
+            1e-8,
         ),
+        ("cut outer", cut().shaken(outer, Model::Outer), 1e-6, 1e-2),
         (
-            "outer plate under triangles",
-            aligned(true).shaken(2.0 * amount, Model::Outer),
-        ),
-        (
-            "cut outer plate",
-            plates([16, 11], [false, false]).shaken(2.0 * amount, Model::Outer),
-        ),
-        (
-            "cut outer block under tets",
-            blocks([5, 2, 2], [true, false]).shaken(amount, Model::Outer),
+            "cut block",
+            blocks([10, 3, 4], [true, false]).shaken(amount, Model::Outer),
+            1e-6,
+            1e-2,
         ),
     ] {
         let coupling = Coupling::default();
-        let (imbalance, defect) = (
-            body.imbalance(&coupling, false),
-            body.kinematic_defect(&coupling),
+        let imbalance = body.imbalance(&coupling, true);
+        println!("{name}: imbalance {imbalance:.1e}");
+        assert!(
+            least <= imbalance && imbalance < largest,
+            "{name}: {imbalance}"
         );
-        println!("{name}: imbalance {imbalance:.1e}, defect {defect:.1e}");
-        assert!(defect < 1e-13, "{name}: {defect}");
+        assert!(body.kinematic_defect(&coupling) < 1e-13, "{name}");
     }
 }
 
