@@ -54,6 +54,29 @@ pub enum Error {
         /// What is not finite.
         quantity: &'static str,
     },
+    /// Energy grows with the smallest step too.
+    #[error(
+        "step {step}, t = {time:e} s: the energy grows without a load, with the smallest step of {dt:e} s too; \
+         another contact law or scheme is needed"
+    )]
+    EnergyGrowth {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start, s.
+        time: f64,
+        /// Its size, s.
+        dt: f64,
+    },
+    /// Rules of an adaptive step that cannot be.
+    #[error(
+        "adaptive step: the smallest must be positive and at most the largest, {largest:e} s, not {smallest:e} s"
+    )]
+    Adaptive {
+        /// Smallest step given, s.
+        smallest: f64,
+        /// Largest step, s.
+        largest: f64,
+    },
     /// A fixed step that cannot be: not positive or not finite.
     #[error("the step must be positive and finite, not {dt:e} s")]
     Step {

@@ -241,6 +241,12 @@ impl Ledger {
         self.close(energies, identity);
     }
 
+    /// The energy of the scheme has another term with the next size of the step: what it gains by that is no work.
+    pub(crate) fn resize(&mut self, identity: &EnergyIdentity, energies: &Energies) {
+        self.dissipation
+            .add(self.balance.scheme_energy - identity.stored(energies));
+    }
+
     /// Adds a projection after the step just added.
     pub(crate) fn jump(&mut self, identity: &EnergyIdentity, energies: &Energies, jump: &Jump) {
         self.work_contact.add(jump.work);

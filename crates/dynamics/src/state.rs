@@ -3,6 +3,7 @@
 use carom_contact::law::Status;
 use serde::{Deserialize, Serialize};
 
+use crate::control::Control;
 use crate::ledger::{Balance, Ledger};
 use crate::records::Records;
 use crate::{Error, System};
@@ -12,12 +13,14 @@ use crate::{Error, System};
 pub struct State {
     /// Steps taken.
     pub step: u64,
-    /// Time in s, `step * dt`.
+    /// Time in s: `step * dt` for equal steps.
     pub time: f64,
     /// Motion of the nodes and the forces that belong to it.
     pub motion: Motion,
     /// Contact forces and statuses.
     pub interface: InterfaceState,
+    /// Step control.
+    pub control: Control,
     /// Energy and momentum balance since the start.
     pub ledger: Ledger,
     /// Extrema, impulses and impacts since the start.
@@ -121,6 +124,10 @@ pub struct StepReport {
     pub step: u64,
     /// Time at the end of the step, s.
     pub time: f64,
+    /// Size of the step, s; zero for the initial state.
+    pub dt: f64,
+    /// Attempts made, the last one taken.
+    pub attempts: u32,
     /// By contact.
     pub contacts: Vec<ContactReport>,
     /// Energies, works and momentum at the end of the step.

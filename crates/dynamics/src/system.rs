@@ -11,7 +11,7 @@ use carom_contact::{Contact, Law, Plane, Point, Sliding, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
 
 use crate::massless::redistribute;
-use crate::{Error, Scheme};
+use crate::{Adaptive, Error, Scheme};
 
 /// Everything from which a system is built; names are those of the case file.
 #[derive(Clone, Debug)]
@@ -28,8 +28,10 @@ pub struct Model {
     pub contacts: Vec<ModelContact>,
     /// Time scheme.
     pub scheme: Scheme,
-    /// Step in s.
+    /// Step in s; the largest of an adaptive step.
     pub dt: f64,
+    /// Rules of an adaptive step; `None` for equal steps.
+    pub adaptive: Option<Adaptive>,
 }
 
 /// A body and its initial state.
@@ -143,8 +145,10 @@ pub struct System {
     pub tolerance: f64,
     /// Time scheme.
     pub scheme: Scheme,
-    /// Step, s.
+    /// Step, s; the largest of an adaptive step.
     pub dt: f64,
+    /// Rules of an adaptive step; `None` for equal steps.
+    pub adaptive: Option<Adaptive>,
     /// Initial displacement, m.
     pub initial_displacement: Vec<f64>,
     /// Initial velocity, m/s; zero where an unknown is held.
@@ -160,6 +164,14 @@ impl System {
     pub fn new(model: Model) -> Result<Arc<System>, Error> {
         if !(model.dt > 0.0 && model.dt.is_finite()) {
             return Err(Error::Step { dt: model.dt });
+        }
+        if let Some(rules) = &model.adaptive
+            && !(rules.smallest > 0.0 && rules.smallest <= model.dt)
+        {
+            return Err(Error::Adaptive {
+                smallest: rules.smallest,
+                largest: model.dt,
+            });
         }
         let dim = model.mesh.dim;
         let (number, mesh_node, parts) = numbering(&model);
@@ -244,6 +256,7 @@ impl System {
             first_point,
             scheme: model.scheme,
             dt: model.dt,
+            adaptive: model.adaptive,
             initial_displacement,
             initial_velocity,
             mesh: model.mesh,

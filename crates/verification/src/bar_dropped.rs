@@ -126,6 +126,7 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
         }],
         scheme: theta(0.5),
         dt: 0.5 * LENGTH / elements as f64 / 30.0,
+        adaptive: None,
         mesh,
     };
     Ok(Driver::new(System::new(model)?)?)

@@ -13,6 +13,7 @@ mod check;
 mod error;
 mod figures;
 
+mod adaptive;
 mod bar_dropped;
 mod bar_on_stop;
 mod bar_on_wall;
@@ -35,6 +36,7 @@ mod interface_problems;
 mod invariance;
 pub mod long_run;
 mod order;
+mod rejections;
 mod restitution;
 mod resume;
 mod sdnl111;
@@ -69,6 +71,7 @@ macro_rules! registry {
 }
 
 registry! {
+    adaptive
     bar_on_stop
     bar_dropped
     bar_on_wall
@@ -91,6 +94,7 @@ registry! {
     invariance
     long_run
     order
+    rejections
     restitution
     resume
     sdnl111

@@ -131,6 +131,7 @@ pub fn bounces(
         }],
         scheme,
         dt: 0.5 / elements as f64,
+        adaptive: None,
         mesh,
     };
     let Ok(system) = System::new(model) else {

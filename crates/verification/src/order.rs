@@ -44,6 +44,7 @@ fn model(scheme: Scheme, dt: f64) -> Result<Model, Error> {
         contacts: Vec::new(),
         scheme,
         dt,
+        adaptive: None,
         mesh,
     })
 }

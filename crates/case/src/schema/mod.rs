@@ -34,8 +34,9 @@ pub use quantity::{
     SurfaceDamping, SurfaceStiffness, Vector, Velocity,
 };
 pub use time::{
-    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, LaursenChawla, Newmark,
-    PaoliSchatzman, Scheme, Step, StepRule, TchamwaWielgosz, Theta, Time,
+    Adaptive, CentralDifference, Closing, ContactStabilised, GeneralisedAlpha, Hht, Kane,
+    LargestStep, LaursenChawla, MeshStep, Newmark, PaoliSchatzman, Scheme, Step, StepRule,
+    TchamwaWielgosz, Theta, Time,
 };
 
 /// A case: bodies, what joins them, and the time to simulate.

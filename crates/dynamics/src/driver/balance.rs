@@ -58,9 +58,12 @@ impl Driver {
             + weights.new * dot(travel, &new.contact_force);
         let work_loads = dot(travel, &system.load);
         self.next.ledger.clone_from(&self.state.ledger);
+        if self.dt != self.state.control.taken {
+            self.resize_energy();
+        }
         self.next.ledger.add(
             (
-                system.dt,
+                self.dt,
                 &identity,
                 [&self.map.impulse, &self.map.contact_impulse],
             ),
@@ -69,6 +72,27 @@ impl Driver {
             &squares,
             [loads, contact, supports, held],
         );
+    }
+
+    /// Counts what the energy that the scheme balances gains by the new size of the step alone.
+    fn resize_energy(&mut self) {
+        let system = Arc::clone(&self.system);
+        let identity = self.identity.unwrap_or_default();
+        let strain = self.state.ledger.balance.strain;
+        let old = &self.state.motion;
+        let lagged = lagged(
+            &system,
+            &identity,
+            (old, strain),
+            &mut self.vectors,
+            &mut self.forces,
+        );
+        let work = &mut self.vectors.work;
+        let energies = Energies {
+            lagged,
+            ..energies(&system, old, strain, work, identity.inertia != 0.0)
+        };
+        self.next.ledger.resize(&identity, &energies);
     }
 
     /// Resultants of the forces of the supports in the step; apart, those against contact forces that act in the
@@ -128,6 +152,7 @@ impl Driver {
                 &self.rows,
                 &self.state.interface,
                 &self.next.interface,
+                self.dt,
             );
             let weights = self.work_weights();
             let interface = &self.next.interface;
@@ -180,6 +205,7 @@ impl Driver {
         let state = &self.state;
         self.report.step = state.step;
         self.report.time = state.time;
+        self.report.dt = if state.step == 0 { 0.0 } else { self.dt };
         self.report.balance = state.ledger.balance;
         self.report.passes = if self.candidates.is_empty() {
             0
@@ -194,6 +220,7 @@ impl Driver {
                     &self.rows,
                     &state.interface,
                     &state.interface,
+                    0.0,
                 );
             }
         }
@@ -284,6 +311,7 @@ fn contact_report(
     rows: &Rows,
     old: &InterfaceState,
     new: &InterfaceState,
+    dt: f64,
 ) -> ContactReport {
     let mut report = ContactReport {
         gap: f64::INFINITY,
@@ -300,7 +328,7 @@ fn contact_report(
         }
         report.closed += usize::from(force != 0.0);
         report.status_changes += usize::from((force != 0.0) != (old.force[point] != 0.0));
-        report.persistency_defect += (force * new.rate[point]).abs() * system.dt;
+        report.persistency_defect += (force * new.rate[point]).abs() * dt;
     }
     report
 }

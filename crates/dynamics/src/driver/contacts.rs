@@ -38,7 +38,7 @@ impl Driver {
     /// Pairs all contacts at their captured instant; `now` takes the state as it is.
     pub(super) fn place(&mut self, now: bool) {
         let system = Arc::clone(&self.system);
-        let (map, dt, motion) = (&self.map, system.dt, &self.state.motion);
+        let (map, dt, motion) = (&self.map, self.dt, &self.state.motion);
         self.rows.clear();
         self.ahead.clear();
         let mut capture = f64::NAN;
@@ -95,7 +95,7 @@ impl Driver {
                 None => {
                     let rate = self.rows.product(point, &self.state.motion.v);
                     self.state.interface.status[point] != Status::Open
-                        || gap + 2.0 * system.dt * rate.min(0.0) <= system.tolerance
+                        || gap + 2.0 * self.dt * rate.min(0.0) <= system.tolerance
                 }
             };
             self.next.interface.watched[point] = chosen;
@@ -133,7 +133,7 @@ impl Driver {
                     gap: self.rows.gap(at),
                     rate: nv,
                     gap_free: self.rows.gap(at) + value(&self.ahead[at]),
-                    dt: system.dt,
+                    dt: self.dt,
                     tolerance: system.tolerance,
                 },
                 rate_free: value(&self.map.rate),
@@ -245,7 +245,7 @@ impl Driver {
                 gap: captured,
                 rate: self.rows.product(point, &motion.v),
                 gap_free: gap,
-                dt: self.system.dt,
+                dt: self.dt,
                 tolerance: self.system.tolerance,
                 ..Local::default()
             };

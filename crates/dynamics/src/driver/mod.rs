@@ -3,6 +3,7 @@
 //! What it holds besides the state is a function of the system and the state, or scratch: a run goes on from a saved
 //! state with the same bits.
 
+mod attempt;
 mod balance;
 mod contacts;
 mod impulse;
@@ -18,6 +19,7 @@ use carom_contact::law::Status;
 use carom_contact::{Contact, Rows, Search};
 
 use crate::compliance::Compliance;
+use crate::control::Control;
 use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::ledger::{Energies, Ledger, Resultant, reactions};
@@ -27,6 +29,7 @@ use crate::scheme::EnergyIdentity;
 use crate::state::{ContactReport, InterfaceState, Motion, State, StepReport};
 use crate::step_map::{Row, StepMap};
 use crate::system::System;
+use attempt::Sized;
 use balance::{energies, lagged};
 use contacts::on_row;
 use impulse::Impulses;
@@ -36,11 +39,19 @@ use projection::Projected;
 /// Takes steps.
 pub struct Driver {
     system: Arc<System>,
+    /// Size of the step that the fields down to the interface are for, s.
+    dt: f64,
     map: StepMap,
     identity: Option<EnergyIdentity>,
     operators: Operators,
     compliance: Compliance,
     interface: Interface,
+    /// The same for other step sizes, the last used last.
+    kept: Vec<Sized>,
+    /// Factors computed so far.
+    factorisations: usize,
+    /// Every which step is dropped once, in tests.
+    forced: Option<u64>,
     forces: Forces,
     /// Solver of the stages with the mass alone; none where there is no such stage.
     impulses: Option<Impulses>,
@@ -112,6 +123,8 @@ pub struct Phases {
 pub struct Costs {
     /// One entry per connected part with a factor.
     pub factors: Vec<FactorStats>,
+    /// Factors computed, over all sizes of the step.
+    pub factorisations: usize,
     /// Columns A⁻¹ Nᵀ computed.
     pub columns: usize,
     /// Bytes of columns and compliance.
@@ -145,11 +158,15 @@ impl Driver {
             false => None,
         };
         let mut driver = Driver {
+            dt: system.dt,
             map,
             identity,
+            factorisations: operators.factored(),
             operators,
             compliance: Compliance::new(points),
             interface: Interface::default(),
+            kept: Vec::new(),
+            forced: None,
             forces: Forces {
                 scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
                 sweeps: 0,
@@ -249,6 +266,7 @@ impl Driver {
                 .iter()
                 .filter_map(|operator| operator.stats().cloned())
                 .collect(),
+            factorisations: self.factorisations,
             columns: self.compliance.columns_computed,
             compliance_bytes: self.compliance.bytes(),
             force_sweeps: self.forces.sweeps,
@@ -302,6 +320,8 @@ impl Driver {
         let none = Resultant::default();
         let forces = [loads, none, supports, none];
         self.state.ledger = Ledger::start(&energies, &identity, forces);
+        let energy = self.state.ledger.balance.energy();
+        self.state.control = Control::start(system.dt, energy);
         self.state.records = Records {
             contacts: vec![ContactRecord::default(); system.contacts.len()],
             impacts: Vec::new(),
@@ -316,18 +336,7 @@ impl Driver {
         Ok(())
     }
 
-    /// Takes one step.
-    ///
-    /// # Errors
-    /// A contact problem without solution, or a motion that is not finite. The state is then the one before the step.
-    pub fn step(&mut self) -> Result<(), Error> {
-        let taken = self.attempt();
-        if taken.is_err() {
-            self.forget_predictor();
-        }
-        taken
-    }
-
+    /// Computes the next state from the state.
     fn attempt(&mut self) -> Result<(), Error> {
         let begin = Instant::now();
         self.predict()?;
@@ -362,8 +371,6 @@ impl Driver {
         self.phases.sweeps += sweeps;
         self.phases.contact += (solved - forces).saturating_sub(sweeps);
         self.phases.balance += ended.elapsed();
-        std::mem::swap(&mut self.state, &mut self.next);
-        self.tell();
         Ok(())
     }
 
@@ -420,7 +427,7 @@ impl Driver {
         map.velocity.whole(old, x, c, &mut new.v);
         map.acceleration.whole(old, x, c, &mut new.a);
         for i in system.massless.iter().map(|&unknown| unknown as usize) {
-            (new.v[i], new.a[i]) = ((new.u[i] - old.u[i]) / system.dt, 0.0);
+            (new.v[i], new.a[i]) = ((new.u[i] - old.u[i]) / self.dt, 0.0);
         }
         let interface = &mut self.next.interface;
         interface.force.fill(0.0);
@@ -439,7 +446,13 @@ impl Driver {
             };
         }
         self.next.step = self.state.step + 1;
-        self.next.time = self.next.step as f64 * system.dt;
+        let State {
+            step,
+            time,
+            control,
+            ..
+        } = &self.state;
+        self.next.time = control.instant(*step, *time, self.dt);
     }
 
     /// Internal forces at the end of the step; returns the strain energy.
@@ -473,6 +486,7 @@ fn empty_state(system: &System) -> State {
             status: vec![Status::Open; points],
             watched: vec![false; points],
         },
+        control: Control::start(system.dt, 0.0),
         ledger: Ledger::default(),
         records: Records::default(),
     }

@@ -20,6 +20,13 @@ pub(super) struct Predictor {
     kept: Vec<f64>,
 }
 
+impl Predictor {
+    /// Gap of a contact point at u + dt v, m; `None` without this stage.
+    pub(super) fn gap(&self, point: usize) -> Option<f64> {
+        self.gaps.get(point).copied()
+    }
+}
+
 impl Driver {
     /// Projects the predictor.
     pub(super) fn predict(&mut self) -> Result<(), Error> {
@@ -27,7 +34,7 @@ impl Driver {
             return Ok(());
         }
         self.place(false);
-        let dt = self.system.dt;
+        let dt = self.dt;
         let Self {
             predictor,
             rows,
@@ -104,7 +111,7 @@ impl Driver {
         let Some(stage) = &self.impulses else {
             return 0.0;
         };
-        let (old, new, dt) = (&self.state.motion, &self.next.motion, self.system.dt);
+        let (old, new, dt) = (&self.state.motion, &self.next.motion, self.dt);
         let predictor = &self.predictor;
         let terms = predictor.points.iter().zip(&predictor.forces);
         let sum: f64 = terms

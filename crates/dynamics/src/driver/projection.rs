@@ -119,7 +119,7 @@ impl Driver {
             let rate = rows.product(at, &self.next.motion.v);
             projected.values.push(rate);
             let mean = weights.old * old.carried[at] + weights.new * new.force[at];
-            projected.present.push(system.dt * mean);
+            projected.present.push(self.dt * mean);
         }
         self.solve_impulses()?;
         let Some(stage) = &self.impulses else {

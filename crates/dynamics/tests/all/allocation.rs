@@ -73,6 +73,7 @@ fn resting_cube(scheme: Scheme, law: Law, dt: f64) -> Driver {
         }],
         scheme,
         dt,
+        adaptive: None,
         mesh,
     };
     Driver::new(System::new(model).unwrap()).unwrap()

@@ -47,6 +47,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         contacts: vec![wall("one"), wall("same")],
         scheme: Scheme::Theta(Theta { theta: 1.0 }),
         dt: 0.1,
+        adaptive: None,
         mesh: mesh.clone(),
     };
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();

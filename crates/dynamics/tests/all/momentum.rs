@@ -47,6 +47,7 @@ fn a_cylinder_that_bulges_as_it_strikes_keeps_its_axial_momentum_balance() {
         }],
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt: 5e-5,
+        adaptive: None,
         mesh,
     };
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();

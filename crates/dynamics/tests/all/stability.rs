@@ -48,6 +48,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         contacts,
         scheme: Scheme::CentralDifference(CentralDifference),
         dt,
+        adaptive: None,
         mesh: mesh.clone(),
     };
     Driver::new(System::new(model)?)

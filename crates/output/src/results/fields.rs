@@ -33,6 +33,8 @@ pub(crate) struct FieldOutput {
     count: u64,
     /// Time of the last one, s.
     last: Option<f64>,
+    /// Time of the last state seen, s.
+    seen: f64,
     failed: bool,
 }
 
@@ -60,6 +62,7 @@ impl FieldOutput {
             })?,
             count: 0,
             last: None,
+            seen: 0.0,
             failed: false,
         })
     }
@@ -75,11 +78,12 @@ impl FieldOutput {
             None => true,
             Some(_) => {
                 // instants are sums of steps: a millionth of one is rounding
-                let number = (state.time + 1e-6 * system.dt) / self.fields.every;
-                let before = (state.time - (1.0 - 1e-6) * system.dt) / self.fields.every;
-                number.floor() > before.floor()
+                let rounding = 1e-6 * system.dt;
+                let number = |time: f64| ((time + rounding) / self.fields.every).floor();
+                number(state.time) > number(self.seen)
             }
         };
+        self.seen = state.time;
         let outcome = match due {
             true => self.send(folder, system, state),
             false => self.writer.check(),

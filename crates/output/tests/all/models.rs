@@ -76,6 +76,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         contacts,
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt: 0.5 * LENGTH / n as f64 / wave_speed(),
+        adaptive: None,
         mesh,
     };
     System::new(model).unwrap()
@@ -139,6 +140,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
             gamma: 0.9,
         }),
         dt: 1e-4,
+        adaptive: None,
         mesh,
     };
     System::new(model).unwrap()
