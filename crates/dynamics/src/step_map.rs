@@ -19,6 +19,17 @@ pub struct Row {
 }
 
 impl Row {
+    /// The change from another combination to this one.
+    pub fn since(&self, other: &Row) -> Row {
+        Row {
+            u: self.u - other.u,
+            v: self.v - other.v,
+            a: self.a - other.a,
+            x: self.x - other.x,
+            c: self.c - other.c,
+        }
+    }
+
     /// Writes the combination of the known vectors, x and c left out.
     pub fn known(&self, motion: &Motion, out: &mut [f64]) {
         let Motion { u, v, a, .. } = motion;
@@ -89,6 +100,8 @@ pub struct StepMap {
     pub acceleration: Row,
     /// The newest displacement known before x: the configuration from which contact is looked ahead.
     pub placed: Row,
+    /// The displacement that a contact law in the gap constrains: that of the end of the step in most schemes. Without c.
+    pub gap: Row,
     /// The velocity that a contact law in the rate constrains.
     pub rate: Row,
     /// Factor of the contact forces in the momentum balance; 1 for most schemes.
@@ -115,7 +128,12 @@ impl StepMap {
 
     /// Whether any vector of the step needs the contact acceleration.
     pub fn uses_contact_acceleration(&self) -> bool {
-        let rows = [self.displacement, self.velocity, self.acceleration];
+        let rows = [
+            self.displacement,
+            self.velocity,
+            self.acceleration,
+            self.rate,
+        ];
         rows.iter().any(|row| row.c != 0.0)
     }
 }

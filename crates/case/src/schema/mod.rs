@@ -34,8 +34,8 @@ pub use quantity::{
     SurfaceDamping, SurfaceStiffness, Vector, Velocity,
 };
 pub use time::{
-    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, LaursenChawla, Newmark,
-    PaoliSchatzman, Scheme, Step, StepRule, TchamwaWielgosz, Theta, Time,
+    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, LaursenChawla, LaursenLove,
+    Newmark, NonsmoothAlpha, PaoliSchatzman, Scheme, Step, StepRule, TchamwaWielgosz, Theta, Time,
 };
 
 /// A case: bodies, what joins them, and the time to simulate.

@@ -48,6 +48,7 @@ impl TimeScheme for CentralDifference {
             },
             acceleration,
             placed: displacement,
+            gap: displacement,
             rate: Row {
                 u: 0.0,
                 v: 1.0,

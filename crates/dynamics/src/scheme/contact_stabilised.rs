@@ -36,6 +36,13 @@ impl TimeScheme for ContactStabilised {
             x: dt,
             ..Row::default()
         };
+        let displacement = Row {
+            u: 1.0,
+            v: dt,
+            a: 0.5 * dt * dt,
+            x: 0.5 * dt * dt,
+            c: 0.0,
+        };
         let acceleration = Row {
             x: 1.0,
             ..Row::default()
@@ -50,19 +57,14 @@ impl TimeScheme for ContactStabilised {
                 c: 0.0,
             },
             force_fraction: Some(0.5),
-            displacement: Row {
-                u: 1.0,
-                v: dt,
-                a: 0.5 * dt * dt,
-                x: 0.5 * dt * dt,
-                c: 0.0,
-            },
+            displacement,
             velocity,
             acceleration,
             placed: Row {
                 u: 1.0,
                 ..Row::default()
             },
+            gap: displacement,
             rate: velocity,
             contact: 1.0,
             impulse: Impulse::weights(0.0, 1.0),

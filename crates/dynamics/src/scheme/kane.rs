@@ -68,6 +68,7 @@ impl TimeScheme for Kane {
                 u: 1.0,
                 ..Row::default()
             },
+            gap: displacement,
             rate: velocity,
             contact: 0.5 / beta,
             impulse: Impulse::weights(1.0 - gamma, gamma),

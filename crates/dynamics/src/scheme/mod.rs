@@ -8,7 +8,9 @@ mod generalised_alpha;
 mod hht;
 mod kane;
 mod laursen_chawla;
+mod laursen_love;
 mod newmark;
+mod nonsmooth_alpha;
 mod paoli_schatzman;
 mod tchamwa_wielgosz;
 mod theta;
@@ -24,7 +26,9 @@ pub use generalised_alpha::GeneralisedAlpha;
 pub use hht::Hht;
 pub use kane::Kane;
 pub use laursen_chawla::LaursenChawla;
+pub use laursen_love::LaursenLove;
 pub use newmark::Newmark;
+pub use nonsmooth_alpha::NonsmoothAlpha;
 pub use paoli_schatzman::PaoliSchatzman;
 pub use tchamwa_wielgosz::TchamwaWielgosz;
 pub use theta::Theta;
@@ -88,6 +92,10 @@ pub trait TimeScheme {
     fn projects_predictor(&self) -> bool {
         false
     }
+    /// Whether the velocity gets back, after a step, the work that points took as they closed in it.
+    fn restores_contact_work(&self) -> bool {
+        false
+    }
     /// Whether a contact law that constrains this quantity can hold.
     fn takes(&self, level: Level) -> bool {
         !(self.is_explicit() && level == Level::Gap)
@@ -113,6 +121,10 @@ pub enum Scheme {
     PaoliSchatzman(PaoliSchatzman),
     /// Mid-point rule with contact on the mean rate, Laursen and Chawla.
     LaursenChawla(LaursenChawla),
+    /// Mid-point rule with the displacement law and a velocity that gets the energy back, Laursen and Love.
+    LaursenLove(LaursenLove),
+    /// Generalised-alpha with impulses apart, Chen, Acary, Virlez and Brüls.
+    NonsmoothAlpha(NonsmoothAlpha),
     /// Newmark with implicit contact forces, Kane, Repetto, Ortiz and Marsden.
     Kane(Kane),
     /// Trapezoid with a projected predictor, Deuflhard, Krause and Ertel.
@@ -131,6 +143,8 @@ impl Scheme {
             Scheme::TchamwaWielgosz(scheme) => scheme,
             Scheme::PaoliSchatzman(scheme) => scheme,
             Scheme::LaursenChawla(scheme) => scheme,
+            Scheme::LaursenLove(scheme) => scheme,
+            Scheme::NonsmoothAlpha(scheme) => scheme,
             Scheme::Kane(scheme) => scheme,
             Scheme::ContactStabilised(scheme) => scheme,
         }
@@ -153,8 +167,11 @@ impl Scheme {
             Scheme::GeneralisedAlpha(GeneralisedAlpha { rho_inf: 0.8 }),
             Scheme::Hht(Hht { alpha: -0.1 }),
             Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: 1.033 }),
-            Scheme::PaoliSchatzman(PaoliSchatzman),
+            Scheme::PaoliSchatzman(PaoliSchatzman { restitution: 0.0 }),
+            Scheme::PaoliSchatzman(PaoliSchatzman { restitution: 0.5 }),
             Scheme::LaursenChawla(LaursenChawla),
+            Scheme::LaursenLove(LaursenLove),
+            Scheme::NonsmoothAlpha(NonsmoothAlpha { rho_inf: 0.8 }),
             Scheme::Kane(Kane {
                 beta: 0.25,
                 gamma: 0.5,

@@ -61,6 +61,7 @@ impl TimeScheme for Newmark {
                 u: 1.0,
                 ..Row::default()
             },
+            gap: displacement,
             rate: velocity,
             contact: 1.0,
             impulse: Impulse::weights(1.0 - gamma, gamma),

@@ -54,6 +54,7 @@ impl TimeScheme for TchamwaWielgosz {
             velocity,
             acceleration,
             placed: displacement,
+            gap: displacement,
             rate: Row { x: dt, ..velocity },
             contact: 1.0,
             impulse: Impulse::weights(1.0, 0.0),
