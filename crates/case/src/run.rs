@@ -160,6 +160,7 @@ fn scheme(scheme: &Scheme) -> String {
         }
         Scheme::LaursenChawla(_) => "laursen-chawla".to_string(),
         Scheme::LaursenLove(_) => "laursen-love".to_string(),
+        Scheme::Krenk(scheme) => format!("krenk, rho-inf = {}", scheme.rho_inf),
         Scheme::NonsmoothAlpha(scheme) => format!("nonsmooth-alpha, rho-inf = {}", scheme.rho_inf),
         Scheme::ContactStabilised(_) => "contact-stabilised".to_string(),
         Scheme::Kane(kane) => format!("kane, beta = {}, gamma = {}", kane.beta, kane.gamma),

@@ -9,7 +9,7 @@
 use carom_bodies::MassKind;
 use carom_dynamics::Scheme;
 use carom_dynamics::scheme::{
-    GeneralisedAlpha, Hht, Kane, NonsmoothAlpha, PaoliSchatzman, TchamwaWielgosz,
+    GeneralisedAlpha, Hht, Kane, Krenk, NonsmoothAlpha, PaoliSchatzman, TchamwaWielgosz,
 };
 
 use crate::Error;
@@ -51,6 +51,8 @@ fn more() -> Vec<Scheme> {
         alpha(1.0),
         Scheme::Hht(Hht { alpha: -1.0 / 3.0 }),
         Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: 1.3 }),
+        Scheme::Krenk(Krenk { rho_inf: 0.0 }),
+        Scheme::Krenk(Krenk { rho_inf: 1.0 }),
         Scheme::NonsmoothAlpha(NonsmoothAlpha { rho_inf: 0.0 }),
         Scheme::NonsmoothAlpha(NonsmoothAlpha { rho_inf: 1.0 }),
         Scheme::PaoliSchatzman(PaoliSchatzman { restitution: 1.0 }),

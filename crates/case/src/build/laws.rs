@@ -138,6 +138,7 @@ fn default_capture(scheme: &Scheme) -> Capture {
         | Scheme::LaursenChawla(_)
         | Scheme::LaursenLove(_)
         | Scheme::NonsmoothAlpha(_)
+        | Scheme::Krenk(_)
         | Scheme::Kane(_)
         | Scheme::ContactStabilised(_) => Capture::Now,
     }

@@ -2,8 +2,8 @@
 
 use carom_contact::law::Level;
 use carom_dynamics::scheme::{
-    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, LaursenChawla, LaursenLove,
-    Newmark, NonsmoothAlpha, PaoliSchatzman, TchamwaWielgosz, Theta,
+    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, Krenk, LaursenChawla,
+    LaursenLove, Newmark, NonsmoothAlpha, PaoliSchatzman, TchamwaWielgosz, Theta,
 };
 use carom_dynamics::{Error, Model, ModelBody, Scheme, System, step_count};
 use carom_mesh::Mesh;
@@ -36,6 +36,9 @@ impl Builder<'_> {
             }),
             schema::Scheme::LaursenChawla(_) => Scheme::LaursenChawla(LaursenChawla),
             schema::Scheme::LaursenLove(_) => Scheme::LaursenLove(LaursenLove),
+            schema::Scheme::Krenk(krenk) => Scheme::Krenk(Krenk {
+                rho_inf: krenk.rho_inf,
+            }),
             schema::Scheme::NonsmoothAlpha(alpha) => Scheme::NonsmoothAlpha(NonsmoothAlpha {
                 rho_inf: alpha.rho_inf,
             }),

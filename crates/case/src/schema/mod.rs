@@ -34,8 +34,9 @@ pub use quantity::{
     SurfaceDamping, SurfaceStiffness, Vector, Velocity,
 };
 pub use time::{
-    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, LaursenChawla, LaursenLove,
-    Newmark, NonsmoothAlpha, PaoliSchatzman, Scheme, Step, StepRule, TchamwaWielgosz, Theta, Time,
+    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, Krenk, LaursenChawla,
+    LaursenLove, Newmark, NonsmoothAlpha, PaoliSchatzman, Scheme, Step, StepRule, TchamwaWielgosz,
+    Theta, Time,
 };
 
 /// A case: bodies, what joins them, and the time to simulate.

@@ -64,6 +64,8 @@ pub enum Scheme {
     /// The generalised-alpha scheme for the smooth motion, contact impulses apart (Chen, Acary, Virlez, Brüls); lumped mass,
     /// laws in the rate only: velocity, compliance, restitution.
     NonsmoothAlpha(NonsmoothAlpha),
+    /// A scheme in extended state space: damping through filtered changes of displacement and velocity (after Krenk).
+    Krenk(Krenk),
     /// Newmark's scheme with implicit contact forces (Kane, Repetto, Ortiz, Marsden); lumped mass, displacement law only.
     Kane(Kane),
     /// The trapezoid with a predictor that is projected on the admissible displacements (contact-stabilised Newmark: Deuflhard,
@@ -157,6 +159,16 @@ pub struct LaursenLove {}
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct NonsmoothAlpha {
     /// Spectral radius at infinite frequency of the smooth motion: 1 damps nothing, 0 most.
+    #[serde(default = "four_fifths")]
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub rho_inf: f64,
+}
+
+/// The scheme in extended state space after Krenk.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Krenk {
+    /// Spectral radius at infinite frequency: 1 damps nothing, 0 most.
     #[serde(default = "four_fifths")]
     #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
     pub rho_inf: f64,

@@ -28,7 +28,7 @@ use crate::scheme::EnergyIdentity;
 use crate::state::{ContactReport, InterfaceState, Motion, State, StepReport};
 use crate::step_map::{Row, StepMap};
 use crate::system::System;
-use balance::{energies, lagged};
+use balance::{energies, lagged, remembered};
 use contacts::{on_row, sums_compliances};
 use impulse::Impulses;
 use predictor::Predictor;
@@ -272,6 +272,9 @@ impl Driver {
         let strain = self
             .forces
             .evaluate(&system, &motion.u, &mut motion.internal_force);
+        if self.map.has_memory() {
+            motion.memory.clone_from(&motion.v);
+        }
         if system.scheme.get().keeps_acceleration() {
             let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
             for i in 0..system.unknowns() {
@@ -282,6 +285,13 @@ impl Driver {
             mass.end(&mut self.vectors.half, &mut motion.a);
         }
         let motion = &self.state.motion;
+        let memory = remembered(
+            &system,
+            &identity,
+            &motion.memory,
+            &mut self.vectors,
+            &mut self.forces,
+        );
         let lagged = lagged(
             &system,
             &identity,
@@ -291,6 +301,7 @@ impl Driver {
         );
         let work = &mut self.vectors.work;
         let energies = Energies {
+            memory,
             lagged,
             ..energies(&system, motion, strain, work, identity.inertia != 0.0)
         };
@@ -413,6 +424,9 @@ impl Driver {
         map.displacement.whole(old, x, c, &mut new.u);
         map.velocity.whole(old, x, c, &mut new.v);
         map.acceleration.whole(old, x, c, &mut new.a);
+        if map.has_memory() {
+            map.memory.whole(old, x, c, &mut new.memory);
+        }
         for i in system.massless.iter().map(|&unknown| unknown as usize) {
             (new.v[i], new.a[i]) = ((new.u[i] - old.u[i]) / system.dt, 0.0);
         }
@@ -457,6 +471,7 @@ fn empty_state(system: &System) -> State {
             u: zeros.clone(),
             v: zeros.clone(),
             a: zeros.clone(),
+            memory: Vec::new(),
             internal_force: zeros.clone(),
             contact_force: zeros,
         },

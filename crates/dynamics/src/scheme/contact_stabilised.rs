@@ -41,7 +41,7 @@ impl TimeScheme for ContactStabilised {
             v: dt,
             a: 0.5 * dt * dt,
             x: 0.5 * dt * dt,
-            c: 0.0,
+            ..Row::default()
         };
         let acceleration = Row {
             x: 1.0,
@@ -54,7 +54,7 @@ impl TimeScheme for ContactStabilised {
                 v: 0.5 * dt,
                 a: 0.25 * dt * dt,
                 x: 0.25 * dt * dt,
-                c: 0.0,
+                ..Row::default()
             },
             force_fraction: Some(0.5),
             displacement,
@@ -66,6 +66,7 @@ impl TimeScheme for ContactStabilised {
             },
             gap: displacement,
             rate: velocity,
+            memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(0.0, 1.0),
             contact_impulse: Impulse::weights(0.0, 1.0),

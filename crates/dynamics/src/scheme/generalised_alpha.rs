@@ -88,7 +88,7 @@ impl Averaged {
             v: dt,
             a: dt * dt * (0.5 - beta),
             x: dt * dt * beta,
-            c: 0.0,
+            ..Row::default()
         };
         let velocity = Row {
             v: 1.0,
@@ -114,7 +114,7 @@ impl Averaged {
                 v: end * displacement.v,
                 a: end * displacement.a,
                 x: end * displacement.x,
-                c: 0.0,
+                ..Row::default()
             },
             force_fraction: Some(end),
             displacement,
@@ -129,6 +129,7 @@ impl Averaged {
             },
             gap: displacement,
             rate: velocity,
+            memory: Row::default(),
             contact: 1.0,
             impulse,
             contact_impulse: impulse,

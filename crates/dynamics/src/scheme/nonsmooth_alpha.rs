@@ -16,7 +16,9 @@ use crate::step_map::{Impulse, Row, StepMap};
 ///
 /// with the velocity law, or that of restitution, on v₊. Contact forces enter no acceleration, so that nothing of an impact
 /// comes back in the next steps through the memory of a; internal forces answer to w at once, through u₊. The velocity is
-/// of first order at an impact, of second order elsewhere.
+/// of first order at an impact, of second order elsewhere. In a body that is rigid in a step, w first moves the nodes in contact
+/// alone, and the rest follows while a vibration decays like (-ρ∞)ᵏ: at ρ∞ = 0.8 restitution comes out up to 0.04 beside e. With
+/// ρ∞ = 1 the scheme is [`Theta`](super::Theta) with θ = ½, and e is exact.
 ///
 /// The unknown is y = a₊ + c/(2β) with c = w/dt, which leaves `u₊ = u + dt v + dt² ((½ - β) a + β y)` and
 /// `M ((1 - α_m) y + α_m a) + f = p_ext + (1 - α_m)/(2β) Nᵀ P`, `v₊ = v + dt ((1 - γ) a + γ y) + dt (1 - γ/(2β)) c`: the

@@ -73,6 +73,7 @@ impl TimeScheme for PaoliSchatzman {
                 ..Row::default()
             },
             rate: velocity,
+            memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(0.0, 1.0),
             contact_impulse: Impulse::weights(0.0, 1.0),

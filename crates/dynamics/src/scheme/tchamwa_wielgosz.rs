@@ -56,6 +56,7 @@ impl TimeScheme for TchamwaWielgosz {
             placed: displacement,
             gap: displacement,
             rate: Row { x: dt, ..velocity },
+            memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(1.0, 0.0),
             contact_impulse: Impulse::weights(1.0, 0.0),

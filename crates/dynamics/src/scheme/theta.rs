@@ -40,7 +40,7 @@ impl TimeScheme for Theta {
             v: (1.0 - theta) * dt,
             a: 0.0,
             x: theta * dt,
-            c: 0.0,
+            ..Row::default()
         };
         let velocity = Row {
             x: 1.0,
@@ -53,7 +53,7 @@ impl TimeScheme for Theta {
                 v: theta * (1.0 - theta) * dt,
                 a: 0.0,
                 x: theta * theta * dt,
-                c: 0.0,
+                ..Row::default()
             },
             force_fraction: Some(theta),
             displacement,
@@ -65,6 +65,7 @@ impl TimeScheme for Theta {
             },
             gap: displacement,
             rate: velocity,
+            memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(0.0, 1.0),
             contact_impulse: Impulse::weights(0.0, 1.0),
