@@ -127,3 +127,59 @@ impl TimeScheme for Krenk {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::Motion;
+
+    /// One unknown with infinite stiffness: the step leaves no internal force.
+    fn stiff_step(map: &StepMap, motion: &Motion) -> Motion {
+        let [mut out, mut known] = [[0.0]; 2];
+        map.force.known(motion, &mut known);
+        let x = [-known[0] / map.force.x];
+        let mut row = |row: &Row| {
+            row.whole(motion, &x, &[0.0], &mut out);
+            out.to_vec()
+        };
+        Motion {
+            u: row(&map.displacement),
+            v: row(&map.velocity),
+            a: row(&map.acceleration),
+            memory: row(&map.memory),
+            ..Motion::default()
+        }
+    }
+
+    #[test]
+    fn all_amplification_factors_at_infinite_frequency_are_minus_the_radius() {
+        for rho_inf in [0.0, 0.3, 0.8] {
+            let map = Krenk { rho_inf }.step_map(1.0);
+            for start in 0..4 {
+                let unit = |k: usize| vec![f64::from(u8::from(k == start))];
+                let mut motion = Motion {
+                    u: unit(0),
+                    v: unit(1),
+                    a: unit(2),
+                    memory: unit(3),
+                    ..Motion::default()
+                };
+                // (A + ρ)⁴ = 0 by Cayley and Hamilton, if -ρ is the root of all four factors
+                for _ in 0..4 {
+                    let next = stiff_step(&map, &motion);
+                    let sum = |new: Vec<f64>, old: &[f64]| vec![new[0] + rho_inf * old[0]];
+                    motion = Motion {
+                        u: sum(next.u, &motion.u),
+                        v: sum(next.v, &motion.v),
+                        a: sum(next.a, &motion.a),
+                        memory: sum(next.memory, &motion.memory),
+                        ..Motion::default()
+                    };
+                }
+                for left in [&motion.u, &motion.v, &motion.a, &motion.memory] {
+                    assert!(left[0].abs() < 1e-12, "{rho_inf}, {start}: {left:?}");
+                }
+            }
+        }
+    }
+}
