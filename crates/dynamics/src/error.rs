@@ -141,6 +141,16 @@ pub enum Error {
         /// Name of the scheme.
         scheme: &'static str,
     },
+    /// A law in the gap on a scheme whose contact impulses are those that change the velocity.
+    #[error(
+        "contact '{contact}': in the scheme {scheme} contact impulses change the velocity at the end of the step, so only a law in the rate can hold"
+    )]
+    GapLaw {
+        /// Name of the contact.
+        contact: String,
+        /// Name of the scheme.
+        scheme: &'static str,
+    },
     /// A saved state that does not belong to this system.
     #[error("the saved state cannot be read: {cause}")]
     State {

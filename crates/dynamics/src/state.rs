@@ -36,6 +36,8 @@ pub struct Motion {
     pub v: Vec<f64>,
     /// Acceleration, m/s²: in balance, or the mean of the step, as the scheme has it.
     pub a: Vec<f64>,
+    /// What the scheme remembers besides, the filtered velocity of Krenk's scheme in m/s; empty for the others.
+    pub memory: Vec<f64>,
     /// Internal force f(u), N.
     pub internal_force: Vec<f64>,
     /// Contact force Nᵀ P at the end of the last step, N: after a projection the one in balance with the acceleration.
@@ -88,7 +90,14 @@ impl State {
             &motion.internal_force,
             &motion.contact_force,
         ];
-        if vectors.iter().any(|vector| vector.len() != n) || state.interface.force.len() != points {
+        let remembered = match system.scheme.get().step_map(system.dt).has_memory() {
+            true => n,
+            false => 0,
+        };
+        if vectors.iter().any(|vector| vector.len() != n)
+            || motion.memory.len() != remembered
+            || state.interface.force.len() != points
+        {
             let cause = format!(
                 "it belongs to another model than this one of {n} unknowns and {points} contact points"
             );

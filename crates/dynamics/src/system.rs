@@ -273,6 +273,8 @@ impl System {
                 Some("an explicit scheme divides by the mass of each node")
             } else if scheme.projects_predictor() {
                 Some("the scheme projects its predictor with the mass of the nodes in contact")
+            } else if scheme.restores_contact_work() {
+                Some("the scheme changes the velocity with the mass of the nodes in contact")
             } else if scheme.needs_lumped_mass() {
                 Some("the scheme divides the contact forces by the mass of their nodes")
             } else if contact.law.get().level() != Level::Gap {
@@ -308,7 +310,12 @@ impl System {
         }
         let refused = |contact: &&Contact| !scheme.takes(contact.law.get().level());
         if let Some(contact) = self.contacts.iter().find(refused) {
+            let of_rates = scheme.takes(Level::Rate) && !scheme.is_explicit();
             return Err(match contact.law.get().level() {
+                Level::Gap | Level::GapAndRate if of_rates => Error::GapLaw {
+                    contact: contact.name.clone(),
+                    scheme: scheme.name(),
+                },
                 Level::Gap => Error::DisplacementLaw {
                     contact: contact.name.clone(),
                 },

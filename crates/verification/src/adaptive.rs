@@ -51,11 +51,12 @@ fn flights() -> Result<Vec<Row>, Error> {
     for scheme in Scheme::registered() {
         let h = SLOW.length / ELEMENTS as f64;
         for (name, law) in laws(&SLOW.material(), h, SLOW.area)? {
-            // laws that look ahead, and an explicit scheme places points at the end of the step, or a clearance close
-            // elsewhere than where the gap does
+            // laws that look ahead, and an explicit scheme places points at the end of the step, a clearance, or gaps weighted with
+            // those of the step before close elsewhere than where the gap does
             let explicit = scheme.get().is_explicit() && law != velocity(Capture::Now);
             let far = [Capture::Full, Capture::Free].map(velocity).contains(&law);
-            let ahead = explicit && name != "penalty" || far || name == "stop";
+            let weighted = matches!(scheme, Scheme::PaoliSchatzman(s) if s.restitution > 0.0);
+            let ahead = explicit && name != "penalty" || far || weighted || name == "stop";
             if is_senseless(scheme, law) {
                 continue;
             }

@@ -26,6 +26,7 @@ mod bars_massless;
 mod bars_newmark;
 mod bars_projection;
 mod bars_schemes;
+mod bars_stages;
 mod bars_theta;
 mod block_drop;
 mod blocks;
@@ -84,6 +85,7 @@ registry! {
     bars_newmark
     bars_projection
     bars_schemes
+    bars_stages
     bars_theta
     block_drop
     blocks

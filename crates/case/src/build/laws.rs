@@ -136,6 +136,9 @@ fn default_capture(scheme: &Scheme) -> Capture {
         | Scheme::TchamwaWielgosz(_)
         | Scheme::PaoliSchatzman(_)
         | Scheme::LaursenChawla(_)
+        | Scheme::LaursenLove(_)
+        | Scheme::NonsmoothAlpha(_)
+        | Scheme::Krenk(_)
         | Scheme::Kane(_)
         | Scheme::ContactStabilised(_) => Capture::Now,
     }

@@ -2,8 +2,8 @@
 
 use carom_contact::law::Level;
 use carom_dynamics::scheme::{
-    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, LaursenChawla, Newmark,
-    PaoliSchatzman, TchamwaWielgosz, Theta,
+    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, Krenk, LaursenChawla,
+    LaursenLove, Newmark, NonsmoothAlpha, PaoliSchatzman, TchamwaWielgosz, Theta,
 };
 use carom_dynamics::{Adaptive, Closing, Error, Model, ModelBody, Scheme, System, step_count};
 use carom_mesh::Mesh;
@@ -42,8 +42,17 @@ impl Builder<'_> {
             schema::Scheme::TchamwaWielgosz(scheme) => {
                 Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: scheme.phi })
             }
-            schema::Scheme::PaoliSchatzman(_) => Scheme::PaoliSchatzman(PaoliSchatzman),
+            schema::Scheme::PaoliSchatzman(scheme) => Scheme::PaoliSchatzman(PaoliSchatzman {
+                restitution: scheme.restitution,
+            }),
             schema::Scheme::LaursenChawla(_) => Scheme::LaursenChawla(LaursenChawla),
+            schema::Scheme::LaursenLove(_) => Scheme::LaursenLove(LaursenLove),
+            schema::Scheme::Krenk(krenk) => Scheme::Krenk(Krenk {
+                rho_inf: krenk.rho_inf,
+            }),
+            schema::Scheme::NonsmoothAlpha(alpha) => Scheme::NonsmoothAlpha(NonsmoothAlpha {
+                rho_inf: alpha.rho_inf,
+            }),
             schema::Scheme::ContactStabilised(_) => Scheme::ContactStabilised(ContactStabilised),
             schema::Scheme::Kane(kane) => Scheme::Kane(Kane {
                 beta: kane.beta,
@@ -67,8 +76,19 @@ impl Builder<'_> {
             );
         }
         for (name, contact) in self.case.contact.iter() {
-            let displacement = matches!(contact.law, Law::Displacement(_));
-            if displacement && !scheme.takes(Level::Gap) {
+            let level = level(&contact.law);
+            if scheme.takes(level) {
+                continue;
+            }
+            if level != Level::Rate && scheme.takes(Level::Rate) && !scheme.is_explicit() {
+                let message = "the contact impulses of this scheme change the velocity at the end of the step, so only a law in the rate can hold";
+                let problem = Problem::new(format!("contact.{name}.law"), message);
+                self.problems.push(
+                    problem
+                        .found(format!("a law in the gap with {}", scheme.name()))
+                        .accepted(["velocity", "compliance", "restitution"]),
+                );
+            } else if level == Level::Gap {
                 let message = "an explicit scheme knows the displacement at the end of the step before the contact force, so this law cannot hold";
                 let problem = Problem::new(format!("contact.{name}.law.displacement"), message);
                 self.problems.push(
@@ -76,8 +96,7 @@ impl Builder<'_> {
                         .found(format!("displacement with {}", scheme.name()))
                         .accepted(["velocity", "damped"]),
                 );
-            }
-            if !displacement && !scheme.takes(Level::Rate) {
+            } else {
                 let message = "the contact forces of this scheme keep the displacement at the end of the step, so no other law can hold";
                 let problem = Problem::new(format!("contact.{name}.law"), message);
                 self.problems.push(
@@ -223,6 +242,15 @@ impl Builder<'_> {
             }
             other => Problem::new("time", other.to_string()),
         }
+    }
+}
+
+/// What a law constrains.
+fn level(law: &Law) -> Level {
+    match law {
+        Law::Displacement(_) => Level::Gap,
+        Law::Damped(_) | Law::Penalty(_) | Law::Stop(_) => Level::GapAndRate,
+        Law::Velocity(_) | Law::Compliance(_) | Law::Restitution(_) => Level::Rate,
     }
 }
 

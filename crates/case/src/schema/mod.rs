@@ -34,9 +34,9 @@ pub use quantity::{
     SurfaceDamping, SurfaceStiffness, Vector, Velocity,
 };
 pub use time::{
-    Adaptive, CentralDifference, Closing, ContactStabilised, GeneralisedAlpha, Hht, Kane,
-    LargestStep, LaursenChawla, MeshStep, Newmark, PaoliSchatzman, Scheme, Step, StepRule,
-    TchamwaWielgosz, Theta, Time,
+    Adaptive, CentralDifference, Closing, ContactStabilised, GeneralisedAlpha, Hht, Kane, Krenk,
+    LargestStep, LaursenChawla, LaursenLove, MeshStep, Newmark, NonsmoothAlpha, PaoliSchatzman,
+    Scheme, Step, StepRule, TchamwaWielgosz, Theta, Time,
 };
 
 /// A case: bodies, what joins them, and the time to simulate.

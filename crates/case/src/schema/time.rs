@@ -107,11 +107,19 @@ pub enum Scheme {
     Hht(Hht),
     /// The dissipative scheme of Tchamwa and Wielgosz, explicit; lumped mass.
     TchamwaWielgosz(TchamwaWielgosz),
-    /// The two-step scheme of Paoli and Schatzman, without restitution; made for the displacement law.
+    /// The two-step scheme of Paoli and Schatzman, with restitution; made for the displacement law.
     PaoliSchatzman(PaoliSchatzman),
     /// The mid-point rule with contact on the mean rate (Laursen, Chawla): exact energy, useless force; made for the
     /// velocity law.
     LaursenChawla(LaursenChawla),
+    /// The mid-point rule with the displacement law and a velocity that gets the work of the contact back (Laursen, Love):
+    /// exact energy, no penetration, useless force; displacement law only.
+    LaursenLove(LaursenLove),
+    /// The generalised-alpha scheme for the smooth motion, contact impulses apart (Chen, Acary, Virlez, Brüls); lumped mass,
+    /// laws in the rate only: velocity, compliance, restitution.
+    NonsmoothAlpha(NonsmoothAlpha),
+    /// A scheme in extended state space: damping through filtered changes of displacement and velocity (after Krenk).
+    Krenk(Krenk),
     /// Newmark's scheme with implicit contact forces (Kane, Repetto, Ortiz, Marsden); lumped mass, displacement law only.
     Kane(Kane),
     /// The trapezoid with a predictor that is projected on the admissible displacements (contact-stabilised Newmark: Deuflhard,
@@ -179,15 +187,46 @@ pub struct TchamwaWielgosz {
     pub phi: f64,
 }
 
-/// The scheme of Paoli and Schatzman: nothing to give.
+/// The scheme of Paoli and Schatzman.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct PaoliSchatzman {}
+pub struct PaoliSchatzman {
+    /// Restitution of bodies that are rigid in a step; the displacement law holds for (u+ + e u-)/(1 + e). Above 0 with the
+    /// displacement law only.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub restitution: f64,
+}
 
 /// The scheme of Laursen and Chawla: nothing to give.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LaursenChawla {}
+
+/// The scheme of Laursen and Love: nothing to give.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct LaursenLove {}
+
+/// The nonsmooth generalised-alpha scheme.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct NonsmoothAlpha {
+    /// Spectral radius at infinite frequency of the smooth motion: 1 damps nothing, 0 most.
+    #[serde(default = "four_fifths")]
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub rho_inf: f64,
+}
+
+/// The scheme in extended state space after Krenk.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Krenk {
+    /// Spectral radius at infinite frequency: 1 damps nothing, 0 most.
+    #[serde(default = "four_fifths")]
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub rho_inf: f64,
+}
 
 /// The scheme of Kane, Repetto, Ortiz and Marsden.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -28,8 +28,18 @@ impl Driver {
             &mut self.vectors,
             &mut self.forces,
         );
+        let memory = remembered(
+            &system,
+            &identity,
+            &new.memory,
+            &mut self.vectors,
+            &mut self.forces,
+        );
+        let filtered = self.filtered(&identity);
+        let new = &self.next.motion;
         let work = &mut self.vectors.work;
         let energies = Energies {
+            memory,
             lagged,
             ..energies(&system, new, strain, work, identity.inertia != 0.0)
         };
@@ -47,6 +57,7 @@ impl Driver {
         } = &mut self.vectors;
         let squares = Squares {
             stage,
+            filtered,
             ..squares(&system, &identity, (old, new), (travel, known, work))
         };
         if identity.lag != 0.0 {
@@ -80,19 +91,27 @@ impl Driver {
         let identity = self.identity.unwrap_or_default();
         let strain = self.state.ledger.balance.strain;
         let old = &self.state.motion;
-        let lagged = lagged(
-            &system,
-            &identity,
-            (old, strain),
-            &mut self.vectors,
-            &mut self.forces,
-        );
-        let work = &mut self.vectors.work;
+        let (vectors, forces) = (&mut self.vectors, &mut self.forces);
+        let lagged = lagged(&system, &identity, (old, strain), vectors, forces);
+        let memory = remembered(&system, &identity, &old.memory, vectors, forces);
+        let work = &mut vectors.work;
         let energies = Energies {
             lagged,
+            memory,
             ..energies(&system, old, strain, work, identity.inertia != 0.0)
         };
         self.next.ledger.resize(&identity, &energies);
+    }
+
+    /// |Δm|²_K of the step, as far as the identity asks for it.
+    fn filtered(&mut self, identity: &EnergyIdentity) -> f64 {
+        if identity.filtered == 0.0 {
+            return 0.0;
+        }
+        let Vectors { known, work, .. } = &mut self.vectors;
+        let [old, new] = [&self.state, &self.next].map(|state| &state.motion.memory);
+        difference(old, new, known);
+        2.0 * self.forces.evaluate(&self.system, known, work)
     }
 
     /// Resultants of the forces of the supports in the step; apart, those against contact forces that act in the
@@ -245,6 +264,7 @@ pub(super) fn energies(
         kinetic,
         strain,
         acceleration,
+        memory: 0.0,
         lagged: 0.0,
         momentum,
     }
@@ -265,6 +285,21 @@ pub(super) fn lagged(
         known[i] = motion.u[i] - identity.lag * motion.v[i];
     }
     forces.evaluate(system, known, work) - strain
+}
+
+/// |m|²_K of a memory m, J/s².
+pub(super) fn remembered(
+    system: &System,
+    identity: &EnergyIdentity,
+    memory: &[f64],
+    Vectors { work, .. }: &mut Vectors,
+    forces: &mut Forces,
+) -> f64 {
+    match identity.memory == 0.0 {
+        true => 0.0,
+        // U is quadratic
+        false => 2.0 * forces.evaluate(system, memory, work),
+    }
 }
 
 /// What changed from the old to the new motion, as far as the identity asks for it. Leaves Δu in `travel`.

@@ -9,6 +9,7 @@ mod contacts;
 mod impulse;
 mod predictor;
 mod projection;
+mod restoring;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -30,11 +31,12 @@ use crate::state::{ContactReport, InterfaceState, Motion, State, StepReport};
 use crate::step_map::{Row, StepMap};
 use crate::system::System;
 use attempt::Sized;
-use balance::{energies, lagged};
-use contacts::on_row;
+use balance::{energies, lagged, remembered};
+use contacts::{on_row, sums_compliances};
 use impulse::Impulses;
 use predictor::Predictor;
 use projection::Projected;
+use restoring::Restoring;
 
 /// Takes steps.
 pub struct Driver {
@@ -57,12 +59,13 @@ pub struct Driver {
     impulses: Option<Impulses>,
     projected: Projected,
     predictor: Predictor,
+    restoring: Restoring,
     /// Rows at zero displacement of contacts with small sliding.
     initial_rows: Vec<Option<Rows>>,
     search: Vec<Search>,
     rows: Rows,
-    /// For each point, the factors of u, v, a and x in its gap at the end, counted from the paired configuration.
-    ahead: Vec<Row>,
+    /// For each point, the configuration in which it is paired.
+    captured: Vec<Row>,
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,
     /// The interface problem that made the last step fail.
@@ -152,8 +155,11 @@ impl Driver {
         let (n, points) = (system.unknowns(), system.points());
         let zeros = || vec![0.0; n];
         let projects = |contact: &Contact| contact.law.projects();
-        let predicts = scheme.projects_predictor() && points > 0;
-        let impulses = match predicts || system.contacts.iter().any(projects) {
+        let stages = scheme.projects_predictor()
+            || scheme.restores_contact_work()
+            || sums_compliances(&system, &map);
+        let staged = stages && points > 0 || system.contacts.iter().any(projects);
+        let impulses = match staged {
             true => Some(Impulses::new(&system)?),
             false => None,
         };
@@ -174,10 +180,11 @@ impl Driver {
             impulses,
             projected: Projected::new(points),
             predictor: Predictor::default(),
+            restoring: Restoring::default(),
             initial_rows: Vec::new(),
             search: system.contacts.iter().map(|_| Search::default()).collect(),
             rows: Rows::default(),
-            ahead: Vec::new(),
+            captured: Vec::new(),
             candidates: Vec::new(),
             candidate_data: Vec::new(),
             failed: None,
@@ -283,6 +290,9 @@ impl Driver {
         let strain = self
             .forces
             .evaluate(&system, &motion.u, &mut motion.internal_force);
+        if self.map.has_memory() {
+            motion.memory.clone_from(&motion.v);
+        }
         if system.scheme.get().keeps_acceleration() {
             let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
             for i in 0..system.unknowns() {
@@ -293,6 +303,13 @@ impl Driver {
             mass.end(&mut self.vectors.half, &mut motion.a);
         }
         let motion = &self.state.motion;
+        let memory = remembered(
+            &system,
+            &identity,
+            &motion.memory,
+            &mut self.vectors,
+            &mut self.forces,
+        );
         let lagged = lagged(
             &system,
             &identity,
@@ -302,6 +319,7 @@ impl Driver {
         );
         let work = &mut self.vectors.work;
         let energies = Energies {
+            memory,
             lagged,
             ..energies(&system, motion, strain, work, identity.inertia != 0.0)
         };
@@ -365,6 +383,7 @@ impl Driver {
         let ended = Instant::now();
         self.balance(strain);
         self.project(strain)?;
+        self.restore(strain);
         self.record();
         self.finite()?;
         self.phases.forces += (forces - begin) + (ended - solved);
@@ -404,28 +423,17 @@ impl Driver {
         let system = &*self.system;
         let (old, map) = (&self.state.motion, &self.map);
         let new = &mut self.next.motion;
-        new.contact_force.fill(0.0);
-        for (&point, &force) in self.candidates.iter().zip(&self.interface.forces) {
-            self.rows
-                .add_force(point as usize, force, &mut new.contact_force);
-        }
         let Vectors {
             x,
             contact_acceleration: c,
             ..
-        } = &mut self.vectors;
-        if map.uses_contact_acceleration() {
-            for i in 0..c.len() {
-                c[i] = if system.fixed[i] {
-                    0.0
-                } else {
-                    new.contact_force[i] / system.mass.lumped[i]
-                };
-            }
-        }
+        } = &self.vectors;
         map.displacement.whole(old, x, c, &mut new.u);
         map.velocity.whole(old, x, c, &mut new.v);
         map.acceleration.whole(old, x, c, &mut new.a);
+        if map.has_memory() {
+            map.memory.whole(old, x, c, &mut new.memory);
+        }
         for i in system.massless.iter().map(|&unknown| unknown as usize) {
             (new.v[i], new.a[i]) = ((new.u[i] - old.u[i]) / self.dt, 0.0);
         }
@@ -438,8 +446,9 @@ impl Driver {
         }
         interface.carried.clone_from(&interface.force);
         for point in 0..system.points() {
+            let ahead = map.displacement.since(&self.captured[point]);
             interface.gap[point] =
-                self.rows.gap(point) + on_row(&self.rows, point, &self.ahead[point], old, [x, c]);
+                self.rows.gap(point) + on_row(&self.rows, point, &ahead, old, [x, c]);
             interface.rate[point] = match system.massless.is_empty() {
                 true => on_row(&self.rows, point, &map.rate, old, [x, c]),
                 false => self.rows.product(point, &new.v),
@@ -475,6 +484,7 @@ fn empty_state(system: &System) -> State {
             u: zeros.clone(),
             v: zeros.clone(),
             a: zeros.clone(),
+            memory: Vec::new(),
             internal_force: zeros.clone(),
             contact_force: zeros,
         },
