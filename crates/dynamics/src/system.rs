@@ -7,7 +7,7 @@ use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_bodies::{Body, BodySpec, Kinematics, MassKind};
 use carom_contact::law::Level;
-use carom_contact::{Contact, Law, Plane, Point, Sliding, Target};
+use carom_contact::{Contact, Integration, Law, Plane, Point, Sliding, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
 
 use crate::massless::redistribute;
@@ -67,6 +67,8 @@ pub struct ModelContact {
     pub law: Law,
     /// Extent of the sliding.
     pub sliding: Sliding,
+    /// Where the law holds.
+    pub integration: Integration,
     /// Whether the nodes of both surfaces give their mass to the other nodes of their bodies.
     pub massless: bool,
 }
@@ -202,7 +204,7 @@ impl System {
         let contacts: Vec<Contact> = model
             .contacts
             .iter()
-            .map(|contact| numbered(contact, &model, &number))
+            .map(|contact| numbered(contact, &model, &number, &x))
             .collect();
         let mut first_point = vec![0];
         for contact in &contacts {
@@ -250,6 +252,7 @@ impl System {
         };
         system.check_scheme(&model.bodies)?;
         system.check_massless(&model.contacts)?;
+        system.check_integration()?;
         Ok(Arc::new(system))
     }
 
@@ -276,6 +279,29 @@ impl System {
         match refused.find_map(|contact| Some((contact, cause(contact)?))) {
             None => Ok(()),
             Some((contact, cause)) => Err(Error::MasslessContact {
+                contact: contact.name.clone(),
+                cause,
+            }),
+        }
+    }
+
+    fn check_integration(&self) -> Result<(), Error> {
+        let cause = |contact: &Contact| match contact.integration {
+            Integration::Weak { r } if !(r > 0.0 && r.is_finite()) => {
+                Some("r of the weak form must be positive and finite")
+            }
+            Integration::Weak { .. } if !contact.law.has_weak_form() => Some(
+                "there is a weak form of the displacement law, without projection, and of the velocity law only",
+            ),
+            Integration::Points if !contact.law.is_function() => Some(
+                "at Gauss points, each by itself, only a law can hold that gives the pressure as a continuous function: the compliance, and penalty and stop without a damper",
+            ),
+            Integration::Weak { .. } | Integration::Points | Integration::Node => None,
+        };
+        let mut contacts = self.contacts.iter();
+        match contacts.find_map(|contact| Some((contact, cause(contact)?))) {
+            None => Ok(()),
+            Some((contact, cause)) => Err(Error::Integration {
                 contact: contact.name.clone(),
                 cause,
             }),
@@ -334,9 +360,14 @@ impl System {
         self.first_point[self.contacts.len()]
     }
 
+    /// Index of the contact of a contact point.
+    pub fn contact_of(&self, point: usize) -> usize {
+        self.first_point.partition_point(|&first| first <= point) - 1
+    }
+
     /// The contact and the place in it of a contact point.
     pub fn point(&self, point: usize) -> (&Contact, usize) {
-        let contact = self.first_point.partition_point(|&first| first <= point) - 1;
+        let contact = self.contact_of(point);
         (&self.contacts[contact], point - self.first_point[contact])
     }
 
@@ -495,42 +526,58 @@ fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usize>) {
     (body(&contact.secondary).unwrap_or(0), primary)
 }
 
-fn numbered(contact: &ModelContact, model: &Model, number: &[u32]) -> Contact {
+fn numbered(contact: &ModelContact, model: &Model, number: &[u32], x: &[[f64; 3]]) -> Contact {
     let surface = &contact.secondary;
     let kinematics = surface
         .faces
         .first()
         .and_then(|face| owner(model, face.parent));
     let kinematics = kinematics.map(|body| model.bodies[body].spec.kinematics);
-    let areas = surface.node_areas(&model.mesh);
-    let area = |(&node, area): (&u32, f64)| {
-        let factor = kinematics.map_or(1.0, |k| k.surface_factor(&model.mesh.nodes[node as usize]));
-        (number[node as usize], area * factor)
+    let factor = |x: &[f64; 3]| kinematics.map_or(1.0, |k| k.surface_factor(x));
+    let faces = |surface: &Surface| -> Vec<Face> {
+        let faces = surface.faces.iter();
+        faces.map(|face| renumbered(face, number)).collect()
     };
-    let areas: Vec<(u32, f64)> = surface.nodes.iter().zip(areas).map(area).collect();
-    let total: f64 = areas.iter().map(|(_, area)| area).sum();
-    let points = areas.iter().map(|&(node, area)| Point {
-        node,
-        area,
-        share: area / total,
-    });
+    let points = match contact.integration {
+        Integration::Node => nodes(surface, &model.mesh, number, factor),
+        Integration::Points | Integration::Weak { .. } => {
+            Point::of_faces(&faces(surface), x, factor)
+        }
+    };
     let target = match &contact.primary {
         ModelTarget::Plane(plane) => Target::Plane(*plane),
-        ModelTarget::Surface(surface) => Target::Surface(
-            surface
-                .faces
-                .iter()
-                .map(|face| renumbered(face, number))
-                .collect(),
-        ),
+        ModelTarget::Surface(surface) => Target::Surface(faces(surface)),
     };
     Contact {
         name: contact.name.clone(),
         law: contact.law,
         sliding: contact.sliding,
-        points: points.collect(),
+        integration: contact.integration,
+        points,
         target,
     }
+}
+
+/// The nodes of a surface with the areas that they stand for.
+fn nodes(
+    surface: &Surface,
+    mesh: &Mesh,
+    number: &[u32],
+    factor: impl Fn(&[f64; 3]) -> f64,
+) -> Vec<Point> {
+    let areas = surface.node_areas(mesh);
+    let area = |(&node, area): (&u32, f64)| {
+        (
+            number[node as usize],
+            area * factor(&mesh.nodes[node as usize]),
+        )
+    };
+    let areas: Vec<(u32, f64)> = surface.nodes.iter().zip(areas).map(area).collect();
+    let total: f64 = areas.iter().map(|(_, area)| area).sum();
+    let points = areas.iter();
+    points
+        .map(|&(node, area)| Point::at_node(node, area, area / total))
+        .collect()
 }
 
 fn renumbered(face: &Face, number: &[u32]) -> Face {

@@ -142,13 +142,15 @@ impl Driver {
         }
         let factor = self.map.contact;
         let factors = [self.map.displacement.x * factor, self.map.rate.x * factor];
-        let solved = self.interface.solve(
-            &self.candidate_data,
-            (&self.compliance.matrix, self.compliance.version),
-            factors,
-        );
+        let compliance = self
+            .with_weak
+            .of(&self.weak, system, &self.compliance, factors);
+        let solved = self
+            .interface
+            .solve(&self.candidate_data, compliance, factors);
         if let Err(failure) = solved {
-            self.failed = Some(self.problem(factors));
+            let matrix = compliance.0.to_vec();
+            self.failed = Some(self.problem(matrix, factors));
             return Err(self.interface_error(failure, &self.candidates));
         }
         if let Some(candidate) = self.interface.circled {
@@ -174,12 +176,12 @@ impl Driver {
     /// Contact, place in it and mesh node of a contact point.
     fn name(&self, point: u32) -> String {
         let (contact, place) = self.system.point(point as usize);
-        let node = self.system.mesh_node[contact.points[place].node as usize];
+        let node = self.system.mesh_node[contact.points[place].node() as usize];
         format!("contact `{}`, point {place}, node {node}", contact.name)
     }
 
     /// The interface problem as it stands.
-    fn problem(&self, factors: [f64; 2]) -> InterfaceProblem {
+    fn problem(&self, compliance: Vec<f64>, factors: [f64; 2]) -> InterfaceProblem {
         InterfaceProblem {
             step: self.state.step + 1,
             names: self
@@ -188,7 +190,7 @@ impl Driver {
                 .map(|&point| self.name(point))
                 .collect(),
             candidates: self.candidate_data.clone(),
-            compliance: self.compliance.matrix.clone(),
+            compliance,
             factors,
         }
     }
@@ -218,6 +220,8 @@ impl Driver {
     pub(super) fn add_missed(&mut self) -> bool {
         let before = self.candidates.len();
         let motion = &self.state.motion;
+        self.weak
+            .take(&self.system, &self.candidates, &self.interface.forces, 1.0);
         // the contact acceleration enters no row that decides on a contact
         let xc = [&self.vectors.x[..], &self.vectors.contact_acceleration[..]];
         for point in 0..self.system.points() {
@@ -235,10 +239,11 @@ impl Driver {
             }
             let gap = captured + on_row(&self.rows, point, &self.ahead[point], motion, xc);
             let rate = on_row(&self.rows, point, &self.map.rate, motion, xc);
+            let pull = self.weak.pull(&self.system, point);
             let end = End {
-                gap_released: gap,
-                gap,
-                rate,
+                gap_released: gap - pull,
+                gap: gap - pull,
+                rate: rate - pull,
                 force: 0.0,
             };
             let local = Local {

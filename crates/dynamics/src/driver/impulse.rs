@@ -10,12 +10,15 @@ use crate::interface::{Candidate, Failure, Interface};
 use crate::operator::Operators;
 use crate::system::System;
 
+use super::weak::{WeakForms, WithWeak};
+
 /// Solver for `0 <= q + D ΔI ⟂ I + ΔI >= 0`, D = N M⁻¹ Nᵀ, with q a quantity of the points and I what acts on them
 /// already. Then q + D ΔI is the quantity closest to the one without any I, in the norm of the mass, among those that are
 /// not negative.
 pub(super) struct Impulses {
     operators: Operators,
     compliance: Compliance,
+    with_weak: WithWeak,
     interface: Interface,
     candidates: Vec<Candidate>,
     half: Vec<f64>,
@@ -32,6 +35,7 @@ impl Impulses {
         Ok(Impulses {
             operators: Operators::new(system, 1.0, 0.0, "mass matrix")?,
             compliance: Compliance::new(system.points()),
+            with_weak: WithWeak::default(),
             interface: Interface::default(),
             candidates: Vec::new(),
             half: vec![0.0; system.unknowns()],
@@ -41,10 +45,12 @@ impl Impulses {
         })
     }
 
-    /// Solves for the points (ascending). `values`: q of each; infinite where I + ΔI must vanish. `present`: I of each.
+    /// Solves for the points (ascending). `weak`: weak forms, and impulse over force. `values`: q of each; infinite where
+    /// I + ΔI must vanish. `present`: I of each.
     pub(super) fn solve(
         &mut self,
         system: &System,
+        weak: (&WeakForms, f64),
         rows: &Rows,
         points: &[u32],
         values: &[f64],
@@ -53,7 +59,10 @@ impl Impulses {
         let n = points.len();
         self.compliance
             .update(points, rows, &system.fixed, &mut self.operators);
-        let d = &self.compliance.matrix;
+        let compliance = self
+            .with_weak
+            .of(weak.0, system, &self.compliance, [weak.1; 2]);
+        let d = compliance.0;
         self.candidates.clear();
         for (i, value) in values.iter().enumerate() {
             let of_present: f64 = d[i * n..(i + 1) * n]
@@ -74,7 +83,6 @@ impl Impulses {
                 },
             });
         }
-        let compliance = (&d[..], self.compliance.version);
         self.interface
             .solve(&self.candidates, compliance, [1.0, 0.0])?;
         self.added.clear();

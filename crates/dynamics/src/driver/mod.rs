@@ -8,6 +8,7 @@ mod contacts;
 mod impulse;
 mod predictor;
 mod projection;
+mod weak;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -32,6 +33,7 @@ use contacts::on_row;
 use impulse::Impulses;
 use predictor::Predictor;
 use projection::Projected;
+use weak::{WeakForms, WithWeak};
 
 /// Takes steps.
 pub struct Driver {
@@ -40,6 +42,9 @@ pub struct Driver {
     identity: Option<EnergyIdentity>,
     operators: Operators,
     compliance: Compliance,
+    weak: WeakForms,
+    /// D with the compliance of the weak forms.
+    with_weak: WithWeak,
     interface: Interface,
     forces: Forces,
     /// Solver of the stages with the mass alone; none where there is no such stage.
@@ -149,6 +154,8 @@ impl Driver {
             identity,
             operators,
             compliance: Compliance::new(points),
+            weak: WeakForms::new(&system)?,
+            with_weak: WithWeak::default(),
             interface: Interface::default(),
             forces: Forces {
                 scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),

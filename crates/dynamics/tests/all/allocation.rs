@@ -10,7 +10,7 @@ use std::cell::Cell;
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -68,6 +68,7 @@ fn resting_cube(scheme: Scheme, law: Law, dt: f64) -> Driver {
             }),
             law,
             sliding: Sliding::Finite,
+            integration: Integration::Node,
             massless: false,
         }],
         scheme,
