@@ -35,6 +35,7 @@ mod interface_problems;
 mod invariance;
 pub mod long_run;
 mod order;
+mod quadrature;
 mod restitution;
 mod resume;
 mod sdnl111;
@@ -91,6 +92,7 @@ registry! {
     invariance
     long_run
     order
+    quadrature
     restitution
     resume
     sdnl111
