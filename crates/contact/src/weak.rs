@@ -93,6 +93,11 @@ impl Weak {
         (own - projected) / self.r
     }
 
+    /// 1 / (w r) of a point: its compliance without any multiplier.
+    pub fn own_compliance(&self, point: usize) -> f64 {
+        self.points[point].1 / self.r
+    }
+
     /// Writes the multiplier p = M⁻¹ Φᵀ P at the nodes, in Pa. `forces`: some points and their forces in N; the others
     /// have none.
     pub fn multiplier(&self, forces: impl Iterator<Item = (usize, f64)>, p: &mut Vec<f64>) {

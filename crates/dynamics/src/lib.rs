@@ -5,6 +5,7 @@
 //! printing.
 
 mod compliance;
+mod contacts;
 mod driver;
 mod error;
 mod interface;

@@ -142,9 +142,9 @@ impl Driver {
         }
         let factor = self.map.contact;
         let factors = [self.map.displacement.x * factor, self.map.rate.x * factor];
-        let compliance = self
-            .with_weak
-            .of(&self.weak, system, &self.compliance, factors);
+        let compliance =
+            self.with_weak
+                .of(&self.weak, system, (&self.compliance, &self.rows), factors);
         let solved = self
             .interface
             .solve(&self.candidate_data, compliance, factors);

@@ -61,7 +61,7 @@ impl Impulses {
             .update(points, rows, &system.fixed, &mut self.operators);
         let compliance = self
             .with_weak
-            .of(weak.0, system, &self.compliance, [weak.1; 2]);
+            .of(weak.0, system, (&self.compliance, rows), [weak.1; 2]);
         let d = compliance.0;
         self.candidates.clear();
         for (i, value) in values.iter().enumerate() {

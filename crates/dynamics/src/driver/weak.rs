@@ -1,23 +1,28 @@
 //! The weak forms of the contacts of a step: what they add to the compliance, and their multipliers.
 
 use carom_contact::law::Level;
-use carom_contact::{Integration, Weak};
+use carom_contact::{Integration, Rows, Weak};
 
 use crate::compliance::Compliance;
 use crate::error::Error;
 use crate::system::System;
 
+/// Part of 1 / (w r) that a Gauss point beside a held node is softer by. No force on such a node moves anything, so that the
+/// multiplier there is redundant: of all that give the same motion this takes the least, to eight digits.
+const SOFTENING: f64 = 1e-8;
+
 /// The weak form of each contact that has one.
 #[derive(Default)]
 pub(super) struct WeakForms {
     forms: Vec<Option<Form>>,
+    /// Scratch.
     marks: Vec<[bool; 2]>,
 }
 
 struct Form {
     weak: Weak,
     level: Level,
-    /// p at the nodes, from the last forces given, Pa; scratch behind.
+    /// p at the nodes for the forces taken last, Pa; scratch behind.
     multiplier: Vec<f64>,
 }
 
@@ -103,7 +108,7 @@ impl WithWeak {
         &'a mut self,
         weak: &WeakForms,
         system: &System,
-        compliance: &'a Compliance,
+        (compliance, rows): (&'a Compliance, &Rows),
         factors: [f64; 2],
     ) -> (&'a [f64], u64) {
         if weak.none() {
@@ -116,7 +121,13 @@ impl WithWeak {
             self.matrix.clone_from(&compliance.matrix);
             for (contact, form) in weak.forms.iter().enumerate() {
                 if let Some(form) = form {
-                    self.add(contact, form, system, &compliance.candidates, factors);
+                    self.add(
+                        contact,
+                        form,
+                        (system, rows),
+                        &compliance.candidates,
+                        factors,
+                    );
                 }
             }
         }
@@ -127,7 +138,7 @@ impl WithWeak {
         &mut self,
         contact: usize,
         form: &Form,
-        system: &System,
+        (system, rows): (&System, &Rows),
         candidates: &[u32],
         factors: [f64; 2],
     ) {
@@ -147,6 +158,20 @@ impl WithWeak {
                     self.matrix[j * n + i] += entry;
                 }
             }
+            if beside_held(system, rows, candidates[i] as usize) {
+                let own = form.weak.own_compliance(place(i)) / factor;
+                self.matrix[i * n + i] += SOFTENING * own;
+            }
         }
     }
+}
+
+/// Whether a point is carried by a node that supports hold along its normal.
+fn beside_held(system: &System, rows: &Rows, point: usize) -> bool {
+    let (contact, place) = system.point(point);
+    let (dofs, _) = rows.row(point);
+    contact.points[place].carriers().any(|(node, _)| {
+        let mut of_node = dofs.iter().filter(|dof| **dof / system.dim as u32 == node);
+        of_node.all(|dof| system.fixed[*dof as usize])
+    })
 }

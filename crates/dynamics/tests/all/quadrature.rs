@@ -6,7 +6,7 @@ use carom_contact::law::{
 };
 use carom_contact::{Integration, Law, Plane, Sliding, Weak};
 use carom_dynamics::{
-    Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Scheme, System, scheme,
+    Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, scheme,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface, generate};
@@ -151,6 +151,21 @@ fn a_block_pressed_flat_has_the_same_force_whatever_the_integration() {
 }
 
 #[test]
+fn contact_nodes_without_mass_carry_a_multiplier_too() {
+    let scheme = Scheme::Newmark(scheme::Newmark {
+        beta: 0.25,
+        gamma: 0.5,
+    });
+    let bare = |integration| {
+        let mut model = square(scheme, DISPLACEMENT, [0.0, 1.0, 0.0]);
+        model.contacts[0].massless = true;
+        driver(model, integration)
+    };
+    let flat = difference(bare(Integration::Node), bare(weak(&DISPLACEMENT)), 40);
+    assert!(flat < 1e-9, "{flat:e}");
+}
+
+#[test]
 fn uniform_signs_make_the_force_independent_of_r() {
     for simplices in [false, true] {
         for (law, r) in [(DISPLACEMENT, R), (VELOCITY, R_V)] {
@@ -276,4 +291,25 @@ fn laws_without_a_weak_form_and_an_r_that_is_none_are_refused() {
     assert!(refused(DISPLACEMENT, Integration::Points));
     assert!(refused(DISPLACEMENT, Integration::Weak { r: 0.0 }));
     assert!(refused(DISPLACEMENT, Integration::Weak { r: f64::NAN }));
+}
+
+#[test]
+fn a_held_node_of_the_surface_makes_its_multiplier_redundant_and_no_step_fail() {
+    for (scheme, law) in pairs() {
+        let mut model = square(scheme, law, [0.0, 1.0, 0.0]);
+        let nodes = model.mesh.group_nodes(&model.mesh.groups["a.left"]);
+        let fix = [false, true, false];
+        model.supports.push(Support { nodes, fix });
+        let mut held = driver(model, weak(&law));
+        for _ in 0..40 {
+            held.step().unwrap();
+        }
+        let (ledger, record) = (&held.state().ledger, &held.state().records.contacts[0]);
+        assert!(record.peak_force > 0.0, "it struck");
+        let momentum = ledger.largest_momentum_residual / ledger.largest_momentum;
+        assert!(
+            momentum < 1e-11,
+            "{scheme:?} {law:?}: momentum {momentum:e}"
+        );
+    }
 }
