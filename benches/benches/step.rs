@@ -113,6 +113,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
         }),
         sliding: Sliding::Finite,
         massless: false,
+        integration: carom_contact::Integration::Node,
     };
     Ok(Model {
         mesh,
@@ -122,6 +123,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
         contacts: vec![ground],
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt,
+        adaptive: None,
     })
 }
 

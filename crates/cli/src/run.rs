@@ -117,6 +117,11 @@ fn print(summary: &Summary, folder: &Path) {
             (None, _) => ", never closed".to_string(),
         };
         println!("    impulse {}{times}", quantity(contact.impulse, "N s"));
+        if let Some(mixed) = contact.mixed_supports {
+            println!(
+                "    weak form: at most {mixed} nodes with partly closed supports, where the pressure depends on r"
+            );
+        }
     }
     if let Some(exact) = &summary.exact {
         let percent = |error: Option<f64>| {

@@ -131,6 +131,22 @@ pub enum Error {
         /// Why.
         cause: &'static str,
     },
+    /// A contact whose law cannot hold at the Gauss points in the way asked for.
+    #[error("contact '{contact}': {cause}")]
+    Integration {
+        /// Name of the contact.
+        contact: String,
+        /// Why.
+        cause: &'static str,
+    },
+    /// A secondary surface without area.
+    #[error("contact '{contact}': the matrix of the multiplier on the secondary surface: {cause}")]
+    WeakForm {
+        /// Name of the contact.
+        contact: String,
+        /// Cause.
+        cause: carom_algebra::Error,
+    },
     /// A law in the rate on a scheme whose contact forces are those that keep the displacement.
     #[error(
         "contact '{contact}': in the scheme {scheme} contact forces keep the displacement at the end of the step, so only the displacement law can hold"

@@ -5,6 +5,7 @@
 //! printing.
 
 mod compliance;
+mod contacts;
 mod control;
 mod driver;
 mod error;

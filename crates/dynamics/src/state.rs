@@ -124,6 +124,9 @@ pub struct ContactReport {
     pub status_changes: usize,
     /// Σ |P ġ₊| dt, J: zero when forces act on closed points only.
     pub persistency_defect: f64,
+    /// Nodes of the secondary surface whose supports are partly closed: there the pressure of the weak form depends on r.
+    /// Zero with another integration.
+    pub mixed: usize,
 }
 
 /// What a step did.

@@ -7,9 +7,10 @@ use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_bodies::{Body, BodySpec, Kinematics, MassKind};
 use carom_contact::law::Level;
-use carom_contact::{Contact, Law, Plane, Point, Sliding, Target};
-use carom_mesh::{ElementId, Face, Mesh, Surface};
+use carom_contact::{Contact, Integration, Law, Plane, Sliding};
+use carom_mesh::{Face, Mesh, Surface};
 
+use crate::contacts::{numbered, renumbered, sides};
 use crate::massless::redistribute;
 use crate::{Adaptive, Error, Scheme};
 
@@ -69,6 +70,8 @@ pub struct ModelContact {
     pub law: Law,
     /// Extent of the sliding.
     pub sliding: Sliding,
+    /// Where the law holds.
+    pub integration: Integration,
     /// Whether the nodes of both surfaces give their mass to the other nodes of their bodies.
     pub massless: bool,
 }
@@ -214,7 +217,7 @@ impl System {
         let contacts: Vec<Contact> = model
             .contacts
             .iter()
-            .map(|contact| numbered(contact, &model, &number))
+            .map(|contact| numbered(contact, &model, &number, &x))
             .collect();
         let mut first_point = vec![0];
         for contact in &contacts {
@@ -263,6 +266,7 @@ impl System {
         };
         system.check_scheme(&model.bodies)?;
         system.check_massless(&model.contacts)?;
+        system.check_integration()?;
         Ok(Arc::new(system))
     }
 
@@ -354,9 +358,14 @@ impl System {
         self.first_point[self.contacts.len()]
     }
 
+    /// Index of the contact of a contact point.
+    pub fn contact_of(&self, point: usize) -> usize {
+        self.first_point.partition_point(|&first| first <= point) - 1
+    }
+
     /// The contact and the place in it of a contact point.
     pub fn point(&self, point: usize) -> (&Contact, usize) {
-        let contact = self.first_point.partition_point(|&first| first <= point) - 1;
+        let contact = self.contact_of(point);
         (&self.contacts[contact], point - self.first_point[contact])
     }
 
@@ -492,71 +501,4 @@ fn initial(
         }
     }
     (u, v)
-}
-
-fn owner(model: &Model, cell: ElementId) -> Option<usize> {
-    model
-        .bodies
-        .iter()
-        .position(|body| body.spec.cells.contains(&cell))
-}
-
-fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usize>) {
-    let body = |surface: &Surface| {
-        surface
-            .faces
-            .first()
-            .and_then(|face| owner(model, face.parent))
-    };
-    let primary = match &contact.primary {
-        ModelTarget::Surface(surface) => body(surface),
-        ModelTarget::Plane(_) => None,
-    };
-    (body(&contact.secondary).unwrap_or(0), primary)
-}
-
-fn numbered(contact: &ModelContact, model: &Model, number: &[u32]) -> Contact {
-    let surface = &contact.secondary;
-    let kinematics = surface
-        .faces
-        .first()
-        .and_then(|face| owner(model, face.parent));
-    let kinematics = kinematics.map(|body| model.bodies[body].spec.kinematics);
-    let areas = surface.node_areas(&model.mesh);
-    let area = |(&node, area): (&u32, f64)| {
-        let factor = kinematics.map_or(1.0, |k| k.surface_factor(&model.mesh.nodes[node as usize]));
-        (number[node as usize], area * factor)
-    };
-    let areas: Vec<(u32, f64)> = surface.nodes.iter().zip(areas).map(area).collect();
-    let total: f64 = areas.iter().map(|(_, area)| area).sum();
-    let points = areas.iter().map(|&(node, area)| Point {
-        node,
-        area,
-        share: area / total,
-    });
-    let target = match &contact.primary {
-        ModelTarget::Plane(plane) => Target::Plane(*plane),
-        ModelTarget::Surface(surface) => Target::Surface(
-            surface
-                .faces
-                .iter()
-                .map(|face| renumbered(face, number))
-                .collect(),
-        ),
-    };
-    Contact {
-        name: contact.name.clone(),
-        law: contact.law,
-        sliding: contact.sliding,
-        points: points.collect(),
-        target,
-    }
-}
-
-fn renumbered(face: &Face, number: &[u32]) -> Face {
-    let mut face = *face;
-    for k in 0..face.corners().len() {
-        face.nodes[k] = number[face.nodes[k] as usize];
-    }
-    face
 }

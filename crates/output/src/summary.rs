@@ -161,6 +161,9 @@ pub struct Contact {
     pub max_penetration: f64,
     /// Persistency defect: Σ |P · gap rate| dt over the steps, J.
     pub persistency_defect: f64,
+    /// Most nodes of the secondary surface in a step whose supports are partly closed: the pressure of the weak form
+    /// depends on r there. `None` with another integration.
+    pub mixed_supports: Option<u64>,
     /// Impacts from closing to release.
     pub impacts: usize,
     /// Restitution of the last complete impact, from the mean velocities (momentum / mass).

@@ -9,7 +9,7 @@
 //! the energy: 1e-11 m g h, as for every run.
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
-use carom_contact::{Plane, Sliding};
+use carom_contact::{Integration, Plane, Sliding};
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, System, march};
 use carom_exact::{Bar, Impact};
 use carom_materials::Elastic;
@@ -122,6 +122,7 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
             }),
             law: HALF,
             sliding: Sliding::Small,
+            integration: Integration::Node,
             massless: false,
         }],
         scheme: theta(0.5),

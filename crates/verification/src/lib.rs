@@ -37,6 +37,7 @@ mod interface_problems;
 mod invariance;
 pub mod long_run;
 mod order;
+mod quadrature;
 mod rejections;
 mod restitution;
 mod resume;
@@ -96,6 +97,7 @@ registry! {
     invariance
     long_run
     order
+    quadrature
     rejections
     restitution
     resume

@@ -9,7 +9,7 @@
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::Capture;
-use carom_contact::{Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::{
     Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, march,
 };
@@ -128,6 +128,7 @@ pub fn bounces(
             }),
             law,
             sliding: Sliding::Small,
+            integration: Integration::Node,
             massless: false,
         }],
         scheme,

@@ -162,9 +162,9 @@ pub(super) fn sides(
 
 /// One side of a contact: Young's modulus (Pa), impedance per area rho c (Pa s/m), element size normal to it (m).
 pub(super) struct Side {
-    young: f64,
-    impedance: f64,
-    size: f64,
+    pub(super) young: f64,
+    pub(super) impedance: f64,
+    pub(super) size: f64,
 }
 
 /// The side with the thickest cells and the material of the first.

@@ -237,6 +237,9 @@ impl Builder<'_> {
             Error::MasslessContact { contact, .. } => {
                 Problem::new(format!("contact.{contact}.nodes"), error.to_string())
             }
+            Error::Integration { contact, .. } | Error::WeakForm { contact, .. } => {
+                Problem::new(format!("contact.{contact}.integration"), error.to_string())
+            }
             Error::Massless { body, .. } => {
                 Problem::new(format!("body.{body}.mass"), error.to_string())
             }

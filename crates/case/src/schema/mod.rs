@@ -24,8 +24,8 @@ pub use body::{
 };
 pub use contact::{
     Adhesion, Capture, ComplianceLaw, Contact, CurvePoint, DampedLaw, DisplacementLaw, Integration,
-    Law, Nodes, NormalVector, Obstacle, PenaltyLaw, Plane, RestitutionLaw, Sign, Sliding, StopLaw,
-    VelocityLaw,
+    IntegrationName, IntegrationWith, Law, Nodes, NormalVector, Obstacle, PenaltyLaw, Plane,
+    RestitutionLaw, Sign, Sliding, StopLaw, VelocityLaw,
 };
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};

@@ -5,6 +5,7 @@ use std::time::Instant;
 use carom_contact::law::Status;
 
 use super::Driver;
+use super::weak::WithWeak;
 use crate::compliance::Compliance;
 use crate::control::{Adaptive, Closing, Control, Event};
 use crate::error::Error;
@@ -32,6 +33,7 @@ pub(super) struct Sized {
     identity: Option<EnergyIdentity>,
     operators: Operators,
     compliance: Compliance,
+    with_weak: WithWeak,
     interface: Interface,
 }
 
@@ -192,6 +194,7 @@ impl Driver {
         std::mem::swap(&mut self.identity, &mut other.identity);
         std::mem::swap(&mut self.operators, &mut other.operators);
         std::mem::swap(&mut self.compliance, &mut other.compliance);
+        std::mem::swap(&mut self.with_weak, &mut other.with_weak);
         std::mem::swap(&mut self.interface, &mut other.interface);
         if self.kept.len() == KEPT {
             self.kept.remove(0);
@@ -214,6 +217,7 @@ impl Driver {
             identity: scheme.energy_identity(dt),
             operators,
             compliance: Compliance::new(self.system.points()),
+            with_weak: WithWeak::default(),
             interface: Interface::default(),
         })
     }
@@ -239,7 +243,7 @@ mod tests {
     #[test]
     fn the_first_root_of_a_parabola_is_found() {
         assert_eq!(root(1.0, -2.0, 0.0), 0.5);
-        assert!((root(0.02, -0.3, 0.1) - 0.1 * (1.5 - (2.25f64 - 2.0).sqrt())).abs() < 1e-15);
+        assert!((root(0.02, -0.3, 0.1) - (0.3 - 0.082f64.sqrt()) / 0.2).abs() < 1e-15);
         assert!((root(1.0, 1.0, -6.0) - 0.5).abs() < 1e-15);
     }
 }

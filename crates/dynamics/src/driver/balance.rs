@@ -165,7 +165,7 @@ impl Driver {
         let system = Arc::clone(&self.system);
         self.next.records.follow(&self.state.records);
         for k in 0..system.contacts.len() {
-            let report = contact_report(
+            let mut report = contact_report(
                 &system,
                 k,
                 &self.rows,
@@ -173,6 +173,8 @@ impl Driver {
                 &self.next.interface,
                 self.dt,
             );
+            let forces = &self.next.interface.force[points(&system, k)];
+            report.mixed = self.weak.mixed(k, forces);
             let weights = self.work_weights();
             let interface = &self.next.interface;
             let step = Step {

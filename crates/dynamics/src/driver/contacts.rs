@@ -148,12 +148,19 @@ impl Driver {
                 [self.map.gap.x * factor, self.map.rate.x * factor],
             ),
         };
-        let compliance = (matrix, self.compliance.version);
+        let compliance = (
+            matrix,
+            &self.compliance.candidates[..],
+            self.compliance.version,
+        );
+        let compliance = self
+            .with_weak
+            .of(&self.weak, system, (compliance, &self.rows), factors);
         let solved = self
             .interface
             .solve(&self.candidate_data, compliance, factors);
         if let Err(failure) = solved {
-            let matrix = matrix.to_vec();
+            let matrix = compliance.0.to_vec();
             self.failed = Some(self.problem(matrix, factors));
             return Err(self.interface_error(failure, &self.candidates));
         }
@@ -200,7 +207,7 @@ impl Driver {
     /// Contact, place in it and mesh node of a contact point.
     fn name(&self, point: u32) -> String {
         let (contact, place) = self.system.point(point as usize);
-        let node = self.system.mesh_node[contact.points[place].node as usize];
+        let node = self.system.mesh_node[contact.points[place].node() as usize];
         format!("contact `{}`, point {place}, node {node}", contact.name)
     }
 
@@ -244,6 +251,8 @@ impl Driver {
     pub(super) fn add_missed(&mut self) -> bool {
         let before = self.candidates.len();
         let motion = &self.state.motion;
+        self.weak
+            .take(&self.system, &self.candidates, &self.interface.forces, 1.0);
         let xc = [&self.vectors.x[..], &self.vectors.contact_acceleration[..]];
         for point in 0..self.system.points() {
             let captured = self.rows.gap(point);
@@ -261,10 +270,11 @@ impl Driver {
             let ahead = self.map.gap.since(&self.captured[point]);
             let gap = captured + on_row(&self.rows, point, &ahead, motion, xc);
             let rate = on_row(&self.rows, point, &self.map.rate, motion, xc);
+            let pull = self.weak.pull(&self.system, point);
             let end = End {
-                gap_released: gap,
-                gap,
-                rate,
+                gap_released: gap - pull,
+                gap: gap - pull,
+                rate: rate - pull,
                 force: 0.0,
             };
             let local = Local {

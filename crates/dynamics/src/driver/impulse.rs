@@ -4,6 +4,7 @@
 use carom_contact::law::{Displacement, Local, Status};
 use carom_contact::{Law, Rows};
 
+use super::weak::{WeakForms, WithWeak};
 use crate::compliance::Compliance;
 use crate::error::Error;
 use crate::interface::{Candidate, Failure, Interface};
@@ -19,6 +20,7 @@ const MOST_SWEEPS: usize = 1000;
 pub(super) struct Impulses {
     operators: Operators,
     compliance: Compliance,
+    with_weak: WithWeak,
     interface: Interface,
     candidates: Vec<Candidate>,
     half: Vec<f64>,
@@ -36,6 +38,7 @@ impl Impulses {
         Ok(Impulses {
             operators: Operators::new(system, 1.0, 0.0, "mass matrix")?,
             compliance: Compliance::new(system.points()),
+            with_weak: WithWeak::default(),
             interface: Interface::default(),
             candidates: Vec::new(),
             half: vec![0.0; system.unknowns()],
@@ -104,10 +107,12 @@ impl Impulses {
         self.spread(points);
     }
 
-    /// Solves for the points (ascending). `values`: q of each; infinite where I + ΔI must vanish. `present`: I of each.
+    /// Solves for the points (ascending). `weak`: weak forms, and impulse over force. `values`: q of each; infinite where
+    /// I + ΔI must vanish. `present`: I of each.
     pub(super) fn solve(
         &mut self,
         system: &System,
+        weak: (&WeakForms, f64),
         rows: &Rows,
         points: &[u32],
         values: &[f64],
@@ -116,7 +121,13 @@ impl Impulses {
         let n = points.len();
         self.compliance
             .update(points, rows, &system.fixed, &mut self.operators);
-        let d = &self.compliance.matrix;
+        let of = (
+            &self.compliance.matrix[..],
+            &self.compliance.candidates[..],
+            self.compliance.version,
+        );
+        let compliance = self.with_weak.of(weak.0, system, (of, rows), [weak.1; 2]);
+        let d = compliance.0;
         self.candidates.clear();
         for (i, value) in values.iter().enumerate() {
             let of_present: f64 = d[i * n..(i + 1) * n]
@@ -137,7 +148,6 @@ impl Impulses {
                 },
             });
         }
-        let compliance = (&d[..], self.compliance.version);
         self.interface
             .solve(&self.candidates, compliance, [1.0, 0.0])?;
         self.added.clear();

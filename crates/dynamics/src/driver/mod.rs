@@ -10,6 +10,7 @@ mod impulse;
 mod predictor;
 mod projection;
 mod restoring;
+mod weak;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -37,6 +38,7 @@ use impulse::Impulses;
 use predictor::Predictor;
 use projection::Projected;
 use restoring::Restoring;
+use weak::{WeakForms, WithWeak};
 
 /// Takes steps.
 pub struct Driver {
@@ -47,6 +49,9 @@ pub struct Driver {
     identity: Option<EnergyIdentity>,
     operators: Operators,
     compliance: Compliance,
+    weak: WeakForms,
+    /// D with the compliance of the weak forms.
+    with_weak: WithWeak,
     interface: Interface,
     /// The same for other step sizes, the last used last.
     kept: Vec<Sized>,
@@ -170,6 +175,8 @@ impl Driver {
             factorisations: operators.factored(),
             operators,
             compliance: Compliance::new(points),
+            weak: WeakForms::new(&system)?,
+            with_weak: WithWeak::default(),
             interface: Interface::default(),
             kept: Vec::new(),
             forced: None,

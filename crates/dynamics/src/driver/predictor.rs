@@ -77,7 +77,11 @@ impl Driver {
                 0 => 0.0,
                 _ => rows.product(at, &stage.change),
             };
-            if predictor.gaps[at] + moved < 0.0
+            let pull = match before {
+                0 => 0.0,
+                _ => self.weak.pull(&self.system, at),
+            };
+            if predictor.gaps[at] + moved - pull < 0.0
                 && predictor.points[..before].binary_search(&point).is_err()
             {
                 predictor.points.push(point);
@@ -101,8 +105,13 @@ impl Driver {
         predictor.present.clear();
         predictor.present.resize(predictor.points.len(), 0.0);
         let (values, present) = (&predictor.values, &predictor.present);
-        let solved = stage.solve(&self.system, &self.rows, &predictor.points, values, present);
+        let dt = self.system.dt;
+        let weak = (&self.weak, 0.5 * dt * dt);
+        let points = &predictor.points;
+        let solved = stage.solve(&self.system, weak, &self.rows, points, values, present);
         predictor.forces.clone_from(&stage.added);
+        self.weak
+            .take(&self.system, points, &predictor.forces, 2.0 / (dt * dt));
         solved.map_err(|failure| self.interface_error(failure, &self.predictor.points))
     }
 

@@ -213,7 +213,9 @@ impl Driver {
         let Some(stage) = &mut self.impulses else {
             return Ok(());
         };
-        let solved = stage.solve(&self.system, &self.rows, points, values, present);
+        // laws with projection have no weak form: the ratio of impulse and force enters nothing
+        let weak = (&self.weak, 1.0);
+        let solved = stage.solve(&self.system, weak, &self.rows, points, values, present);
         solved.map_err(|failure| self.interface_error(failure, &self.projected.points))
     }
 }

@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::Displacement;
-use carom_contact::{Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{
     Driver, Error, InterfaceProblem, Model, ModelBody, ModelContact, ModelTarget, Scheme, System,
@@ -23,6 +23,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         }),
         law: Law::Displacement(Displacement { projection: false }),
         sliding: Sliding::Small,
+        integration: Integration::Node,
         massless: false,
     };
     let model = Model {

@@ -6,4 +6,6 @@
 mod allocation;
 mod interface;
 mod momentum;
+mod quadrature;
 mod stability;
+mod weak_form;

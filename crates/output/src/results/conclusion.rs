@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_contact::Contact as Pair;
+use carom_contact::{Contact as Pair, Integration};
 use carom_dynamics::{ContactRecord, Costs, Ledger, System};
 
 use crate::results::exact;
@@ -232,6 +232,8 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 status_changes: record.status_changes,
                 max_penetration: record.penetration,
                 persistency_defect: record.persistency_defect(),
+                mixed_supports: matches!(contact.integration, Integration::Weak { .. })
+                    .then_some(record.mixed),
                 impacts: impacts().count() + usize::from(still_closed),
                 restitution: impacts()
                     .next_back()

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{Newmark, Theta};
 use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System};
 use carom_exact::{Bar, Impact};
@@ -67,6 +67,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         primary: ModelTarget::Surface(surface("target.left", &bodies[1])),
         law: velocity_law(),
         sliding: Sliding::Small,
+        integration: Integration::Node,
         massless: false,
     }];
     let model = Model {
@@ -128,6 +129,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         }),
         law: Law::Displacement(Displacement::default()),
         sliding: Sliding::Small,
+        integration: Integration::Node,
         massless: false,
     };
     let model = Model {
