@@ -167,6 +167,58 @@ pub enum Error {
         /// Name of the scheme.
         scheme: &'static str,
     },
+    /// A contact whose sides are in different zones.
+    #[error(
+        "contact '{contact}': its two sides are in the zones '{one}' and '{other}'; they must be in the same"
+    )]
+    AcrossZones {
+        /// Name of the contact.
+        contact: String,
+        /// Zone of the secondary side.
+        one: String,
+        /// Zone of the primary side.
+        other: String,
+    },
+    /// A zone with a scheme that no link takes.
+    #[error(
+        "zone '{zone}': links take the schemes theta, newmark and central-difference, not {scheme}"
+    )]
+    LinkScheme {
+        /// Name of the zone.
+        zone: String,
+        /// Name of the scheme.
+        scheme: &'static str,
+    },
+    /// Numbers of inner steps that do not go together.
+    #[error("zone '{zone}' takes {found} steps to an outer one: {accepted}")]
+    Substeps {
+        /// Name of the zone.
+        zone: String,
+        /// Steps given.
+        found: u32,
+        /// What would do.
+        accepted: &'static str,
+    },
+    /// Rows of links that say the same twice.
+    #[error("the {rows} rows of the links are redundant: {cause}")]
+    Redundant {
+        /// Number of rows.
+        rows: usize,
+        /// Cause.
+        cause: carom_algebra::Error,
+    },
+    /// Multipliers of links that were not found.
+    #[error(
+        "step {step}: the zones still part by {defect:e} m/s along a link after {passes} passes"
+    )]
+    Link {
+        /// Number of the outer step.
+        step: u64,
+        /// Passes made.
+        passes: usize,
+        /// Largest defect of a row per sum of its coefficients, m/s.
+        defect: f64,
+    },
     /// A saved state that does not belong to this system.
     #[error("the saved state cannot be read: {cause}")]
     State {

@@ -91,6 +91,8 @@ pub struct Balance {
     pub work_loads: f64,
     /// Work of the contact forces, and of the impulses of a projection; minus the energy lost in impact.
     pub work_contact: f64,
+    /// Work of the links to other zones.
+    pub work_links: f64,
     /// Dissipation of the scheme.
     pub dissipation_scheme: f64,
     /// What the terms leave over: change of the three energies - works + dissipation.
@@ -101,6 +103,8 @@ pub struct Balance {
     pub impulse_loads: Resultant,
     /// Impulse of the contact forces: only obstacles leave one.
     pub impulse_contact: Resultant,
+    /// Impulse of the links to other zones.
+    pub impulse_links: Resultant,
     /// Impulse of the supports.
     pub impulse_supports: Resultant,
     /// Change of the momentum - impulses.
@@ -108,6 +112,27 @@ pub struct Balance {
 }
 
 impl Balance {
+    /// The balance of two systems together.
+    pub fn plus(&self, other: &Balance) -> Balance {
+        let sum = |one: &Resultant, other: &Resultant| one.combine(1.0, other, 1.0);
+        Balance {
+            kinetic: self.kinetic + other.kinetic,
+            strain: self.strain + other.strain,
+            scheme_energy: self.scheme_energy + other.scheme_energy,
+            work_loads: self.work_loads + other.work_loads,
+            work_contact: self.work_contact + other.work_contact,
+            work_links: self.work_links + other.work_links,
+            dissipation_scheme: self.dissipation_scheme + other.dissipation_scheme,
+            energy_residual: self.energy_residual + other.energy_residual,
+            momentum: sum(&self.momentum, &other.momentum),
+            impulse_loads: sum(&self.impulse_loads, &other.impulse_loads),
+            impulse_contact: sum(&self.impulse_contact, &other.impulse_contact),
+            impulse_links: sum(&self.impulse_links, &other.impulse_links),
+            impulse_supports: sum(&self.impulse_supports, &other.impulse_supports),
+            momentum_residual: sum(&self.momentum_residual, &other.momentum_residual),
+        }
+    }
+
     /// Kinetic and strain energy, J.
     pub fn energy(&self) -> f64 {
         self.kinetic + self.strain
@@ -131,14 +156,15 @@ pub struct Ledger {
     pub largest_momentum_residual: f64,
     work_loads: Sum,
     work_contact: Sum,
+    work_links: Sum,
     dissipation: Sum,
-    impulses: [[Sum; 6]; 4],
+    impulses: [[Sum; 6]; 5],
     forces: Forces,
 }
 
 /// Resultants of the forces of a step: loads, contacts, supports, supports against contact forces where these have an
-/// impulse of their own.
-pub(crate) type Forces = [Resultant; 4];
+/// impulse of their own; links.
+pub(crate) type Forces = [Resultant; 5];
 
 /// Energies of a state, J.
 #[derive(Clone, Copy, Debug)]
@@ -218,21 +244,22 @@ impl Ledger {
         }
     }
 
-    /// Adds a step of length `dt`: works on Δu, squares of the scheme's dissipation, resultants of the forces.
+    /// Adds a step of length `dt`: works on Δu of loads, contacts and links, squares of the scheme's dissipation, resultants of the forces.
     pub(crate) fn add(
         &mut self,
         (dt, identity, impulses): (f64, &EnergyIdentity, [&Impulse; 2]),
         energies: &Energies,
-        works: [f64; 2],
+        works: [f64; 3],
         squares: &Squares,
         forces: Forces,
     ) {
         self.work_loads.add(works[0]);
         self.work_contact.add(works[1]);
+        self.work_links.add(works[2]);
         self.dissipation.add(identity.dissipation(squares));
         for (k, force) in forces.iter().enumerate() {
             // contacts, and supports against them, in their own way
-            let impulse = impulses[k % 2];
+            let impulse = impulses[[0, 1, 0, 1, 0][k]];
             let before = self.forces[k];
             let force = force.combine(impulse.gain, &before, -impulse.carry);
             self.forces[k] = force;
@@ -278,6 +305,7 @@ impl Ledger {
             balance.impulse_loads,
             balance.impulse_contact,
             balance.impulse_supports,
+            balance.impulse_links,
         ];
         self.largest_momentum = impulses
             .iter()
@@ -297,6 +325,7 @@ impl Ledger {
             }
         };
         let (work_loads, work_contact) = (self.work_loads.get(), self.work_contact.get());
+        let work_links = self.work_links.get();
         let dissipation_scheme = self.dissipation.get();
         let scheme_energy = identity.stored(energies);
         let start = &self.initial;
@@ -305,10 +334,11 @@ impl Ledger {
             + (scheme_energy - start.scheme_energy);
         let [impulse_loads, impulse_contact] = [impulse(0), impulse(1)];
         let impulse_supports = impulse(2).combine(1.0, &impulse(3), 1.0);
-        let impulses =
-            impulse_loads
-                .combine(1.0, &impulse_contact, 1.0)
-                .combine(1.0, &impulse_supports, 1.0);
+        let impulse_links = impulse(4);
+        let impulses = impulse_loads
+            .combine(1.0, &impulse_contact, 1.0)
+            .combine(1.0, &impulse_supports, 1.0)
+            .combine(1.0, &impulse_links, 1.0);
         let change_of_momentum = energies.momentum.combine(1.0, &start.momentum, -1.0);
         Balance {
             kinetic: energies.kinetic,
@@ -317,7 +347,9 @@ impl Ledger {
             work_loads,
             work_contact,
             dissipation_scheme,
-            energy_residual: change - work_loads - work_contact + dissipation_scheme,
+            work_links,
+            impulse_links,
+            energy_residual: change - work_loads - work_contact - work_links + dissipation_scheme,
             momentum: energies.momentum,
             impulse_loads,
             impulse_contact,
@@ -348,7 +380,8 @@ pub(crate) fn reactions(
             let internal = map.force_fraction.map_or(*out, |fraction| {
                 (1.0 - fraction) * old.internal_force[i] + fraction * new.internal_force[i]
             });
-            inertia[i] + internal - system.load[i] - contact * new.contact_force[i]
+            let link = new.link_force.get(i).copied().unwrap_or(0.0);
+            inertia[i] + internal - system.load[i] - contact * new.contact_force[i] - link
         } else {
             0.0
         };

@@ -20,6 +20,7 @@ mod stability;
 mod state;
 mod step_map;
 mod system;
+mod zones;
 
 pub use control::{Adaptive, Closing, Control};
 pub use driver::{Costs, Driver, Phases};
@@ -32,3 +33,4 @@ pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use state::{ContactReport, InterfaceState, Motion, State, StepReport};
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::{Mass, Model, ModelBody, ModelContact, ModelTarget, Support, System};
+pub use zones::{LinkKind, ModelLink, ModelZone, Sample, Zoned, Zones, ZonesState};

@@ -42,6 +42,8 @@ pub struct Motion {
     pub internal_force: Vec<f64>,
     /// Contact force Nᵀ P at the end of the last step, N: after a projection the one in balance with the acceleration.
     pub contact_force: Vec<f64>,
+    /// Force of the links to other zones in the last step, N; empty without links.
+    pub link_force: Vec<f64>,
 }
 
 /// Arrays over all contact points.

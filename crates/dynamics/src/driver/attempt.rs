@@ -166,7 +166,7 @@ impl Driver {
     }
 
     /// Makes the attempt the state.
-    fn accept(&mut self, mut control: Control) {
+    pub(super) fn accept(&mut self, mut control: Control) {
         let energy = self.free_energy();
         control.take(
             self.system.adaptive.as_ref(),

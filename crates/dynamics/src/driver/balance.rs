@@ -68,6 +68,15 @@ impl Driver {
         let work_contact = weights.old * dot(travel, &old.contact_force)
             + weights.new * dot(travel, &new.contact_force);
         let work_loads = dot(travel, &system.load);
+        let work_links = match new.link_force.is_empty() {
+            true => 0.0,
+            false => {
+                let weights = &self.map.impulse;
+                weights.old * dot(travel, &old.link_force)
+                    + weights.new * dot(travel, &new.link_force)
+            }
+        };
+        let links = Resultant::of(&system, &new.link_force);
         self.next.ledger.clone_from(&self.state.ledger);
         if self.dt != self.state.control.taken {
             self.resize_energy();
@@ -79,9 +88,9 @@ impl Driver {
                 [&self.map.impulse, &self.map.contact_impulse],
             ),
             &energies,
-            [work_loads, work_contact],
+            [work_loads, work_contact, work_links],
             &squares,
-            [loads, contact, supports, held],
+            [loads, contact, supports, held, links],
         );
     }
 

@@ -7,6 +7,7 @@ mod attempt;
 mod balance;
 mod contacts;
 mod impulse;
+pub(crate) mod linked;
 mod predictor;
 mod projection;
 mod restoring;
@@ -35,6 +36,7 @@ use attempt::Sized;
 use balance::{energies, lagged, remembered};
 use contacts::{on_row, sums_compliances};
 use impulse::Impulses;
+use linked::Linked;
 use predictor::Predictor;
 use projection::Projected;
 use restoring::Restoring;
@@ -73,6 +75,10 @@ pub struct Driver {
     captured: Vec<Row>,
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,
+    /// Strain energy where the residual was taken, J.
+    predicted: f64,
+    /// Forces of links in the step; none without links.
+    linked: Option<Linked>,
     /// The interface problem that made the last step fail.
     failed: Option<InterfaceProblem>,
     state: State,
@@ -194,6 +200,8 @@ impl Driver {
             captured: Vec::new(),
             candidates: Vec::new(),
             candidate_data: Vec::new(),
+            predicted: 0.0,
+            linked: None,
             failed: None,
             state: empty_state(&system),
             next: empty_state(&system),
@@ -240,6 +248,7 @@ impl Driver {
     /// As [`Driver::new`].
     pub fn restart(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<(), Error> {
         self.state = empty_state(&self.system);
+        self.begin_linked();
         let held = |values: &[f64], fixed: &[bool], out: &mut [f64]| {
             for i in 0..out.len() {
                 out[i] = if fixed[i] { 0.0 } else { values[i] };
@@ -303,7 +312,8 @@ impl Driver {
         if system.scheme.get().keeps_acceleration() {
             let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
             for i in 0..system.unknowns() {
-                let balance = system.load[i] - motion.internal_force[i];
+                let link = motion.link_force.get(i).copied().unwrap_or(0.0);
+                let balance = system.load[i] - motion.internal_force[i] + link;
                 self.vectors.residual[i] = if system.fixed[i] { 0.0 } else { balance };
             }
             mass.begin(&self.vectors.residual, &mut self.vectors.half);
@@ -343,7 +353,8 @@ impl Driver {
         let supports = Resultant::of(&system, work);
         let loads = Resultant::of(&system, &system.load);
         let none = Resultant::default();
-        let forces = [loads, none, supports, none];
+        let link = Resultant::of(&system, &self.state.motion.link_force);
+        let forces = [loads, none, supports, none, link];
         self.state.ledger = Ledger::start(&energies, &identity, forces);
         let energy = self.state.ledger.balance.energy();
         self.state.control = Control::start(system.dt, energy);
@@ -363,13 +374,29 @@ impl Driver {
 
     /// Computes the next state from the state.
     fn attempt(&mut self) -> Result<(), Error> {
+        self.prepare()?;
+        self.complete()
+    }
+
+    /// The part of a step that the forces of links do not change: residual, pairing, candidates.
+    pub(crate) fn prepare(&mut self) -> Result<(), Error> {
         let begin = Instant::now();
         self.predict()?;
-        let predicted = self.residual();
+        self.predicted = self.residual();
+        self.renew_link();
         let forces = Instant::now();
         self.place(false);
         self.choose_candidates();
+        self.phases.forces += forces - begin;
+        self.phases.contact += forces.elapsed();
+        Ok(())
+    }
+
+    /// The rest of a step, with the forces of links as they stand.
+    pub(crate) fn complete(&mut self) -> Result<(), Error> {
+        let begin = Instant::now();
         let mut sweeps = Duration::ZERO;
+        self.add_link_force();
         loop {
             let begin = Instant::now();
             self.operators
@@ -386,16 +413,16 @@ impl Driver {
         }
         let solved = Instant::now();
         self.advance();
-        let strain = self.end_forces(predicted);
+        let strain = self.end_forces(self.predicted);
         let ended = Instant::now();
         self.balance(strain);
         self.project(strain)?;
         self.restore(strain);
         self.record();
         self.finite()?;
-        self.phases.forces += (forces - begin) + (ended - solved);
+        self.phases.forces += ended - solved;
         self.phases.sweeps += sweeps;
-        self.phases.contact += (solved - forces).saturating_sub(sweeps);
+        self.phases.contact += (solved - begin).saturating_sub(sweeps);
         self.phases.balance += ended.elapsed();
         Ok(())
     }
@@ -494,6 +521,7 @@ fn empty_state(system: &System) -> State {
             memory: Vec::new(),
             internal_force: zeros.clone(),
             contact_force: zeros,
+            link_force: Vec::new(),
         },
         interface: InterfaceState {
             force: vec![0.0; points],

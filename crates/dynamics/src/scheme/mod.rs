@@ -159,6 +159,16 @@ impl Scheme {
         }
     }
 
+    /// Weights of the multipliers of links at the start and the end of a step in the force that the momentum balance sees;
+    /// `None` of schemes that no link takes.
+    pub fn link_weights(&self) -> Option<[f64; 2]> {
+        match self {
+            Scheme::Theta(Theta { theta }) => Some([1.0 - theta, *theta]),
+            Scheme::Newmark(_) | Scheme::CentralDifference(_) => Some([0.0, 1.0]),
+            _ => None,
+        }
+    }
+
     /// One of each, with usual parameters: what the batteries run over.
     pub fn registered() -> Vec<Scheme> {
         vec![

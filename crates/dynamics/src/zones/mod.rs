@@ -1,0 +1,396 @@
+//! Zones: groups of bodies with their own scheme and step, which meet only in the multipliers of their links.
+//!
+//! A link gives rows `Σ C v = 0` between velocities of zones at the same instant, and its multipliers L act as `Cᵀ L`. The
+//! condensed problem of an outer step is `H ΔL = Σ C v`, with H the velocity that multipliers leave in the rows when
+//! nothing touches: made and factored once. Contact makes the answer of a zone nonlinear; the passes over the step with the
+//! same H end when the rows hold to rounding, in few passes where contacts are some elements away from the links.
+//!
+//! Sources: Gravouil, Combescure (2001); Prakash, Hjelmstad (2004); Ben Dhia et al. (2003), equations (11)-(12). The form
+//! for any pair of schemes with weights of the multipliers in time is this project's.
+
+mod model;
+mod start;
+
+use carom_algebra::dense::DenseCholesky;
+use serde::{Deserialize, Serialize};
+
+use crate::driver::Driver;
+use crate::driver::linked::{LinkRow, on};
+use crate::error::Error;
+use crate::ledger::Balance;
+use crate::state::{ContactReport, State};
+
+pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
+
+/// Defect of a row at which it holds, as a part of the largest velocity.
+const TOLERANCE: f64 = 1e-12;
+
+/// Most passes over an outer step.
+const MOST_PASSES: usize = 30;
+
+/// What the contacts of a zone did at one of its instants.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Zone.
+    pub zone: usize,
+    /// Time at the end of its step, s.
+    pub time: f64,
+    /// Size of its step, s.
+    pub dt: f64,
+    /// By contact of the zone.
+    pub contacts: Vec<ContactReport>,
+}
+
+/// State of all zones at an outer instant: what a run goes on from.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ZonesState {
+    /// Outer steps taken.
+    pub step: u64,
+    /// Time, s.
+    pub time: f64,
+    /// Multipliers of the rows, N per unit of the row.
+    pub multipliers: Vec<f64>,
+    /// By zone.
+    pub zones: Vec<State>,
+}
+
+/// The drivers of all zones, and the links between them.
+pub struct Zones {
+    drivers: Vec<Driver>,
+    /// Inner steps of each zone to an outer one.
+    substeps: Vec<u32>,
+    /// Contacts of the model by zone.
+    contacts: Vec<Vec<usize>>,
+    /// By zone, number of the row and its terms there.
+    rows: Vec<Vec<(u32, LinkRow)>>,
+    /// Σ |c| of each row.
+    norms: Vec<f64>,
+    /// Range of the rows of each link.
+    links: Vec<(String, std::ops::Range<usize>)>,
+    kind: LinkKind,
+    dt: f64,
+    step: u64,
+    /// L at the start and at the end of the step.
+    multipliers: [Vec<f64>; 2],
+    /// H of the multipliers that a pass looks for.
+    factor: Option<DenseCholesky>,
+    /// Part of H of the zones with one step, row-major: for pointwise multipliers.
+    outer: Vec<f64>,
+    saved: Vec<Option<State>>,
+    samples: Vec<Sample>,
+    /// Passes of the last step, over all steps, and factorisations of H.
+    passes: usize,
+    all_passes: u64,
+    defect: Vec<f64>,
+    free: [Vec<f64>; 2],
+    pointwise: [Vec<f64>; 2],
+}
+
+impl Zones {
+    /// Drivers of the zones, in the order of the model.
+    pub fn drivers(&self) -> &[Driver] {
+        &self.drivers
+    }
+
+    /// Contacts of the model in each zone.
+    pub fn contacts(&self) -> &[Vec<usize>] {
+        &self.contacts
+    }
+
+    /// Multipliers of the rows at the last instant.
+    pub fn multipliers(&self) -> &[f64] {
+        &self.multipliers[0]
+    }
+
+    /// What the contacts of the zones did at the instants of the last outer step.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// Outer steps taken.
+    pub fn outer_step(&self) -> u64 {
+        self.step
+    }
+
+    /// Time, s.
+    pub fn time(&self) -> f64 {
+        self.step as f64 * self.dt
+    }
+
+    /// Passes of the last outer step.
+    pub fn passes(&self) -> usize {
+        self.passes
+    }
+
+    /// Passes over all outer steps.
+    pub fn all_passes(&self) -> u64 {
+        self.all_passes
+    }
+
+    /// The balance of all zones together.
+    pub fn balance(&self) -> Balance {
+        let balances = self.drivers.iter().map(|d| &d.state().ledger.balance);
+        balances.fold(Balance::default(), |sum, one| sum.plus(one))
+    }
+
+    /// Takes one outer step.
+    ///
+    /// # Errors
+    /// A step of a zone that fails, or multipliers that are not found. The state is then the one before the step.
+    pub fn step(&mut self) -> Result<(), Error> {
+        for (driver, saved) in self.drivers.iter().zip(&mut self.saved) {
+            if let Some(saved) = saved {
+                saved.clone_from(driver.state());
+            }
+        }
+        let inner = self.substeps.iter().any(|m| *m > 1);
+        let taken = match self.kind {
+            LinkKind::GravouilCombescure if inner => self.step_pointwise(),
+            _ => self.step_ramped(),
+        };
+        match taken {
+            Ok(()) => {
+                self.accept();
+                Ok(())
+            }
+            Err(error) => {
+                self.go_back();
+                Err(error)
+            }
+        }
+    }
+
+    fn accept(&mut self) {
+        for (k, driver) in self.drivers.iter_mut().enumerate() {
+            if self.substeps[k] == 1 {
+                driver.take();
+                sample(k, driver, &mut self.samples);
+            }
+        }
+        self.step += 1;
+        self.all_passes += self.passes as u64;
+        let [old, new] = &mut self.multipliers;
+        old.copy_from_slice(new);
+    }
+
+    fn go_back(&mut self) {
+        for (driver, saved) in self.drivers.iter_mut().zip(&self.saved) {
+            if let Some(saved) = saved {
+                driver.go_back(saved);
+            }
+        }
+    }
+
+    /// Multipliers linear over the outer step, rows that hold at its end.
+    fn step_ramped(&mut self) -> Result<(), Error> {
+        let [old, new] = &mut self.multipliers;
+        new.copy_from_slice(old);
+        for (k, driver) in self.drivers.iter_mut().enumerate() {
+            if self.substeps[k] == 1 {
+                driver.prepare()?;
+            }
+        }
+        for pass in 1..=MOST_PASSES {
+            self.passes = pass;
+            self.samples.clear();
+            self.defect.fill(0.0);
+            for k in 0..self.drivers.len() {
+                self.ramp_zone(k)?;
+            }
+            if self.corrected(1)? {
+                return Ok(());
+            }
+        }
+        Err(self.parted())
+    }
+
+    /// Takes the steps of one zone with the multipliers as they stand, and adds its part of the defect.
+    fn ramp_zone(&mut self, k: usize) -> Result<(), Error> {
+        let m = self.substeps[k];
+        let driver = &mut self.drivers[k];
+        let [old, new] = &self.multipliers;
+        let [_, end] = driver.link_weights();
+        if let Some(saved) = &self.saved[k]
+            && driver.state().step != saved.step
+        {
+            driver.go_back(saved);
+        }
+        for j in 0..m {
+            let part = (f64::from(j) + end) / f64::from(m);
+            let mix = &mut self.pointwise[0];
+            for (i, mix) in mix.iter_mut().enumerate() {
+                *mix = (1.0 - part) * old[i] + part * new[i];
+            }
+            driver.set_link_force(&self.rows[k], mix);
+            if m == 1 {
+                driver.complete()?;
+            } else {
+                driver.prepare()?;
+                driver.complete()?;
+                driver.take();
+                sample(k, driver, &mut self.samples);
+            }
+        }
+        let v = match m {
+            1 => driver.next_velocity(),
+            _ => &driver.state().motion.v,
+        };
+        for (row, terms) in &self.rows[k] {
+            self.defect[*row as usize] += on(terms, v);
+        }
+        Ok(())
+    }
+
+    /// Whether the rows hold; corrects the multipliers `which` (0 pointwise, 1 of the outer step) if not.
+    fn corrected(&mut self, which: usize) -> Result<bool, Error> {
+        let speed = self.speed();
+        let rows = self.defect.iter().zip(&self.norms);
+        let worst = rows.fold(0.0, |worst: f64, (d, n)| worst.max(d.abs() / n));
+        if worst <= TOLERANCE * speed {
+            return Ok(true);
+        }
+        let Some(factor) = &self.factor else {
+            return Ok(true);
+        };
+        factor.solve(&mut self.defect);
+        let target = match which {
+            0 => &mut self.pointwise[1],
+            _ => &mut self.multipliers[1],
+        };
+        for (l, d) in target.iter_mut().zip(&self.defect) {
+            *l -= d;
+        }
+        Ok(false)
+    }
+
+    /// Largest velocity of all zones, at the end of the step or at its start.
+    fn speed(&self) -> f64 {
+        let largest = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let of = |driver: &Driver| {
+            largest(driver.next_velocity()).max(largest(&driver.state().motion.v))
+        };
+        self.drivers.iter().map(of).fold(0.0, f64::max)
+    }
+
+    /// Rows that hold at every inner instant, with the free velocities of the outer zones interpolated between their start
+    /// and their end: `Σ_c C v_j + s_j + H_s L_j = 0`, `s_j = (1 - j/m) (C v - H_s L_0) + (j/m) C v_f`.
+    fn step_pointwise(&mut self) -> Result<(), Error> {
+        let n = self.norms.len();
+        let [start, end] = &mut self.free;
+        start.fill(0.0);
+        end.fill(0.0);
+        self.samples.clear();
+        self.passes = 0;
+        let old = &self.multipliers[0];
+        for (k, driver) in self.drivers.iter_mut().enumerate() {
+            if self.substeps[k] != 1 {
+                continue;
+            }
+            let weights = driver.link_weights();
+            driver.prepare()?;
+            self.pointwise[0].copy_from_slice(old);
+            self.pointwise[0].iter_mut().for_each(|l| *l *= weights[0]);
+            driver.set_link_force(&self.rows[k], &self.pointwise[0]);
+            driver.complete()?;
+            for (row, terms) in &self.rows[k] {
+                start[*row as usize] += on(terms, &driver.state().motion.v);
+                end[*row as usize] += on(terms, driver.next_velocity());
+            }
+        }
+        for i in 0..n {
+            let of_multipliers = dot_row(&self.outer, i, old);
+            start[i] -= of_multipliers;
+        }
+        let [old, new] = &mut self.multipliers;
+        new.copy_from_slice(old);
+        let m = self.substeps.iter().copied().max().unwrap_or(1);
+        for j in 1..=m {
+            self.inner_instant(f64::from(j) / f64::from(m))?;
+        }
+        let [old, new] = &self.multipliers;
+        for (k, driver) in self.drivers.iter_mut().enumerate() {
+            if self.substeps[k] == 1 {
+                let weights = driver.link_weights();
+                for i in 0..n {
+                    self.pointwise[0][i] = weights[0] * old[i] + weights[1] * new[i];
+                }
+                driver.set_link_force(&self.rows[k], &self.pointwise[0]);
+                driver.complete()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// One step of the inner zones, whose pointwise multipliers start from those in `multipliers[1]` and end there.
+    fn inner_instant(&mut self, part: f64) -> Result<(), Error> {
+        for (k, driver) in self.drivers.iter_mut().enumerate() {
+            if self.substeps[k] > 1 {
+                driver.prepare()?;
+            }
+        }
+        self.pointwise[1].copy_from_slice(&self.multipliers[1]);
+        for pass in 1..=MOST_PASSES {
+            self.passes += 1;
+            for i in 0..self.defect.len() {
+                self.defect[i] = (1.0 - part) * self.free[0][i]
+                    + part * self.free[1][i]
+                    + dot_row(&self.outer, i, &self.pointwise[1]);
+            }
+            for (k, driver) in self.drivers.iter_mut().enumerate() {
+                if self.substeps[k] == 1 {
+                    continue;
+                }
+                let weights = driver.link_weights();
+                let [mix, now] = &mut self.pointwise;
+                for (i, mix) in mix.iter_mut().enumerate() {
+                    *mix = weights[0] * self.multipliers[1][i] + weights[1] * now[i];
+                }
+                driver.set_link_force(&self.rows[k], mix);
+                driver.complete()?;
+                for (row, terms) in &self.rows[k] {
+                    self.defect[*row as usize] += on(terms, driver.next_velocity());
+                }
+            }
+            if self.corrected(0)? {
+                break;
+            }
+            if pass == MOST_PASSES {
+                return Err(self.parted());
+            }
+        }
+        for (k, driver) in self.drivers.iter_mut().enumerate() {
+            if self.substeps[k] > 1 {
+                driver.take();
+                sample(k, driver, &mut self.samples);
+            }
+        }
+        self.multipliers[1].copy_from_slice(&self.pointwise[1]);
+        Ok(())
+    }
+
+    fn parted(&self) -> Error {
+        let rows = self.defect.iter().zip(&self.norms);
+        Error::Link {
+            step: self.step + 1,
+            passes: self.passes,
+            defect: rows.fold(0.0, |worst: f64, (d, n)| worst.max(d.abs() / n)),
+        }
+    }
+}
+
+/// Row of a square matrix, row-major, times a vector.
+fn dot_row(matrix: &[f64], row: usize, x: &[f64]) -> f64 {
+    let n = x.len();
+    let entries = matrix[row * n..(row + 1) * n].iter().zip(x);
+    entries.map(|(a, x)| a * x).sum()
+}
+
+fn sample(zone: usize, driver: &Driver, samples: &mut Vec<Sample>) {
+    let report = driver.report();
+    samples.push(Sample {
+        zone,
+        time: report.time,
+        dt: report.dt,
+        contacts: report.contacts.clone(),
+    });
+}

@@ -1,0 +1,136 @@
+//! What zones and links are made of.
+
+use carom_arlequin::Row;
+use serde::{Deserialize, Serialize};
+
+use crate::contacts::sides;
+use crate::error::Error;
+use crate::scheme::Scheme;
+use crate::system::Model;
+
+/// A group of bodies with its own scheme and step.
+#[derive(Clone, Debug)]
+pub struct ModelZone {
+    /// Name as in the case file.
+    pub name: String,
+    /// Indices of its bodies in the model.
+    pub bodies: Vec<usize>,
+    /// Time scheme.
+    pub scheme: Scheme,
+    /// Steps to one outer step.
+    pub substeps: u32,
+}
+
+/// How the multipliers of links run over an outer step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LinkKind {
+    /// Velocities are equal at every inner instant, those of the outer zone without link forces interpolated (Gravouil and
+    /// Combescure 2001). Dissipates with more than one inner step.
+    GravouilCombescure,
+    /// Multipliers are linear over the outer step, velocities equal at its end (Prakash and Hjelmstad 2004).
+    PrakashHjelmstad,
+}
+
+/// Rows `C_c v_c - C_s v_s = 0` between two zones: an overlap, or a common border.
+#[derive(Clone, Debug)]
+pub struct ModelLink {
+    /// Name as in the case file.
+    pub name: String,
+    /// Zones of the inner and of the outer terms.
+    pub zones: [usize; 2],
+    /// The rows, on nodes of the mesh.
+    pub rows: Vec<Row>,
+}
+
+/// A model in zones. The step of the model is the outer one, its scheme counts for nothing.
+#[derive(Clone, Debug)]
+pub struct Zoned {
+    /// Bodies, contacts, supports.
+    pub model: Model,
+    /// Zones; each body is in one of them.
+    pub zones: Vec<ModelZone>,
+    /// Links.
+    pub links: Vec<ModelLink>,
+    /// How their multipliers run.
+    pub kind: LinkKind,
+}
+
+impl Zoned {
+    /// The contacts of each zone.
+    ///
+    /// # Errors
+    /// A contact whose sides are in different zones.
+    pub(super) fn contacts(&self) -> Result<Vec<Vec<usize>>, Error> {
+        let zone_of = |body: usize| {
+            let mut zones = self.zones.iter();
+            zones
+                .position(|zone| zone.bodies.contains(&body))
+                .unwrap_or(0)
+        };
+        let mut of_zone = vec![Vec::new(); self.zones.len()];
+        for (k, contact) in self.model.contacts.iter().enumerate() {
+            let (secondary, primary) = sides(contact, &self.model);
+            let zone = zone_of(secondary);
+            if let Some(other) = primary.map(zone_of).filter(|other| *other != zone) {
+                return Err(Error::AcrossZones {
+                    contact: contact.name.clone(),
+                    one: self.zones[zone].name.clone(),
+                    other: self.zones[other].name.clone(),
+                });
+            }
+            of_zone[zone].push(k);
+        }
+        Ok(of_zone)
+    }
+
+    /// The model of one zone with its own step.
+    pub(super) fn zone(&self, zone: usize, contacts: &[usize]) -> Model {
+        let part = &self.zones[zone];
+        let whole = &self.model;
+        Model {
+            mesh: whole.mesh.clone(),
+            bodies: part
+                .bodies
+                .iter()
+                .map(|&body| whole.bodies[body].clone())
+                .collect(),
+            supports: whole.supports.clone(),
+            gravity: whole.gravity,
+            contacts: contacts
+                .iter()
+                .map(|&contact| whole.contacts[contact].clone())
+                .collect(),
+            scheme: part.scheme,
+            dt: whole.dt / f64::from(part.substeps),
+            adaptive: None,
+        }
+    }
+
+    /// Refuses schemes that no link takes, and numbers of inner steps that do not go together.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        let linked = |zone: &usize| self.links.iter().any(|link| link.zones.contains(zone));
+        let mut many = None;
+        for (k, zone) in self.zones.iter().enumerate() {
+            let refuse = |accepted| {
+                Err(Error::Substeps {
+                    zone: zone.name.clone(),
+                    found: zone.substeps,
+                    accepted,
+                })
+            };
+            if zone.substeps == 0 {
+                return refuse("at least one");
+            }
+            if zone.substeps > 1 && *many.get_or_insert(zone.substeps) != zone.substeps {
+                return refuse("one, or as many as the other zones with more than one");
+            }
+            if linked(&k) && zone.scheme.link_weights().is_none() {
+                return Err(Error::LinkScheme {
+                    zone: zone.name.clone(),
+                    scheme: zone.scheme.get().name(),
+                });
+            }
+        }
+        Ok(())
+    }
+}

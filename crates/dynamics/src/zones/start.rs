@@ -1,0 +1,289 @@
+//! The start of zones: rows, the factor of H, velocities that agree, the first multipliers.
+
+use std::sync::Arc;
+
+use carom_algebra::dense::DenseCholesky;
+
+use super::{LinkKind, Zoned, Zones, ZonesState};
+use crate::driver::Driver;
+use crate::driver::linked::{LinkRow, on};
+use crate::error::Error;
+use crate::operator::Operators;
+use crate::state::State;
+use crate::system::System;
+
+impl Zones {
+    /// Builds the zones, makes and factors H, and starts them: initial velocities become the closest ones, in the norm of the
+    /// mass, that satisfy the rows, and the first multipliers those that keep the accelerations in them.
+    ///
+    /// # Errors
+    /// A zone that cannot be built, redundant rows, schemes or steps that do not go together.
+    pub fn new(zoned: &Zoned) -> Result<Zones, Error> {
+        zoned.check()?;
+        let contacts = zoned.contacts()?;
+        let systems = contacts
+            .iter()
+            .enumerate()
+            .map(|(k, contacts)| System::new(zoned.zone(k, contacts)))
+            .collect::<Result<Vec<_>, Error>>()?;
+        let count = zoned.links.iter().map(|link| link.rows.len()).sum();
+        let rows = rows(zoned, &systems);
+        let mut norms = vec![0.0; count];
+        for (row, terms) in rows.iter().flatten() {
+            norms[*row as usize] += terms.iter().map(|(_, c)| c.abs()).sum::<f64>();
+        }
+        let mut first = 0;
+        let links = zoned.links.iter().map(|link| {
+            let range = first..first + link.rows.len();
+            first = range.end;
+            (link.name.clone(), range)
+        });
+        let links = links.collect();
+        let mut drivers = systems
+            .iter()
+            .map(|system| Driver::new(Arc::clone(system)))
+            .collect::<Result<Vec<_>, Error>>()?;
+        let multipliers = start(&mut drivers, &rows, count)?;
+        let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
+        let saved = drivers.iter().zip(&substeps).map(|(driver, m)| {
+            let inner = *m > 1;
+            inner.then(|| driver.state().clone())
+        });
+        let mut zones = Zones {
+            saved: saved.collect(),
+            drivers,
+            substeps,
+            contacts,
+            rows,
+            norms,
+            links,
+            kind: zoned.kind,
+            dt: zoned.model.dt,
+            step: 0,
+            multipliers: [multipliers.clone(), multipliers],
+            factor: None,
+            outer: Vec::new(),
+            samples: Vec::new(),
+            passes: 0,
+            all_passes: 0,
+            defect: vec![0.0; count],
+            free: [vec![0.0; count], vec![0.0; count]],
+            pointwise: [vec![0.0; count], vec![0.0; count]],
+        };
+        zones.factorise()?;
+        Ok(zones)
+    }
+
+    /// Makes and factors H of the multipliers that a pass looks for.
+    fn factorise(&mut self) -> Result<(), Error> {
+        let n = self.norms.len();
+        if n == 0 {
+            return Ok(());
+        }
+        let (mut h, mut outer) = (vec![0.0; n * n], vec![0.0; n * n]);
+        for (k, driver) in self.drivers.iter_mut().enumerate() {
+            let rows = &self.rows[k];
+            let steps = match self.kind {
+                LinkKind::GravouilCombescure => 1,
+                LinkKind::PrakashHjelmstad => self.substeps[k],
+            };
+            let own = driver.ramp(rows, steps);
+            for (i, (row, _)) in rows.iter().enumerate() {
+                for (j, (column, _)) in rows.iter().enumerate() {
+                    let place = *row as usize * n + *column as usize;
+                    let entry = 0.5 * (own[i * rows.len() + j] + own[j * rows.len() + i]);
+                    h[place] += entry;
+                    if self.substeps[k] == 1 {
+                        outer[place] += entry;
+                    }
+                }
+            }
+        }
+        self.outer = outer;
+        let factor = DenseCholesky::new(n, &h);
+        self.factor = Some(factor.map_err(|cause| Error::Redundant { rows: n, cause })?);
+        Ok(())
+    }
+
+    /// The state of all zones.
+    pub fn state(&self) -> ZonesState {
+        ZonesState {
+            step: self.step,
+            time: self.time(),
+            multipliers: self.multipliers[0].clone(),
+            zones: self.drivers.iter().map(|d| d.state().clone()).collect(),
+        }
+    }
+
+    /// Goes on from a state, which must be of the same zones.
+    pub fn resume(&mut self, state: &ZonesState) {
+        self.step = state.step;
+        self.multipliers[0].clone_from(&state.multipliers);
+        for (driver, state) in self.drivers.iter_mut().zip(&state.zones) {
+            driver.go_back(state);
+        }
+    }
+
+    /// Name of each link and the range of its rows among the multipliers.
+    pub fn links(&self) -> &[(String, std::ops::Range<usize>)] {
+        &self.links
+    }
+}
+
+/// The terms of all rows by zone, on its unknowns, with the sign of the side.
+fn rows(zoned: &Zoned, systems: &[Arc<System>]) -> Vec<Vec<(u32, LinkRow)>> {
+    let mut by_zone: Vec<Vec<(u32, LinkRow)>> = vec![Vec::new(); systems.len()];
+    let mut number = 0;
+    for link in &zoned.links {
+        for row in &link.rows {
+            let sides = [
+                (link.zones[0], 1.0, &row.inner),
+                (link.zones[1], -1.0, &row.outer),
+            ];
+            for (zone, sign, terms) in sides {
+                let system = &systems[zone];
+                let dof = |term: &carom_arlequin::Term| {
+                    system.number[term.node as usize] * system.dim as u32 + term.component
+                };
+                let terms = terms
+                    .iter()
+                    .map(|term| (dof(term), sign * term.coefficient));
+                by_zone[zone].push((number, terms.collect()));
+            }
+            number += 1;
+        }
+    }
+    by_zone
+}
+
+/// Starts the drivers with velocities that satisfy the rows; returns the first multipliers.
+fn start(
+    drivers: &mut [Driver],
+    rows: &[Vec<(u32, LinkRow)>],
+    count: usize,
+) -> Result<Vec<f64>, Error> {
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let masses = drivers
+        .iter()
+        .map(|driver| Operators::new(driver.system(), 1.0, 0.0, "mass matrix"))
+        .collect::<Result<Vec<_>, Error>>()?;
+    let mut mass = MassLinks { masses, rows };
+    let factor = mass.factor(drivers, count)?;
+    // velocities
+    let mut defect = vec![0.0; count];
+    add(rows, drivers, &mut defect, |driver| {
+        &driver.state().motion.v
+    });
+    factor.solve(&mut defect);
+    let velocities: Vec<Vec<f64>> = (0..drivers.len())
+        .map(|k| {
+            let change = mass.answer(k, drivers[k].system(), &defect);
+            let v = &drivers[k].state().motion.v;
+            v.iter().zip(&change).map(|(v, c)| v - c).collect()
+        })
+        .collect();
+    // accelerations
+    let accelerations: Vec<Vec<f64>> = (0..drivers.len())
+        .map(|k| {
+            let system = drivers[k].system();
+            let f = &drivers[k].state().motion.internal_force;
+            let balance: Vec<f64> = (0..f.len())
+                .map(|i| match system.fixed[i] {
+                    true => 0.0,
+                    false => system.load[i] - f[i],
+                })
+                .collect();
+            mass.solve(k, &balance)
+        })
+        .collect();
+    let mut multipliers = vec![0.0; count];
+    for (rows, a) in rows.iter().zip(&accelerations) {
+        for (row, terms) in rows {
+            multipliers[*row as usize] -= on(terms, a);
+        }
+    }
+    factor.solve(&mut multipliers);
+    for (k, driver) in drivers.iter_mut().enumerate() {
+        let u = driver.state().motion.u.clone();
+        driver.link(&forces(&rows[k], &multipliers, u.len()));
+        driver.restart(&u, &velocities[k])?;
+    }
+    Ok(multipliers)
+}
+
+/// Cᵀ L on the unknowns of a zone.
+fn forces(rows: &[(u32, LinkRow)], multipliers: &[f64], unknowns: usize) -> Vec<f64> {
+    let mut force = vec![0.0; unknowns];
+    for (row, terms) in rows {
+        for &(dof, c) in terms {
+            force[dof as usize] += c * multipliers[*row as usize];
+        }
+    }
+    force
+}
+
+fn add(
+    rows: &[Vec<(u32, LinkRow)>],
+    drivers: &[Driver],
+    sums: &mut [f64],
+    vector: impl Fn(&Driver) -> &Vec<f64>,
+) {
+    for (rows, driver) in rows.iter().zip(drivers) {
+        for (row, terms) in rows {
+            sums[*row as usize] += on(terms, vector(driver));
+        }
+    }
+}
+
+/// The mass of each zone against its rows.
+struct MassLinks<'a> {
+    masses: Vec<Operators>,
+    rows: &'a [Vec<(u32, LinkRow)>],
+}
+
+impl MassLinks<'_> {
+    /// M⁻¹ r of one zone.
+    fn solve(&mut self, zone: usize, r: &[f64]) -> Vec<f64> {
+        let (mut half, mut x) = (vec![0.0; r.len()], vec![0.0; r.len()]);
+        self.masses[zone].begin(r, &mut half);
+        self.masses[zone].end(&mut half, &mut x);
+        x
+    }
+
+    /// M⁻¹ Cᵀ L of one zone.
+    fn answer(&mut self, zone: usize, system: &System, multipliers: &[f64]) -> Vec<f64> {
+        let mut force = forces(&self.rows[zone], multipliers, system.unknowns());
+        for (f, fixed) in force.iter_mut().zip(&system.fixed) {
+            if *fixed {
+                *f = 0.0;
+            }
+        }
+        self.solve(zone, &force)
+    }
+
+    /// The factor of Σ C M⁻¹ Cᵀ.
+    fn factor(&mut self, drivers: &[Driver], count: usize) -> Result<DenseCholesky, Error> {
+        let mut matrix = vec![0.0; count * count];
+        let mut unit = vec![0.0; count];
+        for zone in 0..drivers.len() {
+            for (column, _) in &self.rows[zone] {
+                unit[*column as usize] = 1.0;
+                let x = self.answer(zone, drivers[zone].system(), &unit);
+                unit[*column as usize] = 0.0;
+                for (row, terms) in &self.rows[zone] {
+                    matrix[*row as usize * count + *column as usize] += on(terms, &x);
+                }
+            }
+        }
+        DenseCholesky::new(count, &matrix).map_err(|cause| Error::Redundant { rows: count, cause })
+    }
+}
+
+impl ZonesState {
+    /// The state of one zone.
+    pub fn zone(&self, zone: usize) -> &State {
+        &self.zones[zone]
+    }
+}
