@@ -12,8 +12,10 @@ mod build;
 mod check;
 mod error;
 mod figures;
+mod glued;
 
 mod adaptive;
+mod arlequin_bars;
 mod bar_dropped;
 mod bar_on_stop;
 mod bar_on_wall;
@@ -74,6 +76,7 @@ macro_rules! registry {
 
 registry! {
     adaptive
+    arlequin_bars
     bar_on_stop
     bar_dropped
     bar_on_wall

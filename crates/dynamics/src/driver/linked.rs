@@ -37,6 +37,11 @@ impl Driver {
         });
     }
 
+    /// Makes the driver forget links until its next `link`.
+    pub(crate) fn unlink(&mut self) {
+        self.linked = None;
+    }
+
     /// Sets Cᵀ Λ of the step, N.
     pub(crate) fn set_link_force(&mut self, rows: &[(u32, LinkRow)], multipliers: &[f64]) {
         if let Some(linked) = &mut self.linked {

@@ -74,6 +74,21 @@ impl Zones {
         Ok(zones)
     }
 
+    /// Begins anew from other initial motions: displacement (m) and velocity (m/s) of each zone, one entry per unknown.
+    ///
+    /// # Errors
+    /// As [`Zones::new`].
+    pub fn restart(&mut self, motions: &[[Vec<f64>; 2]]) -> Result<(), Error> {
+        for (driver, [u, v]) in self.drivers.iter_mut().zip(motions) {
+            driver.unlink();
+            driver.restart(u, v)?;
+        }
+        let multipliers = start(&mut self.drivers, &self.rows, self.norms.len())?;
+        self.step = 0;
+        self.multipliers = [multipliers.clone(), multipliers];
+        Ok(())
+    }
+
     /// Makes and factors H of the multipliers that a pass looks for.
     fn factorise(&mut self) -> Result<(), Error> {
         let n = self.norms.len();
