@@ -241,7 +241,12 @@ impl Operators {
 }
 
 /// `mass_factor` M + `stiffness_factor` K of one part.
-fn assembled(system: &System, part: &Range<usize>, mass_factor: f64, stiffness_factor: f64) -> Csr {
+pub(crate) fn assembled(
+    system: &System,
+    part: &Range<usize>,
+    mass_factor: f64,
+    stiffness_factor: f64,
+) -> Csr {
     let mut cliques = Cliques::new();
     for body in &system.bodies {
         push_cliques(body, system.dim, part, &mut cliques);

@@ -79,6 +79,7 @@ pub(crate) const CHECK: Check = Check {
             }
         }
         rows.extend(same_mesh()?);
+        rows.extend(two_forms()?);
         Ok(rows)
     },
 };
@@ -143,5 +144,36 @@ fn same_mesh() -> Result<Vec<Row>, Error> {
         figures.force.len(),
         4 * history.force.len().div_ceil(4),
     ));
+    Ok(rows)
+}
+
+/// The dense condensed form against the rows joined to the factor of the tips.
+fn two_forms() -> Result<Vec<Row>, Error> {
+    let mut rows = Vec::new();
+    for (name, outer, courant) in [
+        ("trapezoid", newmark(0.25, 0.5), 0.2),
+        ("explicit", CENTRAL, 0.9),
+    ] {
+        let dense = Glued::slow(0.5, outer, courant, 1);
+        let joined = Glued {
+            joined: true,
+            ..dense
+        };
+        let end = 1.5 * SLOW.duration();
+        let [one, other] = [dense.run_to(end)?, joined.run_to(end)?];
+        let pairs = one.force.iter().zip(&other.force);
+        let worst = pairs.fold(0.0, |m: f64, (a, b)| m.max((a.1 - b.1).abs()));
+        let f0 = 0.5 * SLOW.impedance() * SLOW.speed;
+        rows.push(Row::at_most(
+            format!("{name}: joined and condensed forms, largest force difference / F0"),
+            worst / f0,
+            1e-11,
+        ));
+        rows.push(Row::at_most(
+            format!("{name}: passes to a step in the joined form"),
+            other.passes,
+            2.2,
+        ));
+    }
     Ok(rows)
 }

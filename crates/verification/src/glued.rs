@@ -39,6 +39,8 @@ pub(crate) struct Glued {
     pub(crate) law: Law,
     /// Gap at the start.
     pub(crate) gap: f64,
+    /// Whether the rows join the factor of the tips.
+    pub(crate) joined: bool,
 }
 
 impl Glued {
@@ -61,6 +63,7 @@ impl Glued {
             coupling: Coupling::default(),
             law: if theta_of_tips > 0.5 { NOW } else { HALF },
             gap: 0.0,
+            joined: false,
         }
     }
 
@@ -144,6 +147,9 @@ impl Glued {
     /// Runs to `end` (s): figures of merit.
     pub(crate) fn run_to(&self, end: f64) -> Result<Figures, Error> {
         let mut zones = Zones::new(&self.zoned()?)?;
+        if self.joined {
+            zones.join()?;
+        }
         let (f0, duration) = (
             0.5 * self.set.impedance() * self.set.speed,
             self.set.duration(),

@@ -101,6 +101,11 @@ impl Driver {
         self.system.scheme.link_weights().unwrap_or([0.0, 1.0])
     }
 
+    /// Factors of M and K in the effective matrix, and of its solution in the velocity at the end of a step.
+    pub(crate) fn effective(&self) -> (f64, f64, f64) {
+        (self.map.inertia.x, self.map.force.x, self.map.velocity.x)
+    }
+
     /// Velocity that multipliers growing linearly from 0 to 1 in `steps` steps leave in the rows, without contact: the
     /// dense matrix `C V`, row-major over the rows given.
     pub(crate) fn ramp(&mut self, rows: &[(u32, LinkRow)], steps: u32) -> Vec<f64> {

@@ -8,10 +8,10 @@
 //! Sources: Gravouil, Combescure (2001); Prakash, Hjelmstad (2004); Ben Dhia et al. (2003), equations (11)-(12). The form
 //! for any pair of schemes with weights of the multipliers in time is this project's.
 
+mod condensed;
 mod model;
 mod start;
 
-use carom_algebra::dense::DenseCholesky;
 use serde::{Deserialize, Serialize};
 
 use crate::driver::Driver;
@@ -20,6 +20,7 @@ use crate::error::Error;
 use crate::ledger::Balance;
 use crate::state::{ContactReport, State};
 
+use condensed::Condensed;
 pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
 
 /// Defect of a row at which it holds, as a part of the largest velocity.
@@ -73,7 +74,7 @@ pub struct Zones {
     /// L at the start and at the end of the step.
     multipliers: [Vec<f64>; 2],
     /// H of the multipliers that a pass looks for.
-    factor: Option<DenseCholesky>,
+    factor: Option<Condensed>,
     /// Part of H of the zones with one step, row-major: for pointwise multipliers.
     outer: Vec<f64>,
     saved: Vec<Option<State>>,
@@ -125,6 +126,12 @@ impl Zones {
     /// Passes over all outer steps.
     pub fn all_passes(&self) -> u64 {
         self.all_passes
+    }
+
+    /// Bytes held for the condensed problem of the links.
+    pub fn condensed_bytes(&self) -> usize {
+        let rows = self.norms.len();
+        self.factor.as_ref().map_or(0, |factor| factor.bytes(rows))
     }
 
     /// The balance of all zones together.
@@ -249,7 +256,7 @@ impl Zones {
         if worst <= TOLERANCE * speed {
             return Ok(true);
         }
-        let Some(factor) = &self.factor else {
+        let Some(factor) = &mut self.factor else {
             return Ok(true);
         };
         factor.solve(&mut self.defect);

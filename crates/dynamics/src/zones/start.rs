@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use carom_algebra::dense::DenseCholesky;
 
+use super::condensed::{Answer, Condensed, DENSE, Joined};
 use super::{LinkKind, Zoned, Zones, ZonesState};
 use crate::driver::Driver;
 use crate::driver::linked::{LinkRow, on};
@@ -89,9 +90,40 @@ impl Zones {
         Ok(())
     }
 
+    /// Makes the factor of H anew in the joined form, whatever the number of rows: to compare the two.
+    ///
+    /// # Errors
+    /// Redundant rows.
+    pub fn join(&mut self) -> Result<(), Error> {
+        self.factor = Some(self.joined()?);
+        Ok(())
+    }
+
+    fn joined(&self) -> Result<Condensed, Error> {
+        let zones = self.drivers.iter().zip(&self.rows);
+        let answers: Vec<Answer> = zones
+            .map(|(driver, rows)| {
+                let (mass, stiffness, velocity) = driver.effective();
+                Answer {
+                    system: driver.system(),
+                    rows,
+                    mass,
+                    stiffness,
+                    scale: velocity * driver.link_weights()[1],
+                }
+            })
+            .collect();
+        let joined = Joined::new(&answers, self.norms.len())?;
+        Ok(Condensed::Joined(Box::new(joined)))
+    }
+
     /// Makes and factors H of the multipliers that a pass looks for.
     fn factorise(&mut self) -> Result<(), Error> {
         let n = self.norms.len();
+        let alike = self.substeps.iter().all(|m| *m == 1);
+        if n > DENSE && alike {
+            return self.join();
+        }
         if n == 0 {
             return Ok(());
         }
@@ -116,7 +148,8 @@ impl Zones {
         }
         self.outer = outer;
         let factor = DenseCholesky::new(n, &h);
-        self.factor = Some(factor.map_err(|cause| Error::Redundant { rows: n, cause })?);
+        let factor = factor.map_err(|cause| Error::Redundant { rows: n, cause })?;
+        self.factor = Some(Condensed::Dense(factor));
         Ok(())
     }
 
@@ -185,7 +218,7 @@ fn start(
         .map(|driver| Operators::new(driver.system(), 1.0, 0.0, "mass matrix"))
         .collect::<Result<Vec<_>, Error>>()?;
     let mut mass = MassLinks { masses, rows };
-    let factor = mass.factor(drivers, count)?;
+    let mut factor = mass.factor(drivers, count)?;
     // velocities
     let mut defect = vec![0.0; count];
     add(rows, drivers, &mut defect, |driver| {
@@ -279,7 +312,21 @@ impl MassLinks<'_> {
     }
 
     /// The factor of Σ C M⁻¹ Cᵀ.
-    fn factor(&mut self, drivers: &[Driver], count: usize) -> Result<DenseCholesky, Error> {
+    fn factor(&mut self, drivers: &[Driver], count: usize) -> Result<Condensed, Error> {
+        if count > DENSE {
+            let zones = drivers.iter().zip(self.rows);
+            let answers: Vec<Answer> = zones
+                .map(|(driver, rows)| Answer {
+                    system: driver.system(),
+                    rows,
+                    mass: 1.0,
+                    stiffness: 0.0,
+                    scale: 1.0,
+                })
+                .collect();
+            let joined = Joined::new(&answers, count)?;
+            return Ok(Condensed::Joined(Box::new(joined)));
+        }
         let mut matrix = vec![0.0; count * count];
         let mut unit = vec![0.0; count];
         for zone in 0..drivers.len() {
@@ -292,7 +339,9 @@ impl MassLinks<'_> {
                 }
             }
         }
-        DenseCholesky::new(count, &matrix).map_err(|cause| Error::Redundant { rows: count, cause })
+        let factor = DenseCholesky::new(count, &matrix);
+        let factor = factor.map_err(|cause| Error::Redundant { rows: count, cause })?;
+        Ok(Condensed::Dense(factor))
     }
 }
 
