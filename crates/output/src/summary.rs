@@ -161,6 +161,8 @@ pub struct Contact {
     pub max_penetration: f64,
     /// Persistency defect: Σ |P · gap rate| dt over the steps, J.
     pub persistency_defect: f64,
+    /// Energy lost in crush, J; zero of laws without memory.
+    pub energy_crushed: f64,
     /// Impacts from closing to release.
     pub impacts: usize,
     /// Restitution of the last complete impact, from the mean velocities (momentum / mass).

@@ -29,6 +29,7 @@ mod bars_theta;
 mod block_drop;
 mod blocks;
 mod closed_field_as_printed;
+mod crushed_stop;
 mod energy_identity;
 mod first_force;
 mod interface_problems;
@@ -85,6 +86,7 @@ registry! {
     block_drop
     blocks
     closed_field_as_printed
+    crushed_stop
     energy_identity
     first_force
     interface_problems

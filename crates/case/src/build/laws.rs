@@ -3,8 +3,8 @@
 use carom_bodies::height;
 use carom_contact::Law;
 use carom_contact::law::{
-    Adhesion, Capture, Compliance, Curve, CurveError, Damped, Displacement, Penalty, Reading,
-    Restitution, Stop, Velocity,
+    Adhesion, Capture, Compliance, Crush, Curve, CurveError, Damped, Displacement, Penalty,
+    Reading, Restitution, Stop, Velocity,
 };
 use carom_dynamics::{ModelBody, ModelTarget};
 use carom_mesh::{Mesh, Surface};
@@ -60,18 +60,27 @@ impl Builder<'_> {
             .iter()
             .map(|point| [point.penetration.0, point.force.0])
             .collect();
-        match Curve::new(&points) {
-            Ok(curve) => Some(Stop {
-                clearance: law.clearance.map_or(0.0, |clearance| clearance.0),
-                curve,
-                damping: law.damping.map_or(0.0, |damping| damping.0),
-                adhesion: adhesion(law.adhesion),
-            }),
-            Err(error) => {
-                self.problems.push(no_curve(name, &error));
-                None
-            }
-        }
+        let crush = match law.crush {
+            schema::Crush::Recovered => Crush::Recovered,
+            schema::Crush::Permanent => Crush::Permanent,
+        };
+        let problem = match Curve::new(&points) {
+            Ok(curve) => match curve.first_steeper() {
+                Some(point) if crush == Crush::Permanent => too_steep(name, &points, point),
+                _ => {
+                    return Some(Stop {
+                        clearance: law.clearance.map_or(0.0, |clearance| clearance.0),
+                        curve,
+                        crush,
+                        damping: law.damping.map_or(0.0, |damping| damping.0),
+                        adhesion: adhesion(law.adhesion),
+                    });
+                }
+            },
+            Err(error) => no_curve(name, &error),
+        };
+        self.problems.push(problem);
+        None
     }
 
     /// Warns where a compliance absorbs more than a part [`LOSS`] of an impact: 2 φ (1 - φ) between equal bars and twice
@@ -105,6 +114,18 @@ fn no_curve(name: &str, error: &CurveError) -> Problem {
         .found(format!("{} m, {} N", found[0], found[1]))
         .accepted([format!("more than {} m and {} N", before[0], before[1])]),
     }
+}
+
+/// A piece that would give back more than it took; `point`: its end, from 1.
+fn too_steep(name: &str, points: &[[f64; 2]], point: usize) -> Problem {
+    let (end, start) = (points[point - 1], points[point - 2]);
+    let stiffness = (end[1] - start[1]) / (end[0] - start[0]);
+    Problem::new(
+        format!("contact.{name}.law.stop.curve[{}]", point - 1),
+        "with crush = \"permanent\" no piece of the curve may be steeper than the first, along which the stop is unloaded",
+    )
+    .found(format!("{stiffness:.4e} N/m up to this point"))
+    .accepted([format!("at most {:.4e} N/m", points[0][1] / points[0][0])])
 }
 
 fn capture(given: Option<schema::Capture>) -> Option<Capture> {

@@ -135,6 +135,7 @@ impl Driver {
                     gap_free: self.rows.gap(at) + value(&self.ahead[at]),
                     dt: system.dt,
                     tolerance: system.tolerance,
+                    crush: self.state.interface.crush[at],
                 },
                 rate_free: value(&self.map.rate),
                 status: self.state.interface.status[at],
@@ -169,6 +170,19 @@ impl Driver {
             }
         }
         Ok(())
+    }
+
+    /// Renews the memory of the laws at the points that carry a force at the end of the step.
+    pub(super) fn crush(&mut self) {
+        let (old, new) = (&self.state.interface, &mut self.next.interface);
+        new.crush.clone_from(&old.crush);
+        for &point in &self.candidates {
+            let point = point as usize;
+            if new.status[point] != Status::Open {
+                let law = &self.system.point(point).0.law;
+                new.crush[point] = law.crushed(old.crush[point], new.gap[point]);
+            }
+        }
     }
 
     /// Contact, place in it and mesh node of a contact point.
@@ -247,6 +261,7 @@ impl Driver {
                 gap_free: gap,
                 dt: self.system.dt,
                 tolerance: self.system.tolerance,
+                crush: self.state.interface.crush[point],
                 ..Local::default()
             };
             if law.status(Status::Open, &end, &local, 0) != Status::Open {

@@ -440,6 +440,7 @@ impl Driver {
         }
         self.next.step = self.state.step + 1;
         self.next.time = self.next.step as f64 * system.dt;
+        self.crush();
     }
 
     /// Internal forces at the end of the step; returns the strain energy.
@@ -472,6 +473,7 @@ fn empty_state(system: &System) -> State {
             rate: vec![0.0; points],
             status: vec![Status::Open; points],
             watched: vec![false; points],
+            crush: vec![0.0; points],
         },
         ledger: Ledger::default(),
         records: Records::default(),

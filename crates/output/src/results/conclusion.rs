@@ -231,6 +231,7 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 status_changes: record.status_changes,
                 max_penetration: record.penetration,
                 persistency_defect: record.persistency_defect(),
+                energy_crushed: record.energy_crushed,
                 impacts: impacts().count() + usize::from(still_closed),
                 restitution: impacts()
                     .next_back()
