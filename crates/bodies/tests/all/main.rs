@@ -14,3 +14,6 @@ mod sample;
 mod sizes;
 mod stiffness;
 mod threads;
+
+#[global_allocator]
+static COUNTER: carom_testing::Counter = carom_testing::Counter;

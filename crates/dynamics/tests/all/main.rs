@@ -7,3 +7,6 @@ mod allocation;
 mod interface;
 mod momentum;
 mod stability;
+
+#[global_allocator]
+static COUNTER: carom_testing::Counter = carom_testing::Counter;
