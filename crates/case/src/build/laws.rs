@@ -44,7 +44,12 @@ impl Builder<'_> {
                 coefficient: restitution.coefficient,
                 capture: capture(restitution.capture),
             }),
-            schema::Law::Damped(damped) => Law::Damped(damped_law(damped, sides)),
+            schema::Law::Damped(damped) => {
+                let law = damped_law(damped, sides);
+                let rate = 2.0 * spring_rate(law.stiffness, &sides[0]);
+                self.springs.push((name.to_string(), rate));
+                Law::Damped(law)
+            }
             schema::Law::Penalty(penalty) => Law::Penalty(Penalty(Damped {
                 stiffness: penalty.stiffness.0,
                 damping: penalty.damping.map_or(0.0, |damping| damping.0),
@@ -178,10 +183,12 @@ pub(super) fn sides(
     sides
 }
 
-/// One side of a contact: Young's modulus (Pa), impedance per area rho c (Pa s/m), element size normal to it (m).
+/// One side of a contact: Young's modulus (Pa), impedance per area rho c (Pa s/m), wave speed (m/s), element size normal to it
+/// (m).
 pub(super) struct Side {
     young: f64,
     impedance: f64,
+    wave_speed: f64,
     size: f64,
 }
 
@@ -190,6 +197,7 @@ fn side(mesh: &Mesh, bodies: &[ModelBody], surface: &Surface) -> Side {
     let mut side = Side {
         young: 0.0,
         impedance: 0.0,
+        wave_speed: 0.0,
         size: 0.0,
     };
     for face in &surface.faces {
@@ -205,7 +213,8 @@ fn side(mesh: &Mesh, bodies: &[ModelBody], surface: &Surface) -> Side {
     if let Some(body) = owner {
         let material = &body.spec.material;
         side.young = material.young;
-        side.impedance = material.density * material.wave_speed(body.spec.kinematics.plane());
+        side.wave_speed = material.wave_speed(body.spec.kinematics.plane());
+        side.impedance = material.density * side.wave_speed;
     }
     side
 }
@@ -221,6 +230,11 @@ fn damped_law(law: &DampedLaw, sides: &[Side]) -> Damped {
         damping: law.damping.map_or(from_factor, |damping| damping.0),
         adhesion: adhesion(law.adhesion),
     }
+}
+
+/// sqrt(k h/E) c/h in 1/s, for k in Pa/m: the frequency of a spring on half an element, over sqrt 2.
+fn spring_rate(stiffness: f64, side: &Side) -> f64 {
+    (stiffness * side.size / side.young).sqrt() * side.wave_speed / side.size
 }
 
 /// C, given or as a multiple of rho c of the softer side.

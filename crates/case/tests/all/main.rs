@@ -5,3 +5,4 @@
 
 mod compare;
 mod stage_one;
+mod warnings;
