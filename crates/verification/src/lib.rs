@@ -39,6 +39,7 @@ mod order;
 mod restitution;
 mod resume;
 mod sdnl111;
+mod sdnl111_bars;
 mod shapes;
 mod supports;
 mod threads;
@@ -96,6 +97,7 @@ registry! {
     restitution
     resume
     sdnl111
+    sdnl111_bars
     shapes
     supports
     threads
