@@ -75,6 +75,7 @@ fn sweep(criterion: &mut Criterion, name: &str, mesh: &Mesh, kinematics: Kinemat
         cells,
         kinematics,
         material: MATERIAL,
+        weights: None,
     };
     let body = match Body::new(mesh, spec, &number) {
         Ok(body) => body,

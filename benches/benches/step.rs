@@ -94,6 +94,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
             cells,
             kinematics: Kinematics::Solid,
             material: RUBBER,
+            weights: None,
         },
         mass: MassKind::Lumped,
         velocity: [0.0, 0.0, -SPEED],
@@ -112,6 +113,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
         }),
         sliding: Sliding::Finite,
         massless: false,
+        integration: carom_contact::Integration::Node,
     };
     Ok(Model {
         mesh,
@@ -121,6 +123,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
         contacts: vec![ground],
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt,
+        adaptive: None,
     })
 }
 

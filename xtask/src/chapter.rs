@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Time schemes of the table, as `carom compare --with` takes them.
-const SCHEMES: [&str; 12] = [
+const SCHEMES: [&str; 17] = [
     "theta",
     "theta={theta=0.6}",
     "theta={theta=1.0}",
@@ -14,8 +14,13 @@ const SCHEMES: [&str; 12] = [
     "central-difference",
     "generalised-alpha={rho-inf=0.8}",
     "tchamwa-wielgosz",
+    "nonsmooth-alpha",
+    "nonsmooth-alpha={rho-inf=0.0}",
+    "krenk",
     "paoli-schatzman",
+    "paoli-schatzman={restitution=0.5}",
     "laursen-chawla",
+    "laursen-love",
     "kane",
     "contact-stabilised",
 ];

@@ -26,10 +26,10 @@ impl Bar {
         (0..3).map(|i| axis[i] * (u[1][i] - u[0][i])).sum::<f64>() / length
     }
 
-    /// Stiffness E A / L [e⊗e, -e⊗e; -e⊗e, e⊗e], row-major, in N/m.
-    pub(crate) fn stiffness(&self, dim: usize, x: &[[f64; 3]], k: &mut [f64]) {
+    /// Stiffness w E A / L [e⊗e, -e⊗e; -e⊗e, e⊗e], row-major, in N/m. `weight`: w at the middle.
+    pub(crate) fn stiffness(&self, dim: usize, weight: f64, x: &[[f64; 3]], k: &mut [f64]) {
         let (axis, length) = Bar::axis(x);
-        let stiffness = self.young * self.area / length;
+        let stiffness = weight * (self.young * self.area / length);
         for a in 0..2 {
             for b in 0..2 {
                 let sign = if a == b { 1.0 } else { -1.0 };
@@ -43,10 +43,19 @@ impl Bar {
         }
     }
 
-    /// Scalar consistent mass ρ A L / 6 [2, 1; 1, 2] in kg, row-major.
-    pub(crate) fn mass(&self, x: &[[f64; 3]], m: &mut [f64]) {
+    /// Scalar consistent mass ∫ ρ A w N_a N_b ds = ρ A L / 12 [3 w_1 + w_2, w_1 + w_2; w_1 + w_2, w_1 + 3 w_2] in kg,
+    /// row-major. `weights`: w_1 and w_2 at the nodes, linear between them.
+    pub(crate) fn mass(&self, weights: &[f64], x: &[[f64; 3]], m: &mut [f64]) {
         let sixth = self.density * self.area * Bar::axis(x).1 / 6.0;
-        m.copy_from_slice(&[2.0 * sixth, sixth, sixth, 2.0 * sixth]);
+        let (w1, w2) = (weights[0], weights[1]);
+        // halves of whole numbers for w = 1, so that it changes no bit
+        let product = 0.5 * (w1 + w2) * sixth;
+        m.copy_from_slice(&[
+            0.5 * (3.0 * w1 + w2) * sixth,
+            product,
+            product,
+            0.5 * (w1 + 3.0 * w2) * sixth,
+        ]);
     }
 
     /// Volume in m³ and stress tensor E ε e⊗e in Pa.

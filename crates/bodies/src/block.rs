@@ -12,6 +12,7 @@ use crate::bar::Bar;
 use crate::continuum::{self, Law, Points};
 use crate::force::{self, Cell, Kernel};
 use crate::lanes::Lanes;
+use crate::weights::{CellWeights, ChunkWeights, ElementWeights, Unweighted, WIDEST, Weight};
 
 /// Elements per chunk, whatever the number of threads: about 30 microseconds of work.
 fn chunk_length(kind: Kind) -> usize {
@@ -52,6 +53,7 @@ pub(crate) struct Chunk {
     x: Vec<[f64; 3]>,
     /// Nodes of each element, as places in `nodes`.
     connectivity: Vec<u32>,
+    weights: Option<ChunkWeights>,
 }
 
 /// Buffers of the internal-force sweep: one list of nodal forces and one energy per chunk.
@@ -62,26 +64,49 @@ pub struct Scratch {
 }
 
 impl Block {
-    /// `elements`: system numbers of the nodes of each element, flat; `x`: coordinates by system number.
-    pub(crate) fn new(kind: Kind, physics: Physics, elements: &[u32], x: &[[f64; 3]]) -> Block {
+    /// `elements`: system numbers of the nodes of each element, flat; `x`: coordinates by system number; `weights`: of
+    /// these elements in their order.
+    pub(crate) fn new(
+        kind: Kind,
+        physics: Physics,
+        elements: &[u32],
+        x: &[[f64; 3]],
+        weights: Option<&CellWeights>,
+    ) -> Block {
         let per = kind.table().nodes;
-        let chunks = elements.chunks(chunk_length(kind) * per).map(|elements| {
-            let mut nodes = elements.to_vec();
-            nodes.sort_unstable();
-            nodes.dedup();
-            let place = |node: &u32| nodes.partition_point(|n| n < node) as u32;
-            Chunk {
-                connectivity: elements.iter().map(place).collect(),
-                x: nodes.iter().map(|&node| x[node as usize]).collect(),
-                nodes,
-            }
-        });
+        let length = chunk_length(kind) * per;
+        let stiffness_points = Points::new(kind, kind.table().stiffness_rule);
+        let chunk_weights = |first: usize, count: usize| {
+            weights.map(|weights| {
+                let values = first..first + count;
+                let (inertia, stiffness) =
+                    (&weights.inertia[values.clone()], &weights.stiffness[values]);
+                ChunkWeights::new(inertia, stiffness, per, &stiffness_points)
+            })
+        };
+        let chunks = elements
+            .chunks(length)
+            .enumerate()
+            .map(|(place, elements)| {
+                let weights = chunk_weights(place * length, elements.len());
+                let mut nodes = elements.to_vec();
+                nodes.sort_unstable();
+                nodes.dedup();
+                let place = |node: &u32| nodes.partition_point(|n| n < node) as u32;
+                Chunk {
+                    connectivity: elements.iter().map(place).collect(),
+                    x: nodes.iter().map(|&node| x[node as usize]).collect(),
+                    nodes,
+                    weights,
+                }
+            });
+        let chunks = chunks.collect();
         Block {
             kind,
             physics,
-            stiffness_points: Points::new(kind, kind.table().stiffness_rule),
+            stiffness_points,
             mass_points: Points::new(kind, kind.table().mass_rule),
-            chunks: chunks.collect(),
+            chunks,
         }
     }
 
@@ -113,6 +138,12 @@ impl Block {
         chunks.for_each(chunk);
     }
 
+    /// Number of elements.
+    pub(crate) fn len(&self) -> usize {
+        let entries = self.chunks.iter().map(|chunk| chunk.connectivity.len());
+        entries.sum::<usize>() / self.kind.table().nodes
+    }
+
     /// Calls `visit` with the nodes of each element.
     pub(crate) fn elements(&self, visit: &mut dyn FnMut(&[u32])) {
         let mut nodes = [0; MAX_NODES];
@@ -141,18 +172,25 @@ impl Block {
     fn visit<const N: usize>(&self, dim: usize, stiffness: bool, visit: &mut Visit) {
         let mut k = vec![0.0; if stiffness { (dim * N).pow(2) } else { 0 }];
         let mut m = vec![0.0; N * N];
+        let (mass_points, stiffness_points) = (&self.mass_points, &self.stiffness_points);
+        let mut w = ElementWeights::<N>::ones(mass_points, stiffness_points);
         for chunk in &self.chunks {
-            for element in chunk.connectivity.chunks_exact(N) {
+            for (place, element) in chunk.connectivity.chunks_exact(N).enumerate() {
                 let x = element_nodes::<N, _>(element, |node| chunk.x[node]);
+                if let Some(weights) = &chunk.weights {
+                    w.set(mass_points, weights, place);
+                }
                 match &self.physics {
-                    Physics::Bar(bar) => bar.mass(&x, &mut m),
-                    Physics::Continuum(law) => continuum::mass(law, &self.mass_points, &x, &mut m),
+                    Physics::Bar(bar) => bar.mass(&w.nodes, &x, &mut m),
+                    Physics::Continuum(law) => {
+                        continuum::mass(law, mass_points, &w.inertia, &x, &mut m)
+                    }
                 }
                 match &self.physics {
                     _ if !stiffness => {}
-                    Physics::Bar(bar) => bar.stiffness(dim, &x, &mut k),
+                    Physics::Bar(bar) => bar.stiffness(dim, w.stiffness[0], &x, &mut k),
                     Physics::Continuum(law) => {
-                        continuum::stiffness(law, &self.stiffness_points, &x, &mut k)
+                        continuum::stiffness(law, stiffness_points, &w.stiffness, &x, &mut k)
                     }
                 }
                 visit(
@@ -164,7 +202,17 @@ impl Block {
         }
     }
 
-    /// Volume (m³) and mean stress (Pa) of each element, in the block's order.
+    /// Place of an element whose stiffness has a negative weight, and that weight.
+    pub(crate) fn negative_stiffness(&self) -> Option<(usize, f64)> {
+        let mut chunks = self.chunks.iter().enumerate();
+        chunks.find_map(|(place, chunk)| {
+            let (element, weight) = chunk.weights.as_ref()?.negative_stiffness()?;
+            Some((place * chunk_length(self.kind) + element, weight))
+        })
+    }
+
+    /// Volume (m³) and mean stress (Pa) of each element, in the block's order; weights do not enter: it is the stress
+    /// of the model.
     pub(crate) fn stresses(&self, dim: usize, u: &[f64], out: &mut Vec<(f64, Mat3)>) {
         match self.kind {
             Kind::Point1 => {}
@@ -206,7 +254,7 @@ impl WithSimd for Sweep<'_> {
     fn with_simd<S: Simd>(self, _: S) -> f64 {
         // two registers for each number: their chains of operations fill each other's waiting time
         if S::F64_LANES == 8 {
-            self.run::<S, 16>()
+            self.run::<S, WIDEST>()
         } else {
             self.run::<S, 8>()
         }
@@ -216,23 +264,31 @@ impl WithSimd for Sweep<'_> {
 impl Sweep<'_> {
     #[inline(always)]
     fn run<S: Simd, const W: usize>(self) -> f64 {
+        match &self.chunk.weights {
+            None => self.kinds::<S, W>(Unweighted),
+            Some(weights) => self.kinds::<S, W>(weights.at_points()),
+        }
+    }
+
+    #[inline(always)]
+    fn kinds<S: Simd, const W: usize>(self, w: impl Weight) -> f64 {
         let law = match &self.block.physics {
             Physics::Continuum(law) => law,
             Physics::Bar(bar) => {
                 return match self.dim {
-                    1 => self.batches::<S, W, 2, 1>(bar),
-                    2 => self.batches::<S, W, 2, 2>(bar),
-                    _ => self.batches::<S, W, 2, 3>(bar),
+                    1 => self.batches::<S, W, 2, 1>(bar, w),
+                    2 => self.batches::<S, W, 2, 2>(bar, w),
+                    _ => self.batches::<S, W, 2, 3>(bar, w),
                 };
             }
         };
         let points = &self.block.stiffness_points;
         match self.block.kind {
             Kind::Point1 | Kind::Bar2 => 0.0,
-            Kind::Tri3 => self.batches::<S, W, 3, 2>(&Cell::new(law, points, &force::TRI3)),
-            Kind::Quad4 => self.batches::<S, W, 4, 2>(&Cell::new(law, points, &force::QUAD4)),
-            Kind::Tet4 => self.batches::<S, W, 4, 3>(&Cell::new(law, points, &force::TET4)),
-            Kind::Hex8 => self.batches::<S, W, 8, 3>(&Cell::new(law, points, &force::HEX8)),
+            Kind::Tri3 => self.batches::<S, W, 3, 2>(&Cell::new(law, points, &force::TRI3), w),
+            Kind::Quad4 => self.batches::<S, W, 4, 2>(&Cell::new(law, points, &force::QUAD4), w),
+            Kind::Tet4 => self.batches::<S, W, 4, 3>(&Cell::new(law, points, &force::TET4), w),
+            Kind::Hex8 => self.batches::<S, W, 8, 3>(&Cell::new(law, points, &force::HEX8), w),
         }
     }
 
@@ -241,9 +297,10 @@ impl Sweep<'_> {
     fn batches<S: Simd, const W: usize, const N: usize, const D: usize>(
         self,
         kernel: &impl Kernel<N, D>,
+        w: impl Weight,
     ) -> f64 {
         let mut energy = 0.0;
-        for batch in self.chunk.connectivity.chunks(N * W) {
+        for (place, batch) in self.chunk.connectivity.chunks(N * W).enumerate() {
             let count = batch.len() / N;
             let (mut x, mut u) = ([[Lanes::ZERO; D]; N], [[Lanes::ZERO; D]; N]);
             for k in 0..W {
@@ -260,7 +317,7 @@ impl Sweep<'_> {
                 }
             }
             let mut f = [[Lanes::ZERO; D]; N];
-            let energies = kernel.force::<S, W>(&x, &u, &mut f);
+            let energies = kernel.force::<S, W>(&x, &u, w.batch(place * W), &mut f);
             for (k, element) in batch.chunks_exact(N).enumerate() {
                 energy += energies.0[k];
                 for a in 0..N {
@@ -313,7 +370,12 @@ mod tests {
     };
 
     /// Elements that share no node: `count` reference cells, each moved, and their corners too.
-    fn block(kind: Kind, kinematics: Kinematics, count: usize) -> (Block, Vec<f64>) {
+    fn block(
+        kind: Kind,
+        kinematics: Kinematics,
+        count: usize,
+        weighted: bool,
+    ) -> (Block, Vec<f64>) {
         let element = kind.table();
         let total = count * element.nodes;
         let x = (0..total).map(|node| {
@@ -334,7 +396,17 @@ mod tests {
             _ => Physics::Continuum(Law::new(kinematics, MATERIAL, element.dim)),
         };
         let elements: Vec<u32> = (0..total as u32).collect();
-        let block = Block::new(kind, physics, &elements, &x.collect::<Vec<_>>());
+        let weights = weighted.then(|| CellWeights {
+            inertia: vec![1.0; total],
+            stiffness: (0..total).map(|a| (a as f64).sin().powi(2)).collect(),
+        });
+        let block = Block::new(
+            kind,
+            physics,
+            &elements,
+            &x.collect::<Vec<_>>(),
+            weights.as_ref(),
+        );
         let u = (0..element.dim * total).map(|i| (i as f64).cos());
         (block, u.collect())
     }
@@ -348,8 +420,9 @@ mod tests {
             (Kind::Tet4, Kinematics::Solid),
             (Kind::Hex8, Kinematics::Solid),
         ] {
-            for count in [1, 7, 8, 9, 16, 17, 50] {
-                let (block, u) = block(kind, kinematics, count);
+            let counts = [1, 7, 8, 9, 16, 17, 50].into_iter();
+            for (count, weighted) in counts.flat_map(|n| [(n, false), (n, true)]) {
+                let (block, u) = block(kind, kinematics, count, weighted);
                 let dim = kind.table().dim;
                 let chunk = &block.chunks[0];
                 let (mut best, mut plain) = (vec![[0.0; 3]; chunk.nodes.len()], Vec::new());

@@ -12,6 +12,7 @@ use crate::Error;
 use crate::bar::Bar;
 use crate::block::{Block, Physics, Scratch, Visit};
 use crate::continuum::Law;
+use crate::weights::CellWeights;
 use crate::{size, stability};
 
 /// How the displacement of an element is restricted, and what its missing dimensions are.
@@ -106,6 +107,8 @@ pub struct BodySpec {
     pub kinematics: Kinematics,
     /// Material.
     pub material: Elastic,
+    /// Weights of inertia and internal work; none for a body that is alone in its volume.
+    pub weights: Option<CellWeights>,
 }
 
 /// A discretised body at small strain, linear in the displacement.
@@ -124,7 +127,8 @@ impl Body {
     /// Builds a body on a mesh. `number`: system number of each mesh node.
     ///
     /// # Errors
-    /// No element, elements of a wrong dimension, a negative radius in axisymmetry.
+    /// No element, elements of a wrong dimension, a negative radius in axisymmetry, weights that are too few or too many
+    /// or give a negative mass or stiffness.
     pub fn new(mesh: &Mesh, spec: BodySpec, number: &[u32]) -> Result<Body, Error> {
         if spec.cells.is_empty() {
             return Err(Error::Empty { body: spec.name });
@@ -156,11 +160,13 @@ impl Body {
             let nodes = of_kind.iter().flat_map(|&cell| mesh.element_nodes(cell));
             let elements: Vec<u32> = nodes.map(|&node| number[node as usize]).collect();
             if !elements.is_empty() {
-                blocks.push(Block::new(kind, physics, &elements, &x));
+                let of_kind = |all: &CellWeights| all.of_kind(mesh, &spec.cells, kind);
+                let weights = spec.weights.as_ref().map(of_kind);
+                blocks.push(Block::new(kind, physics, &elements, &x, weights.as_ref()));
             }
             cells.extend(of_kind);
         }
-        Ok(Body {
+        let body = Body {
             name: spec.name,
             kinematics: spec.kinematics,
             material: spec.material,
@@ -171,7 +177,49 @@ impl Body {
             cells,
             blocks,
             dim: mesh.dim,
+        };
+        if spec.weights.is_some() {
+            body.check_mass(mesh)?;
+            body.check_stiffness()?;
+        }
+        Ok(body)
+    }
+
+    fn check_mass(&self, mesh: &Mesh) -> Result<(), Error> {
+        let (mut place, mut negative) = (0, None);
+        self.each_matrix(false, &mut |nodes, _, m| {
+            for (a, row) in m.chunks_exact(nodes.len()).enumerate() {
+                let mass: f64 = row.iter().sum();
+                if mass.is_nan() || mass < 0.0 {
+                    negative.get_or_insert((place, a, mass));
+                }
+            }
+            place += 1;
+        });
+        let Some((place, a, mass)) = negative else {
+            return Ok(());
+        };
+        Err(Error::NegativeMass {
+            body: self.name.clone(),
+            cell: self.cells[place],
+            node: mesh.element_nodes(self.cells[place])[a],
+            mass,
         })
+    }
+
+    fn check_stiffness(&self) -> Result<(), Error> {
+        let mut first = 0;
+        for block in &self.blocks {
+            if let Some((place, weight)) = block.negative_stiffness() {
+                return Err(Error::NegativeStiffness {
+                    body: self.name.clone(),
+                    cell: self.cells[first + place],
+                    weight,
+                });
+            }
+            first += block.len();
+        }
+        Ok(())
     }
 
     /// Name as in the case file.
@@ -296,7 +344,8 @@ impl Body {
     }
 
     /// Upper bound of the angular frequencies (rad/s) with lumped mass: the largest eigenvalue of M_e⁻¹ K_e over the
-    /// elements bounds that of the body (Irons). An explicit step is stable below 2/ω.
+    /// elements bounds that of the body (Irons). An explicit step is stable below 2/ω. Elements whose weights are all
+    /// zero do not count; a node with stiffness and no mass in an element makes the bound infinite.
     pub fn frequency_bound(&self) -> f64 {
         let mut bound: f64 = 0.0;
         let dim = self.dim;
@@ -316,6 +365,9 @@ impl Body {
 }
 
 fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
+    if let Some(weights) = &spec.weights {
+        weights.check(&spec.name, mesh, &spec.cells)?;
+    }
     let dim = spec.kinematics.dim();
     for &cell in &spec.cells {
         let element = mesh.kind(cell).table();

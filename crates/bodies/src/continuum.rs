@@ -128,18 +128,21 @@ fn strain<const N: usize>(
 
 /// Stiffness of one element, row-major, `dim * N` squared entries in N/m:
 /// K_ab,ij = ∫ λ t_ai t_bj + μ (dN_a,j dN_b,i + δ_ij dN_a · dN_b) dV, with t_a the divergence of N_a, which in
-/// axisymmetry holds N_a/r in its first component, beside the term 2μ N_a N_b / r².
+/// axisymmetry holds N_a/r in its first component, beside the term 2μ N_a N_b / r². `weights`: at the points, factors
+/// of dV.
 pub(crate) fn stiffness<const N: usize>(
     law: &Law,
     points: &Points,
+    weights: &[f64],
     x: &[[f64; 3]; N],
     k: &mut [f64],
 ) {
     let dim = law.dim;
     let n = dim * N;
     k.fill(0.0);
-    for point in &points.points {
-        let at = local(law, point, x);
+    for (point, weight) in points.points.iter().zip(weights) {
+        let mut at = local(law, point, x);
+        at.volume *= weight;
         let mu = law.shear_modulus;
         let hoop = |a: usize| {
             if law.axisymmetric {
@@ -171,11 +174,18 @@ pub(crate) fn stiffness<const N: usize>(
     }
 }
 
-/// Scalar consistent mass ∫ ρ N_a N_b dV of one element in kg, row-major N x N.
-pub(crate) fn mass<const N: usize>(law: &Law, points: &Points, x: &[[f64; 3]; N], m: &mut [f64]) {
+/// Scalar consistent mass ∫ ρ N_a N_b dV of one element in kg, row-major N x N. `weights`: at the points, factors of dV.
+pub(crate) fn mass<const N: usize>(
+    law: &Law,
+    points: &Points,
+    weights: &[f64],
+    x: &[[f64; 3]; N],
+    m: &mut [f64],
+) {
     m.fill(0.0);
-    for point in &points.points {
-        let at = local(law, point, x);
+    for (point, weight) in points.points.iter().zip(weights) {
+        let mut at = local(law, point, x);
+        at.volume *= weight;
         for a in 0..N {
             for b in 0..N {
                 m[a * N + b] += law.material.density * point.n[a] * point.n[b] * at.volume;

@@ -1,5 +1,6 @@
 //! What a body can refuse.
 
+use carom_mesh::ElementId;
 use thiserror::Error as ThisError;
 
 /// Why a body could not be built.
@@ -36,5 +37,43 @@ pub enum Error {
         node: u32,
         /// Its first coordinate in m.
         radius: f64,
+    },
+    /// Weights that do not fit the cells.
+    #[error("body '{body}': {found} weights of {quantity} for cells with {expected} nodes in all")]
+    WeightCount {
+        /// Name of the body.
+        body: String,
+        /// Which weights: inertia or stiffness.
+        quantity: &'static str,
+        /// Values given.
+        found: usize,
+        /// Sum of the numbers of nodes of the cells.
+        expected: usize,
+    },
+    /// Weights of inertia that give a negative row sum of the mass of an element, or none that is a number.
+    #[error(
+        "body '{body}': the weights of inertia of a cell give its node {node} the mass {mass:e} kg, which must not be negative"
+    )]
+    NegativeMass {
+        /// Name of the body.
+        body: String,
+        /// The cell.
+        cell: ElementId,
+        /// Number of the node in the mesh, from 0.
+        node: u32,
+        /// Row sum ∫ ρ α N_a dV in kg.
+        mass: f64,
+    },
+    /// A weight of stiffness that is negative at an integration point, or no number.
+    #[error(
+        "body '{body}': the weight of stiffness is {weight:e} at an integration point, which must not be negative"
+    )]
+    NegativeStiffness {
+        /// Name of the body.
+        body: String,
+        /// The cell.
+        cell: ElementId,
+        /// δ at the point.
+        weight: f64,
     },
 }

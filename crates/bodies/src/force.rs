@@ -12,14 +12,17 @@ use pulp::Simd;
 use crate::bar::Bar;
 use crate::continuum::{Law, Point, Points};
 use crate::lanes::{Lanes, Vector};
+use crate::weights::Weight;
 
 /// Internal forces of elements with N nodes and D unknowns per node.
 pub(crate) trait Kernel<const N: usize, const D: usize> {
     /// Adds the nodal forces (N) for the positions `x` and displacements `u` (m) to `f`; returns the strain energies (J).
+    /// `w`: weight of the internal work at the points.
     fn force<S: Simd, const W: usize>(
         &self,
         x: &[Vector<W, D>; N],
         u: &[Vector<W, D>; N],
+        w: impl Weight,
         f: &mut [Vector<W, D>; N],
     ) -> Lanes<W>;
 }
@@ -31,6 +34,7 @@ impl<const D: usize> Kernel<2, D> for Bar {
         &self,
         x: &[Vector<W, D>; 2],
         u: &[Vector<W, D>; 2],
+        w: impl Weight,
         f: &mut [Vector<W, D>; 2],
     ) -> Lanes<W> {
         let d: Vector<W, D> = from_fn(|i| x[1][i] - x[0][i]);
@@ -40,7 +44,10 @@ impl<const D: usize> Kernel<2, D> for Bar {
             stretch = d[i].mul_add::<S>(u[1][i] - u[0][i], stretch);
         }
         // tension over length: E A (d · Δu) / L³
-        let pull = stretch * (self.young * self.area) / (square * square.sqrt());
+        let pull = w.times(
+            0,
+            stretch * (self.young * self.area) / (square * square.sqrt()),
+        );
         for i in 0..D {
             f[0][i] -= pull * d[i];
             f[1][i] += pull * d[i];
@@ -78,12 +85,13 @@ impl<const N: usize, const D: usize, const E: usize> Kernel<N, D> for Cell<'_, D
         &self,
         x: &[Vector<W, D>; N],
         u: &[Vector<W, D>; N],
+        w: impl Weight,
         f: &mut [Vector<W, D>; N],
     ) -> Lanes<W> {
         let (dx, du) = (self.differences(x), self.differences(u));
         let mut df = [[[Lanes::ZERO; D]; E]; D];
         let mut energy = Lanes::ZERO;
-        for point in &self.points.points {
+        for (q, point) in self.points.points.iter().enumerate() {
             let jacobian = self.gradient::<S, W>(point, &dx);
             let cofactor = cofactor(&jacobian);
             let det = product::<S, W, D>(&jacobian[0], &cofactor[0]);
@@ -102,6 +110,7 @@ impl<const N: usize, const D: usize, const E: usize> Kernel<N, D> for Cell<'_, D
                 hoop = interpolate::<S, W, N>(point, u.map(|u| u[0])) / radius;
                 weight = radius * (TAU * point.weight);
             }
+            weight = w.times(q, weight);
             let (stress, hoop_stress) = stress::<S, W, D>(self.law, &h, hoop);
             let mut density = hoop_stress * hoop;
             for i in 0..D {
@@ -111,7 +120,7 @@ impl<const N: usize, const D: usize, const E: usize> Kernel<N, D> for Cell<'_, D
             self.spread::<S, W>(point, &stress, &cofactor, weight, &mut df);
             if D == 2 && self.law.axisymmetric {
                 // ∫ σ_θ N_a / r 2πr dA: the radius drops out
-                let ring = hoop_stress * det * (TAU * point.weight);
+                let ring = w.times(q, hoop_stress * det * (TAU * point.weight));
                 for a in 0..N {
                     f[a][0] = ring.scale_add::<S>(point.n[a], f[a][0]);
                 }

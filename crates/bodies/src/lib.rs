@@ -12,8 +12,10 @@ mod force;
 mod lanes;
 mod size;
 mod stability;
+mod weights;
 
 pub use block::Scratch;
 pub use body::{Body, BodySpec, Kinematics, MassKind};
 pub use error::Error;
 pub use size::{height, smallest as smallest_size};
+pub use weights::CellWeights;

@@ -3,7 +3,7 @@
 use carom_elements::MAX_NODES;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Writes M^-1/2 K M^-1/2 with the row-sum mass into `out`, row-major (1/s²).
+/// Writes M^-1/2 K M^-1/2 with the row-sum mass into `out`, row-major (1/s²); 0 where K is 0, even without mass.
 pub(crate) fn scale(dim: usize, nodes: usize, k: &[f64], m: &[f64], out: &mut Vec<f64>) {
     let n = dim * nodes;
     let mut root = [0.0; MAX_NODES];
@@ -11,12 +11,15 @@ pub(crate) fn scale(dim: usize, nodes: usize, k: &[f64], m: &[f64], out: &mut Ve
         *root = row.iter().sum::<f64>().sqrt();
     }
     out.clear();
-    out.extend((0..n * n).map(|entry| k[entry] / (root[entry / n / dim] * root[entry % n / dim])));
+    out.extend((0..n * n).map(|entry| match k[entry] {
+        0.0 => 0.0,
+        k => k / (root[entry / n / dim] * root[entry % n / dim]),
+    }));
 }
 
 /// Upper bound, within a thousandth, of the largest eigenvalue of a symmetric positive semi-definite matrix
 /// (row-major, overwritten): tr(B^p)^(1/p) with p = 4096 by repeated squaring, never below the eigenvalue and at most
-/// n^(1/p) times it.
+/// n^(1/p) times it. Infinite if a diagonal entry is.
 pub(crate) fn largest_eigenvalue(b: &mut Vec<f64>) -> f64 {
     const SQUARINGS: u32 = 12;
     let n = b.len().isqrt();
@@ -29,6 +32,9 @@ pub(crate) fn largest_eigenvalue(b: &mut Vec<f64>) -> f64 {
         let factor = trace(b);
         if factor <= 0.0 {
             return 0.0;
+        }
+        if factor.is_infinite() {
+            return factor;
         }
         let inverse = 1.0 / factor;
         // what would become subnormal is slow to multiply and too small to matter

@@ -65,10 +65,14 @@ pub fn facts(built: &Built) -> Vec<Fact> {
     facts.push(fact(
         "time",
         format!(
-            "{}, {} steps of {:.6e} s (Courant number {:.3}) to {:.4e} s",
+            "{}, {} steps of {:.6e} s{} (Courant number {:.3}) to {:.4e} s",
             scheme.name(),
             step_count(built.end, system.dt),
             system.dt,
+            system.adaptive.map_or(String::new(), |rules| format!(
+                " or less, down to {:.2e} s",
+                rules.smallest
+            )),
             system.dt / crossing,
             built.end
         ),

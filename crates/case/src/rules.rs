@@ -1,7 +1,10 @@
 //! Rules between several values of a case, which the schema cannot say; still without a look at any mesh.
 
 use crate::error::Problem;
-use crate::schema::{Capture, Case, Contact, Count, Law, Line, Obstacle, Part, Sign, Step};
+use crate::schema::{
+    Capture, Case, Contact, Count, Integration, IntegrationWith, Law, Line, Obstacle, Part, Sign,
+    Step,
+};
 
 /// Most nodes of a generated part: beyond it a case is a slip of the pen.
 const MOST_NODES: f64 = 1e8;
@@ -89,6 +92,38 @@ fn check_contact(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
         problems.push(problem.accepted(["a vector that is not zero"]));
     }
     check_capture(path, &contact.law, problems);
+    check_r(path, contact, problems);
+}
+
+/// An r that is only given for another law.
+fn check_r(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
+    let Integration::With(IntegrationWith::Quadrature(given)) = contact.integration else {
+        return;
+    };
+    let used = match &contact.law {
+        Law::Displacement(_) => Some("r"),
+        Law::Velocity(_) => Some("r-v"),
+        Law::Damped(_)
+        | Law::Compliance(_)
+        | Law::Restitution(_)
+        | Law::Penalty(_)
+        | Law::Stop(_) => None,
+    };
+    let named = [("r", given.r.is_some()), ("r-v", given.r_v.is_some())];
+    let given: Vec<&str> = named
+        .into_iter()
+        .filter_map(|(name, given)| given.then_some(name))
+        .collect();
+    if let Some(first) = given.first()
+        && !given.iter().any(|name| Some(*name) == used)
+    {
+        let message = match used {
+            Some(_) => "this is the r of another law",
+            None => "the law has no weak form, and so no r",
+        };
+        let path = format!("{path}.integration.quadrature.{first}");
+        problems.push(Problem::new(path, message).accepted(used));
+    }
 }
 
 /// Captures that a law cannot have.

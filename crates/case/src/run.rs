@@ -152,8 +152,16 @@ fn scheme(scheme: &Scheme) -> String {
         }
         Scheme::Hht(scheme) => format!("hht, alpha = {}", scheme.alpha),
         Scheme::TchamwaWielgosz(scheme) => format!("tchamwa-wielgosz, phi = {}", scheme.phi),
-        Scheme::PaoliSchatzman(_) => "paoli-schatzman".to_string(),
+        Scheme::PaoliSchatzman(scheme) if scheme.restitution == 0.0 => {
+            "paoli-schatzman".to_string()
+        }
+        Scheme::PaoliSchatzman(scheme) => {
+            format!("paoli-schatzman, restitution = {}", scheme.restitution)
+        }
         Scheme::LaursenChawla(_) => "laursen-chawla".to_string(),
+        Scheme::LaursenLove(_) => "laursen-love".to_string(),
+        Scheme::Krenk(scheme) => format!("krenk, rho-inf = {}", scheme.rho_inf),
+        Scheme::NonsmoothAlpha(scheme) => format!("nonsmooth-alpha, rho-inf = {}", scheme.rho_inf),
         Scheme::ContactStabilised(_) => "contact-stabilised".to_string(),
         Scheme::Kane(kane) => format!("kane, beta = {}, gamma = {}", kane.beta, kane.gamma),
     }

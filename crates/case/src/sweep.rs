@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use carom_dynamics::{Observer, State, StepReport, System, step_count};
+use carom_dynamics::{Observer, State, StepReport, System};
 use carom_output::compare::{Done, Outcome, Recorder, Variant};
 use carom_output::{Folder, Reference};
 use thiserror::Error as ThisError;
@@ -29,8 +29,8 @@ pub struct Sweep<'a> {
     pub contact: Option<&'a str>,
     /// Runs at one time. Times are comparable with 1 only.
     pub jobs: usize,
-    /// Makes an observer for the run of this name and of so many steps.
-    pub watch: &'a (dyn Fn(&str, u64) -> Box<dyn Observer> + Sync),
+    /// Makes an observer for the run of this name up to this time, s.
+    pub watch: &'a (dyn Fn(&str, f64) -> Box<dyn Observer> + Sync),
     /// Asked before every step.
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
@@ -199,10 +199,9 @@ fn run_one(job: &Job, sweep: &Sweep) -> Ended {
     };
     let chosen = sweep.contact.and_then(place);
     let exact = reference(&built);
-    let steps = step_count(built.end, built.system.dt);
     let mut observer = Watched {
         recorder: Recorder::new(&built.system, exact.as_ref(), chosen),
-        watch: (sweep.watch)(&job.name, steps),
+        watch: (sweep.watch)(&job.name, built.end),
     };
     let folder = sweep.folder.join(&job.name);
     let finished = run(

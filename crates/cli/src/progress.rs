@@ -3,21 +3,30 @@
 use carom_dynamics::{Error, Observer, State, StepReport, System};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+/// Parts of the simulated time that the bar counts.
+const PARTS: f64 = 1e4;
+
 /// A bar on standard error; nothing where that is no terminal.
 pub struct Progress {
     bar: ProgressBar,
+    end: f64,
 }
 
 impl Progress {
-    /// A bar of as many steps. `hidden` draws nothing.
-    pub fn new(steps: u64, hidden: bool) -> Progress {
-        let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr_with_hz(5));
+    /// A bar up to a simulated time in s. `hidden` draws nothing.
+    pub fn new(end: f64, hidden: bool) -> Progress {
+        let parts = Some(PARTS as u64);
+        let bar = ProgressBar::with_draw_target(parts, ProgressDrawTarget::stderr_with_hz(5));
         if hidden {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
-        let style = ProgressStyle::with_template("{bar:30} {pos}/{len} steps, {eta} left, {msg}");
+        let style = ProgressStyle::with_template("{bar:30} {percent} %, {eta} left, {msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Progress { bar }
+        Progress { bar, end }
+    }
+
+    fn show(&self, time: f64) {
+        self.bar.set_position((PARTS * time / self.end) as u64);
     }
 }
 
@@ -34,16 +43,16 @@ impl Observer for Progress {
             let relative =
                 ledger.balance.energy_residual / ledger.largest_energy.max(f64::MIN_POSITIVE);
             self.bar.set_message(format!(
-                "t = {:.3e} s, energy residual {relative:+.0e}",
-                report.time
+                "step {}, t = {:.3e} s, energy residual {relative:+.0e}",
+                report.step, report.time
             ));
-            self.bar.set_position(report.step);
+            self.show(report.time);
         }
         Ok(())
     }
 
     fn finish(&mut self, _system: &System, state: &State) -> Result<(), Error> {
-        self.bar.set_position(state.step);
+        self.show(state.time);
         self.bar.finish_and_clear();
         Ok(())
     }

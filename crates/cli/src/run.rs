@@ -6,7 +6,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_case::{Built, Finished, Input, schema::Case};
-use carom_dynamics::step_count;
 use carom_output::Summary;
 use carom_output::plot::quantity;
 
@@ -72,8 +71,7 @@ fn march(
     if let Err(error) = handled {
         tracing::warn!("Ctrl-C will not leave a summary: {error}");
     }
-    let steps = step_count(built.end, built.system.dt);
-    let mut progress = Progress::new(steps, quiet || !std::io::stderr().is_terminal());
+    let mut progress = Progress::new(built.end, quiet || !std::io::stderr().is_terminal());
     carom_case::run((input, case, built), folder, &mut progress, &|| {
         stopped.load(Ordering::Relaxed)
     })
@@ -82,11 +80,23 @@ fn march(
 /// The summary for people: forces, impulses, energy, verdict, where to look.
 fn print(summary: &Summary, folder: &Path) {
     println!("{}", summary.title);
+    let time = &summary.time;
+    let sizes = match time.smallest_step == time.largest_step {
+        true => quantity(time.largest_step, "s"),
+        false => format!(
+            "{} to {}",
+            quantity(time.smallest_step, "s"),
+            quantity(time.largest_step, "s")
+        ),
+    };
+    let rejected = match time.rejected {
+        0 => String::new(),
+        count => format!(", {count} attempts dropped"),
+    };
     println!(
-        "  {} steps of {} to {}",
-        summary.time.steps,
-        quantity(summary.time.largest_step, "s"),
-        quantity(summary.time.end, "s")
+        "  {} steps of {sizes} to {}{rejected}",
+        time.steps,
+        quantity(time.end, "s")
     );
     for (name, contact) in &summary.contacts {
         println!("  contact {name} ({} law)", contact.law);
@@ -107,6 +117,11 @@ fn print(summary: &Summary, folder: &Path) {
             (None, _) => ", never closed".to_string(),
         };
         println!("    impulse {}{times}", quantity(contact.impulse, "N s"));
+        if let Some(mixed) = contact.mixed_supports {
+            println!(
+                "    weak form: at most {mixed} nodes with partly closed supports, where the pressure depends on r"
+            );
+        }
     }
     if let Some(exact) = &summary.exact {
         let percent = |error: Option<f64>| {

@@ -52,11 +52,11 @@ impl Arguments {
             tracing::warn!("Ctrl-C will not leave a table: {error}");
         }
         let hidden = self.quiet || self.jobs > 1 || !std::io::stderr().is_terminal();
-        let watch = |name: &str, steps: u64| -> Box<dyn Observer> {
+        let watch = |name: &str, end: f64| -> Box<dyn Observer> {
             if !hidden {
                 eprintln!("{name}");
             }
-            Box::new(Progress::new(steps, hidden))
+            Box::new(Progress::new(end, hidden))
         };
         work(&Sweep {
             folder,

@@ -3,18 +3,7 @@
 use carom_elements::Kind;
 use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
 
-use crate::{Law, Plane, Rows};
-
-/// A point of the secondary surface: a node (`integration = "node"`).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
-    /// System number of the node.
-    pub node: u32,
-    /// Surface that it stands for, ∫ N_a dΓ, in m².
-    pub area: f64,
-    /// Its share in the surface of the contact; the shares add up to 1.
-    pub share: f64,
-}
+use crate::{Law, Plane, Point, Rows};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +23,21 @@ pub enum Sliding {
     Finite,
 }
 
-/// A frictionless contact by collocation at the secondary nodes.
+/// Where the law holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integration {
+    /// At the nodes of the secondary surface: collocation.
+    Node,
+    /// At the Gauss points of its faces, in each by itself: for laws that give the pressure as a function.
+    Points,
+    /// In the weak form with a multiplier at the nodes and a sign at each Gauss point: for exact laws.
+    Weak {
+        /// r of the augmented pressure p - r q, in Pa/m for a law in the gap, in Pa s/m for one in the rate.
+        r: f64,
+    },
+}
+
+/// A frictionless contact.
 #[derive(Clone, Debug)]
 pub struct Contact {
     /// Name as in the case file.
@@ -43,7 +46,9 @@ pub struct Contact {
     pub law: Law,
     /// Extent of the sliding.
     pub sliding: Sliding,
-    /// Secondary points.
+    /// Where the law holds.
+    pub integration: Integration,
+    /// Secondary points: nodes, or Gauss points.
     pub points: Vec<Point>,
     /// What they face.
     pub target: Target,
@@ -91,11 +96,11 @@ impl Contact {
             search.renew(places, faces);
         }
         for point in &self.points {
-            let x = places.of(point.node);
+            let x = point.place(places);
             match &self.target {
                 Target::Plane(plane) => {
                     rows.push(plane.gap(&x), plane.normal);
-                    rows.add_node(places.dim, point.node, &plane.normal);
+                    add_point(places, point, &plane.normal, rows);
                 }
                 Target::Surface(faces) => match search.closest(places, faces, &x) {
                     Some((foot, face)) if faces_point(&foot, face) => {
@@ -170,9 +175,15 @@ fn positions(places: &Places, face: &Face) -> ([[f64; 3]; 4], usize) {
     (positions, face.corners().len())
 }
 
+fn add_point(places: &Places, point: &Point, normal: &[f64; 3], rows: &mut Rows) {
+    for (node, n) in point.carriers() {
+        rows.add_node(places.dim, node, &normal.map(|m| n * m));
+    }
+}
+
 fn add_row(places: &Places, point: &Point, foot: &Projection, face: &Face, rows: &mut Rows) {
     rows.push(foot.gap, foot.normal);
-    rows.add_node(places.dim, point.node, &foot.normal);
+    add_point(places, point, &foot.normal, rows);
     let corners = face.corners();
     let mut shape = [0.0; 4];
     (face.kind.table().shape)(&foot.xi, &mut shape[..corners.len()]);
@@ -226,11 +237,8 @@ mod tests {
             name: "patch".into(),
             law: Law::Displacement(Displacement::default()),
             sliding: Sliding::Finite,
-            points: vec![Point {
-                node: 25,
-                area: 1.0,
-                share: 1.0,
-            }],
+            integration: Integration::Node,
+            points: vec![Point::at_node(25, 1.0, 1.0)],
             target: Target::Surface(faces),
         };
         let mut rows = Rows::default();

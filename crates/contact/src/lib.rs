@@ -9,9 +9,13 @@
 mod contact;
 pub mod law;
 mod plane;
+mod point;
 mod rows;
+mod weak;
 
-pub use contact::{Contact, Places, Point, Search, Sliding, Target};
+pub use contact::{Contact, Integration, Places, Search, Sliding, Target};
 pub use law::Law;
 pub use plane::Plane;
+pub use point::Point;
 pub use rows::Rows;
+pub use weak::Weak;

@@ -54,6 +54,29 @@ pub enum Error {
         /// What is not finite.
         quantity: &'static str,
     },
+    /// Energy grows with the smallest step too.
+    #[error(
+        "step {step}, t = {time:e} s: the energy grows without a load, with the smallest step of {dt:e} s too; \
+         another contact law or scheme is needed"
+    )]
+    EnergyGrowth {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start, s.
+        time: f64,
+        /// Its size, s.
+        dt: f64,
+    },
+    /// Rules of an adaptive step that cannot be.
+    #[error(
+        "adaptive step: the smallest must be positive and at most the largest, {largest:e} s, not {smallest:e} s"
+    )]
+    Adaptive {
+        /// Smallest step given, s.
+        smallest: f64,
+        /// Largest step, s.
+        largest: f64,
+    },
     /// A fixed step that cannot be: not positive or not finite.
     #[error("the step must be positive and finite, not {dt:e} s")]
     Step {
@@ -108,11 +131,37 @@ pub enum Error {
         /// Why.
         cause: &'static str,
     },
+    /// A contact whose law cannot hold at the Gauss points in the way asked for.
+    #[error("contact '{contact}': {cause}")]
+    Integration {
+        /// Name of the contact.
+        contact: String,
+        /// Why.
+        cause: &'static str,
+    },
+    /// A secondary surface without area.
+    #[error("contact '{contact}': the matrix of the multiplier on the secondary surface: {cause}")]
+    WeakForm {
+        /// Name of the contact.
+        contact: String,
+        /// Cause.
+        cause: carom_algebra::Error,
+    },
     /// A law in the rate on a scheme whose contact forces are those that keep the displacement.
     #[error(
         "contact '{contact}': in the scheme {scheme} contact forces keep the displacement at the end of the step, so only the displacement law can hold"
     )]
     RateLaw {
+        /// Name of the contact.
+        contact: String,
+        /// Name of the scheme.
+        scheme: &'static str,
+    },
+    /// A law in the gap on a scheme whose contact impulses are those that change the velocity.
+    #[error(
+        "contact '{contact}': in the scheme {scheme} contact impulses change the velocity at the end of the step, so only a law in the rate can hold"
+    )]
+    GapLaw {
         /// Name of the contact.
         contact: String,
         /// Name of the scheme.

@@ -85,7 +85,7 @@ pub struct Balance {
     pub kinetic: f64,
     /// Strain energy U(u).
     pub strain: f64,
-    /// What the energy that the scheme balances has beside these two: `inertia |a|²_M + U(u - lag v) - U(u)`.
+    /// What the energy that the scheme balances has beside these two: `inertia |a|²_M + memory |m|²_K + U(u - lag v) - U(u)`.
     pub scheme_energy: f64,
     /// Work of the loads.
     pub work_loads: f64,
@@ -147,6 +147,8 @@ pub(crate) struct Energies {
     pub(crate) strain: f64,
     /// |a|²_M.
     pub(crate) acceleration: f64,
+    /// |m|²_K.
+    pub(crate) memory: f64,
     /// U(u - lag v) - U(u).
     pub(crate) lagged: f64,
     /// Momentum.
@@ -166,12 +168,13 @@ pub(crate) struct Jump {
     pub(crate) forces: [Resultant; 2],
 }
 
-/// What changed in a step: |Δv|²_M, |Δu|²_K, |Δa|²_M, Δu·MΔa, Δa·NᵀP.
+/// What changed in a step: |Δv|²_M, |Δu|²_K, |Δa|²_M, |Δm|²_K, Δu·MΔa, Δa·NᵀP.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Squares {
     pub(crate) velocity: f64,
     pub(crate) displacement: f64,
     pub(crate) acceleration: f64,
+    pub(crate) filtered: f64,
     pub(crate) mixed: f64,
     pub(crate) contact: f64,
     /// What a stage before the step takes, J.
@@ -181,13 +184,14 @@ pub(crate) struct Squares {
 impl EnergyIdentity {
     /// The term of the energy that the scheme balances beside kinetic and strain energy, J.
     fn stored(&self, energies: &Energies) -> f64 {
-        self.inertia * energies.acceleration + energies.lagged
+        self.inertia * energies.acceleration + self.memory * energies.memory + energies.lagged
     }
 
     fn dissipation(&self, squares: &Squares) -> f64 {
         self.velocity * squares.velocity
             + self.displacement * squares.displacement
             + self.acceleration * squares.acceleration
+            + self.filtered * squares.filtered
             + self.mixed * squares.mixed
             + self.contact * squares.contact
             + squares.stage
@@ -239,6 +243,12 @@ impl Ledger {
             }
         }
         self.close(energies, identity);
+    }
+
+    /// The energy of the scheme has another term with the next size of the step: what it gains by that is no work.
+    pub(crate) fn resize(&mut self, identity: &EnergyIdentity, energies: &Energies) {
+        self.dissipation
+            .add(self.balance.scheme_energy - identity.stored(energies));
     }
 
     /// Adds a projection after the step just added.

@@ -5,6 +5,8 @@
 //! printing.
 
 mod compliance;
+mod contacts;
+mod control;
 mod driver;
 mod error;
 mod interface;
@@ -19,6 +21,7 @@ mod state;
 mod step_map;
 mod system;
 
+pub use control::{Adaptive, Closing, Control};
 pub use driver::{Costs, Driver, Phases};
 pub use error::Error;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};

@@ -33,7 +33,7 @@ pub enum Outcome {
     Interrupted,
 }
 
-/// Steps from the driver's state to the end time: to the first instant `k dt` not before it, to within a millionth of a
+/// Steps from the driver's state to the end time: to the first instant not before it, to within a millionth of the largest
 /// step. `stop` is asked before each step.
 ///
 /// # Errors
@@ -60,11 +60,11 @@ fn steps(
     observers: &mut [&mut dyn Observer],
     stop: &dyn Fn() -> bool,
 ) -> Result<Outcome, Error> {
-    let last = step_count(end, driver.system().dt);
+    let end = end - 1e-6 * driver.system().dt;
     if driver.state().step == 0 {
         tell(driver, observers)?;
     }
-    while driver.state().step < last {
+    while driver.state().time < end {
         if stop() {
             return Ok(Outcome::Interrupted);
         }
@@ -74,7 +74,7 @@ fn steps(
     Ok(Outcome::Done)
 }
 
-/// Number of steps of length `dt` to the end time.
+/// Number of equal steps of length `dt` to the end time.
 pub fn step_count(end: f64, dt: f64) -> u64 {
     (end / dt - 1e-6).ceil().max(0.0) as u64
 }

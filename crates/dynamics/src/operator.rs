@@ -112,10 +112,10 @@ impl Operator {
         if responses.len() == columns.len() {
             return gram(&responses);
         }
-        columns
-            .iter()
-            .flat_map(|one| columns.iter().map(|other| self.dot(one, other)))
-            .collect()
+        // the order of the two decides on the last bits
+        let n = columns.len();
+        let entry = |k: usize| self.dot(columns[(k / n).min(k % n)], columns[(k / n).max(k % n)]);
+        (0..n * n).map(entry).collect()
     }
 
     /// N A⁻¹ r from the y of `begin`.
@@ -209,6 +209,15 @@ impl Operators {
             parts: system.parts.clone(),
             operators,
         })
+    }
+
+    /// Number of factors.
+    pub(crate) fn factored(&self) -> usize {
+        let factors = self
+            .operators
+            .iter()
+            .filter(|operator| operator.stats().is_some());
+        factors.count()
     }
 
     /// `begin` on every part; vectors of the whole system.

@@ -33,6 +33,8 @@ pub struct ContactRecord {
     pub penetration: f64,
     /// Energy lost in crush so far, J: what it took to crush the points, less what they can give back.
     pub energy_crushed: f64,
+    /// Most nodes at the end of a step whose supports are partly closed; see [`ContactReport::mixed`].
+    pub mixed: u64,
     /// Total force and force on the secondary body in the last step as they enter impulses, N.
     last: (f64, [f64; 3]),
     /// The impact going on.
@@ -150,6 +152,7 @@ impl Records {
         record.impulse.add(projected.0);
         record.defect.add(report.persistency_defect);
         record.status_changes += report.status_changes as u64;
+        record.mixed = record.mixed.max(report.mixed as u64);
         if report.gap.is_finite() {
             record.penetration = record.penetration.max(-report.gap);
         }

@@ -3,6 +3,7 @@
 use carom_contact::law::Status;
 use serde::{Deserialize, Serialize};
 
+use crate::control::Control;
 use crate::ledger::{Balance, Ledger};
 use crate::records::Records;
 use crate::{Error, System};
@@ -12,12 +13,14 @@ use crate::{Error, System};
 pub struct State {
     /// Steps taken.
     pub step: u64,
-    /// Time in s, `step * dt`.
+    /// Time in s: `step * dt` for equal steps.
     pub time: f64,
     /// Motion of the nodes and the forces that belong to it.
     pub motion: Motion,
     /// Contact forces and statuses.
     pub interface: InterfaceState,
+    /// Step control.
+    pub control: Control,
     /// Energy and momentum balance since the start.
     pub ledger: Ledger,
     /// Extrema, impulses and impacts since the start.
@@ -33,6 +36,8 @@ pub struct Motion {
     pub v: Vec<f64>,
     /// Acceleration, m/s²: in balance, or the mean of the step, as the scheme has it.
     pub a: Vec<f64>,
+    /// What the scheme remembers besides, the filtered velocity of Krenk's scheme in m/s; empty for the others.
+    pub memory: Vec<f64>,
     /// Internal force f(u), N.
     pub internal_force: Vec<f64>,
     /// Contact force Nᵀ P at the end of the last step, N: after a projection the one in balance with the acceleration.
@@ -87,7 +92,14 @@ impl State {
             &motion.internal_force,
             &motion.contact_force,
         ];
-        if vectors.iter().any(|vector| vector.len() != n) || state.interface.force.len() != points {
+        let remembered = match system.scheme.get().step_map(system.dt).has_memory() {
+            true => n,
+            false => 0,
+        };
+        if vectors.iter().any(|vector| vector.len() != n)
+            || motion.memory.len() != remembered
+            || state.interface.force.len() != points
+        {
             let cause = format!(
                 "it belongs to another model than this one of {n} unknowns and {points} contact points"
             );
@@ -114,6 +126,9 @@ pub struct ContactReport {
     pub status_changes: usize,
     /// Σ |P ġ₊| dt, J: zero when forces act on closed points only.
     pub persistency_defect: f64,
+    /// Nodes of the secondary surface whose supports are partly closed: there the pressure of the weak form depends on r.
+    /// Zero with another integration.
+    pub mixed: usize,
 }
 
 /// What a step did.
@@ -123,6 +138,10 @@ pub struct StepReport {
     pub step: u64,
     /// Time at the end of the step, s.
     pub time: f64,
+    /// Size of the step, s; zero for the initial state.
+    pub dt: f64,
+    /// Attempts made, the last one taken.
+    pub attempts: u32,
     /// By contact.
     pub contacts: Vec<ContactReport>,
     /// Energies, works and momentum at the end of the step.

@@ -2,8 +2,8 @@
 
 use crate::state::Motion;
 
-/// Coefficients of one vector of the step, `u` u_k + `v` v_k + `a` a_k + `x` x + `c` c, with c = M⁻¹ Nᵀ P the acceleration
-/// that the contact forces of the step give by themselves.
+/// Coefficients of one vector of the step, `u` u_k + `v` v_k + `a` a_k + `m` m_k + `x` x + `c` c, with m what the scheme
+/// remembers besides and c = M⁻¹ Nᵀ P the acceleration that the contact forces of the step give by themselves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
     /// Factor of the displacement at the start.
@@ -12,6 +12,8 @@ pub struct Row {
     pub v: f64,
     /// Factor of the acceleration at the start.
     pub a: f64,
+    /// Factor of the memory; zero for most schemes, which then have none.
+    pub m: f64,
     /// Factor of the unknown.
     pub x: f64,
     /// Factor of the contact acceleration c; zero for most schemes, which then never compute c.
@@ -19,23 +21,46 @@ pub struct Row {
 }
 
 impl Row {
+    /// The change from another combination to this one.
+    pub fn since(&self, other: &Row) -> Row {
+        Row {
+            u: self.u - other.u,
+            v: self.v - other.v,
+            a: self.a - other.a,
+            m: self.m - other.m,
+            x: self.x - other.x,
+            c: self.c - other.c,
+        }
+    }
+
     /// Writes the combination of the known vectors, x and c left out.
     pub fn known(&self, motion: &Motion, out: &mut [f64]) {
-        let Motion { u, v, a, .. } = motion;
+        let Motion {
+            u, v, a, memory, ..
+        } = motion;
         for i in 0..out.len() {
             out[i] = self.u * u[i] + self.v * v[i] + self.a * a[i];
         }
+        Row::add(self.m, memory, out);
     }
 
     /// Writes the whole combination.
     pub fn whole(&self, motion: &Motion, x: &[f64], c: &[f64], out: &mut [f64]) {
-        let Motion { u, v, a, .. } = motion;
+        let Motion {
+            u, v, a, memory, ..
+        } = motion;
         for i in 0..out.len() {
             out[i] = self.u * u[i] + self.v * v[i] + self.a * a[i] + self.x * x[i];
         }
-        if self.c != 0.0 {
+        Row::add(self.m, memory, out);
+        Row::add(self.c, c, out);
+    }
+
+    /// Adds a vector that most schemes do not have.
+    fn add(factor: f64, vector: &[f64], out: &mut [f64]) {
+        if factor != 0.0 {
             for i in 0..out.len() {
-                out[i] += self.c * c[i];
+                out[i] += factor * vector[i];
             }
         }
     }
@@ -89,8 +114,13 @@ pub struct StepMap {
     pub acceleration: Row,
     /// The newest displacement known before x: the configuration from which contact is looked ahead.
     pub placed: Row,
+    /// The displacement that a contact law in the gap constrains: that of the end of the step in most schemes. Without c;
+    /// here and in the rate without m.
+    pub gap: Row,
     /// The velocity that a contact law in the rate constrains.
     pub rate: Row,
+    /// Memory at the end of the step; all zero for most schemes, which have none.
+    pub memory: Row,
     /// Factor of the contact forces in the momentum balance; 1 for most schemes.
     pub contact: f64,
     /// How loads and supports change the momentum over the step.
@@ -113,9 +143,19 @@ impl StepMap {
             && forces_stand(&self.contact_impulse)
     }
 
+    /// Whether the state has a memory.
+    pub fn has_memory(&self) -> bool {
+        self.memory != Row::default()
+    }
+
     /// Whether any vector of the step needs the contact acceleration.
     pub fn uses_contact_acceleration(&self) -> bool {
-        let rows = [self.displacement, self.velocity, self.acceleration];
+        let rows = [
+            self.displacement,
+            self.velocity,
+            self.acceleration,
+            self.rate,
+        ];
         rows.iter().any(|row| row.c != 0.0)
     }
 }

@@ -7,11 +7,12 @@ use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_bodies::{Body, BodySpec, Kinematics, MassKind};
 use carom_contact::law::Level;
-use carom_contact::{Contact, Law, Plane, Point, Sliding, Target};
-use carom_mesh::{ElementId, Face, Mesh, Surface};
+use carom_contact::{Contact, Integration, Law, Plane, Sliding};
+use carom_mesh::{Face, Mesh, Surface};
 
+use crate::contacts::{numbered, renumbered, sides};
 use crate::massless::redistribute;
-use crate::{Error, Scheme};
+use crate::{Adaptive, Error, Scheme};
 
 /// Everything from which a system is built; names are those of the case file.
 #[derive(Clone, Debug)]
@@ -28,8 +29,10 @@ pub struct Model {
     pub contacts: Vec<ModelContact>,
     /// Time scheme.
     pub scheme: Scheme,
-    /// Step in s.
+    /// Step in s; the largest of an adaptive step.
     pub dt: f64,
+    /// Rules of an adaptive step; `None` for equal steps.
+    pub adaptive: Option<Adaptive>,
 }
 
 /// A body and its initial state.
@@ -67,6 +70,8 @@ pub struct ModelContact {
     pub law: Law,
     /// Extent of the sliding.
     pub sliding: Sliding,
+    /// Where the law holds.
+    pub integration: Integration,
     /// Whether the nodes of both surfaces give their mass to the other nodes of their bodies.
     pub massless: bool,
 }
@@ -143,8 +148,10 @@ pub struct System {
     pub tolerance: f64,
     /// Time scheme.
     pub scheme: Scheme,
-    /// Step, s.
+    /// Step, s; the largest of an adaptive step.
     pub dt: f64,
+    /// Rules of an adaptive step; `None` for equal steps.
+    pub adaptive: Option<Adaptive>,
     /// Initial displacement, m.
     pub initial_displacement: Vec<f64>,
     /// Initial velocity, m/s; zero where an unknown is held.
@@ -160,6 +167,14 @@ impl System {
     pub fn new(model: Model) -> Result<Arc<System>, Error> {
         if !(model.dt > 0.0 && model.dt.is_finite()) {
             return Err(Error::Step { dt: model.dt });
+        }
+        if let Some(rules) = &model.adaptive
+            && !(rules.smallest > 0.0 && rules.smallest <= model.dt)
+        {
+            return Err(Error::Adaptive {
+                smallest: rules.smallest,
+                largest: model.dt,
+            });
         }
         let dim = model.mesh.dim;
         let (number, mesh_node, parts) = numbering(&model);
@@ -202,7 +217,7 @@ impl System {
         let contacts: Vec<Contact> = model
             .contacts
             .iter()
-            .map(|contact| numbered(contact, &model, &number))
+            .map(|contact| numbered(contact, &model, &number, &x))
             .collect();
         let mut first_point = vec![0];
         for contact in &contacts {
@@ -244,12 +259,14 @@ impl System {
             first_point,
             scheme: model.scheme,
             dt: model.dt,
+            adaptive: model.adaptive,
             initial_displacement,
             initial_velocity,
             mesh: model.mesh,
         };
         system.check_scheme(&model.bodies)?;
         system.check_massless(&model.contacts)?;
+        system.check_integration()?;
         Ok(Arc::new(system))
     }
 
@@ -260,6 +277,8 @@ impl System {
                 Some("an explicit scheme divides by the mass of each node")
             } else if scheme.projects_predictor() {
                 Some("the scheme projects its predictor with the mass of the nodes in contact")
+            } else if scheme.restores_contact_work() {
+                Some("the scheme changes the velocity with the mass of the nodes in contact")
             } else if scheme.needs_lumped_mass() {
                 Some("the scheme divides the contact forces by the mass of their nodes")
             } else if contact.law.get().level() != Level::Gap {
@@ -295,7 +314,12 @@ impl System {
         }
         let refused = |contact: &&Contact| !scheme.takes(contact.law.get().level());
         if let Some(contact) = self.contacts.iter().find(refused) {
+            let of_rates = scheme.takes(Level::Rate) && !scheme.is_explicit();
             return Err(match contact.law.get().level() {
+                Level::Gap | Level::GapAndRate if of_rates => Error::GapLaw {
+                    contact: contact.name.clone(),
+                    scheme: scheme.name(),
+                },
                 Level::Gap => Error::DisplacementLaw {
                     contact: contact.name.clone(),
                 },
@@ -334,9 +358,14 @@ impl System {
         self.first_point[self.contacts.len()]
     }
 
+    /// Index of the contact of a contact point.
+    pub fn contact_of(&self, point: usize) -> usize {
+        self.first_point.partition_point(|&first| first <= point) - 1
+    }
+
     /// The contact and the place in it of a contact point.
     pub fn point(&self, point: usize) -> (&Contact, usize) {
-        let contact = self.first_point.partition_point(|&first| first <= point) - 1;
+        let contact = self.contact_of(point);
         (&self.contacts[contact], point - self.first_point[contact])
     }
 
@@ -472,71 +501,4 @@ fn initial(
         }
     }
     (u, v)
-}
-
-fn owner(model: &Model, cell: ElementId) -> Option<usize> {
-    model
-        .bodies
-        .iter()
-        .position(|body| body.spec.cells.contains(&cell))
-}
-
-fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usize>) {
-    let body = |surface: &Surface| {
-        surface
-            .faces
-            .first()
-            .and_then(|face| owner(model, face.parent))
-    };
-    let primary = match &contact.primary {
-        ModelTarget::Surface(surface) => body(surface),
-        ModelTarget::Plane(_) => None,
-    };
-    (body(&contact.secondary).unwrap_or(0), primary)
-}
-
-fn numbered(contact: &ModelContact, model: &Model, number: &[u32]) -> Contact {
-    let surface = &contact.secondary;
-    let kinematics = surface
-        .faces
-        .first()
-        .and_then(|face| owner(model, face.parent));
-    let kinematics = kinematics.map(|body| model.bodies[body].spec.kinematics);
-    let areas = surface.node_areas(&model.mesh);
-    let area = |(&node, area): (&u32, f64)| {
-        let factor = kinematics.map_or(1.0, |k| k.surface_factor(&model.mesh.nodes[node as usize]));
-        (number[node as usize], area * factor)
-    };
-    let areas: Vec<(u32, f64)> = surface.nodes.iter().zip(areas).map(area).collect();
-    let total: f64 = areas.iter().map(|(_, area)| area).sum();
-    let points = areas.iter().map(|&(node, area)| Point {
-        node,
-        area,
-        share: area / total,
-    });
-    let target = match &contact.primary {
-        ModelTarget::Plane(plane) => Target::Plane(*plane),
-        ModelTarget::Surface(surface) => Target::Surface(
-            surface
-                .faces
-                .iter()
-                .map(|face| renumbered(face, number))
-                .collect(),
-        ),
-    };
-    Contact {
-        name: contact.name.clone(),
-        law: contact.law,
-        sliding: contact.sliding,
-        points: points.collect(),
-        target,
-    }
-}
-
-fn renumbered(face: &Face, number: &[u32]) -> Face {
-    let mut face = *face;
-    for k in 0..face.corners().len() {
-        face.nodes[k] = number[face.nodes[k] as usize];
-    }
-    face
 }

@@ -163,6 +163,9 @@ pub struct Contact {
     pub persistency_defect: f64,
     /// Energy lost in crush, J; zero of laws without memory.
     pub energy_crushed: f64,
+    /// Most nodes of the secondary surface in a step whose supports are partly closed: the pressure of the weak form
+    /// depends on r there. `None` with another integration.
+    pub mixed_supports: Option<u64>,
     /// Impacts from closing to release.
     pub impacts: usize,
     /// Restitution of the last complete impact, from the mean velocities (momentum / mass).

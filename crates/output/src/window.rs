@@ -3,47 +3,66 @@
 //! Where the exact force jumps, the largest force of a single step does not converge with the mesh: it keeps the
 //! overshoot of the dispersed front. The largest mean over a fixed time converges. Both are given, side by side.
 
-/// Largest mean of a step-wise constant quantity over a window of whole steps, step by step.
+use std::collections::VecDeque;
+
+/// Largest mean of a step-wise constant quantity over a window of time, taken at the end of each step.
 ///
-/// max over k of (1/m) Σ q_j, j = k - m + 1 .. k, with the quantity zero before the first step. It keeps the last m
-/// values, whatever the length of the run.
+/// max over k of (1/T) ∫ q dt over (t_k - T, t_k), with the quantity zero before the first step. It keeps the steps of
+/// the last T, whatever the length of the run.
 #[derive(Clone, Debug)]
 pub struct PeakOfMean {
-    recent: Vec<f64>,
-    next: usize,
-    sum: f64,
+    window: f64,
+    /// Length (s) and value of the steps that reach into the window.
+    recent: VecDeque<(f64, f64)>,
+    span: f64,
+    integral: f64,
+    /// Steps since the sums were renewed.
+    age: usize,
     peak: f64,
     since: f64,
 }
 
 impl PeakOfMean {
-    /// A window of so many steps (at least one).
-    pub fn new(steps: usize) -> PeakOfMean {
+    /// A window of this length, s.
+    pub fn new(window: f64) -> PeakOfMean {
         PeakOfMean {
-            recent: vec![0.0; steps.max(1)],
-            next: 0,
-            sum: 0.0,
+            window,
+            recent: VecDeque::new(),
+            span: 0.0,
+            integral: 0.0,
+            age: 0,
             peak: 0.0,
             since: 0.0,
         }
     }
 
-    /// Number of steps of the window.
-    pub fn steps(&self) -> usize {
-        self.recent.len()
-    }
-
-    /// Adds the value of a step.
-    pub fn push(&mut self, value: f64) {
-        self.sum += value - self.recent[self.next];
-        self.recent[self.next] = value;
-        self.next += 1;
-        if self.next == self.recent.len() {
-            // A running sum gathers rounding: it is renewed once per window.
-            self.next = 0;
-            self.sum = self.recent.iter().sum();
+    /// Adds a step of length `dt` (s) and its value.
+    pub fn push(&mut self, dt: f64, value: f64) {
+        self.recent.push_back((dt, value));
+        self.span += dt;
+        self.integral += dt * value;
+        self.age += 1;
+        // a step that reaches into the window by rounding alone lies outside
+        let slack = 1e-9 * self.window;
+        while let Some(&(first, old)) = self.recent.front()
+            && self.span - first >= self.window - slack
+        {
+            self.recent.pop_front();
+            self.span -= first;
+            self.integral -= first * old;
         }
-        let mean = self.sum / self.recent.len() as f64;
+        if self.age > self.recent.len() {
+            // running sums gather rounding: they are renewed once per window
+            self.age = 0;
+            self.span = self.recent.iter().map(|(dt, _)| dt).sum();
+            self.integral = self.recent.iter().map(|(dt, value)| dt * value).sum();
+        }
+        let outside = (self.span - self.window).max(0.0);
+        let before = self
+            .recent
+            .front()
+            .map_or(0.0, |(_, value)| outside * value);
+        let mean = (self.integral - before) / self.window;
         self.peak = self.peak.max(mean);
         self.since = self.since.max(mean);
     }

@@ -9,7 +9,7 @@
 //! the energy: 1e-11 m g h, as for every run.
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
-use carom_contact::{Plane, Sliding};
+use carom_contact::{Integration, Plane, Sliding};
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, System, march};
 use carom_exact::{Bar, Impact};
 use carom_materials::Elastic;
@@ -105,6 +105,7 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
                 cells: cells.clone(),
                 kinematics: Kinematics::Bar { area: 1.0 },
                 material,
+                weights: None,
             },
             mass: MassKind::Lumped,
             velocity: [0.0; 3],
@@ -121,10 +122,12 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
             }),
             law: HALF,
             sliding: Sliding::Small,
+            integration: Integration::Node,
             massless: false,
         }],
         scheme: theta(0.5),
         dt: 0.5 * LENGTH / elements as f64 / 30.0,
+        adaptive: None,
         mesh,
     };
     Ok(Driver::new(System::new(model)?)?)

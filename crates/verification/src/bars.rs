@@ -250,6 +250,7 @@ impl Run {
             gravity: [0.0; 3],
             scheme: self.scheme,
             dt: self.dt(),
+            adaptive: None,
             mesh,
         })
     }

@@ -99,7 +99,9 @@ pub(crate) const CHECK: Check = Check {
             match run(&case) {
                 Ok((_, figures)) => rows.extend(figures.balances(&format!("{scheme:?}"))),
                 Err(Error::Dynamics(
-                    Refusal::MasslessContact { .. } | Refusal::DisplacementLaw { .. },
+                    Refusal::MasslessContact { .. }
+                    | Refusal::DisplacementLaw { .. }
+                    | Refusal::GapLaw { .. },
                 )) => {}
                 Err(error) => return Err(error),
             }

@@ -22,7 +22,7 @@ use crate::check::{Check, Row};
 use crate::figures::{Figures, History, run};
 
 const ALPHA: Scheme = Scheme::GeneralisedAlpha(GeneralisedAlpha { rho_inf: 0.8 });
-const PAOLI: Scheme = Scheme::PaoliSchatzman(PaoliSchatzman);
+const PAOLI: Scheme = Scheme::PaoliSchatzman(PaoliSchatzman { restitution: 0.0 });
 
 fn case(scheme: Scheme, law: Law) -> Run {
     Run {

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use carom_contact::Law;
-use carom_contact::law::{Adhesion, Capture, Crush, Curve, Damped, Penalty, Restitution, Stop};
+use carom_contact::law::{
+    Adhesion, Capture, Crush, Curve, Damped, Level, Penalty, Restitution, Stop,
+};
 use carom_dynamics::{Model, Scheme, State, System};
 use carom_materials::Elastic;
 
@@ -63,12 +65,22 @@ pub(crate) fn laws(
     ])
 }
 
-/// Whether a scheme cannot take a law: with an explicit one the end displacement does not depend on the force, and the
-/// projection at closure belongs to Newmark's scheme.
+/// Whether a scheme cannot take a law: with an explicit one the end displacement does not depend on the force, some know
+/// the displacement or the rate alone, and the projection at closure belongs to Newmark's scheme.
 pub(crate) fn is_senseless(scheme: Scheme, law: Law) -> bool {
     scheme.get().is_explicit() && law == DISPLACEMENT
-        || matches!(scheme, Scheme::Kane(_) | Scheme::ContactStabilised(_)) && law != DISPLACEMENT
+        || of_displacement(scheme) && law != DISPLACEMENT
+        || matches!(scheme, Scheme::NonsmoothAlpha(_)) && law.get().level() != Level::Rate
         || law.projects() && !matches!(scheme, Scheme::Newmark(_))
+}
+
+/// Whether a scheme is made of the displacement law.
+fn of_displacement(scheme: Scheme) -> bool {
+    match scheme {
+        Scheme::Kane(_) | Scheme::ContactStabilised(_) | Scheme::LaursenLove(_) => true,
+        Scheme::PaoliSchatzman(scheme) => scheme.restitution > 0.0,
+        _ => false,
+    }
 }
 
 /// Pairs of runs that must end in the same bytes.
@@ -95,6 +107,7 @@ impl Battery {
             Ok(system) => Ok(Some(system)),
             Err(
                 carom_dynamics::Error::DisplacementLaw { .. }
+                | carom_dynamics::Error::GapLaw { .. }
                 | carom_dynamics::Error::RateLaw { .. }
                 | carom_dynamics::Error::Projection { .. },
             ) if senseless => {

@@ -45,6 +45,7 @@ fn model(n: usize, scheme: Scheme, law: Law) -> Result<Model, Error> {
         gravity: [0.0; 3],
         scheme,
         dt: 0.5 * SIDE / n as f64 / RUBBER.wave_speed(Plane::Full),
+        adaptive: None,
         mesh,
     })
 }

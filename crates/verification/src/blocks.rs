@@ -102,6 +102,7 @@ impl Blocks {
             gravity: [0.0; 3],
             scheme,
             dt: courant * shortest / RUBBER.wave_speed(Plane::Full),
+            adaptive: None,
             mesh,
         })
     }

@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::{Adhesion, Capture, Compliance, Damped, Displacement, Reading, Velocity};
-use carom_contact::{Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Scheme, Support};
 use carom_materials::Elastic;
@@ -85,6 +85,7 @@ pub(crate) fn body(
             cells: group(mesh, name)?.elements.clone(),
             kinematics,
             material,
+            weights: None,
         },
         mass: MassKind::Lumped,
         velocity: [0.0; 3],
@@ -105,6 +106,7 @@ pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> Mod
         primary,
         law,
         sliding: Sliding::Finite,
+        integration: Integration::Node,
         massless: false,
     }
 }

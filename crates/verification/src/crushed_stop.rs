@@ -135,6 +135,7 @@ fn model(scheme: Scheme) -> Result<Model, Error> {
         gravity: [0.0; 3],
         scheme,
         dt: first.course().0[2] / STEPS,
+        adaptive: None,
         mesh,
     })
 }

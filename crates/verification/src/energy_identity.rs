@@ -8,7 +8,9 @@
 
 use carom_bodies::MassKind;
 use carom_dynamics::Scheme;
-use carom_dynamics::scheme::{GeneralisedAlpha, Hht, Kane, TchamwaWielgosz};
+use carom_dynamics::scheme::{
+    GeneralisedAlpha, Hht, Kane, Krenk, NonsmoothAlpha, PaoliSchatzman, TchamwaWielgosz,
+};
 
 use crate::Error;
 use crate::bars::{Run, SLOW};
@@ -49,6 +51,11 @@ fn more() -> Vec<Scheme> {
         alpha(1.0),
         Scheme::Hht(Hht { alpha: -1.0 / 3.0 }),
         Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: 1.3 }),
+        Scheme::Krenk(Krenk { rho_inf: 0.0 }),
+        Scheme::Krenk(Krenk { rho_inf: 1.0 }),
+        Scheme::NonsmoothAlpha(NonsmoothAlpha { rho_inf: 0.0 }),
+        Scheme::NonsmoothAlpha(NonsmoothAlpha { rho_inf: 1.0 }),
+        Scheme::PaoliSchatzman(PaoliSchatzman { restitution: 1.0 }),
         Scheme::Kane(Kane {
             beta: 0.49,
             gamma: 0.9,

@@ -13,6 +13,7 @@ mod check;
 mod error;
 mod figures;
 
+mod adaptive;
 mod bar_dropped;
 mod bar_on_stop;
 mod bar_on_wall;
@@ -25,6 +26,7 @@ mod bars_massless;
 mod bars_newmark;
 mod bars_projection;
 mod bars_schemes;
+mod bars_stages;
 mod bars_theta;
 mod block_drop;
 mod blocks;
@@ -36,6 +38,8 @@ mod interface_problems;
 mod invariance;
 pub mod long_run;
 mod order;
+mod quadrature;
+mod rejections;
 mod restitution;
 mod resume;
 mod sdnl111;
@@ -71,6 +75,7 @@ macro_rules! registry {
 }
 
 registry! {
+    adaptive
     bar_on_stop
     bar_dropped
     bar_on_wall
@@ -83,6 +88,7 @@ registry! {
     bars_newmark
     bars_projection
     bars_schemes
+    bars_stages
     bars_theta
     block_drop
     blocks
@@ -94,6 +100,8 @@ registry! {
     invariance
     long_run
     order
+    quadrature
+    rejections
     restitution
     resume
     sdnl111

@@ -44,6 +44,7 @@ fn model(scheme: Scheme, dt: f64) -> Result<Model, Error> {
         contacts: Vec::new(),
         scheme,
         dt,
+        adaptive: None,
         mesh,
     })
 }
@@ -58,11 +59,9 @@ fn error(scheme: Scheme, steps: usize) -> Result<f64, Error> {
         .iter()
         .map(|x| (std::f64::consts::PI * x[0] / SLOW.length).sin())
         .collect();
-    let mut state = Driver::new(system.clone())?.state().clone();
-    for (v, mode) in state.motion.v.iter_mut().zip(&mode) {
-        *v = SLOW.speed * mode;
-    }
-    let mut driver = Driver::resume(system, state)?;
+    let velocity: Vec<f64> = mode.iter().map(|mode| SLOW.speed * mode).collect();
+    let mut driver = Driver::new(system)?;
+    driver.restart(&vec![0.0; mode.len()], &velocity)?;
     march(&mut driver, steps as f64 * dt / 3.0, &mut [], &|| false)?;
     let state = driver.state();
     let (sin, cos) = (omega * state.time).sin_cos();

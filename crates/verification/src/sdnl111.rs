@@ -67,6 +67,7 @@ fn model(mesh: Mesh, elements: usize) -> Result<Model, Error> {
         gravity: [0.0; 3],
         scheme: theta(0.5),
         dt: 0.5 / elements as f64 / STEEL.wave_speed(Plane::Full),
+        adaptive: None,
         mesh,
     })
 }

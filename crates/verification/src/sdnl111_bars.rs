@@ -61,6 +61,7 @@ fn model(elements: usize, young: f64) -> Result<Model, Error> {
         gravity: [0.0; 3],
         scheme: theta(0.5),
         dt: 0.5 * LENGTH / elements as f64 / (young / DENSITY).sqrt(),
+        adaptive: None,
         mesh,
     })
 }
@@ -77,7 +78,7 @@ fn rows((elements, errors, mean_error): (usize, [&str; 5], f64)) -> Result<Vec<R
         2e-3,
     )?;
     let system = System::new(model(elements, young)?)?;
-    let node = system.contacts[0].points[0].node as usize;
+    let node = system.contacts[0].points[0].node() as usize;
     let mut driver = Driver::new(system)?;
     let (mut rows, mut last) = (Vec::new(), (0.0, 0.0));
     let span = exact.contacts()[0];

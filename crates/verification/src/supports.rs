@@ -5,6 +5,7 @@
 //! exchange, and the exact energy identity of the scheme. Reference: the ledger's own terms, each from its formula.
 //! Tolerance: 1e-11 of the largest energy and of the largest momentum, round-off.
 
+use carom_contact::law::Level;
 use carom_dynamics::{Driver, Scheme, System, march};
 
 use crate::Error;
@@ -13,9 +14,9 @@ use crate::build::{DISPLACEMENT, NOW, support};
 use crate::check::{Check, Row};
 
 fn rows(scheme: Scheme, end: &str) -> Result<[Row; 3], Error> {
-    let law = match scheme.get().is_explicit() {
-        true => NOW,
-        false => DISPLACEMENT,
+    let law = match scheme.get().takes(Level::Gap) {
+        true => DISPLACEMENT,
+        false => NOW,
     };
     let case = Run {
         scheme,

@@ -4,7 +4,7 @@ use carom_bodies::{Kinematics, Scratch};
 use carom_mesh::generate;
 use carom_testing::allocations;
 
-use crate::sample::{Sample, all};
+use crate::sample::{Sample, plain_and_weighted};
 
 /// On the one thread of a pool, so that all of it is counted: the threads' own queues are rayon's.
 #[test]
@@ -15,7 +15,7 @@ fn internal_force_allocates_nothing_after_its_first_call() {
         .num_threads(1)
         .build()
         .unwrap();
-    for sample in all().into_iter().chain([large]) {
+    for sample in plain_and_weighted().into_iter().chain([large]) {
         let count = pool.install(|| {
             let (u, mut f) = (vec![1e-3; sample.n], vec![0.0; sample.n]);
             let mut scratch = Scratch::default();

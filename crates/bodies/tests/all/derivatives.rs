@@ -1,12 +1,12 @@
 //! Force is the gradient of energy, stiffness that of force. Energies are quadratic, so central differences with large
 //! steps are exact but for rounding.
 
-use crate::sample::{all, distance, dot, largest, multiply};
+use crate::sample::{distance, dot, largest, multiply, plain_and_weighted};
 use carom_testing::Random;
 
 #[test]
 fn force_is_the_derivative_of_energy() {
-    for sample in all() {
+    for sample in plain_and_weighted() {
         let mut random = Random(11);
         let u = random.vector(sample.n);
         let f = sample.force(&u).0;
@@ -26,7 +26,7 @@ fn force_is_the_derivative_of_energy() {
 
 #[test]
 fn stiffness_is_the_derivative_of_force() {
-    for sample in all() {
+    for sample in plain_and_weighted() {
         let mut random = Random(12);
         let u = random.vector(sample.n);
         let k = sample.matrix(1.0, 0.0);
@@ -50,7 +50,7 @@ fn stiffness_is_the_derivative_of_force() {
 
 #[test]
 fn force_and_energy_of_the_batched_kernels_are_those_of_the_stiffness() {
-    for sample in all() {
+    for sample in plain_and_weighted() {
         let k = sample.matrix(1.0, 0.0);
         for seed in 0..5 {
             let u = Random(seed).vector(sample.n);
@@ -71,7 +71,7 @@ fn force_and_energy_of_the_batched_kernels_are_those_of_the_stiffness() {
 
 #[test]
 fn forces_are_added_to_what_is_there_and_energies_start_afresh() {
-    for sample in all() {
+    for sample in plain_and_weighted() {
         let u = Random(5).vector(sample.n);
         let (f, energy) = sample.force(&u);
         let mut scratch = carom_bodies::Scratch::default();

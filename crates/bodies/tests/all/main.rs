@@ -14,6 +14,7 @@ mod sample;
 mod sizes;
 mod stiffness;
 mod threads;
+mod weights;
 
 #[global_allocator]
 static COUNTER: carom_testing::Counter = carom_testing::Counter;

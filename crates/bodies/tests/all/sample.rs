@@ -2,7 +2,7 @@
 
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
-use carom_bodies::{Body, BodySpec, Kinematics, Scratch};
+use carom_bodies::{Body, BodySpec, CellWeights, Kinematics, Scratch};
 use carom_elements::Kind;
 use carom_materials::Elastic;
 use carom_mesh::{ElementId, Mesh, generate};
@@ -43,6 +43,7 @@ impl Sample {
             cells,
             kinematics,
             material: MATERIAL,
+            weights: None,
         };
         Sample {
             name: format!("{name}, {}", kinematics.name()),
@@ -51,6 +52,44 @@ impl Sample {
             x: mesh.nodes[..used].iter().rev().copied().collect(),
             mesh,
             number,
+        }
+    }
+
+    /// The same body with weights.
+    pub fn weighted(self, weights: CellWeights) -> Sample {
+        let kinematics = self.body.kinematics();
+        let spec = BodySpec {
+            name: self.name.clone(),
+            cells: cells(&self.mesh, kinematics.dim()),
+            kinematics,
+            material: MATERIAL,
+            weights: Some(weights),
+        };
+        let body = Body::new(&self.mesh, spec, &self.number).unwrap();
+        let name = format!("{}, weighted", self.name);
+        Sample { name, body, ..self }
+    }
+
+    /// Values of `of(x)` at the nodes of each cell, cell after cell.
+    pub fn at_cells(&self, of: impl Fn(&[f64; 3]) -> f64) -> Vec<f64> {
+        let cells = cells(&self.mesh, self.body.kinematics().dim());
+        let nodes = cells.iter().flat_map(|&cell| self.mesh.element_nodes(cell));
+        nodes
+            .map(|&node| of(&self.mesh.nodes[node as usize]))
+            .collect()
+    }
+
+    /// As many weights between 0 and 1 as the cells have nodes, no two alike.
+    pub fn random_weights(&self, seed: u64) -> CellWeights {
+        let count = self.at_cells(|_| 0.0).len();
+        let mut random = Random(seed);
+        let mut list = || {
+            let list = random.vector(count).into_iter();
+            list.map(|w| 0.5 * (w + 1.0)).collect::<Vec<_>>()
+        };
+        CellWeights {
+            inertia: list(),
+            stiffness: list(),
         }
     }
 
@@ -134,6 +173,15 @@ pub fn all() -> Vec<Sample> {
     let mut samples = bars();
     samples.extend(continua());
     samples
+}
+
+/// The bodies of [`all`], plain and with random weights.
+pub fn plain_and_weighted() -> Vec<Sample> {
+    let weighted = all().into_iter().map(|sample| {
+        let weights = sample.random_weights(41);
+        sample.weighted(weights)
+    });
+    all().into_iter().chain(weighted).collect()
 }
 
 /// A kinked line in one, two and three dimensions.

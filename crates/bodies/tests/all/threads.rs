@@ -26,7 +26,11 @@ fn large() -> Vec<Sample> {
 
 #[test]
 fn forces_and_energies_have_the_same_bits_on_any_number_of_threads() {
-    for sample in large().into_iter().chain(all()) {
+    let weighted = large().into_iter().map(|sample| {
+        let weights = sample.random_weights(33);
+        sample.weighted(weights)
+    });
+    for sample in large().into_iter().chain(weighted).chain(all()) {
         let u = Random(31).vector(sample.n);
         let run = |threads| {
             let pool = rayon::ThreadPoolBuilder::new()

@@ -55,6 +55,7 @@ impl Builder<'_> {
                     cells,
                     kinematics,
                     material,
+                    weights: None,
                 },
                 mass: match body.mass {
                     Mass::Lumped => MassKind::Lumped,

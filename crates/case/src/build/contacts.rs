@@ -1,14 +1,15 @@
 //! Contacts: surfaces on the bodies, no penetration at the start, advice.
 
+use carom_contact::law::Level;
 use carom_contact::law::{Displacement, Reading, Restitution, Velocity};
-use carom_contact::{Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{ElementId, Mesh, Surface};
 
 use super::Builder;
-use super::laws::sides;
+use super::laws::{Side, sides};
 use crate::error::Problem;
-use crate::schema::{self, Obstacle, Scheme};
+use crate::schema::{self, IntegrationName, IntegrationWith, Obstacle, Scheme};
 
 impl Builder<'_> {
     pub(super) fn contacts(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Vec<ModelContact> {
@@ -51,6 +52,7 @@ impl Builder<'_> {
                 primary,
                 law,
                 sliding,
+                integration: integration(contact.integration, &law, &sides),
                 massless: contact.nodes == schema::Nodes::Massless,
             });
         }
@@ -120,8 +122,8 @@ impl Builder<'_> {
             else {
                 continue;
             };
-            let node = contact.points[deepest].node;
-            let x = places.of(node);
+            let point = &contact.points[deepest];
+            let (node, x) = (point.node(), point.place(&places));
             let path = format!("contact.{}", contact.name);
             let verb = if deep.len() == 1 {
                 "penetrates"
@@ -190,4 +192,26 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// Where the law holds: at Gauss points in its weak form if there is a multiplier, r from the softer side unless given.
+fn integration(given: schema::Integration, law: &Law, sides: &[Side]) -> Integration {
+    let given = match given {
+        schema::Integration::Named(IntegrationName::Node) => return Integration::Node,
+        schema::Integration::Named(IntegrationName::Quadrature) => None,
+        schema::Integration::With(IntegrationWith::Quadrature(quadrature)) => Some(quadrature),
+    };
+    if law.is_function() {
+        return Integration::Points;
+    }
+    let soft = &sides[0];
+    let r = match law.get().level() {
+        Level::Gap | Level::GapAndRate => given
+            .and_then(|quadrature| quadrature.r)
+            .map_or(soft.young / soft.size, |r| r.0),
+        Level::Rate => given
+            .and_then(|quadrature| quadrature.r_v)
+            .map_or(soft.impedance, |r| r.0),
+    };
+    Integration::Weak { r }
 }

@@ -162,6 +162,9 @@ fn default_capture(scheme: &Scheme) -> Capture {
         | Scheme::TchamwaWielgosz(_)
         | Scheme::PaoliSchatzman(_)
         | Scheme::LaursenChawla(_)
+        | Scheme::LaursenLove(_)
+        | Scheme::NonsmoothAlpha(_)
+        | Scheme::Krenk(_)
         | Scheme::Kane(_)
         | Scheme::ContactStabilised(_) => Capture::Now,
     }
@@ -186,10 +189,10 @@ pub(super) fn sides(
 /// One side of a contact: Young's modulus (Pa), impedance per area rho c (Pa s/m), wave speed (m/s), element size normal to it
 /// (m).
 pub(super) struct Side {
-    young: f64,
-    impedance: f64,
+    pub(super) young: f64,
+    pub(super) impedance: f64,
     wave_speed: f64,
-    size: f64,
+    pub(super) size: f64,
 }
 
 /// The side with the thickest cells and the material of the first.

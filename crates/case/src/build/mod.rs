@@ -98,8 +98,13 @@ impl Builder<'_> {
             contacts,
             scheme,
             dt: f64::MIN_POSITIVE,
+            adaptive: None,
         };
         model.dt = self.step(&model)?;
+        model.adaptive = self.adaptive(model.dt);
+        if !self.problems.is_empty() {
+            return None;
+        }
         let system = match System::new(model) {
             Ok(system) => system,
             Err(error) => {

@@ -107,7 +107,9 @@ fn solve(
             gap,
         },
     };
-    let last = step_count(end, system.dt) as f64 * system.dt;
+    // unequal steps end within one step of the end time
+    let extra = u64::from(system.adaptive.is_some());
+    let last = (step_count(end, system.dt) + extra) as f64 * system.dt;
     let solution =
         carom_exact::solve(&impact, last * (1.0 + 1e-9)).map_err(|error| error.to_string())?;
     Ok((solution, normal))

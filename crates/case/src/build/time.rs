@@ -2,18 +2,29 @@
 
 use carom_contact::law::Level;
 use carom_dynamics::scheme::{
-    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, LaursenChawla, Newmark,
-    PaoliSchatzman, TchamwaWielgosz, Theta,
+    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, Krenk, LaursenChawla,
+    LaursenLove, Newmark, NonsmoothAlpha, PaoliSchatzman, TchamwaWielgosz, Theta,
 };
-use carom_dynamics::{Error, Model, ModelBody, Scheme, System, step_count};
+use carom_dynamics::{Adaptive, Closing, Error, Model, ModelBody, Scheme, System, step_count};
 use carom_mesh::Mesh;
 
 use super::Builder;
 use crate::error::Problem;
-use crate::schema::{self, Law, Mass, Step, StepRule};
+use crate::schema::{self, LargestStep, Law, Mass, MeshStep, Step, StepRule};
 
 /// Most steps of a run: beyond it a case is a slip of the pen.
 const MOST_STEPS: u64 = 1_000_000_000;
+
+/// A step as the case says it.
+#[derive(Clone, Copy)]
+enum Size {
+    /// In s.
+    Fixed(f64),
+    /// Fraction of the time in which a wave crosses an element.
+    Courant(f64),
+    /// Fraction of the critical step.
+    Critical(f64),
+}
 
 impl Builder<'_> {
     pub(super) fn scheme(&self) -> Scheme {
@@ -31,8 +42,17 @@ impl Builder<'_> {
             schema::Scheme::TchamwaWielgosz(scheme) => {
                 Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: scheme.phi })
             }
-            schema::Scheme::PaoliSchatzman(_) => Scheme::PaoliSchatzman(PaoliSchatzman),
+            schema::Scheme::PaoliSchatzman(scheme) => Scheme::PaoliSchatzman(PaoliSchatzman {
+                restitution: scheme.restitution,
+            }),
             schema::Scheme::LaursenChawla(_) => Scheme::LaursenChawla(LaursenChawla),
+            schema::Scheme::LaursenLove(_) => Scheme::LaursenLove(LaursenLove),
+            schema::Scheme::Krenk(krenk) => Scheme::Krenk(Krenk {
+                rho_inf: krenk.rho_inf,
+            }),
+            schema::Scheme::NonsmoothAlpha(alpha) => Scheme::NonsmoothAlpha(NonsmoothAlpha {
+                rho_inf: alpha.rho_inf,
+            }),
             schema::Scheme::ContactStabilised(_) => Scheme::ContactStabilised(ContactStabilised),
             schema::Scheme::Kane(kane) => Scheme::Kane(Kane {
                 beta: kane.beta,
@@ -45,13 +65,10 @@ impl Builder<'_> {
     pub(super) fn scheme_and_laws(&mut self) {
         let scheme = self.scheme();
         let scheme = scheme.get();
-        if let Step::FromMesh(StepRule::Critical(_)) = self.case.time.step
+        if let (path, Size::Critical(_)) = self.size()
             && !scheme.is_explicit()
         {
-            let problem = Problem::new(
-                "time.step.critical",
-                "only an explicit scheme has a critical step",
-            );
+            let problem = Problem::new(path, "only an explicit scheme has a critical step");
             self.problems.push(
                 problem
                     .found(scheme.name())
@@ -59,8 +76,19 @@ impl Builder<'_> {
             );
         }
         for (name, contact) in self.case.contact.iter() {
-            let displacement = matches!(contact.law, Law::Displacement(_));
-            if displacement && !scheme.takes(Level::Gap) {
+            let level = level(&contact.law);
+            if scheme.takes(level) {
+                continue;
+            }
+            if level != Level::Rate && scheme.takes(Level::Rate) && !scheme.is_explicit() {
+                let message = "the contact impulses of this scheme change the velocity at the end of the step, so only a law in the rate can hold";
+                let problem = Problem::new(format!("contact.{name}.law"), message);
+                self.problems.push(
+                    problem
+                        .found(format!("a law in the gap with {}", scheme.name()))
+                        .accepted(["velocity", "compliance", "restitution"]),
+                );
+            } else if level == Level::Gap {
                 let message = "an explicit scheme knows the displacement at the end of the step before the contact force, so this law cannot hold";
                 let problem = Problem::new(format!("contact.{name}.law.displacement"), message);
                 self.problems.push(
@@ -68,8 +96,7 @@ impl Builder<'_> {
                         .found(format!("displacement with {}", scheme.name()))
                         .accepted(["velocity", "damped"]),
                 );
-            }
-            if !displacement && !scheme.takes(Level::Rate) {
+            } else {
                 let message = "the contact forces of this scheme keep the displacement at the end of the step, so no other law can hold";
                 let problem = Problem::new(format!("contact.{name}.law"), message);
                 self.problems.push(
@@ -98,15 +125,11 @@ impl Builder<'_> {
     /// The step in seconds.
     pub(super) fn step(&mut self, model: &Model) -> Option<f64> {
         let end = self.case.time.end.0;
-        let (path, dt) = match self.case.time.step {
-            Step::Fixed(step) => ("time.step", step.0),
-            Step::FromMesh(StepRule::Courant(courant)) => (
-                "time.step.courant",
-                courant * crossing(&model.mesh, &model.bodies),
-            ),
-            Step::FromMesh(StepRule::Critical(fraction)) => {
-                ("time.step.critical", fraction * self.critical(model)?)
-            }
+        let (path, size) = self.size();
+        let dt = match size {
+            Size::Fixed(dt) => dt,
+            Size::Courant(courant) => courant * crossing(&model.mesh, &model.bodies),
+            Size::Critical(fraction) => fraction * self.critical(model)?,
         };
         let steps = step_count(end, dt);
         if !(dt > 0.0 && dt.is_finite()) || steps > MOST_STEPS {
@@ -124,6 +147,52 @@ impl Builder<'_> {
             return None;
         }
         Some(dt)
+    }
+
+    /// The step, or the largest, as the case says it, and its key.
+    fn size(&self) -> (&'static str, Size) {
+        match self.case.time.step {
+            Step::Fixed(step) => ("time.step", Size::Fixed(step.0)),
+            Step::Rule(StepRule::Courant(courant)) => ("time.step.courant", Size::Courant(courant)),
+            Step::Rule(StepRule::Critical(part)) => ("time.step.critical", Size::Critical(part)),
+            Step::Rule(StepRule::Adaptive(rules)) => match rules.largest {
+                LargestStep::Fixed(step) => ("time.step.adaptive.largest", Size::Fixed(step.0)),
+                LargestStep::FromMesh(MeshStep::Courant(courant)) => {
+                    ("time.step.adaptive.largest.courant", Size::Courant(courant))
+                }
+                LargestStep::FromMesh(MeshStep::Critical(part)) => {
+                    ("time.step.adaptive.largest.critical", Size::Critical(part))
+                }
+            },
+        }
+    }
+
+    /// The rules of an adaptive step, whose largest is `largest` (s).
+    pub(super) fn adaptive(&mut self, largest: f64) -> Option<Adaptive> {
+        let Step::Rule(StepRule::Adaptive(rules)) = self.case.time.step else {
+            return None;
+        };
+        let smallest = rules.smallest.map_or(1e-3 * largest, |step| step.0);
+        if !(smallest > 0.0 && smallest <= largest) {
+            let problem = Problem::new(
+                "time.step.adaptive.smallest",
+                "the smallest step must be positive and at most the largest",
+            );
+            self.problems.push(
+                problem
+                    .found(format!("{smallest:e} s"))
+                    .accepted([format!("at most {largest:e} s")]),
+            );
+        }
+        Some(Adaptive {
+            smallest,
+            closing: match rules.closing {
+                schema::Closing::Cut => Closing::Cut,
+                schema::Closing::Pass => Closing::Pass,
+            },
+            growth: Some(rules.energy_growth),
+            patience: rules.patience,
+        })
     }
 
     /// Critical step of the model, in s.
@@ -144,7 +213,10 @@ impl Builder<'_> {
                 let name = match cause {
                     carom_bodies::Error::Empty { body }
                     | carom_bodies::Error::WrongElement { body, .. }
-                    | carom_bodies::Error::NegativeRadius { body, .. } => body,
+                    | carom_bodies::Error::NegativeRadius { body, .. }
+                    | carom_bodies::Error::WeightCount { body, .. }
+                    | carom_bodies::Error::NegativeMass { body, .. }
+                    | carom_bodies::Error::NegativeStiffness { body, .. } => body,
                 };
                 Problem::new(format!("body.{name}.region"), cause.to_string())
             }
@@ -165,11 +237,23 @@ impl Builder<'_> {
             Error::MasslessContact { contact, .. } => {
                 Problem::new(format!("contact.{contact}.nodes"), error.to_string())
             }
+            Error::Integration { contact, .. } | Error::WeakForm { contact, .. } => {
+                Problem::new(format!("contact.{contact}.integration"), error.to_string())
+            }
             Error::Massless { body, .. } => {
                 Problem::new(format!("body.{body}.mass"), error.to_string())
             }
             other => Problem::new("time", other.to_string()),
         }
+    }
+}
+
+/// What a law constrains.
+fn level(law: &Law) -> Level {
+    match law {
+        Law::Displacement(_) => Level::Gap,
+        Law::Damped(_) | Law::Penalty(_) | Law::Stop(_) => Level::GapAndRate,
+        Law::Velocity(_) | Law::Compliance(_) | Law::Restitution(_) => Level::Rate,
     }
 }
 

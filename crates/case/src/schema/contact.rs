@@ -266,10 +266,48 @@ pub enum Sliding {
 }
 
 /// Where the contact condition is imposed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
 pub enum Integration {
+    /// By its name.
+    Named(IntegrationName),
+    /// With parameters.
+    With(IntegrationWith),
+}
+
+impl Default for Integration {
+    fn default() -> Integration {
+        Integration::Named(IntegrationName::Node)
+    }
+}
+
+/// Where the contact condition is imposed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum IntegrationName {
     /// At the nodes of the secondary surface.
-    #[default]
     Node,
+    /// At the Gauss points of its faces: the exact laws in their weak form, with a pressure in the shape functions of the
+    /// surface and a sign at each point; the compliance, and penalty and stop without damping, in each point by itself.
+    Quadrature,
+}
+
+/// Where the contact condition is imposed, with parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum IntegrationWith {
+    /// At the Gauss points of the secondary faces, as the name says, with the r of the weak form: the sign of a point is
+    /// that of p - r g, or p - r-v times the gap rate. The result depends on it only around nodes between closed and open
+    /// points; the summary counts them.
+    Quadrature(Quadrature),
+}
+
+/// The r of the weak form.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Quadrature {
+    /// r of the displacement law. Default: Young's modulus over the element size of the softer side.
+    pub r: Option<SurfaceStiffness>,
+    /// r of the velocity law. Default: the impedance per area of the softer side.
+    pub r_v: Option<SurfaceDamping>,
 }

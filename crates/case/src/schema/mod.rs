@@ -24,8 +24,8 @@ pub use body::{
 };
 pub use contact::{
     Adhesion, Capture, ComplianceLaw, Contact, Crush, CurvePoint, DampedLaw, DisplacementLaw,
-    Integration, Law, Nodes, NormalVector, Obstacle, PenaltyLaw, Plane, RestitutionLaw, Sign,
-    Sliding, StopLaw, VelocityLaw,
+    Integration, IntegrationName, IntegrationWith, Law, Nodes, NormalVector, Obstacle, PenaltyLaw,
+    Plane, RestitutionLaw, Sign, Sliding, StopLaw, VelocityLaw,
 };
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};
@@ -34,8 +34,9 @@ pub use quantity::{
     SurfaceDamping, SurfaceStiffness, Vector, Velocity,
 };
 pub use time::{
-    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, LaursenChawla, Newmark,
-    PaoliSchatzman, Scheme, Step, StepRule, TchamwaWielgosz, Theta, Time,
+    Adaptive, CentralDifference, Closing, ContactStabilised, GeneralisedAlpha, Hht, Kane, Krenk,
+    LargestStep, LaursenChawla, LaursenLove, MeshStep, Newmark, NonsmoothAlpha, PaoliSchatzman,
+    Scheme, Step, StepRule, TchamwaWielgosz, Theta, Time,
 };
 
 /// A case: bodies, what joins them, and the time to simulate.

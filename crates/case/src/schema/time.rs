@@ -23,11 +23,11 @@ pub struct Time {
 pub enum Step {
     /// A fixed time step.
     Fixed(Duration),
-    /// A time step from the mesh.
-    FromMesh(StepRule),
+    /// A time step from the mesh, or one that adapts itself.
+    Rule(StepRule),
 }
 
-/// A time step from the mesh.
+/// A time step from the mesh, or one that adapts itself.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum StepRule {
@@ -35,6 +35,60 @@ pub enum StepRule {
     Courant(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
     /// This fraction of the critical step of an explicit scheme, which comes from the eigenvalues of the elements.
     Critical(#[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))] f64),
+    /// A step that is cut where a contact closes, and halved where energy grows or no solution is found.
+    Adaptive(Adaptive),
+}
+
+/// A step that adapts itself to events. A step that fails is dropped as a whole and tried again with a smaller one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Adaptive {
+    /// The largest step, and the first.
+    pub largest: LargestStep,
+    /// The smallest step; a thousandth of the largest if not given. A step that fails at this size ends the run.
+    pub smallest: Option<Duration>,
+    /// What a contact that closes within a step does to it.
+    #[serde(default)]
+    pub closing: Closing,
+    /// A step in which energy grows without load by more than this fraction of the largest energy is halved.
+    #[serde(default = "hundredth")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub energy_growth: f64,
+    /// Steps without event after which the step doubles.
+    #[serde(default = "ten")]
+    #[schemars(extend("minimum" = 1))]
+    pub patience: u32,
+}
+
+/// The largest step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum LargestStep {
+    /// A time.
+    Fixed(Duration),
+    /// From the mesh.
+    FromMesh(MeshStep),
+}
+
+/// A time step from the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum MeshStep {
+    /// This fraction of the least time in which a wave crosses an element.
+    Courant(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+    /// This fraction of the critical step of an explicit scheme, which comes from the eigenvalues of the elements.
+    Critical(#[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))] f64),
+}
+
+/// What a contact that closes within a step does to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Closing {
+    /// The step is cut, so that the closing falls at its end.
+    #[default]
+    Cut,
+    /// Nothing.
+    Pass,
 }
 
 /// A time scheme. Any contact law may be named with it; a pair that makes no sense is refused with the reason.
@@ -53,11 +107,19 @@ pub enum Scheme {
     Hht(Hht),
     /// The dissipative scheme of Tchamwa and Wielgosz, explicit; lumped mass.
     TchamwaWielgosz(TchamwaWielgosz),
-    /// The two-step scheme of Paoli and Schatzman, without restitution; made for the displacement law.
+    /// The two-step scheme of Paoli and Schatzman, with restitution; made for the displacement law.
     PaoliSchatzman(PaoliSchatzman),
     /// The mid-point rule with contact on the mean rate (Laursen, Chawla): exact energy, useless force; made for the
     /// velocity law.
     LaursenChawla(LaursenChawla),
+    /// The mid-point rule with the displacement law and a velocity that gets the work of the contact back (Laursen, Love):
+    /// exact energy, no penetration, useless force; displacement law only.
+    LaursenLove(LaursenLove),
+    /// The generalised-alpha scheme for the smooth motion, contact impulses apart (Chen, Acary, Virlez, Brüls); lumped mass,
+    /// laws in the rate only: velocity, compliance, restitution.
+    NonsmoothAlpha(NonsmoothAlpha),
+    /// A scheme in extended state space: damping through filtered changes of displacement and velocity (after Krenk).
+    Krenk(Krenk),
     /// Newmark's scheme with implicit contact forces (Kane, Repetto, Ortiz, Marsden); lumped mass, displacement law only.
     Kane(Kane),
     /// The trapezoid with a predictor that is projected on the admissible displacements (contact-stabilised Newmark: Deuflhard,
@@ -125,15 +187,46 @@ pub struct TchamwaWielgosz {
     pub phi: f64,
 }
 
-/// The scheme of Paoli and Schatzman: nothing to give.
+/// The scheme of Paoli and Schatzman.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct PaoliSchatzman {}
+pub struct PaoliSchatzman {
+    /// Restitution of bodies that are rigid in a step; the displacement law holds for (u+ + e u-)/(1 + e). Above 0 with the
+    /// displacement law only.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub restitution: f64,
+}
 
 /// The scheme of Laursen and Chawla: nothing to give.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LaursenChawla {}
+
+/// The scheme of Laursen and Love: nothing to give.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct LaursenLove {}
+
+/// The nonsmooth generalised-alpha scheme.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct NonsmoothAlpha {
+    /// Spectral radius at infinite frequency of the smooth motion: 1 damps nothing, 0 most.
+    #[serde(default = "four_fifths")]
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub rho_inf: f64,
+}
+
+/// The scheme in extended state space after Krenk.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Krenk {
+    /// Spectral radius at infinite frequency: 1 damps nothing, 0 most.
+    #[serde(default = "four_fifths")]
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub rho_inf: f64,
+}
 
 /// The scheme of Kane, Repetto, Ortiz and Marsden.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -153,6 +246,14 @@ pub struct Kane {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ContactStabilised {}
+
+fn hundredth() -> f64 {
+    0.01
+}
+
+fn ten() -> u32 {
+    10
+}
 
 fn quarter() -> f64 {
     0.25

@@ -29,7 +29,7 @@ time = {{ end = "150 us", step.courant = 0.5, scheme.theta.theta = 0.5 }}
 
 const EXACT: &str = "[reference.two-bars]";
 
-struct Nobody;
+pub struct Nobody;
 
 impl Observer for Nobody {
     fn accepted(

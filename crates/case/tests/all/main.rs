@@ -4,5 +4,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod compare;
+mod quadrature;
 mod stage_one;
 mod warnings;

@@ -92,7 +92,7 @@ fn the_documented_case_is_read_in_si_units() {
             .si(),
         [5.1359, 0.0, 0.0]
     );
-    assert_eq!(case.time.step, Step::FromMesh(StepRule::Courant(0.5)));
+    assert_eq!(case.time.step, Step::Rule(StepRule::Courant(0.5)));
     assert!(matches!(case.time.scheme, Scheme::Theta(theta) if theta.theta == 0.5));
     assert!(locator.contains("body.striker.section.bar.area"));
     let place = locator.value("contact.shock.primary").unwrap();

@@ -188,6 +188,25 @@ impl Law {
         }
     }
 
+    /// Whether it is complementarity of the force and one quantity, for which there is a weak form with a multiplier.
+    pub fn has_weak_form(&self) -> bool {
+        matches!(
+            self,
+            Law::Displacement(Displacement { projection: false }) | Law::Velocity(_)
+        )
+    }
+
+    /// Whether it gives the force of each point as a continuous function of one quantity there, so that points may be as
+    /// many as one likes. A damper beside a spring is none: its force jumps where the gap closes.
+    pub fn is_function(&self) -> bool {
+        match self {
+            Law::Compliance(_) => true,
+            Law::Penalty(Penalty(law)) => law.damping == 0.0,
+            Law::Stop(law) => law.damping == 0.0,
+            Law::Displacement(_) | Law::Velocity(_) | Law::Restitution(_) | Law::Damped(_) => false,
+        }
+    }
+
     /// The law behind the choice.
     pub fn get(&self) -> &dyn ContactLaw {
         match self {

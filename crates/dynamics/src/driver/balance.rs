@@ -28,8 +28,18 @@ impl Driver {
             &mut self.vectors,
             &mut self.forces,
         );
+        let memory = remembered(
+            &system,
+            &identity,
+            &new.memory,
+            &mut self.vectors,
+            &mut self.forces,
+        );
+        let filtered = self.filtered(&identity);
+        let new = &self.next.motion;
         let work = &mut self.vectors.work;
         let energies = Energies {
+            memory,
             lagged,
             ..energies(&system, new, strain, work, identity.inertia != 0.0)
         };
@@ -47,6 +57,7 @@ impl Driver {
         } = &mut self.vectors;
         let squares = Squares {
             stage,
+            filtered,
             ..squares(&system, &identity, (old, new), (travel, known, work))
         };
         if identity.lag != 0.0 {
@@ -58,9 +69,12 @@ impl Driver {
             + weights.new * dot(travel, &new.contact_force);
         let work_loads = dot(travel, &system.load);
         self.next.ledger.clone_from(&self.state.ledger);
+        if self.dt != self.state.control.taken {
+            self.resize_energy();
+        }
         self.next.ledger.add(
             (
-                system.dt,
+                self.dt,
                 &identity,
                 [&self.map.impulse, &self.map.contact_impulse],
             ),
@@ -69,6 +83,35 @@ impl Driver {
             &squares,
             [loads, contact, supports, held],
         );
+    }
+
+    /// Counts what the energy that the scheme balances gains by the new size of the step alone.
+    fn resize_energy(&mut self) {
+        let system = Arc::clone(&self.system);
+        let identity = self.identity.unwrap_or_default();
+        let strain = self.state.ledger.balance.strain;
+        let old = &self.state.motion;
+        let (vectors, forces) = (&mut self.vectors, &mut self.forces);
+        let lagged = lagged(&system, &identity, (old, strain), vectors, forces);
+        let memory = remembered(&system, &identity, &old.memory, vectors, forces);
+        let work = &mut vectors.work;
+        let energies = Energies {
+            lagged,
+            memory,
+            ..energies(&system, old, strain, work, identity.inertia != 0.0)
+        };
+        self.next.ledger.resize(&identity, &energies);
+    }
+
+    /// |Δm|²_K of the step, as far as the identity asks for it.
+    fn filtered(&mut self, identity: &EnergyIdentity) -> f64 {
+        if identity.filtered == 0.0 {
+            return 0.0;
+        }
+        let Vectors { known, work, .. } = &mut self.vectors;
+        let [old, new] = [&self.state, &self.next].map(|state| &state.motion.memory);
+        difference(old, new, known);
+        2.0 * self.forces.evaluate(&self.system, known, work)
     }
 
     /// Resultants of the forces of the supports in the step; apart, those against contact forces that act in the
@@ -122,13 +165,16 @@ impl Driver {
         let system = Arc::clone(&self.system);
         self.next.records.follow(&self.state.records);
         for k in 0..system.contacts.len() {
-            let report = contact_report(
+            let mut report = contact_report(
                 &system,
                 k,
                 &self.rows,
                 &self.state.interface,
                 &self.next.interface,
+                self.dt,
             );
+            let forces = &self.next.interface.force[points(&system, k)];
+            report.mixed = self.weak.mixed(k, forces);
             let weights = self.work_weights();
             let interface = &self.next.interface;
             let step = Step {
@@ -181,6 +227,7 @@ impl Driver {
         let state = &self.state;
         self.report.step = state.step;
         self.report.time = state.time;
+        self.report.dt = if state.step == 0 { 0.0 } else { self.dt };
         self.report.balance = state.ledger.balance;
         self.report.passes = if self.candidates.is_empty() {
             0
@@ -195,6 +242,7 @@ impl Driver {
                     &self.rows,
                     &state.interface,
                     &state.interface,
+                    0.0,
                 );
             }
         }
@@ -219,6 +267,7 @@ pub(super) fn energies(
         kinetic,
         strain,
         acceleration,
+        memory: 0.0,
         lagged: 0.0,
         momentum,
     }
@@ -239,6 +288,21 @@ pub(super) fn lagged(
         known[i] = motion.u[i] - identity.lag * motion.v[i];
     }
     forces.evaluate(system, known, work) - strain
+}
+
+/// |m|²_K of a memory m, J/s².
+pub(super) fn remembered(
+    system: &System,
+    identity: &EnergyIdentity,
+    memory: &[f64],
+    Vectors { work, .. }: &mut Vectors,
+    forces: &mut Forces,
+) -> f64 {
+    match identity.memory == 0.0 {
+        true => 0.0,
+        // U is quadratic
+        false => 2.0 * forces.evaluate(system, memory, work),
+    }
 }
 
 /// What changed from the old to the new motion, as far as the identity asks for it. Leaves Δu in `travel`.
@@ -285,6 +349,7 @@ fn contact_report(
     rows: &Rows,
     old: &InterfaceState,
     new: &InterfaceState,
+    dt: f64,
 ) -> ContactReport {
     let mut report = ContactReport {
         gap: f64::INFINITY,
@@ -301,7 +366,7 @@ fn contact_report(
         }
         report.closed += usize::from(force != 0.0);
         report.status_changes += usize::from((force != 0.0) != (old.force[point] != 0.0));
-        report.persistency_defect += (force * new.rate[point]).abs() * system.dt;
+        report.persistency_defect += (force * new.rate[point]).abs() * dt;
     }
     report
 }

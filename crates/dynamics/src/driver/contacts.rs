@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use carom_contact::law::{End, Local, Status};
+use carom_contact::law::{End, Level, Local, Status};
 use carom_contact::{Places, Rows, Sliding};
 
 use super::Driver;
 use crate::error::Error;
 use crate::interface::{Candidate, Failure, InterfaceProblem};
 use crate::state::Motion;
-use crate::step_map::Row;
+use crate::step_map::{Row, StepMap};
+use crate::system::System;
 
 impl Driver {
     pub(super) fn pair_initially(&mut self) {
@@ -38,9 +39,9 @@ impl Driver {
     /// Pairs all contacts at their captured instant; `now` takes the state as it is.
     pub(super) fn place(&mut self, now: bool) {
         let system = Arc::clone(&self.system);
-        let (map, dt, motion) = (&self.map, system.dt, &self.state.motion);
+        let (map, dt, motion) = (&self.map, self.dt, &self.state.motion);
         self.rows.clear();
-        self.ahead.clear();
+        self.captured.clear();
         let mut capture = f64::NAN;
         for (k, contact) in system.contacts.iter().enumerate() {
             let place = match now {
@@ -69,15 +70,7 @@ impl Driver {
                     contact.pair(&places, &mut self.search[k], &mut self.rows);
                 }
             }
-            let end = map.displacement;
-            let ahead = Row {
-                u: end.u - place.u,
-                v: end.v - place.v,
-                a: end.a - place.a,
-                x: end.x,
-                c: end.c,
-            };
-            self.ahead.resize(self.rows.len(), ahead);
+            self.captured.resize(self.rows.len(), place);
         }
     }
 
@@ -95,7 +88,7 @@ impl Driver {
                 None => {
                     let rate = self.rows.product(point, &self.state.motion.v);
                     self.state.interface.status[point] != Status::Open
-                        || gap + 2.0 * system.dt * rate.min(0.0) <= system.tolerance
+                        || gap + 2.0 * self.dt * rate.min(0.0) <= system.tolerance
                 }
             };
             self.next.interface.watched[point] = chosen;
@@ -132,8 +125,8 @@ impl Driver {
                     share: carrier.share,
                     gap: self.rows.gap(at),
                     rate: nv,
-                    gap_free: self.rows.gap(at) + value(&self.ahead[at]),
-                    dt: system.dt,
+                    gap_free: self.rows.gap(at) + value(&self.map.gap.since(&self.captured[at])),
+                    dt: self.dt,
                     tolerance: system.tolerance,
                     crush: self.state.interface.crush[at],
                 },
@@ -142,14 +135,34 @@ impl Driver {
             });
         }
         let factor = self.map.contact;
-        let factors = [self.map.displacement.x * factor, self.map.rate.x * factor];
-        let solved = self.interface.solve(
-            &self.candidate_data,
-            (&self.compliance.matrix, self.compliance.version),
-            factors,
+        let impulsive = match &mut self.impulses {
+            Some(stage) if sums_compliances(system, &self.map) => {
+                let own = (self.map.rate.x * factor, &self.compliance.matrix[..]);
+                stage.sum(system, &self.rows, &self.candidates, own, self.map.rate.c)
+            }
+            _ => None,
+        };
+        let (matrix, factors) = match impulsive {
+            Some(matrix) => (matrix, [0.0, 1.0]),
+            None => (
+                &self.compliance.matrix[..],
+                [self.map.gap.x * factor, self.map.rate.x * factor],
+            ),
+        };
+        let compliance = (
+            matrix,
+            &self.compliance.candidates[..],
+            self.compliance.version,
         );
+        let compliance = self
+            .with_weak
+            .of(&self.weak, system, (compliance, &self.rows), factors);
+        let solved = self
+            .interface
+            .solve(&self.candidate_data, compliance, factors);
         if let Err(failure) = solved {
-            self.failed = Some(self.problem(factors));
+            let matrix = compliance.0.to_vec();
+            self.failed = Some(self.problem(matrix, factors));
             return Err(self.interface_error(failure, &self.candidates));
         }
         if let Some(candidate) = self.interface.circled {
@@ -169,6 +182,7 @@ impl Driver {
                 );
             }
         }
+        self.spread();
         Ok(())
     }
 
@@ -185,15 +199,34 @@ impl Driver {
         }
     }
 
+    /// Nodal contact forces of the step, and the acceleration that they give by themselves where the scheme uses it.
+    fn spread(&mut self) {
+        let system = &*self.system;
+        let f = &mut self.next.motion.contact_force;
+        f.fill(0.0);
+        for (&point, &force) in self.candidates.iter().zip(&self.interface.forces) {
+            self.rows.add_force(point as usize, force, f);
+        }
+        if self.map.uses_contact_acceleration() {
+            let accelerations = &mut self.vectors.contact_acceleration;
+            for (i, c) in accelerations.iter_mut().enumerate() {
+                *c = match system.fixed[i] {
+                    true => 0.0,
+                    false => f[i] / system.mass.lumped[i],
+                };
+            }
+        }
+    }
+
     /// Contact, place in it and mesh node of a contact point.
     fn name(&self, point: u32) -> String {
         let (contact, place) = self.system.point(point as usize);
-        let node = self.system.mesh_node[contact.points[place].node as usize];
+        let node = self.system.mesh_node[contact.points[place].node() as usize];
         format!("contact `{}`, point {place}, node {node}", contact.name)
     }
 
     /// The interface problem as it stands.
-    fn problem(&self, factors: [f64; 2]) -> InterfaceProblem {
+    fn problem(&self, compliance: Vec<f64>, factors: [f64; 2]) -> InterfaceProblem {
         InterfaceProblem {
             step: self.state.step + 1,
             names: self
@@ -202,7 +235,7 @@ impl Driver {
                 .map(|&point| self.name(point))
                 .collect(),
             candidates: self.candidate_data.clone(),
-            compliance: self.compliance.matrix.clone(),
+            compliance,
             factors,
         }
     }
@@ -232,7 +265,8 @@ impl Driver {
     pub(super) fn add_missed(&mut self) -> bool {
         let before = self.candidates.len();
         let motion = &self.state.motion;
-        // the contact acceleration enters no row that decides on a contact
+        self.weak
+            .take(&self.system, &self.candidates, &self.interface.forces, 1.0);
         let xc = [&self.vectors.x[..], &self.vectors.contact_acceleration[..]];
         for point in 0..self.system.points() {
             let captured = self.rows.gap(point);
@@ -247,19 +281,21 @@ impl Driver {
             {
                 continue;
             }
-            let gap = captured + on_row(&self.rows, point, &self.ahead[point], motion, xc);
+            let ahead = self.map.gap.since(&self.captured[point]);
+            let gap = captured + on_row(&self.rows, point, &ahead, motion, xc);
             let rate = on_row(&self.rows, point, &self.map.rate, motion, xc);
+            let pull = self.weak.pull(&self.system, point);
             let end = End {
-                gap_released: gap,
-                gap,
-                rate,
+                gap_released: gap - pull,
+                gap: gap - pull,
+                rate: rate - pull,
                 force: 0.0,
             };
             let local = Local {
                 gap: captured,
                 rate: self.rows.product(point, &motion.v),
                 gap_free: gap,
-                dt: self.system.dt,
+                dt: self.dt,
                 tolerance: self.system.tolerance,
                 crush: self.state.interface.crush[point],
                 ..Local::default()
@@ -272,6 +308,12 @@ impl Driver {
         self.candidates.sort_unstable();
         self.candidates.len() > before
     }
+}
+
+/// Whether laws in the rate hold for a velocity on which contact forces act through the mass too: the interface problem then
+/// sums the compliances of the step and of the mass.
+pub(super) fn sums_compliances(system: &System, map: &StepMap) -> bool {
+    map.rate.c != 0.0 && system.scheme.get().takes(Level::Rate)
 }
 
 /// N applied to a row of the step, for one point.

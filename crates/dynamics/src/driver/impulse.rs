@@ -1,14 +1,18 @@
-//! Complementarity with the mass alone: the stages of a step that change velocities, accelerations or a predictor by
-//! impulses of the contact points.
+//! The mass alone: the stages of a step that change velocities, accelerations or a predictor by impulses of the contact
+//! points.
 
 use carom_contact::law::{Displacement, Local, Status};
 use carom_contact::{Law, Rows};
 
+use super::weak::{WeakForms, WithWeak};
 use crate::compliance::Compliance;
 use crate::error::Error;
 use crate::interface::{Candidate, Failure, Interface};
 use crate::operator::Operators;
 use crate::system::System;
+
+/// Most sweeps over the points in which impulses of given work are sought; some ten are usual.
+const MOST_SWEEPS: usize = 1000;
 
 /// Solver for `0 <= q + D ΔI ⟂ I + ΔI >= 0`, D = N M⁻¹ Nᵀ, with q a quantity of the points and I what acts on them
 /// already. Then q + D ΔI is the quantity closest to the one without any I, in the norm of the mass, among those that are
@@ -16,9 +20,11 @@ use crate::system::System;
 pub(super) struct Impulses {
     operators: Operators,
     compliance: Compliance,
+    with_weak: WithWeak,
     interface: Interface,
     candidates: Vec<Candidate>,
     half: Vec<f64>,
+    summed: Vec<f64>,
     /// ΔI of each point of the last solve.
     pub(super) added: Vec<f64>,
     /// Whether I + ΔI > 0 for each point of the last solve.
@@ -32,19 +38,81 @@ impl Impulses {
         Ok(Impulses {
             operators: Operators::new(system, 1.0, 0.0, "mass matrix")?,
             compliance: Compliance::new(system.points()),
+            with_weak: WithWeak::default(),
             interface: Interface::default(),
             candidates: Vec::new(),
             half: vec![0.0; system.unknowns()],
+            summed: Vec::new(),
             added: Vec::new(),
             active: Vec::new(),
             change: vec![0.0; system.unknowns()],
         })
     }
 
-    /// Solves for the points (ascending). `values`: q of each; infinite where I + ΔI must vanish. `present`: I of each.
+    /// `factor` D + `own.0` times the matrix `own.1` over the points (ascending), row-major; `None` for no point.
+    pub(super) fn sum(
+        &mut self,
+        system: &System,
+        rows: &Rows,
+        points: &[u32],
+        own: (f64, &[f64]),
+        factor: f64,
+    ) -> Option<&[f64]> {
+        self.compliance
+            .update(points, rows, &system.fixed, &mut self.operators);
+        self.summed.clear();
+        let pairs = self.compliance.matrix.iter().zip(own.1);
+        self.summed
+            .extend(pairs.map(|(d, other)| factor * d + own.0 * other));
+        (!points.is_empty()).then_some(&self.summed[..])
+    }
+
+    /// The impulses I > 0 of the points (ascending) with `I_i (r_i + ½ (D I)_i) = w_i`. `rates`: r of each; `works`: w of
+    /// each, positive.
+    ///
+    /// They are where the strictly convex `I · r + ¼ I · D I - Σ w_i ln I_i` is least: coordinates in turn go to their own
+    /// least value, a root of a quadratic equation, until none changes.
+    pub(super) fn give_work(
+        &mut self,
+        system: &System,
+        rows: &Rows,
+        points: &[u32],
+        rates: &[f64],
+        works: &[f64],
+    ) {
+        let n = points.len();
+        self.compliance
+            .update(points, rows, &system.fixed, &mut self.operators);
+        let d = &self.compliance.matrix;
+        self.added.clear();
+        self.added.resize(n, 0.0);
+        for _ in 0..MOST_SWEEPS {
+            let mut change: f64 = 0.0;
+            for i in 0..n {
+                let row = &d[i * n..(i + 1) * n];
+                let of_all: f64 = row.iter().zip(&self.added).map(|(d, q)| d * q).sum();
+                let t = rates[i] + 0.5 * (of_all - row[i] * self.added[i]);
+                let root = (t * t + 2.0 * row[i] * works[i]).sqrt();
+                let impulse = match t > 0.0 {
+                    true => 2.0 * works[i] / (root + t),
+                    false => (root - t) / row[i],
+                };
+                change = change.max((impulse - self.added[i]).abs() / impulse);
+                self.added[i] = impulse;
+            }
+            if change <= 4.0 * f64::EPSILON {
+                break;
+            }
+        }
+        self.spread(points);
+    }
+
+    /// Solves for the points (ascending). `weak`: weak forms, and impulse over force. `values`: q of each; infinite where
+    /// I + ΔI must vanish. `present`: I of each.
     pub(super) fn solve(
         &mut self,
         system: &System,
+        weak: (&WeakForms, f64),
         rows: &Rows,
         points: &[u32],
         values: &[f64],
@@ -53,7 +121,13 @@ impl Impulses {
         let n = points.len();
         self.compliance
             .update(points, rows, &system.fixed, &mut self.operators);
-        let d = &self.compliance.matrix;
+        let of = (
+            &self.compliance.matrix[..],
+            &self.compliance.candidates[..],
+            self.compliance.version,
+        );
+        let compliance = self.with_weak.of(weak.0, system, (of, rows), [weak.1; 2]);
+        let d = compliance.0;
         self.candidates.clear();
         for (i, value) in values.iter().enumerate() {
             let of_present: f64 = d[i * n..(i + 1) * n]
@@ -74,20 +148,25 @@ impl Impulses {
                 },
             });
         }
-        let compliance = (&d[..], self.compliance.version);
         self.interface
             .solve(&self.candidates, compliance, [1.0, 0.0])?;
         self.added.clear();
         self.active.clear();
-        self.half.fill(0.0);
-        for (k, &point) in points.iter().enumerate() {
-            let added = self.interface.forces[k] - present[k];
-            self.added.push(added);
+        for (k, present) in present.iter().enumerate() {
+            self.added.push(self.interface.forces[k] - present);
             self.active.push(self.interface.statuses[k] != Status::Open);
+        }
+        self.spread(points);
+        Ok(())
+    }
+
+    /// The change that the added impulses make.
+    fn spread(&mut self, points: &[u32]) {
+        self.half.fill(0.0);
+        for (&point, &added) in points.iter().zip(&self.added) {
             self.compliance
                 .add(point, added, &self.operators, &mut self.half);
         }
         self.operators.end(&mut self.half, &mut self.change);
-        Ok(())
     }
 }

@@ -3,11 +3,14 @@
 //! What it holds besides the state is a function of the system and the state, or scratch: a run goes on from a saved
 //! state with the same bits.
 
+mod attempt;
 mod balance;
 mod contacts;
 mod impulse;
 mod predictor;
 mod projection;
+mod restoring;
+mod weak;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -18,6 +21,7 @@ use carom_contact::law::Status;
 use carom_contact::{Contact, Rows, Search};
 
 use crate::compliance::Compliance;
+use crate::control::Control;
 use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::ledger::{Energies, Ledger, Resultant, reactions};
@@ -27,31 +31,46 @@ use crate::scheme::EnergyIdentity;
 use crate::state::{ContactReport, InterfaceState, Motion, State, StepReport};
 use crate::step_map::{Row, StepMap};
 use crate::system::System;
-use balance::{energies, lagged};
-use contacts::on_row;
+use attempt::Sized;
+use balance::{energies, lagged, remembered};
+use contacts::{on_row, sums_compliances};
 use impulse::Impulses;
 use predictor::Predictor;
 use projection::Projected;
+use restoring::Restoring;
+use weak::{WeakForms, WithWeak};
 
 /// Takes steps.
 pub struct Driver {
     system: Arc<System>,
+    /// Size of the step that the fields down to the interface are for, s.
+    dt: f64,
     map: StepMap,
     identity: Option<EnergyIdentity>,
     operators: Operators,
     compliance: Compliance,
+    weak: WeakForms,
+    /// D with the compliance of the weak forms.
+    with_weak: WithWeak,
     interface: Interface,
+    /// The same for other step sizes, the last used last.
+    kept: Vec<Sized>,
+    /// Factors computed so far.
+    factorisations: usize,
+    /// Every which step is dropped once, in tests.
+    forced: Option<u64>,
     forces: Forces,
     /// Solver of the stages with the mass alone; none where there is no such stage.
     impulses: Option<Impulses>,
     projected: Projected,
     predictor: Predictor,
+    restoring: Restoring,
     /// Rows at zero displacement of contacts with small sliding.
     initial_rows: Vec<Option<Rows>>,
     search: Vec<Search>,
     rows: Rows,
-    /// For each point, the factors of u, v, a and x in its gap at the end, counted from the paired configuration.
-    ahead: Vec<Row>,
+    /// For each point, the configuration in which it is paired.
+    captured: Vec<Row>,
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,
     /// The interface problem that made the last step fail.
@@ -112,6 +131,8 @@ pub struct Phases {
 pub struct Costs {
     /// One entry per connected part with a factor.
     pub factors: Vec<FactorStats>,
+    /// Factors computed, over all sizes of the step.
+    pub factorisations: usize,
     /// Columns A⁻¹ Nᵀ computed.
     pub columns: usize,
     /// Bytes of columns and compliance.
@@ -139,17 +160,26 @@ impl Driver {
         let (n, points) = (system.unknowns(), system.points());
         let zeros = || vec![0.0; n];
         let projects = |contact: &Contact| contact.law.projects();
-        let predicts = scheme.projects_predictor() && points > 0;
-        let impulses = match predicts || system.contacts.iter().any(projects) {
+        let stages = scheme.projects_predictor()
+            || scheme.restores_contact_work()
+            || sums_compliances(&system, &map);
+        let staged = stages && points > 0 || system.contacts.iter().any(projects);
+        let impulses = match staged {
             true => Some(Impulses::new(&system)?),
             false => None,
         };
         let mut driver = Driver {
+            dt: system.dt,
             map,
             identity,
+            factorisations: operators.factored(),
             operators,
             compliance: Compliance::new(points),
+            weak: WeakForms::new(&system)?,
+            with_weak: WithWeak::default(),
             interface: Interface::default(),
+            kept: Vec::new(),
+            forced: None,
             forces: Forces {
                 scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
                 sweeps: 0,
@@ -157,10 +187,11 @@ impl Driver {
             impulses,
             projected: Projected::new(points),
             predictor: Predictor::default(),
+            restoring: Restoring::default(),
             initial_rows: Vec::new(),
             search: system.contacts.iter().map(|_| Search::default()).collect(),
             rows: Rows::default(),
-            ahead: Vec::new(),
+            captured: Vec::new(),
             candidates: Vec::new(),
             candidate_data: Vec::new(),
             failed: None,
@@ -249,6 +280,7 @@ impl Driver {
                 .iter()
                 .filter_map(|operator| operator.stats().cloned())
                 .collect(),
+            factorisations: self.factorisations,
             columns: self.compliance.columns_computed,
             compliance_bytes: self.compliance.bytes(),
             force_sweeps: self.forces.sweeps,
@@ -265,6 +297,9 @@ impl Driver {
         let strain = self
             .forces
             .evaluate(&system, &motion.u, &mut motion.internal_force);
+        if self.map.has_memory() {
+            motion.memory.clone_from(&motion.v);
+        }
         if system.scheme.get().keeps_acceleration() {
             let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
             for i in 0..system.unknowns() {
@@ -275,6 +310,13 @@ impl Driver {
             mass.end(&mut self.vectors.half, &mut motion.a);
         }
         let motion = &self.state.motion;
+        let memory = remembered(
+            &system,
+            &identity,
+            &motion.memory,
+            &mut self.vectors,
+            &mut self.forces,
+        );
         let lagged = lagged(
             &system,
             &identity,
@@ -284,6 +326,7 @@ impl Driver {
         );
         let work = &mut self.vectors.work;
         let energies = Energies {
+            memory,
             lagged,
             ..energies(&system, motion, strain, work, identity.inertia != 0.0)
         };
@@ -302,6 +345,8 @@ impl Driver {
         let none = Resultant::default();
         let forces = [loads, none, supports, none];
         self.state.ledger = Ledger::start(&energies, &identity, forces);
+        let energy = self.state.ledger.balance.energy();
+        self.state.control = Control::start(system.dt, energy);
         self.state.records = Records {
             contacts: vec![ContactRecord::default(); system.contacts.len()],
             impacts: Vec::new(),
@@ -316,18 +361,7 @@ impl Driver {
         Ok(())
     }
 
-    /// Takes one step.
-    ///
-    /// # Errors
-    /// A contact problem without solution, or a motion that is not finite. The state is then the one before the step.
-    pub fn step(&mut self) -> Result<(), Error> {
-        let taken = self.attempt();
-        if taken.is_err() {
-            self.forget_predictor();
-        }
-        taken
-    }
-
+    /// Computes the next state from the state.
     fn attempt(&mut self) -> Result<(), Error> {
         let begin = Instant::now();
         self.predict()?;
@@ -356,14 +390,13 @@ impl Driver {
         let ended = Instant::now();
         self.balance(strain);
         self.project(strain)?;
+        self.restore(strain);
         self.record();
         self.finite()?;
         self.phases.forces += (forces - begin) + (ended - solved);
         self.phases.sweeps += sweeps;
         self.phases.contact += (solved - forces).saturating_sub(sweeps);
         self.phases.balance += ended.elapsed();
-        std::mem::swap(&mut self.state, &mut self.next);
-        self.tell();
         Ok(())
     }
 
@@ -397,30 +430,19 @@ impl Driver {
         let system = &*self.system;
         let (old, map) = (&self.state.motion, &self.map);
         let new = &mut self.next.motion;
-        new.contact_force.fill(0.0);
-        for (&point, &force) in self.candidates.iter().zip(&self.interface.forces) {
-            self.rows
-                .add_force(point as usize, force, &mut new.contact_force);
-        }
         let Vectors {
             x,
             contact_acceleration: c,
             ..
-        } = &mut self.vectors;
-        if map.uses_contact_acceleration() {
-            for i in 0..c.len() {
-                c[i] = if system.fixed[i] {
-                    0.0
-                } else {
-                    new.contact_force[i] / system.mass.lumped[i]
-                };
-            }
-        }
+        } = &self.vectors;
         map.displacement.whole(old, x, c, &mut new.u);
         map.velocity.whole(old, x, c, &mut new.v);
         map.acceleration.whole(old, x, c, &mut new.a);
+        if map.has_memory() {
+            map.memory.whole(old, x, c, &mut new.memory);
+        }
         for i in system.massless.iter().map(|&unknown| unknown as usize) {
-            (new.v[i], new.a[i]) = ((new.u[i] - old.u[i]) / system.dt, 0.0);
+            (new.v[i], new.a[i]) = ((new.u[i] - old.u[i]) / self.dt, 0.0);
         }
         let interface = &mut self.next.interface;
         interface.force.fill(0.0);
@@ -431,15 +453,22 @@ impl Driver {
         }
         interface.carried.clone_from(&interface.force);
         for point in 0..system.points() {
+            let ahead = map.displacement.since(&self.captured[point]);
             interface.gap[point] =
-                self.rows.gap(point) + on_row(&self.rows, point, &self.ahead[point], old, [x, c]);
+                self.rows.gap(point) + on_row(&self.rows, point, &ahead, old, [x, c]);
             interface.rate[point] = match system.massless.is_empty() {
                 true => on_row(&self.rows, point, &map.rate, old, [x, c]),
                 false => self.rows.product(point, &new.v),
             };
         }
         self.next.step = self.state.step + 1;
-        self.next.time = self.next.step as f64 * system.dt;
+        let State {
+            step,
+            time,
+            control,
+            ..
+        } = &self.state;
+        self.next.time = control.instant(*step, *time, self.dt);
         self.crush();
     }
 
@@ -463,6 +492,7 @@ fn empty_state(system: &System) -> State {
             u: zeros.clone(),
             v: zeros.clone(),
             a: zeros.clone(),
+            memory: Vec::new(),
             internal_force: zeros.clone(),
             contact_force: zeros,
         },
@@ -475,6 +505,7 @@ fn empty_state(system: &System) -> State {
             watched: vec![false; points],
             crush: vec![0.0; points],
         },
+        control: Control::start(system.dt, 0.0),
         ledger: Ledger::default(),
         records: Records::default(),
     }

@@ -20,6 +20,13 @@ pub(super) struct Predictor {
     kept: Vec<f64>,
 }
 
+impl Predictor {
+    /// Gap of a contact point at u + dt v, m; `None` without this stage.
+    pub(super) fn gap(&self, point: usize) -> Option<f64> {
+        self.gaps.get(point).copied()
+    }
+}
+
 impl Driver {
     /// Projects the predictor.
     pub(super) fn predict(&mut self) -> Result<(), Error> {
@@ -27,7 +34,7 @@ impl Driver {
             return Ok(());
         }
         self.place(false);
-        let dt = self.system.dt;
+        let dt = self.dt;
         let Self {
             predictor,
             rows,
@@ -70,7 +77,11 @@ impl Driver {
                 0 => 0.0,
                 _ => rows.product(at, &stage.change),
             };
-            if predictor.gaps[at] + moved < 0.0
+            let pull = match before {
+                0 => 0.0,
+                _ => self.weak.pull(&self.system, at),
+            };
+            if predictor.gaps[at] + moved - pull < 0.0
                 && predictor.points[..before].binary_search(&point).is_err()
             {
                 predictor.points.push(point);
@@ -94,8 +105,13 @@ impl Driver {
         predictor.present.clear();
         predictor.present.resize(predictor.points.len(), 0.0);
         let (values, present) = (&predictor.values, &predictor.present);
-        let solved = stage.solve(&self.system, &self.rows, &predictor.points, values, present);
+        let dt = self.system.dt;
+        let weak = (&self.weak, 0.5 * dt * dt);
+        let points = &predictor.points;
+        let solved = stage.solve(&self.system, weak, &self.rows, points, values, present);
         predictor.forces.clone_from(&stage.added);
+        self.weak
+            .take(&self.system, points, &predictor.forces, 2.0 / (dt * dt));
         solved.map_err(|failure| self.interface_error(failure, &self.predictor.points))
     }
 
@@ -104,7 +120,7 @@ impl Driver {
         let Some(stage) = &self.impulses else {
             return 0.0;
         };
-        let (old, new, dt) = (&self.state.motion, &self.next.motion, self.system.dt);
+        let (old, new, dt) = (&self.state.motion, &self.next.motion, self.dt);
         let predictor = &self.predictor;
         let terms = predictor.points.iter().zip(&predictor.forces);
         let sum: f64 = terms

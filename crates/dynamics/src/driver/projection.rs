@@ -19,15 +19,16 @@ use super::{Driver, Vectors};
 use crate::error::Error;
 use crate::ledger::{Jump, Resultant, reactions};
 
-/// What the projection of a step did, one entry per contact point.
+/// What the impulses after a step did, those of a projection or of another stage; one entry per contact point.
 #[derive(Default)]
 pub(super) struct Projected {
     /// Impulse, N s.
     pub(super) impulse: Vec<f64>,
     /// Work of the impulse, J.
     pub(super) work: Vec<f64>,
-    points: Vec<u32>,
-    values: Vec<f64>,
+    pub(super) points: Vec<u32>,
+    /// Quantity of each of the points that the impulses change.
+    pub(super) values: Vec<f64>,
     present: Vec<f64>,
 }
 
@@ -38,6 +39,13 @@ impl Projected {
             work: vec![0.0; points],
             ..Projected::default()
         }
+    }
+
+    /// Forgets the step before.
+    pub(super) fn clear(&mut self) {
+        self.points.clear();
+        self.impulse.fill(0.0);
+        self.work.fill(0.0);
     }
 
     /// Impulse of a point, N s.
@@ -54,6 +62,7 @@ impl Projected {
 impl Driver {
     /// Projects the end of the step if points of laws with projection have closed in it. `strain`: its strain energy.
     pub(super) fn project(&mut self, strain: f64) -> Result<(), Error> {
+        self.projected.clear();
         if self.impulses.is_none() || !self.projected_points() {
             return Ok(());
         }
@@ -62,12 +71,15 @@ impl Driver {
             impulses: self.project_velocity()?,
             ..Jump::default()
         };
-        let points = &self.projected.points;
-        jump.work = points
-            .iter()
-            .map(|&point| self.projected.work[point as usize])
-            .sum();
+        jump.work = self.projected.work.iter().sum();
         jump.dissipation = -identity.inertia * self.project_acceleration()?;
+        self.enter_jump(jump, strain);
+        Ok(())
+    }
+
+    /// Enters a jump of the motion after the step into the ledger; `strain`: strain energy.
+    pub(super) fn enter_jump(&mut self, mut jump: Jump, strain: f64) {
+        let identity = self.identity.unwrap_or_default();
         let system = Arc::clone(&self.system);
         let (old, new) = (&self.state.motion, &self.next.motion);
         let Vectors { work, inertia, .. } = &mut self.vectors;
@@ -79,20 +91,11 @@ impl Driver {
             Resultant::of(&system, work),
         ];
         self.next.ledger.jump(&identity, &energies, &jump);
-        Ok(())
     }
 
     /// Lists the closed points of laws with projection; whether any of them has just closed.
     fn projected_points(&mut self) -> bool {
-        let Projected {
-            points,
-            impulse,
-            work,
-            ..
-        } = &mut self.projected;
-        points.clear();
-        impulse.fill(0.0);
-        work.fill(0.0);
+        let points = &mut self.projected.points;
         let [before, now] = [&self.state, &self.next].map(|state| &state.interface.status);
         let mut closing = false;
         for &point in &self.candidates {
@@ -107,7 +110,6 @@ impl Driver {
 
     /// Projects the velocity; impulses on the momentum from contacts and supports.
     fn project_velocity(&mut self) -> Result<[Resultant; 2], Error> {
-        let system = Arc::clone(&self.system);
         let weights = self.map.contact_impulse;
         let [old, new] = [&self.state, &self.next].map(|state| &state.interface);
         let rows = &self.rows;
@@ -119,11 +121,18 @@ impl Driver {
             let rate = rows.product(at, &self.next.motion.v);
             projected.values.push(rate);
             let mean = weights.old * old.carried[at] + weights.new * new.force[at];
-            projected.present.push(system.dt * mean);
+            projected.present.push(self.dt * mean);
         }
         self.solve_impulses()?;
+        Ok(self.jump_velocity())
+    }
+
+    /// Adds what the impulses of the stage change in the velocity, from the rates in `values`; impulses on the momentum from
+    /// contacts and supports.
+    pub(super) fn jump_velocity(&mut self) -> [Resultant; 2] {
+        let system = Arc::clone(&self.system);
         let Some(stage) = &self.impulses else {
-            return Ok([Resultant::default(); 2]);
+            return [Resultant::default(); 2];
         };
         let (motion, interface) = (&mut self.next.motion, &mut self.next.interface);
         for (v, change) in motion.v.iter_mut().zip(&stage.change) {
@@ -139,8 +148,6 @@ impl Driver {
             projected.impulse[at] = impulse;
             projected.work[at] = 0.5 * impulse * (projected.values[k] + after);
             self.rows.add_force(at, impulse, known);
-            // points that the projection lets go have no acceleration to lose: their force ends with the step
-            projected.values[k] = if stage.active[k] { 0.0 } else { f64::INFINITY };
         }
         for point in 0..system.points() {
             interface.rate[point] = self.rows.product(point, &motion.v);
@@ -154,16 +161,24 @@ impl Driver {
                 0.0
             };
         }
-        Ok([contact, Resultant::of(&system, work)])
+        [contact, Resultant::of(&system, work)]
     }
 
     /// Projects the acceleration and the force that the next step begins with; change of |a|²_M.
     fn project_acceleration(&mut self) -> Result<f64, Error> {
         let projected = &mut self.projected;
+        let Some(stage) = &self.impulses else {
+            return Ok(0.0);
+        };
+        projected.values.clear();
         projected.present.clear();
         for (k, &point) in projected.points.iter().enumerate() {
             let at = point as usize;
-            projected.values[k] += self.rows.product(at, &self.next.motion.a);
+            // points that the projection lets go have no acceleration to lose: their force ends with the step
+            projected.values.push(match stage.active[k] {
+                true => self.rows.product(at, &self.next.motion.a),
+                false => f64::INFINITY,
+            });
             projected.present.push(self.next.interface.force[at]);
         }
         self.solve_impulses()?;
@@ -198,7 +213,9 @@ impl Driver {
         let Some(stage) = &mut self.impulses else {
             return Ok(());
         };
-        let solved = stage.solve(&self.system, &self.rows, points, values, present);
+        // laws with projection have no weak form: the ratio of impulse and force enters nothing
+        let weak = (&self.weak, 1.0);
+        let solved = stage.solve(&self.system, weak, &self.rows, points, values, present);
         solved.map_err(|failure| self.interface_error(failure, &self.projected.points))
     }
 }

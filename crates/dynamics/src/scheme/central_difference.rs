@@ -28,7 +28,7 @@ impl TimeScheme for CentralDifference {
             v: dt,
             a: 0.5 * dt * dt,
             x: 0.0,
-            c: 0.0,
+            ..Row::default()
         };
         let acceleration = Row {
             x: 1.0,
@@ -44,17 +44,19 @@ impl TimeScheme for CentralDifference {
                 v: 1.0,
                 a: 0.5 * dt,
                 x: 0.5 * dt,
-                c: 0.0,
+                ..Row::default()
             },
             acceleration,
             placed: displacement,
+            gap: displacement,
             rate: Row {
                 u: 0.0,
                 v: 1.0,
                 a: 0.5 * dt,
                 x: dt,
-                c: 0.0,
+                ..Row::default()
             },
+            memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(0.5, 0.5),
             contact_impulse: Impulse::weights(0.5, 0.5),

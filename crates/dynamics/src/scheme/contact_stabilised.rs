@@ -36,6 +36,13 @@ impl TimeScheme for ContactStabilised {
             x: dt,
             ..Row::default()
         };
+        let displacement = Row {
+            u: 1.0,
+            v: dt,
+            a: 0.5 * dt * dt,
+            x: 0.5 * dt * dt,
+            ..Row::default()
+        };
         let acceleration = Row {
             x: 1.0,
             ..Row::default()
@@ -47,23 +54,19 @@ impl TimeScheme for ContactStabilised {
                 v: 0.5 * dt,
                 a: 0.25 * dt * dt,
                 x: 0.25 * dt * dt,
-                c: 0.0,
+                ..Row::default()
             },
             force_fraction: Some(0.5),
-            displacement: Row {
-                u: 1.0,
-                v: dt,
-                a: 0.5 * dt * dt,
-                x: 0.5 * dt * dt,
-                c: 0.0,
-            },
+            displacement,
             velocity,
             acceleration,
             placed: Row {
                 u: 1.0,
                 ..Row::default()
             },
+            gap: displacement,
             rate: velocity,
+            memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(0.0, 1.0),
             contact_impulse: Impulse::weights(0.0, 1.0),

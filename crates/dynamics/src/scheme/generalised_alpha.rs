@@ -29,27 +29,17 @@ pub struct GeneralisedAlpha {
     pub rho_inf: f64,
 }
 
-impl GeneralisedAlpha {
-    fn family(&self) -> Averaged {
-        let rho = self.rho_inf;
-        Averaged {
-            inertia: (2.0 * rho - 1.0) / (rho + 1.0),
-            force: rho / (rho + 1.0),
-        }
-    }
-}
-
 impl TimeScheme for GeneralisedAlpha {
     fn name(&self) -> &'static str {
         "generalised-alpha"
     }
 
     fn step_map(&self, dt: f64) -> StepMap {
-        self.family().step_map(dt)
+        Averaged::of_radius(self.rho_inf).step_map(dt)
     }
 
     fn energy_identity(&self, dt: f64) -> Option<EnergyIdentity> {
-        Some(self.family().energy_identity(dt))
+        Some(Averaged::of_radius(self.rho_inf).energy_identity(dt))
     }
 
     fn keeps_acceleration(&self) -> bool {
@@ -65,7 +55,7 @@ impl TimeScheme for GeneralisedAlpha {
     }
 }
 
-/// What generalised-alpha and HHT have in common: a balance between the instants, and β and γ for second order and the
+/// What generalised-alpha, smooth or not, and HHT have in common: a balance between the instants, and β and γ for second order and the
 /// most dissipation at high frequencies.
 pub(super) struct Averaged {
     /// α_m: weight of the acceleration at the start.
@@ -75,11 +65,19 @@ pub(super) struct Averaged {
 }
 
 impl Averaged {
-    fn gamma(&self) -> f64 {
+    /// The weights of generalised-alpha.
+    pub(super) fn of_radius(rho: f64) -> Averaged {
+        Averaged {
+            inertia: (2.0 * rho - 1.0) / (rho + 1.0),
+            force: rho / (rho + 1.0),
+        }
+    }
+
+    pub(super) fn gamma(&self) -> f64 {
         0.5 - self.inertia + self.force
     }
 
-    fn beta(&self) -> f64 {
+    pub(super) fn beta(&self) -> f64 {
         0.25 * (1.0 - self.inertia + self.force).powi(2)
     }
 
@@ -90,7 +88,7 @@ impl Averaged {
             v: dt,
             a: dt * dt * (0.5 - beta),
             x: dt * dt * beta,
-            c: 0.0,
+            ..Row::default()
         };
         let velocity = Row {
             v: 1.0,
@@ -116,7 +114,7 @@ impl Averaged {
                 v: end * displacement.v,
                 a: end * displacement.a,
                 x: end * displacement.x,
-                c: 0.0,
+                ..Row::default()
             },
             force_fraction: Some(end),
             displacement,
@@ -129,7 +127,9 @@ impl Averaged {
                 u: 1.0,
                 ..Row::default()
             },
+            gap: displacement,
             rate: velocity,
+            memory: Row::default(),
             contact: 1.0,
             impulse,
             contact_impulse: impulse,

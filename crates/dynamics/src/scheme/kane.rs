@@ -41,7 +41,7 @@ impl TimeScheme for Kane {
             v: dt,
             a: dt * dt * (0.5 - beta),
             x: dt * dt * beta,
-            c: 0.0,
+            ..Row::default()
         };
         let velocity = Row {
             u: 0.0,
@@ -49,6 +49,7 @@ impl TimeScheme for Kane {
             a: dt * (1.0 - gamma),
             x: dt * gamma,
             c: dt * (1.0 - 0.5 * gamma / beta),
+            ..Row::default()
         };
         StepMap {
             inertia: Row {
@@ -68,7 +69,9 @@ impl TimeScheme for Kane {
                 u: 1.0,
                 ..Row::default()
             },
+            gap: displacement,
             rate: velocity,
+            memory: Row::default(),
             contact: 0.5 / beta,
             impulse: Impulse::weights(1.0 - gamma, gamma),
             contact_impulse: Impulse::weights(0.0, 1.0),

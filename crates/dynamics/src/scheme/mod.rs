@@ -7,8 +7,11 @@ mod contact_stabilised;
 mod generalised_alpha;
 mod hht;
 mod kane;
+mod krenk;
 mod laursen_chawla;
+mod laursen_love;
 mod newmark;
+mod nonsmooth_alpha;
 mod paoli_schatzman;
 mod tchamwa_wielgosz;
 mod theta;
@@ -23,8 +26,11 @@ pub use contact_stabilised::ContactStabilised;
 pub use generalised_alpha::GeneralisedAlpha;
 pub use hht::Hht;
 pub use kane::Kane;
+pub use krenk::Krenk;
 pub use laursen_chawla::LaursenChawla;
+pub use laursen_love::LaursenLove;
 pub use newmark::Newmark;
+pub use nonsmooth_alpha::NonsmoothAlpha;
 pub use paoli_schatzman::PaoliSchatzman;
 pub use tchamwa_wielgosz::TchamwaWielgosz;
 pub use theta::Theta;
@@ -32,11 +38,11 @@ pub use theta::Theta;
 /// The exact energy balance of one step of a linear system without damping. With ū = u - lag v, E = ½|v|²_M + U(ū), G the
 /// dead loads, P the contact forces and Δ the change over the step,
 ///
-/// `Δ(E + inertia |a|²_M) = Δū · (G + Nᵀ (old P_k + new P_{k+1})) - D`
+/// `Δ(E + inertia |a|²_M + memory |m|²_K) = Δū · (G + Nᵀ (old P_k + new P_{k+1})) - D`
 ///
-/// `D = velocity |Δv|²_M + displacement |Δu|²_K + acceleration |Δa|²_M + mixed Δu·MΔa + contact Δa·NᵀP_{k+1}`
+/// `D = velocity |Δv|²_M + displacement |Δu|²_K + acceleration |Δa|²_M + filtered |Δm|²_K + mixed Δu·MΔa + contact Δa·NᵀP_{k+1}`
 ///
-/// D is the dissipation of the scheme. Where its factors have no common sign, D gives back in some steps what it took in
+/// with m the memory of the scheme. D is the dissipation of the scheme. Where its factors have no common sign, D gives back in some steps what it took in
 /// others.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyIdentity {
@@ -44,6 +50,8 @@ pub struct EnergyIdentity {
     pub lag: f64,
     /// Factor of |a|²_M in the energy that the scheme conserves, in s².
     pub inertia: f64,
+    /// Factor of |m|²_K in that energy, in s².
+    pub memory: f64,
     /// Weight of the contact forces at the start of the step.
     pub old: f64,
     /// Weight of the contact forces of the step.
@@ -54,6 +62,8 @@ pub struct EnergyIdentity {
     pub displacement: f64,
     /// Dissipation factor of |Δa|²_M, in s².
     pub acceleration: f64,
+    /// Dissipation factor of |Δm|²_K, in s².
+    pub filtered: f64,
     /// Dissipation factor of Δu·MΔa.
     pub mixed: f64,
     /// Dissipation factor of Δa·NᵀP_{k+1}, in s².
@@ -88,6 +98,10 @@ pub trait TimeScheme {
     fn projects_predictor(&self) -> bool {
         false
     }
+    /// Whether the velocity gets back, after a step, the work that points took as they closed in it.
+    fn restores_contact_work(&self) -> bool {
+        false
+    }
     /// Whether a contact law that constrains this quantity can hold.
     fn takes(&self, level: Level) -> bool {
         !(self.is_explicit() && level == Level::Gap)
@@ -113,6 +127,12 @@ pub enum Scheme {
     PaoliSchatzman(PaoliSchatzman),
     /// Mid-point rule with contact on the mean rate, Laursen and Chawla.
     LaursenChawla(LaursenChawla),
+    /// Mid-point rule with the displacement law and a velocity that gets the energy back, Laursen and Love.
+    LaursenLove(LaursenLove),
+    /// Generalised-alpha with impulses apart, Chen, Acary, Virlez and Brüls.
+    NonsmoothAlpha(NonsmoothAlpha),
+    /// Extended state space with filtered velocity and acceleration, Krenk.
+    Krenk(Krenk),
     /// Newmark with implicit contact forces, Kane, Repetto, Ortiz and Marsden.
     Kane(Kane),
     /// Trapezoid with a projected predictor, Deuflhard, Krause and Ertel.
@@ -131,6 +151,9 @@ impl Scheme {
             Scheme::TchamwaWielgosz(scheme) => scheme,
             Scheme::PaoliSchatzman(scheme) => scheme,
             Scheme::LaursenChawla(scheme) => scheme,
+            Scheme::LaursenLove(scheme) => scheme,
+            Scheme::NonsmoothAlpha(scheme) => scheme,
+            Scheme::Krenk(scheme) => scheme,
             Scheme::Kane(scheme) => scheme,
             Scheme::ContactStabilised(scheme) => scheme,
         }
@@ -153,8 +176,12 @@ impl Scheme {
             Scheme::GeneralisedAlpha(GeneralisedAlpha { rho_inf: 0.8 }),
             Scheme::Hht(Hht { alpha: -0.1 }),
             Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: 1.033 }),
-            Scheme::PaoliSchatzman(PaoliSchatzman),
+            Scheme::PaoliSchatzman(PaoliSchatzman { restitution: 0.0 }),
+            Scheme::PaoliSchatzman(PaoliSchatzman { restitution: 0.5 }),
             Scheme::LaursenChawla(LaursenChawla),
+            Scheme::LaursenLove(LaursenLove),
+            Scheme::NonsmoothAlpha(NonsmoothAlpha { rho_inf: 0.8 }),
+            Scheme::Krenk(Krenk { rho_inf: 0.8 }),
             Scheme::Kane(Kane {
                 beta: 0.25,
                 gamma: 0.5,

@@ -37,14 +37,14 @@ impl TimeScheme for Newmark {
             v: dt,
             a: dt * dt * (0.5 - beta),
             x: dt * dt * beta,
-            c: 0.0,
+            ..Row::default()
         };
         let velocity = Row {
             u: 0.0,
             v: 1.0,
             a: dt * (1.0 - gamma),
             x: dt * gamma,
-            c: 0.0,
+            ..Row::default()
         };
         let acceleration = Row {
             x: 1.0,
@@ -61,7 +61,9 @@ impl TimeScheme for Newmark {
                 u: 1.0,
                 ..Row::default()
             },
+            gap: displacement,
             rate: velocity,
+            memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(1.0 - gamma, gamma),
             contact_impulse: Impulse::weights(1.0 - gamma, gamma),

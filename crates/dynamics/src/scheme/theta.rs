@@ -35,6 +35,13 @@ impl TimeScheme for Theta {
             x: 1.0 / dt,
             ..Row::default()
         };
+        let displacement = Row {
+            u: 1.0,
+            v: (1.0 - theta) * dt,
+            a: 0.0,
+            x: theta * dt,
+            ..Row::default()
+        };
         let velocity = Row {
             x: 1.0,
             ..Row::default()
@@ -46,23 +53,19 @@ impl TimeScheme for Theta {
                 v: theta * (1.0 - theta) * dt,
                 a: 0.0,
                 x: theta * theta * dt,
-                c: 0.0,
+                ..Row::default()
             },
             force_fraction: Some(theta),
-            displacement: Row {
-                u: 1.0,
-                v: (1.0 - theta) * dt,
-                a: 0.0,
-                x: theta * dt,
-                c: 0.0,
-            },
+            displacement,
             velocity,
             acceleration,
             placed: Row {
                 u: 1.0,
                 ..Row::default()
             },
+            gap: displacement,
             rate: velocity,
+            memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(0.0, 1.0),
             contact_impulse: Impulse::weights(0.0, 1.0),

@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -10,7 +10,7 @@ use carom_mesh::{Surface, generate};
 use carom_testing::allocations;
 
 /// A cube resting on a plane under gravity: contact all the time, statuses settled.
-fn resting_cube(scheme: Scheme, law: Law, dt: f64) -> Driver {
+fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
     let mesh = generate::box_("cube", [0.0; 3], [1.0; 3], [4, 4, 4], false);
     let cells = mesh.groups["cube"].elements.clone();
     let model = Model {
@@ -24,6 +24,7 @@ fn resting_cube(scheme: Scheme, law: Law, dt: f64) -> Driver {
                     young: 1e9,
                     poisson: 0.3,
                 },
+                weights: None,
             },
             mass: MassKind::Lumped,
             velocity: [0.0, 0.0, -1.0],
@@ -40,10 +41,12 @@ fn resting_cube(scheme: Scheme, law: Law, dt: f64) -> Driver {
             }),
             law,
             sliding: Sliding::Finite,
+            integration,
             massless: false,
         }],
         scheme,
-        dt,
+        dt: 5e-5,
+        adaptive: None,
         mesh,
     };
     Driver::new(System::new(model).unwrap()).unwrap()
@@ -55,19 +58,22 @@ fn a_step_in_contact_allocates_nothing() {
         capture: Capture::Now,
         reading: Reading::Closed,
     });
+    let (node, weak) = (Integration::Node, Integration::Weak { r: 1e6 });
     let runs = [
-        (Scheme::Theta(Theta { theta: 1.0 }), velocity),
+        (Scheme::Theta(Theta { theta: 1.0 }), velocity, node),
+        (Scheme::Theta(Theta { theta: 1.0 }), velocity, weak),
         (
             Scheme::Newmark(Newmark {
                 beta: 0.49,
                 gamma: 0.9,
             }),
             Law::Displacement(Displacement::default()),
+            node,
         ),
-        (Scheme::CentralDifference(CentralDifference), velocity),
+        (Scheme::CentralDifference(CentralDifference), velocity, node),
     ];
-    for (scheme, law) in runs {
-        let mut driver = resting_cube(scheme, law, 5e-5);
+    for (scheme, law, integration) in runs {
+        let mut driver = resting_cube(scheme, law, integration);
         for _ in 0..40 {
             driver.step().unwrap();
         }

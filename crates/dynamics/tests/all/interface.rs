@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::Displacement;
-use carom_contact::{Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{
     Driver, Error, InterfaceProblem, Model, ModelBody, ModelContact, ModelTarget, Scheme, System,
@@ -23,6 +23,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         }),
         law: Law::Displacement(Displacement { projection: false }),
         sliding: Sliding::Small,
+        integration: Integration::Node,
         massless: false,
     };
     let model = Model {
@@ -36,6 +37,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
                     young: 1.0,
                     poisson: 0.0,
                 },
+                weights: None,
             },
             mass: MassKind::Lumped,
             velocity: [-1.0, 0.0, 0.0],
@@ -46,6 +48,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         contacts: vec![wall("one"), wall("same")],
         scheme: Scheme::Theta(Theta { theta: 1.0 }),
         dt: 0.1,
+        adaptive: None,
         mesh: mesh.clone(),
     };
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();

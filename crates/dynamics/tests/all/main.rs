@@ -6,7 +6,9 @@
 mod allocation;
 mod interface;
 mod momentum;
+mod quadrature;
 mod stability;
+mod weak_form;
 
 #[global_allocator]
 static COUNTER: carom_testing::Counter = carom_testing::Counter;

@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -23,6 +23,7 @@ fn a_cylinder_that_bulges_as_it_strikes_keeps_its_axial_momentum_balance() {
                     young: 1e9,
                     poisson: 0.3,
                 },
+                weights: None,
             },
             mass: MassKind::Lumped,
             velocity: [0.0, -5.0, 0.0],
@@ -42,10 +43,12 @@ fn a_cylinder_that_bulges_as_it_strikes_keeps_its_axial_momentum_balance() {
                 reading: Reading::Closed,
             }),
             sliding: Sliding::Finite,
+            integration: Integration::Node,
             massless: false,
         }],
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt: 5e-5,
+        adaptive: None,
         mesh,
     };
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();

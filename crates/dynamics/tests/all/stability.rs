@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::{Adhesion, Damped};
-use carom_contact::{Law, Sliding};
+use carom_contact::{Integration, Law, Sliding};
 use carom_dynamics::scheme::CentralDifference;
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -23,6 +23,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
                 young: 1.0,
                 poisson: 0.0,
             },
+            weights: None,
         },
         mass: MassKind::Lumped,
         velocity: [speed, 0.0, 0.0],
@@ -38,6 +39,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         primary: ModelTarget::Surface(surface("b.left", 1)),
         law,
         sliding: Sliding::Small,
+        integration: Integration::Node,
         massless: false,
     }];
     let model = Model {
@@ -47,6 +49,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         contacts,
         scheme: Scheme::CentralDifference(CentralDifference),
         dt,
+        adaptive: None,
         mesh: mesh.clone(),
     };
     Driver::new(System::new(model)?)

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_contact::Contact as Pair;
+use carom_contact::{Contact as Pair, Integration};
 use carom_dynamics::{ContactRecord, Costs, Ledger, System};
 
 use crate::results::exact;
@@ -187,13 +187,14 @@ fn model(system: &System) -> Model {
 
 fn time(system: &System, last: &Last) -> Time {
     let bodies = system.bodies.iter();
-    let courant = bodies.map(|body| body.wave_speed() * system.dt / body.smallest_size());
+    let courant =
+        bodies.map(|body| body.wave_speed() * last.control.range[1] / body.smallest_size());
     Time {
         end: last.time,
         steps: last.step,
-        rejected: 0,
-        smallest_step: system.dt,
-        largest_step: system.dt,
+        rejected: last.control.rejected(),
+        smallest_step: last.control.range[0],
+        largest_step: last.control.range[1],
         courant: courant.reduce(f64::max),
     }
 }
@@ -205,7 +206,7 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
         let none = ContactRecord::default();
         let records = &results.last.records;
         let record = records.contacts.get(k).unwrap_or(&none);
-        let closed = totals.closed as f64 * system.dt;
+        let closed = totals.closed;
         let still_closed = results.last.closed.get(k) == Some(&true);
         let impacts = || {
             records
@@ -232,6 +233,8 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 max_penetration: record.penetration,
                 persistency_defect: record.persistency_defect(),
                 energy_crushed: record.energy_crushed,
+                mixed_supports: matches!(contact.integration, Integration::Weak { .. })
+                    .then_some(record.mixed),
                 impacts: impacts().count() + usize::from(still_closed),
                 restitution: impacts()
                     .next_back()

@@ -47,14 +47,8 @@ impl Comparison {
         }
     }
 
-    pub(crate) fn push(
-        &mut self,
-        dt: f64,
-        point: &ContactPoint,
-        state: &State,
-        report: &StepReport,
-    ) {
-        let (from, to) = (report.time - dt, report.time);
+    pub(crate) fn push(&mut self, point: &ContactPoint, state: &State, report: &StepReport) {
+        let (from, to) = (report.time - report.dt, report.time);
         let values = point.sides.iter().map(|(_, s)| s.of(&state.motion.u));
         if report.step == 0 {
             self.start = values.collect();

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use carom_contact::law::{Level, Status};
+use carom_contact::{Contact, Integration, Places, Point};
 use carom_dynamics::{InterfaceState, State, System};
 use carom_elements::Kind;
 use carom_mesh::Face;
@@ -33,6 +34,8 @@ pub(crate) struct FieldOutput {
     count: u64,
     /// Time of the last one, s.
     last: Option<f64>,
+    /// Time of the last state seen, s.
+    seen: f64,
     failed: bool,
 }
 
@@ -60,6 +63,7 @@ impl FieldOutput {
             })?,
             count: 0,
             last: None,
+            seen: 0.0,
             failed: false,
         })
     }
@@ -75,11 +79,12 @@ impl FieldOutput {
             None => true,
             Some(_) => {
                 // instants are sums of steps: a millionth of one is rounding
-                let number = (state.time + 1e-6 * system.dt) / self.fields.every;
-                let before = (state.time - (1.0 - 1e-6) * system.dt) / self.fields.every;
-                number.floor() > before.floor()
+                let rounding = 1e-6 * system.dt;
+                let number = |time: f64| ((time + rounding) / self.fields.every).floor();
+                number(state.time) > number(self.seen)
             }
         };
+        self.seen = state.time;
         let outcome = match due {
             true => self.send(folder, system, state),
             false => self.writer.check(),
@@ -259,7 +264,7 @@ impl Volume {
     }
 }
 
-/// The secondary surface of a contact, with one point per contact point.
+/// The contact points of a contact: nodes on the secondary surface, or Gauss points by themselves.
 struct SurfaceGrid {
     contact: usize,
     points: Vec<[f64; 3]>,
@@ -268,11 +273,15 @@ struct SurfaceGrid {
 
 impl SurfaceGrid {
     fn new(system: &System, contact: usize) -> SurfaceGrid {
-        let nodes: Vec<u32> = system.contacts[contact]
-            .points
-            .iter()
-            .map(|p| p.node)
-            .collect();
+        let Contact {
+            points,
+            integration,
+            ..
+        } = &system.contacts[contact];
+        if *integration != Integration::Node {
+            return SurfaceGrid::of_points(system, contact, points);
+        }
+        let nodes: Vec<u32> = points.iter().map(Point::node).collect();
         let mut places: Vec<(u32, u32)> = nodes.iter().copied().zip(0..).collect();
         places.sort_unstable();
         let place = |node: &u32| {
@@ -292,6 +301,20 @@ impl SurfaceGrid {
             contact,
             points: nodes.iter().map(|node| system.x[*node as usize]).collect(),
             cells,
+        }
+    }
+
+    fn of_points(system: &System, contact: usize, points: &[Point]) -> SurfaceGrid {
+        let reference = vec![0.0; system.unknowns()];
+        let places = Places {
+            dim: system.dim,
+            x: &system.x,
+            u: &reference,
+        };
+        SurfaceGrid {
+            contact,
+            points: points.iter().map(|point| point.place(&places)).collect(),
+            cells: vec![(Kind::Point1, (0..points.len() as u32).collect())],
         }
     }
 
@@ -321,8 +344,12 @@ impl SurfaceGrid {
         let watched = interface.watched[range.clone()].iter();
         let watched: Vec<i32> = watched.map(|on| sign(*on)).collect();
         let all = vectors(system.dim, &snapshot.u);
-        let nodes = contact.points.iter().map(|point| point.node as usize);
-        let displacement: Vec<[f64; 3]> = nodes.map(|node| all[node]).collect();
+        let moved = |point: &Point| {
+            point.carriers().fold([0.0; 3], |sum: [f64; 3], (node, n)| {
+                [0, 1, 2].map(|i| sum[i] + n * all[node as usize][i])
+            })
+        };
+        let displacement: Vec<[f64; 3]> = contact.points.iter().map(moved).collect();
         let signs = match contact.law.get().level() {
             Level::Gap | Level::GapAndRate => vec![("S_g", &closed)],
             Level::Rate => vec![("S_d", &watched), ("S_v", &closed)],

@@ -30,18 +30,19 @@ pub(crate) struct ContactTotals {
     pub(crate) mean: PeakOfMean,
     /// Length of its window, s.
     pub(crate) window: f64,
-    /// Steps with a force.
-    pub(crate) closed: u64,
+    /// Time of the steps with a force, s.
+    pub(crate) closed: f64,
 }
 
 impl Impacts {
     pub(crate) fn create(folder: &mut Folder, system: &System) -> Result<Impacts, Error> {
         let totals = |contact| {
             let steps = (mean_window(system, contact) / system.dt).round().max(1.0);
+            let window = steps * system.dt;
             ContactTotals {
-                mean: PeakOfMean::new(steps as usize),
-                window: steps * system.dt,
-                closed: 0,
+                mean: PeakOfMean::new(window),
+                window,
+                closed: 0.0,
             }
         };
         Ok(Impacts {
@@ -60,8 +61,12 @@ impl Impacts {
         report: &StepReport,
     ) -> Result<(), Error> {
         for (totals, contact) in self.contacts.iter_mut().zip(&report.contacts) {
-            totals.mean.push(contact.force);
-            totals.closed += u64::from(contact.closed > 0);
+            if report.step > 0 {
+                totals.mean.push(report.dt, contact.force);
+            }
+            if contact.closed > 0 {
+                totals.closed += report.dt;
+            }
         }
         let ended = &state.records.impacts;
         while let Some(impact) = ended.get(self.written) {

@@ -20,7 +20,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Costs, Ledger, Observer, Records, State, StepReport, System};
+use carom_dynamics::{Control, Costs, Ledger, Observer, Records, State, StepReport, System};
 use carom_exact::Solution;
 
 use crate::summary::{self, Summary};
@@ -152,6 +152,7 @@ struct Totals {
 struct Last {
     step: u64,
     time: f64,
+    control: Control,
     ledger: Ledger,
     records: Records,
     /// Mean velocity of the bodies, m/s.
@@ -209,7 +210,7 @@ impl Results {
         self.impacts.take(&self.system, state, report)?;
         self.curves.push(state, report);
         if let (Some(comparison), Some(point)) = (&mut self.comparison, point) {
-            comparison.push(self.system.dt, point, state, report);
+            comparison.push(point, state, report);
         }
         match &mut self.fields {
             Some(fields) => fields.take(&mut self.folder, &self.system, state),
@@ -226,6 +227,7 @@ impl Results {
         self.last = Last {
             step: state.step,
             time: state.time,
+            control: state.control,
             ledger: state.ledger.clone(),
             records: state.records.clone(),
             velocities: velocities(&self.system, &state.motion.v),

@@ -1,6 +1,6 @@
 //! Linear functionals of the motion: the component of a node, the mean of a group.
 
-use carom_contact::{Places, Rows, Search, Target};
+use carom_contact::{Places, Point, Rows, Search, Target};
 use carom_dynamics::System;
 
 use crate::Error;
@@ -66,7 +66,7 @@ pub(crate) struct ContactPoint {
     pub(crate) sides: Vec<(String, Sensor)>,
 }
 
-/// The secondary node nearest the centroid of the surface (of the nodes, weighted by their areas), and the primary
+/// The secondary node nearest the centroid of the surface (of its points, weighted by their areas), and the primary
 /// node nearest to that one; of the contact `chosen`, else of that of the exact solution, else of the first one. The axis is
 /// that of the exact solution, else the normal at the point, turned so that its largest component is positive.
 pub(crate) fn contact_point(
@@ -78,13 +78,20 @@ pub(crate) fn contact_point(
     let index = index.unwrap_or(0);
     let contact = system.contacts.get(index)?;
     let total: f64 = contact.points.iter().map(|point| point.area).sum();
+    let at_rest = vec![0.0; system.unknowns()];
+    let places = Places {
+        dim: system.dim,
+        x: &system.x,
+        u: &at_rest,
+    };
     let mut centroid = [0.0; 3];
     for point in &contact.points {
+        let place = point.place(&places);
         for i in 0..3 {
-            centroid[i] += point.area / total * system.x[point.node as usize][i];
+            centroid[i] += point.area / total * place[i];
         }
     }
-    let secondary = nearest(system, contact.points.iter().map(|p| p.node), &centroid)?;
+    let secondary = nearest(system, contact.points.iter().map(Point::node), &centroid)?;
     let place = system.x[secondary as usize];
     let primary = match &contact.target {
         Target::Plane(_) => None,
@@ -134,7 +141,7 @@ fn normal(system: &System, contact: usize, secondary: u32, primary: Option<u32>)
     rows.clear();
     let contact = &system.contacts[contact];
     contact.pair(&places, &mut Search::default(), &mut rows);
-    let point = contact.points.iter().position(|p| p.node == secondary);
+    let point = contact.points.iter().position(|p| p.node() == secondary);
     let mut n = point.map_or([0.0; 3], |point| rows.normal(point));
     if let Some(primary) = primary.filter(|_| n == [0.0; 3]) {
         n = [0, 1, 2].map(|i| system.x[primary as usize][i] - system.x[secondary as usize][i]);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{Newmark, Theta};
 use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System};
 use carom_exact::{Bar, Impact};
@@ -51,6 +51,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
             cells: mesh.groups[name].elements.clone(),
             kinematics: Kinematics::Bar { area: AREA },
             material: STEEL,
+            weights: None,
         },
         mass: MassKind::Lumped,
         velocity: [speed, 0.0, 0.0],
@@ -66,6 +67,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         primary: ModelTarget::Surface(surface("target.left", &bodies[1])),
         law: velocity_law(),
         sliding: Sliding::Small,
+        integration: Integration::Node,
         massless: false,
     }];
     let model = Model {
@@ -75,6 +77,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         contacts,
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt: 0.5 * LENGTH / n as f64 / wave_speed(),
+        adaptive: None,
         mesh,
     };
     System::new(model).unwrap()
@@ -110,6 +113,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
                 young: 1e9,
                 poisson: 0.3,
             },
+            weights: None,
         },
         mass: MassKind::Lumped,
         velocity: [0.0, 0.0, -5.0],
@@ -125,6 +129,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         }),
         law: Law::Displacement(Displacement::default()),
         sliding: Sliding::Small,
+        integration: Integration::Node,
         massless: false,
     };
     let model = Model {
@@ -137,6 +142,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
             gamma: 0.9,
         }),
         dt: 1e-4,
+        adaptive: None,
         mesh,
     };
     System::new(model).unwrap()

@@ -16,17 +16,16 @@ fn random(count: usize) -> Vec<f64> {
 }
 
 fn peak(values: &[f64], steps: usize) -> f64 {
-    let mut mean = PeakOfMean::new(steps);
-    values.iter().for_each(|value| mean.push(*value));
+    let mut mean = PeakOfMean::new(steps as f64 * 0.1);
+    values.iter().for_each(|value| mean.push(0.1, *value));
     mean.peak()
 }
 
 #[test]
 fn a_constant_is_its_own_mean_once_the_window_is_full() {
-    assert_eq!(peak(&[3.0; 5], 5), 3.0);
+    assert!((peak(&[3.0; 5], 5) - 3.0).abs() < 1e-14);
     assert!((peak(&[3.0; 4], 5) - 3.0 * 4.0 / 5.0).abs() < 1e-15);
-    assert_eq!(peak(&[1.0, 7.0, 2.0], 1), 7.0);
-    assert_eq!(PeakOfMean::new(0).steps(), 1);
+    assert!((peak(&[1.0, 7.0, 2.0], 1) - 7.0).abs() < 1e-14);
     assert_eq!(peak(&[], 3), 0.0);
 }
 
@@ -49,9 +48,30 @@ fn the_peak_is_that_of_brute_force_and_does_not_drift() {
 
 #[test]
 fn peaks_are_taken_one_after_the_other() {
-    let mut mean = PeakOfMean::new(2);
-    [4.0, 6.0, 0.0].iter().for_each(|value| mean.push(*value));
+    let mut mean = PeakOfMean::new(2.0);
+    [4.0, 6.0, 0.0]
+        .iter()
+        .for_each(|value| mean.push(1.0, *value));
     assert_eq!(mean.take(), 5.0);
-    [0.0, 2.0].iter().for_each(|value| mean.push(*value));
+    [0.0, 2.0].iter().for_each(|value| mean.push(1.0, *value));
     assert_eq!((mean.take(), mean.peak()), (1.0, 5.0));
+}
+
+#[test]
+fn unequal_steps_count_with_their_length() {
+    // the same function of time in equal steps of 1/8 and in steps of 1/8 to 1
+    let values = [1.0, 1.0, 4.0, 4.0, 4.0, 4.0, 2.0, 7.0];
+    let joined = [(0.25, 1.0), (0.5, 4.0), (0.125, 2.0), (0.125, 7.0)];
+    for window in [0.125, 0.25, 0.3, 0.5, 0.875] {
+        let (mut equal, mut unequal) = (PeakOfMean::new(window), PeakOfMean::new(window));
+        values.iter().for_each(|value| equal.push(0.125, *value));
+        joined
+            .iter()
+            .for_each(|(dt, value)| unequal.push(*dt, *value));
+        // the last window, which both take, is that of the peak
+        assert!(
+            (equal.peak() - unequal.peak()).abs() < 1e-14,
+            "window {window}"
+        );
+    }
 }

@@ -1,0 +1,158 @@
+//! The points at which a contact is looked at: nodes of the secondary surface, or Gauss points of its faces.
+
+use carom_elements::map;
+use carom_mesh::Face;
+
+use crate::Places;
+
+/// A point of the secondary surface that carries a force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Nodes of its face, by system number; the first `count` are used. For a node, itself.
+    nodes: [u32; 4],
+    /// Values of their shape functions in the point.
+    shape: [f64; 4],
+    count: usize,
+    /// Surface that it stands for, in m²: ∫ N_a dΓ of a node, the weight w of a Gauss point.
+    pub area: f64,
+    /// Its share in the surface of the contact; the shares add up to 1.
+    pub share: f64,
+}
+
+impl Point {
+    /// A node (`integration = "node"`). `area` in m².
+    pub fn at_node(node: u32, area: f64, share: f64) -> Point {
+        Point {
+            nodes: [node, 0, 0, 0],
+            shape: [1.0, 0.0, 0.0, 0.0],
+            count: 1,
+            area,
+            share,
+        }
+    }
+
+    /// The Gauss points of faces, face after face: those of the rule that is exact for N_a N_b on an affine face, as
+    /// many as the face has nodes. The end of a bar has one point of weight 1.
+    ///
+    /// `x`: reference coordinates by system number, m. `factor`: area in m² that a unit of the measure of the faces
+    /// stands for at a place: a thickness in m, 2πr, the section of a bar, 1.
+    pub fn of_faces(
+        faces: &[Face],
+        x: &[[f64; 3]],
+        factor: impl Fn(&[f64; 3]) -> f64,
+    ) -> Vec<Point> {
+        let mut points = Vec::new();
+        for face in faces {
+            let (table, corners) = (face.kind.table(), face.corners());
+            let mut places = [[0.0; 3]; 4];
+            for (place, &node) in places.iter_mut().zip(corners) {
+                *place = x[node as usize];
+            }
+            let rule = table.mass_rule;
+            for (xi, weight) in rule.points.iter().zip(rule.weights) {
+                let mut point = Point {
+                    nodes: [0; 4],
+                    shape: [0.0; 4],
+                    count: corners.len(),
+                    area: 0.0,
+                    share: 0.0,
+                };
+                point.nodes[..corners.len()].copy_from_slice(corners);
+                (table.shape)(xi, &mut point.shape[..corners.len()]);
+                let mut gradients = [[0.0; 3]; 4];
+                (table.gradient)(xi, &mut gradients[..corners.len()]);
+                let places = &places[..corners.len()];
+                let (measure, _) = map::measure(places, &gradients[..corners.len()], table.dim);
+                let place = map::point(places, &point.shape[..corners.len()]);
+                point.area = weight * measure * factor(&place);
+                points.push(point);
+            }
+        }
+        let total: f64 = points.iter().map(|point| point.area).sum();
+        for point in &mut points {
+            point.share = point.area / total;
+        }
+        points
+    }
+
+    /// Nodes that carry the point, by system number, and the values of their shape functions in it.
+    pub fn carriers(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        let nodes = self.nodes[..self.count].iter().copied();
+        nodes.zip(self.shape.iter().copied())
+    }
+
+    /// The node whose shape function is largest in the point; the first of equals.
+    pub fn node(&self) -> u32 {
+        let larger = |best: usize, k: usize| match self.shape[k] > self.shape[best] {
+            true => k,
+            false => best,
+        };
+        self.nodes[(1..self.count).fold(0, larger)]
+    }
+
+    /// Current position in m.
+    pub fn place(&self, places: &Places) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (node, n) in self.carriers() {
+            let x = places.of(node);
+            for i in 0..3 {
+                sum[i] += n * x[i];
+            }
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_elements::Kind;
+    use carom_mesh::ElementId;
+
+    use super::*;
+
+    fn face(kind: Kind, nodes: [u32; 4]) -> Face {
+        Face {
+            kind,
+            nodes,
+            parent: ElementId { block: 0, index: 0 },
+            axis: [1.0, 0.0, 0.0],
+        }
+    }
+
+    #[test]
+    fn gauss_points_measure_a_surface_and_its_first_moments() {
+        // a trapezoid: its map is not affine, but area and first moments are of degree 3 in each variable
+        let x = [
+            [0.0, 0.0, 1.0],
+            [3.0, 0.0, 1.0],
+            [2.0, 2.0, 1.0],
+            [0.0, 2.0, 1.0],
+        ];
+        let points = Point::of_faces(&[face(Kind::Quad4, [0, 1, 2, 3])], &x, |_| 0.5);
+        let places = Places {
+            dim: 3,
+            x: &x,
+            u: &[0.0; 12],
+        };
+        let moment = |i: usize| -> f64 {
+            points
+                .iter()
+                .map(|point| point.area * point.place(&places)[i])
+                .sum()
+        };
+        let area: f64 = points.iter().map(|point| point.area).sum();
+        // a square of 2 m and a triangle of 1 m x 2 m beside it, times 0.5
+        assert!((area - 0.5 * 5.0).abs() < 1e-14);
+        assert!((moment(0) - 0.5 * (4.0 + 7.0 / 3.0)).abs() < 1e-14);
+        assert!((moment(1) - 0.5 * (4.0 + 2.0 / 3.0)).abs() < 1e-14);
+        let shares: f64 = points.iter().map(|point| point.share).sum();
+        assert!((shares - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_end_of_a_bar_is_one_point_and_the_node_itself() {
+        let x = [[0.0; 3], [2.0, 0.0, 0.0]];
+        let points = Point::of_faces(&[face(Kind::Point1, [1, 0, 0, 0])], &x, |_| 3.0);
+        assert_eq!(points, [Point::at_node(1, 3.0, 1.0)]);
+    }
+}

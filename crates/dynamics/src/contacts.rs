@@ -1,0 +1,122 @@
+//! Contacts in the numbers of a system: bodies of each side, points, and which law may hold where.
+
+use carom_contact::{Contact, Integration, Point, Target};
+use carom_mesh::{ElementId, Face, Mesh, Surface};
+
+use crate::Error;
+use crate::system::{Model, ModelContact, ModelTarget, System};
+
+const WHICH_LAWS: &str = "at Gauss points hold, in their weak form, the displacement law without projection and the velocity law, and, in each point by itself, the compliance, and penalty and stop without damping; the other laws hold at nodes";
+
+impl System {
+    /// Refuses laws that cannot hold where they are asked to.
+    pub(crate) fn check_integration(&self) -> Result<(), Error> {
+        let cause = |contact: &Contact| match contact.integration {
+            Integration::Weak { r } if !(r > 0.0 && r.is_finite()) => {
+                Some("r of the weak form must be positive and finite")
+            }
+            Integration::Weak { .. } if !contact.law.has_weak_form() => Some(WHICH_LAWS),
+            Integration::Points if !contact.law.is_function() => Some(WHICH_LAWS),
+            Integration::Weak { .. } | Integration::Points | Integration::Node => None,
+        };
+        let mut contacts = self.contacts.iter();
+        match contacts.find_map(|contact| Some((contact, cause(contact)?))) {
+            None => Ok(()),
+            Some((contact, cause)) => Err(Error::Integration {
+                contact: contact.name.clone(),
+                cause,
+            }),
+        }
+    }
+}
+
+fn owner(model: &Model, cell: ElementId) -> Option<usize> {
+    model
+        .bodies
+        .iter()
+        .position(|body| body.spec.cells.contains(&cell))
+}
+
+/// Bodies of a contact: the secondary's, and the primary's unless it is rigid.
+pub(crate) fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usize>) {
+    let body = |surface: &Surface| {
+        surface
+            .faces
+            .first()
+            .and_then(|face| owner(model, face.parent))
+    };
+    let primary = match &contact.primary {
+        ModelTarget::Surface(surface) => body(surface),
+        ModelTarget::Plane(_) => None,
+    };
+    (body(&contact.secondary).unwrap_or(0), primary)
+}
+
+/// A contact with its points and its target by system number. `x`: reference coordinates by system number, m.
+pub(crate) fn numbered(
+    contact: &ModelContact,
+    model: &Model,
+    number: &[u32],
+    x: &[[f64; 3]],
+) -> Contact {
+    let surface = &contact.secondary;
+    let kinematics = surface
+        .faces
+        .first()
+        .and_then(|face| owner(model, face.parent));
+    let kinematics = kinematics.map(|body| model.bodies[body].spec.kinematics);
+    let factor = |x: &[f64; 3]| kinematics.map_or(1.0, |k| k.surface_factor(x));
+    let faces = |surface: &Surface| -> Vec<Face> {
+        let faces = surface.faces.iter();
+        faces.map(|face| renumbered(face, number)).collect()
+    };
+    let points = match contact.integration {
+        Integration::Node => nodes(surface, &model.mesh, number, factor),
+        Integration::Points | Integration::Weak { .. } => {
+            Point::of_faces(&faces(surface), x, factor)
+        }
+    };
+    let target = match &contact.primary {
+        ModelTarget::Plane(plane) => Target::Plane(*plane),
+        ModelTarget::Surface(surface) => Target::Surface(faces(surface)),
+    };
+    Contact {
+        name: contact.name.clone(),
+        law: contact.law,
+        sliding: contact.sliding,
+        integration: contact.integration,
+        points,
+        target,
+    }
+}
+
+/// The nodes of a surface with the areas that they stand for.
+fn nodes(
+    surface: &Surface,
+    mesh: &Mesh,
+    number: &[u32],
+    factor: impl Fn(&[f64; 3]) -> f64,
+) -> Vec<Point> {
+    let areas = surface.node_areas(mesh);
+    let area = |(&node, area): (&u32, f64)| {
+        (
+            number[node as usize],
+            area * factor(&mesh.nodes[node as usize]),
+        )
+    };
+    let areas: Vec<(u32, f64)> = surface.nodes.iter().zip(areas).map(area).collect();
+    let total: f64 = areas.iter().map(|(_, area)| area).sum();
+    let points = areas.iter();
+    points
+        .map(|&(node, area)| Point::at_node(node, area, area / total))
+        .collect()
+}
+
+/// A face with its nodes by system number.
+pub(crate) fn renumbered(face: &Face, number: &[u32]) -> Face {
+    let mut face = *face;
+    for k in 0..face.corners().len() {
+        face.nodes[k] = number[face.nodes[k] as usize];
+    }
+    face
+}

@@ -1,0 +1,147 @@
+//! The size of the steps: fixed, or adapted to events.
+//!
+//! A step is tried, judged, and taken or dropped as a whole: a dropped one leaves nothing behind but a count. Sizes are
+//! those of the ladder `largest / 2ᵏ`, so that few factors serve a whole run; only a step cut at a closing has a size of
+//! its own.
+
+use serde::{Deserialize, Serialize};
+
+/// What a contact that closes within a step does to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Closing {
+    /// Nothing.
+    Pass,
+    /// The step is cut, so that the closing falls at its end.
+    Cut,
+}
+
+/// Rules of an adaptive step. The largest one is the step of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Adaptive {
+    /// No step is cut below this, s: a step that fails here ends the run.
+    pub smallest: f64,
+    /// What a closing contact does.
+    pub closing: Closing,
+    /// A step after which kinetic and strain energy, less the work of the loads, exceed their largest value so far by more
+    /// than this fraction of the largest energy is tried again with half the size.
+    pub growth: Option<f64>,
+    /// Steps without event after which the size doubles.
+    pub patience: u32,
+}
+
+/// Why a step was dropped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Event {
+    /// A contact closes within it.
+    Closing,
+    /// Energy grew.
+    Growth,
+    /// It had no solution.
+    Failure,
+}
+
+/// What the step control remembers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Control {
+    /// Size that the next step is tried with, s.
+    pub dt: f64,
+    /// Size of the last step, s.
+    pub taken: f64,
+    /// Smallest and largest step so far, s; zero before the first.
+    pub range: [f64; 2],
+    /// Attempts dropped because a contact closed within the step.
+    pub cut: u64,
+    /// Attempts dropped because energy grew.
+    pub grown: u64,
+    /// Attempts dropped because they had no solution.
+    pub failed: u64,
+    /// Steps since the last event.
+    quiet: u32,
+    /// Step and time from which steps of the size `taken` are counted: the instants of equal steps are products, not sums.
+    origin: (u64, f64),
+    /// Largest kinetic and strain energy less the work of the loads so far, J.
+    highest: f64,
+}
+
+impl Control {
+    /// At the start, with the energy there.
+    pub(crate) fn start(dt: f64, energy: f64) -> Control {
+        Control {
+            dt,
+            taken: dt,
+            highest: energy,
+            ..Control::default()
+        }
+    }
+
+    /// Attempts dropped so far.
+    pub fn rejected(&self) -> u64 {
+        self.cut + self.grown + self.failed
+    }
+
+    /// The instant after one more step of this size from step `step` at `time`, s.
+    pub(crate) fn instant(&self, step: u64, time: f64, dt: f64) -> f64 {
+        let (first, start) = match dt == self.taken {
+            true => self.origin,
+            false => (step, time),
+        };
+        start + (step + 1 - first) as f64 * dt
+    }
+
+    /// Whether this energy (kinetic and strain less the work of the loads, J) is a growth beyond `tolerance` (J).
+    pub(crate) fn grows(&self, energy: f64, tolerance: f64) -> bool {
+        energy > self.highest + tolerance
+    }
+
+    /// Drops an attempt of size `dt`; returns the size of the next one (`cut`: where a closing falls, s), or `None` below
+    /// the smallest.
+    pub(crate) fn drop(&mut self, rules: &Adaptive, event: Event, dt: f64) -> Option<f64> {
+        let next = match event {
+            Event::Closing => {
+                self.cut += 1;
+                return Some(dt);
+            }
+            Event::Growth => {
+                self.grown += 1;
+                0.5 * dt
+            }
+            Event::Failure => {
+                self.failed += 1;
+                0.5 * dt
+            }
+        };
+        self.quiet = 0;
+        if next < rules.smallest {
+            return None;
+        }
+        while self.dt > next && 0.5 * self.dt >= rules.smallest {
+            self.dt *= 0.5;
+        }
+        Some(next)
+    }
+
+    /// Takes a step of size `dt` from step `step` at `time`, with the energy after it. `largest`: the step of the model.
+    pub(crate) fn take(
+        &mut self,
+        rules: Option<&Adaptive>,
+        (step, time, dt): (u64, f64, f64),
+        energy: f64,
+        largest: f64,
+    ) {
+        if dt != self.taken {
+            self.origin = (step, time);
+        }
+        self.taken = dt;
+        self.range = match self.range[1] == 0.0 {
+            true => [dt; 2],
+            false => [self.range[0].min(dt), self.range[1].max(dt)],
+        };
+        self.highest = self.highest.max(energy);
+        let Some(rules) = rules else { return };
+        self.quiet += 1;
+        if self.quiet >= rules.patience && self.dt < largest {
+            self.quiet = 0;
+            self.dt = (2.0 * self.dt).min(largest);
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! The stage that follows a step of a scheme that gives the velocity back the work of the contact.
+//!
+//! `v₊ = v* + M⁻¹ Nᵀ I` with impulses I on the points that have closed in the step, each of which does the work that its
+//! force took, `I_i N_i (v* + v₊)/2 = -P_i N_i Δu > 0`.
+
+use carom_contact::law::Status;
+
+use super::Driver;
+use super::projection::Projected;
+use crate::ledger::Jump;
+
+/// Work that the points which close take in the step.
+#[derive(Default)]
+pub(super) struct Restoring {
+    /// w of each point with an impulse, J.
+    works: Vec<f64>,
+}
+
+impl Driver {
+    /// Gives the velocity back what the contact took, if the scheme does so. `strain`: strain energy of the end of the step.
+    pub(super) fn restore(&mut self, strain: f64) {
+        if !self.system.scheme.get().restores_contact_work() {
+            return;
+        }
+        self.projected.clear();
+        let (rows, projected, works) = (&self.rows, &mut self.projected, &mut self.restoring.works);
+        let [old, new] = [&self.state, &self.next];
+        works.clear();
+        projected.values.clear();
+        for &point in &self.candidates {
+            let at = point as usize;
+            let [before, now] = [old, new].map(|state| state.interface.status[at]);
+            if before != Status::Open || now == Status::Open {
+                continue;
+            }
+            let on = |x: &[f64]| rows.product(at, x);
+            let taken = new.interface.force[at] * (on(&old.motion.u) - on(&new.motion.u));
+            if taken > 0.0 {
+                projected.points.push(point);
+                projected.values.push(on(&new.motion.v));
+                works.push(taken);
+            }
+        }
+        let Some(stage) = &mut self.impulses else {
+            return;
+        };
+        if works.is_empty() {
+            return;
+        }
+        let Projected { points, values, .. } = &self.projected;
+        stage.give_work(&self.system, rows, points, values, works);
+        let jump = Jump {
+            impulses: self.jump_velocity(),
+            work: self.projected.work.iter().sum(),
+            ..Jump::default()
+        };
+        self.enter_jump(jump, strain);
+    }
+}
