@@ -33,7 +33,7 @@ pub use input::{Input, Source};
 pub use locate::Locator;
 pub use reference::reference_page;
 pub use run::{Failed, Finished, run};
-pub use study::{Vary, study};
+pub use study::{Axis, study};
 pub use sweep::{Sweep, SweepError};
 
 /// Reads a case: syntax, overrides, schema.

@@ -62,6 +62,8 @@ pub struct InterfaceState {
     pub status: Vec<Status>,
     /// S_d: the point took part in the last step.
     pub watched: Vec<bool>,
+    /// Memory of the law: the largest penetration of the point so far, m; zero of laws without memory.
+    pub crush: Vec<f64>,
 }
 
 impl State {

@@ -161,6 +161,8 @@ pub struct Contact {
     pub max_penetration: f64,
     /// Persistency defect: Σ |P · gap rate| dt over the steps, J.
     pub persistency_defect: f64,
+    /// Energy lost in crush, J; zero of laws without memory.
+    pub energy_crushed: f64,
     /// Most nodes of the secondary surface in a step whose supports are partly closed: the pressure of the weak form
     /// depends on r there. `None` with another integration.
     pub mixed_supports: Option<u64>,

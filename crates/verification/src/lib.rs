@@ -33,6 +33,7 @@ mod bars_theta;
 mod block_drop;
 mod blocks;
 mod closed_field_as_printed;
+mod crushed_stop;
 mod energy_identity;
 mod first_force;
 mod interface_problems;
@@ -44,6 +45,7 @@ mod rejections;
 mod restitution;
 mod resume;
 mod sdnl111;
+mod sdnl111_bars;
 mod shapes;
 mod supports;
 mod threads;
@@ -94,6 +96,7 @@ registry! {
     block_drop
     blocks
     closed_field_as_printed
+    crushed_stop
     energy_identity
     first_force
     interface_problems
@@ -105,6 +108,7 @@ registry! {
     restitution
     resume
     sdnl111
+    sdnl111_bars
     shapes
     supports
     threads

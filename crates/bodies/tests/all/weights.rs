@@ -2,9 +2,10 @@
 
 use carom_bodies::{Body, BodySpec, CellWeights, Kinematics};
 use carom_mesh::{ElementId, generate};
+use carom_testing::Random;
 
 use crate::sample::{
-    AREA, MATERIAL, Random, Sample, THICKNESS, all, cells, continua, distance, dot, largest,
+    AREA, MATERIAL, Sample, THICKNESS, all, cells, continua, distance, dot, largest,
 };
 use crate::sizes::highest_frequency;
 

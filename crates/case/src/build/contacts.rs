@@ -145,8 +145,25 @@ impl Builder<'_> {
         }
     }
 
+    /// Warns where a step is too long for the spring of a damped law: 2 sqrt(k h/E) CFL > 2. An explicit scheme has its
+    /// critical step.
+    fn warn_of_springs(&mut self, system: &System) {
+        for (name, rate) in std::mem::take(&mut self.springs) {
+            let value = rate * system.dt;
+            // h / c, the step of Courant number 1, is at the bound for the default stiffness
+            if value > 2.0 * (1.0 + 1e-9) && !system.scheme.get().is_explicit() {
+                self.warnings.push(format!(
+                    "contact `{name}`: the damped law is too stiff for the step, 2 sqrt(k h/E) CFL = {value:.3} instead of at most 2; take a step of at most {:.4e} s or a stiffness {:.3} times as large",
+                    system.dt * 2.0 / value,
+                    (2.0 / value).powi(2)
+                ));
+            }
+        }
+    }
+
     /// What is strange about contacts and schemes, without being wrong.
     pub(super) fn advise(&mut self, system: &System) {
+        self.warn_of_springs(system);
         for contact in &system.contacts {
             let name = &contact.name;
             if let Law::Velocity(Velocity {

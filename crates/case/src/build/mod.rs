@@ -55,6 +55,7 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
         case,
         problems: Vec::new(),
         warnings: Vec::new(),
+        springs: Vec::new(),
     };
     let built = builder.build(input);
     match built {
@@ -68,6 +69,8 @@ struct Builder<'a> {
     case: &'a Case,
     problems: Vec<Problem>,
     warnings: Vec<String>,
+    /// Name of each contact with the damped law, and twice the rate of its spring against the elements behind it, 1/s.
+    springs: Vec<(String, f64)>,
 }
 
 impl Builder<'_> {

@@ -194,11 +194,26 @@ pub struct StopLaw {
     /// last one as before it. One point gives a spring.
     #[schemars(extend("minItems" = 1, "maxItems" = 16))]
     pub curve: Vec<CurvePoint>,
+    /// What becomes of the crush when the stop is unloaded.
+    #[serde(default)]
+    pub crush: Crush,
     /// Dashpot. Default: 0.
     pub damping: Option<Damping>,
     /// What becomes of a force that the dashpot makes tensile.
     #[serde(default)]
     pub adhesion: Adhesion,
+}
+
+/// What becomes of the crush of a stop.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Crush {
+    /// All of it is given back: unloading follows the curve.
+    #[default]
+    Recovered,
+    /// It stays but for its elastic part: unloading and reloading follow a line of the initial stiffness from the point of largest
+    /// crush, and beyond that point the curve goes on. No piece of the curve may be steeper than the first.
+    Permanent,
 }
 
 /// A point of the curve of a stop.

@@ -23,9 +23,9 @@ pub use body::{
     PlaneSection, Section, Support,
 };
 pub use contact::{
-    Adhesion, Capture, ComplianceLaw, Contact, CurvePoint, DampedLaw, DisplacementLaw, Integration,
-    IntegrationName, IntegrationWith, Law, Nodes, NormalVector, Obstacle, PenaltyLaw, Plane,
-    RestitutionLaw, Sign, Sliding, StopLaw, VelocityLaw,
+    Adhesion, Capture, ComplianceLaw, Contact, Crush, CurvePoint, DampedLaw, DisplacementLaw,
+    Integration, IntegrationName, IntegrationWith, Law, Nodes, NormalVector, Obstacle, PenaltyLaw,
+    Plane, RestitutionLaw, Sign, Sliding, StopLaw, VelocityLaw,
 };
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};

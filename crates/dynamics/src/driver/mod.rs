@@ -496,6 +496,7 @@ impl Driver {
             ..
         } = &self.state;
         self.next.time = control.instant(*step, *time, self.dt);
+        self.crush();
     }
 
     /// Internal forces at the end of the step; returns the strain energy.
@@ -530,6 +531,7 @@ fn empty_state(system: &System) -> State {
             rate: vec![0.0; points],
             status: vec![Status::Open; points],
             watched: vec![false; points],
+            crush: vec![0.0; points],
         },
         control: Control::start(system.dt, 0.0),
         ledger: Ledger::default(),

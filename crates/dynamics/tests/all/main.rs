@@ -9,3 +9,6 @@ mod momentum;
 mod quadrature;
 mod stability;
 mod weak_form;
+
+#[global_allocator]
+static COUNTER: carom_testing::Counter = carom_testing::Counter;

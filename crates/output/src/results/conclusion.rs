@@ -232,6 +232,7 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 status_changes: record.status_changes,
                 max_penetration: record.penetration,
                 persistency_defect: record.persistency_defect(),
+                energy_crushed: record.energy_crushed,
                 mixed_supports: matches!(contact.integration, Integration::Weak { .. })
                     .then_some(record.mixed),
                 impacts: impacts().count() + usize::from(still_closed),
