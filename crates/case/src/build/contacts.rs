@@ -2,7 +2,7 @@
 
 use carom_contact::law::Level;
 use carom_contact::law::{Displacement, Reading, Restitution, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding, Sphere};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{ElementId, Mesh, Surface};
 
@@ -32,6 +32,13 @@ impl Builder<'_> {
                     .map(ModelTarget::Surface),
                 (None, Some(Obstacle::Plane(plane))) => {
                     self.plane(mesh, &path, plane).map(ModelTarget::Plane)
+                }
+                (None, Some(Obstacle::Sphere(sphere))) => {
+                    let path = format!("{path}.obstacle.sphere.centre");
+                    Some(ModelTarget::Sphere(Sphere {
+                        centre: self.vector(mesh, &path, &sphere.centre),
+                        radius: sphere.radius.0,
+                    }))
                 }
                 (None, None) => None,
             };

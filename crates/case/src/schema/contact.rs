@@ -49,6 +49,8 @@ pub enum Nodes {
 pub enum Obstacle {
     /// A half space behind a plane.
     Plane(Plane),
+    /// A ball; a disc in the plane.
+    Sphere(Sphere),
 }
 
 /// A rigid plane.
@@ -59,6 +61,16 @@ pub struct Plane {
     pub point: Vector<Coordinate>,
     /// Normal of the plane out of the obstacle, towards the bodies; of any length but zero.
     pub normal: NormalVector,
+}
+
+/// A rigid sphere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Sphere {
+    /// Its centre.
+    pub centre: Vector<Coordinate>,
+    /// Its radius.
+    pub radius: Length,
 }
 
 /// One to three numbers, not all zero; those left out are zero.

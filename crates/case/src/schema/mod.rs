@@ -25,7 +25,7 @@ pub use body::{
 pub use contact::{
     Adhesion, Capture, ComplianceLaw, Contact, Crush, CurvePoint, DampedLaw, DisplacementLaw,
     Integration, IntegrationName, IntegrationWith, Law, Nodes, NormalVector, Obstacle, PenaltyLaw,
-    Plane, RestitutionLaw, Sign, Sliding, StopLaw, VelocityLaw,
+    Plane, RestitutionLaw, Sign, Sliding, Sphere, StopLaw, VelocityLaw,
 };
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};

@@ -94,7 +94,7 @@ pub(crate) fn contact_point(
     let secondary = nearest(system, contact.points.iter().map(Point::node), &centroid)?;
     let place = system.x[secondary as usize];
     let primary = match &contact.target {
-        Target::Plane(_) => None,
+        Target::Plane(_) | Target::Sphere(_) => None,
         Target::Surface(faces) => {
             let corners = faces.iter().flat_map(|face| face.corners().iter().copied());
             nearest(system, corners, &place)
