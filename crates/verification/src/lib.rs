@@ -16,6 +16,7 @@ mod glued;
 
 mod adaptive;
 mod arlequin_bars;
+mod arlequin_block;
 mod bar_dropped;
 mod bar_on_stop;
 mod bar_on_wall;
@@ -79,6 +80,7 @@ macro_rules! registry {
 registry! {
     adaptive
     arlequin_bars
+    arlequin_block
     bar_on_stop
     bar_dropped
     bar_on_wall

@@ -24,7 +24,7 @@ use condensed::Condensed;
 pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
 
 /// Defect of a row at which it holds, as a part of the largest velocity.
-const TOLERANCE: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-10;
 
 /// Most passes over an outer step.
 const MOST_PASSES: usize = 30;
@@ -51,6 +51,8 @@ pub struct ZonesState {
     pub time: f64,
     /// Multipliers of the rows, N per unit of the row.
     pub multipliers: Vec<f64>,
+    /// The same one and two steps before.
+    pub earlier: [Vec<f64>; 2],
     /// By zone.
     pub zones: Vec<State>,
 }
@@ -73,6 +75,8 @@ pub struct Zones {
     step: u64,
     /// L at the start and at the end of the step.
     multipliers: [Vec<f64>; 2],
+    /// L one and two outer steps before the start of the step.
+    earlier: [Vec<f64>; 2],
     /// H of the multipliers that a pass looks for.
     factor: Option<Condensed>,
     /// Part of H of the zones with one step, row-major: for pointwise multipliers.
@@ -176,7 +180,10 @@ impl Zones {
         }
         self.step += 1;
         self.all_passes += self.passes as u64;
+        let [before, first] = &mut self.earlier;
         let [old, new] = &mut self.multipliers;
+        std::mem::swap(before, first);
+        before.copy_from_slice(old);
         old.copy_from_slice(new);
     }
 
@@ -190,8 +197,7 @@ impl Zones {
 
     /// Multipliers linear over the outer step, rows that hold at its end.
     fn step_ramped(&mut self) -> Result<(), Error> {
-        let [old, new] = &mut self.multipliers;
-        new.copy_from_slice(old);
+        self.guess();
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] == 1 {
                 driver.prepare()?;
@@ -209,6 +215,14 @@ impl Zones {
             }
         }
         Err(self.parted())
+    }
+
+    /// Multipliers at the end of the step from those of the last three instants, by a parabola.
+    fn guess(&mut self) {
+        let ([old, new], [before, first]) = (&mut self.multipliers, &self.earlier);
+        for (i, new) in new.iter_mut().enumerate() {
+            *new = 3.0 * (old[i] - before[i]) + first[i];
+        }
     }
 
     /// Takes the steps of one zone with the multipliers as they stand, and adds its part of the defect.

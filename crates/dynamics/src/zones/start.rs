@@ -61,6 +61,7 @@ impl Zones {
             kind: zoned.kind,
             dt: zoned.model.dt,
             step: 0,
+            earlier: [multipliers.clone(), multipliers.clone()],
             multipliers: [multipliers.clone(), multipliers],
             factor: None,
             outer: Vec::new(),
@@ -86,6 +87,7 @@ impl Zones {
         }
         let multipliers = start(&mut self.drivers, &self.rows, self.norms.len())?;
         self.step = 0;
+        self.earlier = [multipliers.clone(), multipliers.clone()];
         self.multipliers = [multipliers.clone(), multipliers];
         Ok(())
     }
@@ -159,6 +161,7 @@ impl Zones {
             step: self.step,
             time: self.time(),
             multipliers: self.multipliers[0].clone(),
+            earlier: self.earlier.clone(),
             zones: self.drivers.iter().map(|d| d.state().clone()).collect(),
         }
     }
@@ -167,6 +170,7 @@ impl Zones {
     pub fn resume(&mut self, state: &ZonesState) {
         self.step = state.step;
         self.multipliers[0].clone_from(&state.multipliers);
+        self.earlier.clone_from(&state.earlier);
         for (driver, state) in self.drivers.iter_mut().zip(&state.zones) {
             driver.go_back(state);
         }
