@@ -22,7 +22,7 @@ mod step_map;
 mod system;
 
 pub use control::{Adaptive, Closing, Control};
-pub use driver::{Costs, Driver, Phases};
+pub use driver::{Costs, Driver, Phases, Work};
 pub use error::Error;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Resultant};
