@@ -211,15 +211,6 @@ impl Operators {
         })
     }
 
-    /// Number of factors.
-    pub(crate) fn factored(&self) -> usize {
-        let factors = self
-            .operators
-            .iter()
-            .filter(|operator| operator.stats().is_some());
-        factors.count()
-    }
-
     /// `begin` on every part; vectors of the whole system.
     pub(crate) fn begin(&mut self, r: &[f64], y: &mut [f64]) {
         for (part, operator) in self.parts.iter().zip(&mut self.operators) {

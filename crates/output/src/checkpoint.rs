@@ -1,6 +1,6 @@
 //! The state of a run on disk: what `State` holds, with a head that tells whose it is and whether it is whole.
 //!
-//! One line of text, `carom-state 1 <case hash> <checksum>`, then the bytes of the state.
+//! One line of text, `carom-state 2 <case hash> <checksum>`, then the bytes of the state.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::summary::hash_bytes;
 use crate::{Error, atomic};
 
 /// First word and version of the head.
-const HEAD: &str = "carom-state 1";
+const HEAD: &str = "carom-state 2";
 
 /// Writes a state atomically. `case_hash`: [`hash`](crate::summary::hash) of the case file.
 ///

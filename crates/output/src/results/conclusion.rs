@@ -9,8 +9,8 @@ use crate::results::exact;
 use crate::results::impacts::ContactTotals;
 use crate::results::{Comparison, Ending, Last, Results};
 use crate::summary::{
-    Check, Contact, Counts, ENERGY_CHECK, Energy, Exact, Model, Momentum, Summary, Time, Verdict,
-    hash,
+    Check, Contact, Counts, ENERGY_CHECK, Energy, Exact, Model, Momentum, Rejected, Summary, Time,
+    Verdict, hash,
 };
 use crate::{Error, Report, atomic};
 
@@ -192,7 +192,11 @@ fn time(system: &System, last: &Last) -> Time {
     Time {
         end: last.time,
         steps: last.step,
-        rejected: last.control.rejected(),
+        rejected: Rejected {
+            closing: last.control.cut,
+            energy_growth: last.control.grown,
+            failure: last.control.failed,
+        },
         smallest_step: last.control.range[0],
         largest_step: last.control.range[1],
         courant: courant.reduce(f64::max),
@@ -365,11 +369,11 @@ fn opening_speed(results: &Results, contact: usize, velocities: &[[f64; 3]]) -> 
 fn counts(costs: &Costs, passes: u64) -> Counts {
     let factors = &costs.factors;
     Counts {
-        factorisations: factors.iter().map(|f| f.factorisations as u64).sum(),
-        sweeps: factors.iter().map(|f| f.sweeps as u64).sum(),
+        factorisations: costs.work.factorisations as u64,
+        sweeps: costs.work.sweeps as u64,
         factor_entries: factors.iter().map(|f| f.nnz_factor as u64).sum(),
         factor_bytes: factors.iter().map(|f| f.bytes as u64).sum(),
-        contact_columns: costs.columns as u64,
+        contact_columns: costs.work.columns as u64,
         compliance_bytes: costs.compliance_bytes as u64,
         force_sweeps: costs.force_sweeps as u64,
         status_iterations: passes,
