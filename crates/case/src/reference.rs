@@ -47,6 +47,9 @@ const ORDER: &[&str] = &[
     "support",
     "load",
     "contact",
+    "zone",
+    "arlequin",
+    "interface",
     "time",
     "probe",
     "output",
@@ -106,6 +109,19 @@ impl<'a> Page<'a> {
                     .get("additionalProperties")
                     .is_some_and(Value::is_object);
             let item = target.get("items").map(|item| resolve(self.root, item));
+            let branches = alternatives(self.root, target).into_iter();
+            for branch in branches.filter(|branch| keyed(branch).is_none()) {
+                if branch.get("properties").is_some() {
+                    let path = format!("{path}.{key}");
+                    self.keys(
+                        &format!("`{path}`"),
+                        &description(branch),
+                        branch,
+                        level.min(3),
+                    );
+                    self.inner_tables(&path, branch, level);
+                }
+            }
             if is_table || !self.choices(target).is_empty() {
                 self.table(&format!("{path}.{key}"), inner, (level + 1).min(3));
             } else if let Some(item) = item.filter(|item| item.get("properties").is_some()) {

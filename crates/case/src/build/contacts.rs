@@ -12,12 +12,15 @@ use crate::error::Problem;
 use crate::schema::{self, IntegrationName, IntegrationWith, Obstacle, Scheme};
 
 impl Builder<'_> {
-    pub(super) fn contacts(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Vec<ModelContact> {
+    /// The contacts. `of`: cells of each body.
+    pub(super) fn contacts(
+        &mut self,
+        mesh: &Mesh,
+        bodies: &[ModelBody],
+        of: &[Vec<ElementId>],
+    ) -> Vec<ModelContact> {
         let mut contacts = Vec::new();
-        let cells: Vec<ElementId> = bodies
-            .iter()
-            .flat_map(|body| body.spec.cells.iter().copied())
-            .collect();
+        let cells = of.concat();
         for (name, contact) in self.case.contact.iter() {
             let path = format!("contact.{name}");
             let secondary = self.surface(
@@ -46,7 +49,8 @@ impl Builder<'_> {
                 continue;
             };
             let sides = sides(mesh, bodies, &secondary, &primary);
-            let Some(law) = self.law(name, &contact.law, &sides) else {
+            let scheme = self.scheme_at(secondary.faces.first().map(|face| face.parent), of);
+            let Some(law) = self.law(name, &contact.law, (&sides, &scheme)) else {
                 continue;
             };
             let sliding = match contact.sliding {
@@ -170,9 +174,13 @@ impl Builder<'_> {
 
     /// What is strange about contacts and schemes, without being wrong.
     pub(super) fn advise(&mut self, system: &System) {
-        self.warn_of_springs(system);
-        for contact in &system.contacts {
+        if self.plan.zones.is_empty() {
+            self.warn_of_springs(system);
+        }
+        for (contact, (secondary, _)) in system.contacts.iter().zip(&system.sides) {
             let name = &contact.name;
+            let zone = self.plan.zone_of(*secondary);
+            let scheme = zone.map_or(self.case.time.scheme, |zone| self.plan.zones[zone].scheme);
             if let Law::Velocity(Velocity {
                 reading: Reading::AsPrinted,
                 ..
@@ -183,7 +191,7 @@ impl Builder<'_> {
                 ));
             }
             if let (Law::Restitution(Restitution { coefficient, .. }), Scheme::Theta(theta)) =
-                (contact.law, &self.case.time.scheme)
+                (contact.law, &scheme)
                 && theta.theta * (1.0 + coefficient) > 1.0
             {
                 self.warnings.push(format!(
@@ -192,7 +200,7 @@ impl Builder<'_> {
                 ));
             }
             if let (Law::Displacement(Displacement { projection: false }), Scheme::Newmark(newmark)) =
-                (contact.law, &self.case.time.scheme)
+                (contact.law, &scheme)
                 && newmark.beta == 0.25
             {
                 self.warnings.push(format!("contact `{name}`: the trapezoid with the displacement law gains energy below a Courant number of about 4; look at the ledger"));

@@ -17,10 +17,15 @@ use crate::schema::{self, ComplianceLaw, DampedLaw, Scheme, StopLaw};
 const LOSS: f64 = 0.01;
 
 impl Builder<'_> {
-    /// The law of the contact `name`; `sides`: one for each deformable surface, the softer one first.
-    pub(super) fn law(&mut self, name: &str, law: &schema::Law, sides: &[Side]) -> Option<Law> {
-        let capture =
-            |given| capture(given).unwrap_or_else(|| default_capture(&self.case.time.scheme));
+    /// The law of the contact `name`; `sides`: one for each deformable surface, the softer one first; `scheme`: that of
+    /// its zone.
+    pub(super) fn law(
+        &mut self,
+        name: &str,
+        law: &schema::Law,
+        (sides, scheme): (&[Side], &Scheme),
+    ) -> Option<Law> {
+        let capture = |given| capture(given).unwrap_or_else(|| default_capture(scheme));
         Some(match law {
             schema::Law::Displacement(law) => Law::Displacement(Displacement {
                 projection: law.projection,

@@ -10,6 +10,7 @@ mod mesh;
 mod output;
 mod quantity;
 mod time;
+mod zone;
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -38,6 +39,11 @@ pub use time::{
     LargestStep, LaursenChawla, LaursenLove, MeshStep, Newmark, NonsmoothAlpha, PaoliSchatzman,
     Scheme, Step, StepRule, TchamwaWielgosz, Theta, Time,
 };
+pub use zone::{
+    Arlequin, Bracket, BracketLength, BracketName, BracketWith, H1Bracket, Interface, LengthName,
+    Link, Mediator, OverlapBox, OverlapName, OverlapRegion, OverlapShape, Profile, ProfileName,
+    ProfileWith, StepCount, Substeps, WeightTable, Weights, Zone,
+};
 
 /// A case: bodies, what joins them, and the time to simulate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -64,6 +70,15 @@ pub struct Case {
     /// Contacts, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub contact: Named<Contact>,
+    /// Zones, by name: parts with their own scheme and step.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub zone: Named<Zone>,
+    /// Overlaps of two bodies that are glued in volume, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub arlequin: Named<Arlequin>,
+    /// Borders where bodies of two zones are tied node to node, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub interface: Named<Interface>,
     /// Time and scheme.
     pub time: Time,
     /// Points whose motion is written at every step, by name.

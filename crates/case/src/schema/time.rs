@@ -11,9 +11,9 @@ use super::quantity::Duration;
 pub struct Time {
     /// Time at the end; the beginning is 0.
     pub end: Duration,
-    /// Time step.
+    /// Time step. With zones: the outer one. Rules from the mesh then look at the zones that take it.
     pub step: Step,
-    /// Time scheme.
+    /// Time scheme. With zones: that of every zone without its own.
     pub scheme: Scheme,
 }
 

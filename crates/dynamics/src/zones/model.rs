@@ -1,12 +1,14 @@
 //! What zones and links are made of.
 
+use std::sync::Arc;
+
 use carom_arlequin::Row;
 use serde::{Deserialize, Serialize};
 
 use crate::contacts::sides;
 use crate::error::Error;
 use crate::scheme::Scheme;
-use crate::system::Model;
+use crate::system::{Model, System};
 
 /// A group of bodies with its own scheme and step.
 #[derive(Clone, Debug)]
@@ -56,6 +58,22 @@ pub struct Zoned {
 }
 
 impl Zoned {
+    /// The systems of the zones, each with its own scheme and step.
+    ///
+    /// # Errors
+    /// Schemes, steps or contacts that do not go together, and [`Error::Zone`] where a zone cannot be built.
+    pub fn systems(&self) -> Result<Vec<Arc<System>>, Error> {
+        self.check()?;
+        let contacts = self.contacts()?;
+        let system = |(k, contacts): (usize, &Vec<usize>)| {
+            System::new(self.zone(k, contacts)).map_err(|cause| Error::Zone {
+                zone: self.zones[k].name.clone(),
+                cause: Box::new(cause),
+            })
+        };
+        contacts.iter().enumerate().map(system).collect()
+    }
+
     /// The contacts of each zone.
     ///
     /// # Errors

@@ -20,13 +20,8 @@ impl Zones {
     /// # Errors
     /// A zone that cannot be built, redundant rows, schemes or steps that do not go together.
     pub fn new(zoned: &Zoned) -> Result<Zones, Error> {
-        zoned.check()?;
+        let systems = zoned.systems()?;
         let contacts = zoned.contacts()?;
-        let systems = contacts
-            .iter()
-            .enumerate()
-            .map(|(k, contacts)| System::new(zoned.zone(k, contacts)))
-            .collect::<Result<Vec<_>, Error>>()?;
         let count = zoned.links.iter().map(|link| link.rows.len()).sum();
         let rows = rows(zoned, &systems);
         let mut norms = vec![0.0; count];
