@@ -80,6 +80,7 @@ pub(crate) const CHECK: Check = Check {
         }
         rows.extend(same_mesh()?);
         rows.extend(two_forms()?);
+        rows.extend(far_and_near()?);
         Ok(rows)
     },
 };
@@ -176,4 +177,49 @@ fn two_forms() -> Result<Vec<Row>, Error> {
         ));
     }
     Ok(rows)
+}
+
+/// Bars that fly before they meet, with one inner step while they cannot touch and four in the shock, against four always.
+fn far_and_near() -> Result<Vec<Row>, Error> {
+    let always = Glued {
+        gap: 20.3 * SLOW.speed * Glued::slow(0.6, CENTRAL, 0.8, 4).dt,
+        ..Glued::slow(0.6, CENTRAL, 0.8, 4)
+    };
+    let chosen = Glued {
+        far: Some(1),
+        ..always
+    };
+    let end = 1.2 * SLOW.duration();
+    let [one, other] = [always.run_to(end)?, chosen.run_to(end)?];
+    let f0 = 0.5 * SLOW.impedance() * SLOW.speed;
+    // the instants of the shock are those of both
+    let worst = other.force.iter().fold(0.0, |m: f64, (time, force)| {
+        let same = one
+            .force
+            .iter()
+            .find(|(t, _)| (t - time).abs() < 1e-3 * always.dt);
+        m.max(same.map_or(f64::INFINITY, |(_, f)| (f - force).abs()))
+    });
+    Ok(vec![
+        Row::at_most(
+            "one inner step in flight: largest force difference / F0",
+            worst / f0,
+            1e-9,
+        ),
+        Row::at_least(
+            "one inner step in flight: inner steps saved in 18 outer steps of flight",
+            one.inner_steps as f64 - other.inner_steps as f64,
+            3.0 * 18.0,
+        ),
+        Row::at_most(
+            "one inner step in flight: energy residual",
+            other.residual,
+            1e-11,
+        ),
+        Row::at_most(
+            "one inner step in flight: momentum residual",
+            other.momentum,
+            1e-11,
+        ),
+    ])
 }

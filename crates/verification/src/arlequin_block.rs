@@ -134,6 +134,7 @@ impl Block {
             bodies,
             scheme,
             substeps,
+            far: None,
         };
         Ok(Zoned {
             model: model(mesh, bodies, contact, self.finer as f64 * self.dt()),

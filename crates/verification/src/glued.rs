@@ -29,6 +29,8 @@ pub(crate) struct Glued {
     pub(crate) dt: f64,
     /// Inner steps to an outer one.
     pub(crate) substeps: u32,
+    /// The same while the bars cannot touch; `None` for as many.
+    pub(crate) far: Option<u32>,
     /// How multipliers run.
     pub(crate) kind: LinkKind,
     /// Weights.
@@ -55,6 +57,7 @@ impl Glued {
             schemes: [theta(theta_of_tips), outer],
             dt: courant * 0.2 / SLOW.wave_speed(),
             substeps,
+            far: None,
             kind: match substeps {
                 1 => LinkKind::GravouilCombescure,
                 _ => LinkKind::PrakashHjelmstad,
@@ -132,6 +135,7 @@ impl Glued {
             bodies,
             scheme,
             substeps,
+            far: (substeps > 1).then_some(self.far).flatten(),
         };
         Ok(Zoned {
             zones: vec![
@@ -174,6 +178,7 @@ impl Glued {
             figures.residual = figures.residual.max(balance.energy_residual.abs());
             figures.momentum = figures.momentum.max(balance.momentum_residual.largest());
         }
+        figures.inner_steps = zones.drivers()[0].state().step;
         let end = zones.balance();
         figures.force_error = f64::sqrt(error / norm);
         let energy = |balance: &Balance| balance.energy() + balance.scheme_energy;
@@ -222,6 +227,8 @@ pub(crate) struct Figures {
     pub(crate) residual: f64,
     /// Largest momentum residual / momentum.
     pub(crate) momentum: f64,
+    /// Steps of the tips.
+    pub(crate) inner_steps: u64,
     /// Mean passes to an outer step.
     pub(crate) passes: f64,
 }

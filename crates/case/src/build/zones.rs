@@ -49,6 +49,7 @@ impl Plan {
             bodies: zone.bodies.clone(),
             scheme: scheme(&zone.scheme),
             substeps: zone.substeps,
+            far: None,
         };
         self.zones.iter().map(zone).collect()
     }

@@ -172,7 +172,7 @@ impl Driver {
     }
 
     /// Makes `dt` the size of the next attempt: operators and columns kept from before, or new ones.
-    fn size(&mut self, dt: f64) -> Result<(), Error> {
+    pub(crate) fn size(&mut self, dt: f64) -> Result<(), Error> {
         if dt == self.dt {
             return Ok(());
         }

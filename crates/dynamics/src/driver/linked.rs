@@ -37,6 +37,16 @@ impl Driver {
         });
     }
 
+    /// Whether a contact point carries a force or may do so within `dt` (s), at twice its present rate.
+    pub(crate) fn may_touch(&self, dt: f64) -> bool {
+        let interface = &self.state.interface;
+        let points = interface.gap.iter().zip(&interface.rate);
+        let touches = |((gap, rate), force): ((&f64, &f64), &f64)| {
+            *force != 0.0 || gap + 2.0 * dt * rate.min(0.0) <= self.system.tolerance
+        };
+        points.zip(&interface.force).any(touches)
+    }
+
     /// Makes the driver forget links until its next `link`.
     pub(crate) fn unlink(&mut self) {
         self.linked = None;

@@ -29,6 +29,13 @@ const TOLERANCE: f64 = 1e-10;
 /// Most passes over an outer step.
 const MOST_PASSES: usize = 30;
 
+/// The condensed problem of some numbers of inner steps.
+struct Kept {
+    substeps: Vec<u32>,
+    factor: Option<Condensed>,
+    outer: Vec<f64>,
+}
+
 /// What the contacts of a zone did at one of its instants.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sample {
@@ -60,8 +67,10 @@ pub struct ZonesState {
 /// The drivers of all zones, and the links between them.
 pub struct Zones {
     drivers: Vec<Driver>,
-    /// Inner steps of each zone to an outer one.
+    /// Inner steps of each zone to the outer step that is taken.
     substeps: Vec<u32>,
+    /// The same where contacts may close, and where they cannot.
+    choices: [Vec<u32>; 2],
     /// Contacts of the model by zone.
     contacts: Vec<Vec<usize>>,
     /// By zone, number of the row and its terms there.
@@ -81,6 +90,8 @@ pub struct Zones {
     factor: Option<Condensed>,
     /// Part of H of the zones with one step, row-major: for pointwise multipliers.
     outer: Vec<f64>,
+    /// Both for other numbers of inner steps.
+    kept: Vec<Kept>,
     saved: Vec<Option<State>>,
     samples: Vec<Sample>,
     /// Passes of the last step, over all steps, and factorisations of H.
@@ -149,8 +160,11 @@ impl Zones {
     /// # Errors
     /// A step of a zone that fails, or multipliers that are not found. The state is then the one before the step.
     pub fn step(&mut self) -> Result<(), Error> {
-        for (driver, saved) in self.drivers.iter().zip(&mut self.saved) {
-            if let Some(saved) = saved {
+        self.choose_substeps()?;
+        for (k, driver) in self.drivers.iter().enumerate() {
+            if self.substeps[k] > 1
+                && let Some(saved) = &mut self.saved[k]
+            {
                 saved.clone_from(driver.state());
             }
         }
@@ -171,6 +185,39 @@ impl Zones {
         }
     }
 
+    /// Takes the inner steps of a shock if a contact may close in the outer step, else those far from it.
+    fn choose_substeps(&mut self) -> Result<(), Error> {
+        if self.choices[0] == self.choices[1] {
+            return Ok(());
+        }
+        let near = self.drivers.iter().any(|driver| driver.may_touch(self.dt));
+        let choice = &self.choices[usize::from(!near)];
+        if *choice == self.substeps {
+            return Ok(());
+        }
+        let now = Kept {
+            substeps: std::mem::replace(&mut self.substeps, choice.clone()),
+            factor: self.factor.take(),
+            outer: std::mem::take(&mut self.outer),
+        };
+        for (driver, m) in self.drivers.iter_mut().zip(&self.substeps) {
+            driver.size(self.dt / f64::from(*m))?;
+        }
+        match self
+            .kept
+            .iter()
+            .position(|kept| kept.substeps == self.substeps)
+        {
+            Some(place) => {
+                let kept = self.kept.swap_remove(place);
+                (self.factor, self.outer) = (kept.factor, kept.outer);
+            }
+            None => self.factorise()?,
+        }
+        self.kept.push(now);
+        Ok(())
+    }
+
     fn accept(&mut self) {
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] == 1 {
@@ -188,8 +235,10 @@ impl Zones {
     }
 
     fn go_back(&mut self) {
-        for (driver, saved) in self.drivers.iter_mut().zip(&self.saved) {
-            if let Some(saved) = saved {
+        for (k, driver) in self.drivers.iter_mut().enumerate() {
+            if self.substeps[k] > 1
+                && let Some(saved) = &self.saved[k]
+            {
                 driver.go_back(saved);
             }
         }
@@ -231,7 +280,8 @@ impl Zones {
         let driver = &mut self.drivers[k];
         let [old, new] = &self.multipliers;
         let [_, end] = driver.link_weights();
-        if let Some(saved) = &self.saved[k]
+        if m > 1
+            && let Some(saved) = &self.saved[k]
             && driver.state().step != saved.step
         {
             driver.go_back(saved);

@@ -21,6 +21,8 @@ pub struct ModelZone {
     pub scheme: Scheme,
     /// Steps to one outer step.
     pub substeps: u32,
+    /// Steps to one outer step in which none of its contacts can close; `None` for as many.
+    pub far: Option<u32>,
 }
 
 /// How the multipliers of links run over an outer step.
@@ -136,7 +138,7 @@ impl Zoned {
                     accepted,
                 })
             };
-            if zone.substeps == 0 {
+            if zone.substeps == 0 || zone.far == Some(0) {
                 return refuse("at least one");
             }
             if zone.substeps > 1 && *many.get_or_insert(zone.substeps) != zone.substeps {

@@ -41,6 +41,8 @@ impl Zones {
             .collect::<Result<Vec<_>, Error>>()?;
         let multipliers = start(&mut drivers, &rows, count)?;
         let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
+        let far = zoned.zones.iter();
+        let far = far.map(|zone| zone.far.unwrap_or(zone.substeps)).collect();
         let saved = drivers.iter().zip(&substeps).map(|(driver, m)| {
             let inner = *m > 1;
             inner.then(|| driver.state().clone())
@@ -48,7 +50,9 @@ impl Zones {
         let mut zones = Zones {
             saved: saved.collect(),
             drivers,
+            choices: [substeps.clone(), far],
             substeps,
+            kept: Vec::new(),
             contacts,
             rows,
             norms,
@@ -115,7 +119,7 @@ impl Zones {
     }
 
     /// Makes and factors H of the multipliers that a pass looks for.
-    fn factorise(&mut self) -> Result<(), Error> {
+    pub(super) fn factorise(&mut self) -> Result<(), Error> {
         let n = self.norms.len();
         let alike = self.substeps.iter().all(|m| *m == 1);
         if n > DENSE && alike {
