@@ -6,3 +6,4 @@
 mod compare;
 mod quadrature;
 mod stage_one;
+mod zones;
