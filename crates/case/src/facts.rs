@@ -58,30 +58,21 @@ pub fn facts(built: &Built) -> Vec<Fact> {
             contact_facts(system, k),
         ));
     }
-    let crossing = system
-        .bodies
-        .iter()
-        .map(|body| body.smallest_size() / body.wave_speed())
-        .fold(f64::INFINITY, f64::min);
+    let steps = format!(
+        "{} steps of {:.6e} s{}",
+        step_count(built.end, system.dt),
+        system.dt,
+        system.adaptive.map_or(String::new(), |rules| format!(
+            " or less, down to {:.2e} s",
+            rules.smallest
+        )),
+    );
     let scheme = system.scheme.get();
-    let name = match built.zoned {
-        None => scheme.name(),
-        Some(_) => "outer step",
+    let time = match built.zoned {
+        None => format!("{}, {steps} ({})", scheme.name(), courant(system)),
+        Some(_) => format!("{steps}, the outer ones,"),
     };
-    facts.push(fact(
-        "time",
-        format!(
-            "{name}, {} steps of {:.6e} s{} (Courant number {:.3}) to {:.4e} s",
-            step_count(built.end, system.dt),
-            system.dt,
-            system.adaptive.map_or(String::new(), |rules| format!(
-                " or less, down to {:.2e} s",
-                rules.smallest
-            )),
-            system.dt / crossing,
-            built.end
-        ),
-    ));
+    facts.push(fact("time", format!("{time} to {:.4e} s", built.end)));
     if let Some(zoned) = &built.zoned {
         facts.extend(zone_facts(zoned));
         facts.extend(joint_facts(built, zoned));
@@ -92,6 +83,16 @@ pub fn facts(built: &Built) -> Vec<Fact> {
         ));
     }
     facts
+}
+
+/// Step over the least time in which a wave crosses an element.
+fn courant(system: &System) -> String {
+    let crossing = system
+        .bodies
+        .iter()
+        .map(|body| body.smallest_size() / body.wave_speed())
+        .fold(f64::INFINITY, f64::min);
+    format!("Courant number {:.3}", system.dt / crossing)
 }
 
 /// A line for each zone: bodies, scheme, steps.
@@ -107,14 +108,15 @@ fn zone_facts(zoned: &Zoned) -> Vec<Fact> {
         fact(
             format!("zone {}", zone.name),
             format!(
-                "{}: {}, {} to an outer step, of {:.4e} s{critical}",
+                "{}: {}, {} to an outer step, of {:.4e} s ({}){critical}",
                 bodies.join(", "),
                 scheme.name(),
                 match zone.substeps {
                     1 => "1 step".to_string(),
                     steps => format!("{steps} steps"),
                 },
-                system.dt
+                system.dt,
+                courant(system)
             ),
         )
     };

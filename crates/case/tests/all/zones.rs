@@ -180,3 +180,90 @@ fn zones_of_one_mesh_are_tied_at_the_nodes_that_they_share() {
         .sum();
     assert!((momentum - 1.0).abs() < 1e-12, "{momentum}");
 }
+
+/// A fine piece between two coarse bars, held at the left end.
+const MIDDLE: &str = r#"
+carom = 1
+[mesh.generate]
+a.line = { from = [0.0], to = [1.0], elements = 10 }
+m.line = { from = [0.7], to = [2.3], elements = 64 }
+b.line = { from = [2.0], to = [3.0], elements = 10 }
+[material.one]
+density = 1.0
+elastic = { young = 1.0, poisson = 0.0 }
+[body]
+a = { region = "a", material = "one", section.bar.area = 1.0 }
+b = { region = "b", material = "one", section.bar.area = 1.0 }
+m = { region = "m", material = "one", section.bar.area = 1.0 }
+[time]
+end = 1.0
+step.courant = 0.5
+scheme.theta = {}
+[zone]
+fine = { bodies = ["m"], substeps = 4 }
+rest.bodies = ["a", "b"]
+[arlequin]
+left = { inner = "m", outer = "a" }
+right = { inner = "m", outer = "b" }
+"#;
+
+#[test]
+fn a_body_with_two_overlaps_has_the_weights_of_both() {
+    let built = built(MIDDLE);
+    let mass = |body: usize| built.system.body_mass(body);
+    // linear weights halve the mass of each body in an overlap of 0.3 m
+    for (body, expected) in [(0, 0.85), (1, 0.85), (2, 1.3)] {
+        assert!(
+            (mass(body) - expected).abs() < 1e-12,
+            "{body}: {}",
+            mass(body)
+        );
+    }
+    let zoned = built.zoned.unwrap();
+    assert_eq!(zoned.links.len(), 2);
+    Zones::new(&zoned).unwrap().step().unwrap();
+}
+
+#[test]
+fn rows_that_supports_hold_in_both_bodies_are_dropped_and_named() {
+    let text = r#"
+carom = 1
+[mesh.generate]
+bar.rectangle = { origin = [0.0, 0.0], size = [1.0, 0.2], elements = [10, 2] }
+tip.rectangle = { origin = [0.7, 0.0], size = [0.7, 0.2], elements = [7, 2] }
+[material.one]
+density = 1.0
+elastic = { young = 1.0, poisson = 0.0 }
+[body]
+bar = { region = "bar", material = "one", section.plane-strain.thickness = 1.0 }
+tip = { region = "tip", material = "one", section.plane-strain.thickness = 1.0 }
+[support]
+one = { on = "bar.bottom", fix = ["y"] }
+other = { on = "tip.bottom", fix = ["y"] }
+[time]
+end = 1.0
+step.courant = 0.5
+scheme.theta = {}
+[zone]
+fine.bodies = ["tip"]
+rest.bodies = ["bar"]
+[arlequin.left]
+inner = "tip"
+outer = "bar"
+"#;
+    let built = built(text);
+    // four columns of three nodes in two directions; the four at the bottom cannot move up
+    let zoned = built.zoned.as_ref().unwrap();
+    assert_eq!(zoned.links[0].rows.len(), 20);
+    let named = built
+        .warnings
+        .iter()
+        .find(|text| text.contains("4 rows dropped"));
+    assert!(
+        named.is_some_and(|text| text.contains("y of node")),
+        "{:?}",
+        built.warnings
+    );
+    // on equal meshes they would be redundant: the multipliers could not be found
+    Zones::new(zoned).unwrap().step().unwrap();
+}
