@@ -1,6 +1,6 @@
 //! The reference page of the case file, written from the schema: every key, what it accepts, its default.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use serde_json::Value;
@@ -29,6 +29,7 @@ pub fn reference_page() -> String {
     let mut page = Page {
         root: &root,
         text: PREFACE.to_owned(),
+        told: BTreeSet::new(),
     };
     page.keys("The file", &description(&root), &root, 2);
     for key in ORDER {
@@ -47,10 +48,10 @@ const ORDER: &[&str] = &[
     "support",
     "load",
     "contact",
+    "time",
     "zone",
     "arlequin",
     "interface",
-    "time",
     "probe",
     "output",
     "reference",
@@ -59,6 +60,8 @@ const ORDER: &[&str] = &[
 struct Page<'a> {
     root: &'a Value,
     text: String,
+    /// Types whose tables are on the page: each is told once, where it comes first.
+    told: BTreeSet<String>,
 }
 
 impl<'a> Page<'a> {
@@ -69,6 +72,11 @@ impl<'a> Page<'a> {
 
     /// A table at `path`: its keys, then the tables in it.
     fn table(&mut self, path: &str, schema: &'a Value, level: usize) {
+        if let Some(name) = schema.get("$ref").and_then(Value::as_str)
+            && !self.told.insert(name.to_owned())
+        {
+            return;
+        }
         let target = resolve(self.root, schema);
         if let Some(inner) = target
             .get("additionalProperties")
@@ -117,7 +125,7 @@ impl<'a> Page<'a> {
                         &format!("`{path}`"),
                         &description(branch),
                         branch,
-                        level.min(3),
+                        (level + 1).min(3),
                     );
                     self.inner_tables(&path, branch, level);
                 }

@@ -261,7 +261,15 @@ impl Builder<'_> {
         match given {
             OverlapRegion::Named(schema::OverlapName::Intersection) => Some(Region::Intersection),
             OverlapRegion::Group(name) => {
-                let group = self.group(mesh, &format!("{path}.overlap"), name)?;
+                let path = format!("{path}.overlap");
+                if !mesh.groups.contains_key(name) {
+                    let names = mesh.groups.keys().map(String::as_str);
+                    let problem = Problem::new(path, "no group of this name in the mesh");
+                    self.problems
+                        .push(problem.unknown(name, names.chain(["intersection"])));
+                    return None;
+                }
+                let group = self.group(mesh, &path, name)?;
                 Some(Region::Cells(group.elements.clone()))
             }
             OverlapRegion::Region(OverlapShape::Box(sides)) => {

@@ -15,7 +15,7 @@ pub struct Zone {
     /// Names of its bodies.
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub bodies: Vec<String>,
-    /// Its time scheme. Default: `time.scheme`. Zones that are joined take theta, newmark or central-difference.
+    /// Its time scheme, as `time.scheme`, which is the default. Zones that are joined take theta, newmark or central-difference.
     pub scheme: Option<Scheme>,
     /// Steps of this zone to one outer step, which is `time.step`; or, in the outer zone, those of other zones by name:
     /// `{ impact = 4 }`. Default: 1. At least one zone takes the outer step; the others take all the same number to it.

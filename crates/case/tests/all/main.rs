@@ -7,3 +7,4 @@ mod compare;
 mod quadrature;
 mod stage_one;
 mod warnings;
+mod zones;
