@@ -10,7 +10,7 @@ mod time;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use carom_dynamics::{Model, System};
+use carom_dynamics::{Model, System, Zoned};
 use carom_mesh::{Group, Mesh};
 
 use crate::error::Problem;
@@ -25,6 +25,8 @@ pub use reference::ExactReference;
 pub struct Built {
     /// The system, ready to be driven.
     pub system: Arc<System>,
+    /// The model in zones; `None`: one driver for all. Then `system` is of the whole model ([`System::whole`]).
+    pub zoned: Option<Zoned>,
     /// Time at the end, s.
     pub end: f64,
     /// Probes, in the order of their names.
@@ -115,6 +117,7 @@ impl Builder<'_> {
         let reference = self.reference(&system, end);
         Some(Built {
             system,
+            zoned: None,
             end,
             probes,
             reference,

@@ -10,6 +10,7 @@
 
 mod model;
 mod start;
+mod whole;
 
 use carom_algebra::dense::DenseCholesky;
 use serde::{Deserialize, Serialize};
@@ -21,6 +22,7 @@ use crate::ledger::Balance;
 use crate::state::{ContactReport, State};
 
 pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
+pub use whole::Whole;
 
 /// Defect of a row at which it holds, as a part of the largest velocity.
 const TOLERANCE: f64 = 1e-12;
