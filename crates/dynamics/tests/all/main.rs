@@ -9,3 +9,4 @@ mod momentum;
 mod quadrature;
 mod stability;
 mod weak_form;
+mod whole;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use carom_contact::{Contact as Pair, Integration};
 use carom_dynamics::{ContactRecord, Ledger, System};
 
+use crate::plot::model_figure;
 use crate::results::costs::{counts, timings};
 use crate::results::exact;
 use crate::results::impacts::ContactTotals;
@@ -66,7 +67,14 @@ fn keep<T>(outcome: Result<T, Error>, errors: &mut Vec<Error>) -> Option<T> {
 /// Writes the figures; returns those that could be drawn.
 fn draw(results: &mut Results, errors: &mut Vec<Error>) -> Vec<String> {
     let reference = results.settings.reference.as_ref();
+    let system = &results.system;
+    let model = results.settings.zoning.as_ref().map(|zoning| {
+        let shapes = zoning.shapes(system);
+        let svg = model_figure(system.dim, &zoning.zones, &shapes);
+        ("plots/model.svg", svg)
+    });
     let drawn = results.curves.draw(reference, results.last.time);
+    let drawn = model.into_iter().chain(drawn);
     let mut figures = Vec::new();
     for (name, figure) in drawn {
         let Some(svg) = keep(figure, errors) else {

@@ -1,6 +1,8 @@
 //! What the output knows of a model in zones beside its system.
 
-use carom_dynamics::{ModelBody, Zoned};
+use carom_dynamics::{ModelBody, System, Zoned};
+
+use crate::plot::Shape;
 
 /// Zones and weights of the bodies, in the order of the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +44,24 @@ impl Zoning {
             joined: joined(zoned),
             weights: model.bodies.iter().map(weights).collect(),
         }
+    }
+
+    /// The cells for the picture of the model.
+    pub(crate) fn shapes(&self, system: &System) -> Vec<Shape> {
+        let mesh = &system.mesh;
+        let mut shapes = Vec::new();
+        for (number, body) in system.bodies.iter().enumerate() {
+            let [inertia, stiffness] = &self.weights[number];
+            for (k, &cell) in body.cells().iter().enumerate() {
+                let nodes = mesh.element_nodes(cell).iter();
+                shapes.push(Shape {
+                    zone: self.of_body[number],
+                    points: nodes.map(|node| mesh.nodes[*node as usize]).collect(),
+                    weights: [inertia[k], stiffness[k]],
+                });
+            }
+        }
+        shapes
     }
 
     /// Whether steps have parts.
