@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_dynamics::{Driver, Observer, Outcome, march};
-use carom_output::{Ending, Fields, Probe, Reference, Results, Settings, Summary};
+use carom_dynamics::{Driver, ModelZone, Observer, Outcome, Stepper, Whole, march};
+use carom_output::summary::Zones;
+use carom_output::{Ending, Fields, Probe, Reference, Results, Settings, Summary, Zoning};
 use thiserror::Error as ThisError;
 
 use crate::build::Built;
@@ -46,18 +47,38 @@ pub fn run(
     stop: &dyn Fn() -> bool,
 ) -> Result<Finished, Failed> {
     let begin = Instant::now();
-    let mut driver = Driver::new(Arc::clone(&built.system)).map_err(Failed::Start)?;
-    let mut results = Results::create(
-        settings(input, case, built, folder),
-        Arc::clone(&built.system),
-    )?;
-    let outcome = march(&mut driver, built.end, &mut [&mut results, progress], stop);
+    let system = || Arc::clone(&built.system);
+    match &built.zoned {
+        None => {
+            let mut driver = Driver::new(system()).map_err(Failed::Start)?;
+            let mut results = Results::create(settings(input, case, built, folder), system())?;
+            let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
+            let outcome = march(&mut driver, built.end, observers, stop);
+            conclude(results, outcome, (&driver, None), begin)
+        }
+        Some(zoned) => {
+            let mut whole = Whole::new(zoned, system()).map_err(Failed::Start)?;
+            let mut results = Results::create(settings(input, case, built, folder), system())?;
+            let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
+            let outcome = march(&mut whole, built.end, observers, stop);
+            conclude(results, outcome, (&whole, Some(Zones::of(&whole))), begin)
+        }
+    }
+}
+
+/// Writes what is written after the run.
+fn conclude(
+    mut results: Results,
+    outcome: Result<Outcome, carom_dynamics::Error>,
+    (run, zones): (&dyn Stepper, Option<Zones>),
+    begin: Instant,
+) -> Result<Finished, Failed> {
     let unfinished = match &outcome {
         Ok(Outcome::Done) => None,
         Ok(Outcome::Interrupted) => Some("the run was interrupted".to_string()),
         Err(error) => Some(error.to_string()),
     };
-    let kept = match driver.failed_problem() {
+    let kept = match run.failed_problem() {
         Some(problem) => {
             let text =
                 serde_json::to_string_pretty(problem).unwrap_or_else(|cause| cause.to_string());
@@ -67,7 +88,8 @@ pub fn run(
     };
     let ending = Ending {
         unfinished,
-        costs: &driver.costs(),
+        costs: &run.costs(),
+        zones,
         wall: begin.elapsed(),
     };
     let summary = results.conclude(&ending);
@@ -99,7 +121,15 @@ fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Setti
         }),
         case_text: overrides + &file,
         version: env!("CARGO_PKG_VERSION").to_string(),
-        scheme: scheme(&case.time.scheme),
+        scheme: match &built.zoned {
+            None => scheme(&case.time.scheme),
+            Some(zoned) => zoned
+                .zones
+                .iter()
+                .map(of_zone)
+                .collect::<Vec<_>>()
+                .join(", "),
+        },
         probes: built
             .probes
             .iter()
@@ -125,8 +155,13 @@ fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Setti
             }
         }),
         reference: reference(built),
+        zoning: built.zoned.as_ref().map(Zoning::of),
         warnings: built.warnings.clone(),
     }
+}
+
+fn of_zone(zone: &ModelZone) -> String {
+    format!("{}: {}", zone.name, zone.scheme.get().name())
 }
 
 /// The exact solution of a built case, for the output.

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use carom_dynamics::{Observer, State, StepReport, System};
+use carom_dynamics::{Observer, State, StepReport, Stepper, System};
 use carom_output::compare::{Done, Outcome, Recorder, Variant};
 use carom_output::{Folder, Reference};
 use thiserror::Error as ThisError;
@@ -238,9 +238,9 @@ impl Observer for Watched {
         self.watch.accepted(system, state, report)
     }
 
-    fn finish(&mut self, system: &System, state: &State) -> Result<(), carom_dynamics::Error> {
-        self.recorder.finish(system, state)?;
-        self.watch.finish(system, state)
+    fn finish(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
+        self.recorder.finish(run)?;
+        self.watch.finish(run)
     }
 }
 

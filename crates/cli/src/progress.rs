@@ -1,6 +1,6 @@
 //! The progress of a run on a terminal: time left, simulated time, energy residual.
 
-use carom_dynamics::{Error, Observer, State, StepReport, System};
+use carom_dynamics::{Error, Observer, State, StepReport, Stepper, System};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Parts of the simulated time that the bar counts.
@@ -51,8 +51,8 @@ impl Observer for Progress {
         Ok(())
     }
 
-    fn finish(&mut self, _system: &System, state: &State) -> Result<(), Error> {
-        self.show(state.time);
+    fn finish(&mut self, run: &dyn Stepper) -> Result<(), Error> {
+        self.show(run.state().time);
         self.bar.finish_and_clear();
         Ok(())
     }

@@ -292,9 +292,21 @@ impl Ledger {
         self.close(energies, identity);
     }
 
-    /// The balance from the sums, and the largest of its terms so far.
+    /// The balance from the sums, and its largest terms so far.
     fn close(&mut self, energies: &Energies, identity: &EnergyIdentity) {
         self.balance = self.closed(energies, identity);
+        self.follow();
+    }
+
+    /// Makes this the ledger of several systems together, which have these balances at the start and now. The largest terms
+    /// are those of the sums.
+    pub(crate) fn gather(&mut self, initial: Balance, balance: Balance) {
+        (self.initial, self.balance) = (initial, balance);
+        self.follow();
+    }
+
+    /// The largest terms so far.
+    fn follow(&mut self) {
         self.largest_energy = self.largest_energy.max(self.balance.energy());
         self.largest_energy_residual = self
             .largest_energy_residual

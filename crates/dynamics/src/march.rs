@@ -1,9 +1,64 @@
 //! The loop over the steps.
 
-use crate::driver::Driver;
+use crate::driver::{Costs, Driver};
 use crate::error::Error;
+use crate::interface::InterfaceProblem;
 use crate::state::{State, StepReport};
 use crate::system::System;
+
+/// What a run is made with: one driver, or the drivers of all zones as one.
+pub trait Stepper {
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// A step that fails; the state is then the one before it.
+    fn step(&mut self) -> Result<(), Error>;
+    /// The system that state and report belong to.
+    fn system(&self) -> &System;
+    /// The state after the last step.
+    fn state(&self) -> &State;
+    /// The report of the last step.
+    fn report(&self) -> &StepReport;
+    /// Bytes of everything that the run goes on from.
+    ///
+    /// # Errors
+    /// None is known; the encoder's own error is passed on.
+    fn saved(&self) -> Result<Vec<u8>, Error>;
+    /// What the run cost so far.
+    fn costs(&self) -> Costs;
+    /// The interface problem that made the last step fail.
+    fn failed_problem(&self) -> Option<&InterfaceProblem>;
+}
+
+impl Stepper for Driver {
+    fn step(&mut self) -> Result<(), Error> {
+        self.step()
+    }
+
+    fn system(&self) -> &System {
+        self.system()
+    }
+
+    fn state(&self) -> &State {
+        self.state()
+    }
+
+    fn report(&self) -> &StepReport {
+        self.report()
+    }
+
+    fn saved(&self) -> Result<Vec<u8>, Error> {
+        self.state().to_bytes()
+    }
+
+    fn costs(&self) -> Costs {
+        self.costs()
+    }
+
+    fn failed_problem(&self) -> Option<&InterfaceProblem> {
+        self.failed_problem()
+    }
+}
 
 /// Something that looks at accepted states: histories, fields, progress.
 pub trait Observer {
@@ -17,11 +72,11 @@ pub trait Observer {
         state: &State,
         report: &StepReport,
     ) -> Result<(), Error>;
-    /// Called once at the end, after a failed run too. `state` is the last good one.
+    /// Called once at the end, after a failed run too. The state of `run` is the last good one.
     ///
     /// # Errors
     /// Whatever keeps it from its work.
-    fn finish(&mut self, system: &System, state: &State) -> Result<(), Error>;
+    fn finish(&mut self, run: &dyn Stepper) -> Result<(), Error>;
 }
 
 /// How a run ended.
@@ -33,21 +88,21 @@ pub enum Outcome {
     Interrupted,
 }
 
-/// Steps from the driver's state to the end time: to the first instant not before it, to within a millionth of the largest
+/// Steps from the state of `run` to the end time: to the first instant not before it, to within a millionth of the largest
 /// step. `stop` is asked before each step.
 ///
 /// # Errors
 /// A failed step or observer; observers have finished with the last good state.
 pub fn march(
-    driver: &mut Driver,
+    run: &mut dyn Stepper,
     end: f64,
     observers: &mut [&mut dyn Observer],
     stop: &dyn Fn() -> bool,
 ) -> Result<Outcome, Error> {
-    let result = steps(driver, end, observers, stop);
+    let result = steps(run, end, observers, stop);
     let mut finished = Ok(());
     for observer in observers {
-        finished = finished.and(observer.finish(driver.system(), driver.state()));
+        finished = finished.and(observer.finish(run));
     }
     let outcome = result?;
     finished?;
@@ -55,21 +110,21 @@ pub fn march(
 }
 
 fn steps(
-    driver: &mut Driver,
+    run: &mut dyn Stepper,
     end: f64,
     observers: &mut [&mut dyn Observer],
     stop: &dyn Fn() -> bool,
 ) -> Result<Outcome, Error> {
-    let end = end - 1e-6 * driver.system().dt;
-    if driver.state().step == 0 {
-        tell(driver, observers)?;
+    let end = end - 1e-6 * run.system().dt;
+    if run.state().step == 0 {
+        tell(run, observers)?;
     }
-    while driver.state().time < end {
+    while run.state().time < end {
         if stop() {
             return Ok(Outcome::Interrupted);
         }
-        driver.step()?;
-        tell(driver, observers)?;
+        run.step()?;
+        tell(run, observers)?;
     }
     Ok(Outcome::Done)
 }
@@ -79,8 +134,8 @@ pub fn step_count(end: f64, dt: f64) -> u64 {
     (end / dt - 1e-6).ceil().max(0.0) as u64
 }
 
-fn tell(driver: &Driver, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
-    observers.iter_mut().try_for_each(|observer| {
-        observer.accepted(driver.system(), driver.state(), driver.report())
-    })
+fn tell(run: &dyn Stepper, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
+    observers
+        .iter_mut()
+        .try_for_each(|observer| observer.accepted(run.system(), run.state(), run.report()))
 }

@@ -85,8 +85,14 @@ impl State {
         let state: State = postcard::from_bytes(bytes).map_err(|cause| Error::State {
             cause: cause.to_string(),
         })?;
+        state.check(system)?;
+        Ok(state)
+    }
+
+    /// Refuses a state of another size than the system's.
+    pub(crate) fn check(&self, system: &System) -> Result<(), Error> {
         let (n, points) = (system.unknowns(), system.points());
-        let motion = &state.motion;
+        let motion = &self.motion;
         let vectors = [
             &motion.u,
             &motion.v,
@@ -100,14 +106,44 @@ impl State {
         };
         if vectors.iter().any(|vector| vector.len() != n)
             || motion.memory.len() != remembered
-            || state.interface.force.len() != points
+            || self.interface.force.len() != points
         {
             let cause = format!(
                 "it belongs to another model than this one of {n} unknowns and {points} contact points"
             );
             return Err(Error::State { cause });
         }
-        Ok(state)
+        Ok(())
+    }
+}
+
+/// At rest, nothing done yet.
+pub(crate) fn empty_state(system: &System) -> State {
+    let (zeros, points) = (vec![0.0; system.unknowns()], system.points());
+    State {
+        step: 0,
+        time: 0.0,
+        motion: Motion {
+            u: zeros.clone(),
+            v: zeros.clone(),
+            a: zeros.clone(),
+            memory: Vec::new(),
+            internal_force: zeros.clone(),
+            contact_force: zeros,
+            link_force: Vec::new(),
+        },
+        interface: InterfaceState {
+            force: vec![0.0; points],
+            carried: vec![0.0; points],
+            gap: vec![0.0; points],
+            rate: vec![0.0; points],
+            status: vec![Status::Open; points],
+            watched: vec![false; points],
+            crush: vec![0.0; points],
+        },
+        control: Control::start(system.dt),
+        ledger: Ledger::default(),
+        records: Records::default(),
     }
 }
 
@@ -133,6 +169,17 @@ pub struct ContactReport {
     pub mixed: usize,
 }
 
+/// What all contacts did in a part of a step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactSample {
+    /// Time at its end, s.
+    pub time: f64,
+    /// Its length, s.
+    pub dt: f64,
+    /// By contact.
+    pub contacts: Vec<ContactReport>,
+}
+
 /// What a step did.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {
@@ -144,10 +191,25 @@ pub struct StepReport {
     pub dt: f64,
     /// Attempts made, the last one taken.
     pub attempts: u32,
-    /// By contact.
+    /// By contact. Of a step in zones: forces are means over the step, gap and rate those at its end, closed and mixed the
+    /// most in one of its parts, the rest sums.
     pub contacts: Vec<ContactReport>,
     /// Energies, works and momentum at the end of the step.
     pub balance: Balance,
-    /// Passes of the status loop.
+    /// Passes of the status loop; in zones the passes over the step until the links hold.
     pub passes: usize,
+    /// What the contacts did in the parts of the step, where it has some: the inner steps of zones. A contact of a zone
+    /// without inner steps does in each part what it does in the step.
+    pub samples: Vec<ContactSample>,
+}
+
+impl StepReport {
+    /// End, length (both s) and contacts of each part of the step; of the step itself if it has none.
+    pub fn parts(&self) -> impl Iterator<Item = (f64, f64, &[ContactReport])> {
+        let whole = self.samples.is_empty();
+        let step = whole.then_some((self.time, self.dt, &self.contacts[..]));
+        let parts = self.samples.iter();
+        step.into_iter()
+            .chain(parts.map(|part| (part.time, part.dt, &part.contacts[..])))
+    }
 }

@@ -167,18 +167,6 @@ impl System {
     /// A step that is not positive; a body that cannot be built; a scheme that cannot take the mass, the step or the
     /// contact law.
     pub fn new(model: Model) -> Result<Arc<System>, Error> {
-        System::built(model, true)
-    }
-
-    /// All of a model in zones, for output: nothing is checked against its scheme and step, which zones replace.
-    ///
-    /// # Errors
-    /// As [`System::new`], but for the scheme.
-    pub fn whole(model: Model) -> Result<Arc<System>, Error> {
-        System::built(model, false)
-    }
-
-    fn built(model: Model, against_scheme: bool) -> Result<Arc<System>, Error> {
         if !(model.dt > 0.0 && model.dt.is_finite()) {
             return Err(Error::Step { dt: model.dt });
         }
@@ -190,6 +178,24 @@ impl System {
                 largest: model.dt,
             });
         }
+        let (system, bodies, contacts) = System::assemble(model)?;
+        system.check_scheme(&bodies)?;
+        system.check_massless(&contacts)?;
+        system.check_integration()?;
+        Ok(Arc::new(system))
+    }
+
+    /// All bodies and contacts of a model in one numbering, to look at and not to be driven: whether the scheme takes the
+    /// laws, the masses and the step is not asked. A model in zones has no scheme as a whole.
+    ///
+    /// # Errors
+    /// A body that cannot be built.
+    pub fn whole(model: Model) -> Result<Arc<System>, Error> {
+        let (system, ..) = System::assemble(model)?;
+        Ok(Arc::new(system))
+    }
+
+    fn assemble(model: Model) -> Result<(System, Vec<ModelBody>, Vec<ModelContact>), Error> {
         let dim = model.mesh.dim;
         let (number, mesh_node, parts) = numbering(&model);
         let x: Vec<[f64; 3]> = mesh_node
@@ -278,12 +284,7 @@ impl System {
             initial_velocity,
             mesh: model.mesh,
         };
-        if against_scheme {
-            system.check_scheme(&model.bodies)?;
-            system.check_massless(&model.contacts)?;
-            system.check_integration()?;
-        }
-        Ok(Arc::new(system))
+        Ok((system, model.bodies, model.contacts))
     }
 
     fn check_massless(&self, contacts: &[ModelContact]) -> Result<(), Error> {

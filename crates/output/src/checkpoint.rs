@@ -1,10 +1,9 @@
-//! The state of a run on disk: what `State` holds, with a head that tells whose it is and whether it is whole.
+//! The state of a run on disk: its bytes, with a head that tells whose they are and whether they are whole.
 //!
-//! One line of text, `carom-state 2 <case hash> <checksum>`, then the bytes of the state.
+//! One line of text, `carom-state 2 <case hash> <checksum>`, then the bytes that the run goes on from: those of
+//! `State`, or of all zones.
 
 use std::path::Path;
-
-use carom_dynamics::{State, System};
 
 use crate::summary::hash_bytes;
 use crate::{Error, atomic};
@@ -12,24 +11,23 @@ use crate::{Error, atomic};
 /// First word and version of the head.
 const HEAD: &str = "carom-state 2";
 
-/// Writes a state atomically. `case_hash`: [`hash`](crate::summary::hash) of the case file.
+/// Writes the bytes of a state ([`saved`](carom_dynamics::Stepper::saved)) atomically. `case_hash`: [`hash`](crate::summary::hash) of the case file.
 ///
 /// # Errors
-/// [`Error::File`]; [`Error::Checkpoint`] if the state cannot be encoded.
-pub fn write(path: &Path, case_hash: &str, state: &State) -> Result<(), Error> {
-    let bytes = state.to_bytes().map_err(|cause| refused(path, cause))?;
-    let head = format!("{HEAD} {case_hash} {}\n", hash_bytes(&bytes));
+/// [`Error::File`].
+pub fn write(path: &Path, case_hash: &str, bytes: &[u8]) -> Result<(), Error> {
+    let head = format!("{HEAD} {case_hash} {}\n", hash_bytes(bytes));
     atomic::write(path, |file| {
         file.write_all(head.as_bytes())?;
-        file.write_all(&bytes)
+        file.write_all(bytes)
     })
 }
 
-/// Reads back the state of a system built from the case with this hash.
+/// Reads back the bytes of the state of a run of the case with this hash.
 ///
 /// # Errors
 /// [`Error::File`]; [`Error::Checkpoint`] if the file is no state, was damaged, or belongs to another case.
-pub fn read(path: &Path, case_hash: &str, system: &System) -> Result<State, Error> {
+pub fn read(path: &Path, case_hash: &str) -> Result<Vec<u8>, Error> {
     let content = std::fs::read(path).map_err(Error::file("read", path))?;
     let line = content
         .iter()
@@ -51,12 +49,12 @@ pub fn read(path: &Path, case_hash: &str, system: &System) -> Result<State, Erro
     if case != case_hash {
         return Err(refused(path, "it belongs to another case file"));
     }
-    State::from_bytes(system, bytes).map_err(|cause| refused(path, cause))
+    Ok(bytes.to_vec())
 }
 
-fn refused(path: &Path, cause: impl std::fmt::Display) -> Error {
+fn refused(path: &Path, cause: &str) -> Error {
     Error::Checkpoint {
         path: path.to_owned(),
-        cause: cause.to_string(),
+        cause: cause.to_owned(),
     }
 }

@@ -32,5 +32,5 @@ pub use history::History;
 pub use impacts::{ImpactRow, ImpactTable};
 pub use pvd::Collection;
 pub use report::Report;
-pub use results::{Ending, Fields, Probe, Reference, Results, Settings};
+pub use results::{Ending, Fields, Probe, Reference, Results, Settings, Zoning};
 pub use summary::Summary;

@@ -27,6 +27,9 @@ pub struct Summary {
     pub scheme: String,
     /// Steps in time.
     pub time: Time,
+    /// Zones and links of a run in zones.
+    #[serde(default)]
+    pub zones: Option<Zones>,
     /// One entry per contact, by name.
     pub contacts: BTreeMap<String, Contact>,
     /// Balance of energy.
@@ -131,7 +134,7 @@ pub struct Time {
     pub smallest_step: f64,
     /// Largest accepted step, s.
     pub largest_step: f64,
-    /// Largest step times wave speed over element size (Courant number).
+    /// Largest step times wave speed over element size (Courant number); each body with the step of its zone.
     pub courant: Option<f64>,
 }
 
@@ -144,6 +147,69 @@ pub struct Rejected {
     pub energy_growth: u64,
     /// There was no solution.
     pub failure: u64,
+}
+
+/// What the zones of a run did, and the links between them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Zones {
+    /// In the order of the case.
+    pub zones: Vec<Zone>,
+    /// In the order of the case.
+    pub links: Vec<Link>,
+    /// Energy that the links gave to the zones in sum, J: negative when they took some.
+    #[serde(with = "float")]
+    pub work_of_links: f64,
+    /// The same over the kinetic and strain energy at the start; `null` without any.
+    pub relative_work_of_links: Option<f64>,
+    /// Mean number of passes over an outer step until the links held.
+    #[serde(with = "float")]
+    pub passes_per_step: f64,
+}
+
+/// One zone.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Zone {
+    /// Name as in the case file.
+    pub name: String,
+    /// Time scheme.
+    pub scheme: String,
+    /// Whether an energy identity of the scheme is known.
+    pub has_identity: bool,
+    /// Step, s.
+    pub step: f64,
+    /// Steps to one outer step.
+    pub substeps: u32,
+    /// Names of its bodies.
+    pub bodies: Vec<String>,
+    /// Elements of its bodies.
+    pub elements: usize,
+    /// Degrees of freedom, supports excluded.
+    pub unknowns: usize,
+    /// Largest step times wave speed over element size.
+    pub courant: Option<f64>,
+    /// Energy that the links gave to the zone, J.
+    #[serde(with = "float")]
+    pub work_of_links: f64,
+    /// Largest magnitude of the zone's energy residual over the run, J.
+    #[serde(with = "float")]
+    pub largest_residual: f64,
+    /// Numeric factorisations.
+    pub factorisations: u64,
+    /// Elements whose internal forces were computed.
+    pub element_updates: u64,
+    /// Solutions with a factor.
+    pub solves: u64,
+}
+
+/// One link.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Link {
+    /// Name as in the case file.
+    pub name: String,
+    /// Names of the inner and the outer zone.
+    pub zones: [String; 2],
+    /// Rows of its coupling, one multiplier each.
+    pub rows: usize,
 }
 
 /// What one contact did. Force: the sum of the normal forces over its points.
@@ -195,8 +261,8 @@ pub struct Energy {
     /// Strain energy at the end.
     pub strain_final: f64,
     /// Further work and stored or lost energies over the run, by name, positive when the bodies *gain*: `work of
-    /// loads`, `work of contact`, `dissipation of the scheme`, and `stored by the scheme` where its energy has a term
-    /// of its own.
+    /// loads`, `work of contact`, `dissipation of the scheme`, `stored by the scheme` where its energy has a term
+    /// of its own, and in zones `work of links`.
     pub works: BTreeMap<String, f64>,
     /// Final - initial - Σ works.
     #[serde(with = "float")]
@@ -216,7 +282,7 @@ pub struct Momentum {
     pub initial: [f64; 3],
     /// At the end.
     pub r#final: [f64; 3],
-    /// Impulses from outside over the run, by name: `loads`, `supports`, `obstacles`.
+    /// Impulses from outside over the run, by name: `loads`, `supports`, `obstacles`; in zones `links`.
     pub impulses: BTreeMap<String, [f64; 3]>,
     /// Final - initial - Σ impulses.
     pub residual: [f64; 3],
@@ -272,7 +338,13 @@ pub struct Counts {
     pub compliance_bytes: u64,
     /// Evaluations of the internal forces.
     pub force_sweeps: u64,
-    /// Iterations of the contact status over the run.
+    /// Elements whose internal forces were computed, over all evaluations.
+    #[serde(default)]
+    pub element_updates: u64,
+    /// Solutions with a factor: pairs of a forward and a backward sweep.
+    #[serde(default)]
+    pub solves: u64,
+    /// Iterations of the contact status over the run; in zones passes over the steps until the links held.
     pub status_iterations: u64,
 }
 

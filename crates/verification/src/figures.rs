@@ -38,7 +38,7 @@ impl Observer for History {
         Ok(())
     }
 
-    fn finish(&mut self, _system: &System, _state: &State) -> Result<(), carom_dynamics::Error> {
+    fn finish(&mut self, _run: &dyn carom_dynamics::Stepper) -> Result<(), carom_dynamics::Error> {
         Ok(())
     }
 }

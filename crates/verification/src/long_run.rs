@@ -183,11 +183,7 @@ impl carom_dynamics::Observer for Gain {
         Ok(())
     }
 
-    fn finish(
-        &mut self,
-        _system: &System,
-        _state: &carom_dynamics::State,
-    ) -> Result<(), carom_dynamics::Error> {
+    fn finish(&mut self, _run: &dyn carom_dynamics::Stepper) -> Result<(), carom_dynamics::Error> {
         Ok(())
     }
 }

@@ -40,7 +40,7 @@ impl Observer for Nobody {
     ) -> Result<(), carom_dynamics::Error> {
         Ok(())
     }
-    fn finish(&mut self, _: &System, _: &State) -> Result<(), carom_dynamics::Error> {
+    fn finish(&mut self, _: &dyn carom_dynamics::Stepper) -> Result<(), carom_dynamics::Error> {
         Ok(())
     }
 }

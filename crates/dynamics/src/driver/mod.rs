@@ -29,7 +29,7 @@ use crate::ledger::{Energies, Ledger, Resultant, reactions};
 use crate::operator::Operators;
 use crate::records::{ContactRecord, Records};
 use crate::scheme::EnergyIdentity;
-use crate::state::{ContactReport, InterfaceState, Motion, State, StepReport};
+use crate::state::{ContactReport, State, StepReport, empty_state};
 use crate::step_map::{Row, StepMap};
 use crate::system::System;
 use attempt::Sized;
@@ -154,8 +154,35 @@ pub struct Costs {
     pub compliance_bytes: usize,
     /// Internal-force sweeps.
     pub force_sweeps: usize,
+    /// Elements whose internal forces were computed, over all sweeps.
+    pub element_updates: u64,
     /// Times.
     pub phases: Phases,
+}
+
+impl Costs {
+    /// Adds the costs of another driver.
+    pub(crate) fn add(&mut self, other: Costs) {
+        self.factors.extend(other.factors);
+        let (work, its) = (&mut self.work, other.work);
+        work.factorisations += its.factorisations;
+        work.sweeps += its.sweeps;
+        work.columns += its.columns;
+        self.compliance_bytes += other.compliance_bytes;
+        self.force_sweeps += other.force_sweeps;
+        self.element_updates += other.element_updates;
+        let (phases, its) = (&mut self.phases, other.phases);
+        phases.factorisation += its.factorisation;
+        phases.forces += its.forces;
+        phases.sweeps += its.sweeps;
+        phases.contact += its.contact;
+        phases.balance += its.balance;
+    }
+
+    /// Solutions with a factor: pairs of a forward and a backward sweep.
+    pub fn solves(&self) -> u64 {
+        self.work.sweeps as u64 / 2
+    }
 }
 
 impl Driver {
@@ -291,6 +318,7 @@ impl Driver {
 
     /// What the run cost so far.
     pub fn costs(&self) -> Costs {
+        let elements: usize = self.system.bodies.iter().map(|b| b.cells().len()).sum();
         Costs {
             factors: self
                 .operators
@@ -301,6 +329,7 @@ impl Driver {
             work: self.work(),
             compliance_bytes: self.compliance.bytes(),
             force_sweeps: self.forces.sweeps,
+            element_updates: (self.forces.sweeps * elements) as u64,
             phases: self.phases,
         }
     }
@@ -514,34 +543,5 @@ impl Driver {
         let motion = &mut self.next.motion;
         self.forces
             .evaluate(&self.system, &motion.u, &mut motion.internal_force)
-    }
-}
-
-fn empty_state(system: &System) -> State {
-    let (zeros, points) = (vec![0.0; system.unknowns()], system.points());
-    State {
-        step: 0,
-        time: 0.0,
-        motion: Motion {
-            u: zeros.clone(),
-            v: zeros.clone(),
-            a: zeros.clone(),
-            memory: Vec::new(),
-            internal_force: zeros.clone(),
-            contact_force: zeros,
-            link_force: Vec::new(),
-        },
-        interface: InterfaceState {
-            force: vec![0.0; points],
-            carried: vec![0.0; points],
-            gap: vec![0.0; points],
-            rate: vec![0.0; points],
-            status: vec![Status::Open; points],
-            watched: vec![false; points],
-            crush: vec![0.0; points],
-        },
-        control: Control::start(system.dt),
-        ledger: Ledger::default(),
-        records: Records::default(),
     }
 }

@@ -11,6 +11,7 @@
 mod condensed;
 mod model;
 mod start;
+mod whole;
 
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +23,7 @@ use crate::state::{ContactReport, State};
 
 use condensed::Condensed;
 pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
+pub use whole::Whole;
 
 /// Defect of a row at which it holds, as a part of the largest velocity.
 const TOLERANCE: f64 = 1e-10;

@@ -9,6 +9,7 @@ mod momentum;
 mod quadrature;
 mod stability;
 mod weak_form;
+mod whole;
 
 #[global_allocator]
 static COUNTER: carom_testing::Counter = carom_testing::Counter;

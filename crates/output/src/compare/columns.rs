@@ -56,7 +56,7 @@ const fn hidden(name: &'static str, unit: &'static str, value: fn(&Done) -> Opti
 
 /// All columns between the name of the variant and the verdict. Force positive in compression, energy change and work
 /// positive when the bodies gain, dissipation positive when lost, penetration positive.
-pub const COLUMNS: [Column; 21] = [
+pub const COLUMNS: [Column; 23] = [
     column("force_error", "force error", Form::Percent, |v| {
         v.errors.force
     }),
@@ -105,6 +105,12 @@ pub const COLUMNS: [Column; 21] = [
     }),
     column("factorisations", "factorisations", Form::Count, |v| {
         Some(v.summary.counts.factorisations as f64)
+    }),
+    column("element_updates", "element updates", Form::Count, |v| {
+        Some(v.summary.counts.element_updates as f64)
+    }),
+    column("solves", "solves", Form::Count, |v| {
+        Some(v.summary.counts.solves as f64)
     }),
     column("sweeps", "sweeps", Form::Count, |v| {
         Some(v.summary.counts.sweeps as f64)

@@ -1,6 +1,6 @@
-//! What a comparison keeps of a run beside its summary: the force of every step, and the curves of the figures.
+//! What a comparison keeps of a run beside its summary: the force of every step or part of one, and the curves of the figures.
 
-use carom_dynamics::{Observer, State, StepReport, System};
+use carom_dynamics::{Observer, State, StepReport, Stepper, System};
 
 use crate::results::Reference;
 use crate::results::sensor::{ContactPoint, contact_point};
@@ -118,9 +118,11 @@ impl Observer for Recorder {
     ) -> Result<(), carom_dynamics::Error> {
         let (t, history, balance) = (report.time, &mut self.history, &report.balance);
         if let Some(point) = &self.point {
-            let force = report.contacts[point.contact].force;
-            history.force.push(t, force);
-            history.force_curve.push(t, force);
+            for (end, _, contacts) in report.parts() {
+                let force = contacts[point.contact].force;
+                history.force.push(end, force);
+                history.force_curve.push(end, force);
+            }
             for ((_, traces), (_, sensor)) in history.sides.iter_mut().zip(&point.sides) {
                 traces[0].push(t, sensor.of(&state.motion.u));
                 traces[1].push(t, sensor.of(&state.motion.v));
@@ -132,7 +134,7 @@ impl Observer for Recorder {
         Ok(())
     }
 
-    fn finish(&mut self, _system: &System, _state: &State) -> Result<(), carom_dynamics::Error> {
+    fn finish(&mut self, _run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
         Ok(())
     }
 }

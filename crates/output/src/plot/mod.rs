@@ -7,6 +7,7 @@
 mod draw;
 mod figures;
 mod logarithmic;
+mod model;
 mod scale;
 mod thin;
 
@@ -14,6 +15,7 @@ use std::path::Path;
 
 pub use figures::{ContactCurves, EnergyCurves, contact_figure, energy_figure};
 pub use logarithmic::{Logarithmic, Series};
+pub(crate) use model::{Shape, model_figure};
 pub use scale::{digits, quantity, scientific};
 pub(crate) use thin::thin;
 

@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 
 use carom_contact::{Contact as Pair, Integration};
-use carom_dynamics::{ContactRecord, Costs, Ledger, System};
+use carom_dynamics::{ContactRecord, Ledger, System};
 
+use crate::plot::model_figure;
+use crate::results::costs::{counts, timings};
 use crate::results::exact;
 use crate::results::impacts::ContactTotals;
 use crate::results::{Comparison, Ending, Last, Results};
 use crate::summary::{
-    Check, Contact, Counts, ENERGY_CHECK, Energy, Exact, Model, Momentum, Rejected, Summary, Time,
-    Verdict, hash,
+    Check, Contact, ENERGY_CHECK, Energy, Exact, Model, Momentum, Rejected, Summary, Time, Verdict,
+    Zones, hash,
 };
 use crate::{Error, Report, atomic};
 
@@ -65,7 +67,14 @@ fn keep<T>(outcome: Result<T, Error>, errors: &mut Vec<Error>) -> Option<T> {
 /// Writes the figures; returns those that could be drawn.
 fn draw(results: &mut Results, errors: &mut Vec<Error>) -> Vec<String> {
     let reference = results.settings.reference.as_ref();
+    let system = &results.system;
+    let model = results.settings.zoning.as_ref().map(|zoning| {
+        let shapes = zoning.shapes(system);
+        let svg = model_figure(system.dim, &zoning.zones, &shapes);
+        ("plots/model.svg", svg)
+    });
     let drawn = results.curves.draw(reference, results.last.time);
+    let drawn = model.into_iter().chain(drawn);
     let mut figures = Vec::new();
     for (name, figure) in drawn {
         let Some(svg) = keep(figure, errors) else {
@@ -89,7 +98,9 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         totals,
         ..
     } = results;
-    let (energy, momentum) = (energy(last), momentum(system, last));
+    let zones = ending.zones.as_ref();
+    let energy = energy(last, zones.is_some());
+    let momentum = momentum(system, last, zones.is_some());
     let check = |quantity: &str, value, bound| Check {
         quantity: quantity.to_owned(),
         value,
@@ -97,13 +108,11 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
     };
     let mut warnings = settings.warnings.clone();
     let mut checks = Vec::new();
-    if system.scheme.get().energy_identity(system.dt).is_some() {
-        checks.push(check(ENERGY_CHECK, energy.relative_residual, BOUND));
-    } else {
-        warnings.push(format!(
-            "no energy identity is known of the scheme {}: the energy residual holds what the scheme dissipates, and is not checked",
-            system.scheme.get().name()
-        ));
+    match without_identity(system, zones) {
+        None => checks.push(check(ENERGY_CHECK, energy.relative_residual, BOUND)),
+        Some(scheme) => warnings.push(format!(
+            "no energy identity is known of the scheme {scheme}: the energy residual holds what the scheme dissipates, and is not checked"
+        )),
     }
     checks.extend([
         check(
@@ -127,7 +136,8 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         verdict: Verdict::new(unfinished, checks),
         model: model(system),
         scheme: settings.scheme.clone(),
-        time: time(system, last),
+        time: time(system, last, zones),
+        zones: ending.zones.clone(),
         contacts: contacts(results),
         energy,
         momentum,
@@ -139,6 +149,21 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         timings: timings(results, ending),
         warnings,
         outputs: names.filter(there).collect(),
+    }
+}
+
+/// A scheme of the run whose energy residual says nothing.
+fn without_identity<'a>(system: &System, zones: Option<&'a Zones>) -> Option<&'a str> {
+    let scheme = system.scheme.get();
+    match zones {
+        Some(zones) => {
+            let mut zones = zones.zones.iter();
+            zones
+                .find(|zone| !zone.has_identity)
+                .map(|zone| zone.scheme.as_str())
+        }
+        None if scheme.energy_identity(system.dt).is_some() => None,
+        None => Some(scheme.name()),
     }
 }
 
@@ -185,10 +210,15 @@ fn model(system: &System) -> Model {
     }
 }
 
-fn time(system: &System, last: &Last) -> Time {
-    let bodies = system.bodies.iter();
-    let courant =
-        bodies.map(|body| body.wave_speed() * last.control.range[1] / body.smallest_size());
+fn time(system: &System, last: &Last, zones: Option<&Zones>) -> Time {
+    let courant = match zones {
+        Some(zones) => zones
+            .zones
+            .iter()
+            .filter_map(|zone| zone.courant)
+            .reduce(f64::max),
+        None => courant(system, last.control.range[1]),
+    };
     Time {
         end: last.time,
         steps: last.step,
@@ -199,8 +229,15 @@ fn time(system: &System, last: &Last) -> Time {
         },
         smallest_step: last.control.range[0],
         largest_step: last.control.range[1],
-        courant: courant.reduce(f64::max),
+        courant,
     }
+}
+
+/// Largest step times wave speed over element size.
+pub(super) fn courant(system: &System, step: f64) -> Option<f64> {
+    let bodies = system.bodies.iter();
+    let all = bodies.map(|body| body.wave_speed() * step / body.smallest_size());
+    all.reduce(f64::max)
 }
 
 fn contacts(results: &Results) -> BTreeMap<String, Contact> {
@@ -250,7 +287,7 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
     all.enumerate().map(one).collect()
 }
 
-fn energy(last: &Last) -> Energy {
+fn energy(last: &Last, linked: bool) -> Energy {
     let ledger = &last.ledger;
     let (start, end) = (&ledger.initial, &ledger.balance);
     let mut works = BTreeMap::from([
@@ -261,6 +298,9 @@ fn energy(last: &Last) -> Energy {
             0.0 - end.dissipation_scheme,
         ),
     ]);
+    if linked {
+        works.insert("work of links".to_owned(), end.work_links);
+    }
     let stored = end.scheme_energy - start.scheme_energy;
     if stored != 0.0 {
         works.insert("stored by the scheme".to_owned(), -stored);
@@ -284,7 +324,7 @@ fn energy(last: &Last) -> Energy {
 
 /// Residuals are compared with the largest momentum or impulse of the run, or, if that is larger, with the momentum
 /// that its energy could hold, sqrt(2 m E) >= Σ |m v|: bodies that run at each other have none in sum.
-fn momentum(system: &System, last: &Last) -> Momentum {
+fn momentum(system: &System, last: &Last, linked: bool) -> Momentum {
     let ledger = &last.ledger;
     let (start, end) = (&ledger.initial, &ledger.balance);
     let mass: f64 = (0..system.bodies.len())
@@ -297,12 +337,14 @@ fn momentum(system: &System, last: &Last) -> Momentum {
         ("supports", end.impulse_supports.linear),
         ("obstacles", end.impulse_contact.linear),
     ];
+    let links = linked.then_some(("links", end.impulse_links.linear));
+    let impulses = impulses.into_iter().chain(links);
     Momentum {
         initial: start.momentum.linear,
         r#final: end.momentum.linear,
         impulses: impulses
             .map(|(name, impulse)| (name.to_owned(), impulse))
-            .into(),
+            .collect(),
         residual: end.momentum_residual.linear,
         relative_residual: relative(ledger.largest_momentum_residual, size),
     }
@@ -358,46 +400,21 @@ fn opening_speed(results: &Results, contact: usize, velocities: &[[f64; 3]]) -> 
         .reference
         .as_ref()
         .map_or([0.0; 3], |r| r.axis);
+    let joined = |body: usize| match &results.settings.zoning {
+        Some(zoning) => zoning.joined[body].clone(),
+        None => vec![body],
+    };
+    // bodies joined by links move as one
     let along = |body: usize| {
-        let v = velocities.get(body).copied().unwrap_or_default();
-        (0..3).map(|i| v[i] * axis[i]).sum::<f64>()
+        let (mut momentum, mut mass) = (0.0, 0.0);
+        for body in joined(body) {
+            let v = velocities.get(body).copied().unwrap_or_default();
+            let m = results.system.body_mass(body);
+            mass += m;
+            momentum += m * (0..3).map(|i| v[i] * axis[i]).sum::<f64>();
+        }
+        momentum / mass
     };
     let (secondary, primary) = results.system.sides[contact];
     primary.map_or(0.0, along) - along(secondary)
-}
-
-fn counts(costs: &Costs, passes: u64) -> Counts {
-    let factors = &costs.factors;
-    Counts {
-        factorisations: costs.work.factorisations as u64,
-        sweeps: costs.work.sweeps as u64,
-        factor_entries: factors.iter().map(|f| f.nnz_factor as u64).sum(),
-        factor_bytes: factors.iter().map(|f| f.bytes as u64).sum(),
-        contact_columns: costs.work.columns as u64,
-        compliance_bytes: costs.compliance_bytes as u64,
-        force_sweeps: costs.force_sweeps as u64,
-        status_iterations: passes,
-    }
-}
-
-fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f64> {
-    let phases = &ending.costs.phases;
-    let parts = [
-        ("total", ending.wall),
-        ("factorisation", phases.factorisation),
-        ("internal forces", phases.forces),
-        ("triangular sweeps", phases.sweeps),
-        ("contact", phases.contact),
-        ("balance", phases.balance),
-        ("output", results.totals.spent),
-    ];
-    let mut timings: BTreeMap<String, f64> = parts
-        .map(|(name, time)| (name.to_owned(), time.as_secs_f64()))
-        .into();
-    if results.last.step > 0 {
-        let steps = phases.forces + phases.sweeps + phases.contact + phases.balance;
-        let per_step = steps.as_secs_f64() / results.last.step as f64;
-        timings.insert("per step".to_owned(), per_step);
-    }
-    timings
 }

@@ -29,7 +29,7 @@ impl Norms {
 #[derive(Debug)]
 pub(crate) struct Comparison {
     pub(crate) reference: Reference,
-    /// Force of each step against the mean of the exact force over the step, over the steps that meet the exact
+    /// Force of each step, or part of one, against the mean of the exact force over it, over those that meet the exact
     /// contact.
     pub(crate) force: Norms,
     /// Displacement of the contact points at the end of each step, counted from the start.
@@ -48,28 +48,35 @@ impl Comparison {
     }
 
     pub(crate) fn push(&mut self, point: &ContactPoint, state: &State, report: &StepReport) {
-        let (from, to) = (report.time - report.dt, report.time);
         let values = point.sides.iter().map(|(_, s)| s.of(&state.motion.u));
         if report.step == 0 {
             self.start = values.collect();
             return;
         }
         let solution = &self.reference.solution;
-        if to > solution.end_time() * (1.0 + 1e-9) {
-            return;
+        let beyond = |time: f64| time > solution.end_time() * (1.0 + 1e-9);
+        for (to, dt, contacts) in report.parts().filter(|(to, ..)| !beyond(*to)) {
+            let force = contacts[self.reference.contact].force;
+            compare(&mut self.force, solution, [to - dt, to], force);
         }
-        let over = |end: f64| end * (1.0 - 1e-12);
-        let contacts = solution.contacts();
-        let next = contacts.partition_point(|contact| over(contact.end) <= from);
-        if contacts.get(next).is_some_and(|c| c.start < over(to)) {
-            let force = report.contacts[self.reference.contact].force;
-            self.force.add(force, solution.force().mean(from, to));
+        if beyond(report.time) {
+            return;
         }
         for (body, value) in values.enumerate().take(solution.motions().len()) {
             let start = self.start.get(body).copied().unwrap_or(0.0);
-            let exact = displacement(solution, body, to);
+            let exact = displacement(solution, body, report.time);
             self.displacement.add(value - start, exact);
         }
+    }
+}
+
+/// Adds a force to the norms if its step meets the exact contact.
+fn compare(norms: &mut Norms, solution: &Solution, [from, to]: [f64; 2], force: f64) {
+    let over = |end: f64| end * (1.0 - 1e-12);
+    let contacts = solution.contacts();
+    let next = contacts.partition_point(|contact| over(contact.end) <= from);
+    if contacts.get(next).is_some_and(|c| c.start < over(to)) {
+        norms.add(force, solution.force().mean(from, to));
     }
 }
 

@@ -9,7 +9,7 @@ use carom_dynamics::{InterfaceState, State, System};
 use carom_elements::Kind;
 use carom_mesh::Face;
 
-use crate::results::Fields;
+use crate::results::{Fields, Zoning};
 use crate::vtu::{Cells, Field, Grid, Values, write};
 use crate::writer::Writer;
 use crate::{Collection, Error, Folder};
@@ -18,6 +18,7 @@ use crate::{Collection, Error, Folder};
 #[derive(Debug, Default)]
 struct Snapshot {
     time: f64,
+    first: bool,
     names: Vec<String>,
     u: Vec<f64>,
     v: Vec<f64>,
@@ -43,14 +44,14 @@ impl FieldOutput {
     pub(crate) fn create(
         folder: &mut Folder,
         system: &Arc<System>,
-        fields: &Fields,
+        (fields, zoning): (&Fields, Option<&Zoning>),
     ) -> Result<FieldOutput, Error> {
         let collection = Collection::create(&folder.file("fields.pvd")?)?;
         let mut files = Files {
             folder: folder.path().to_owned(),
             collection,
             fields: fields.clone(),
-            bodies: Volume::new(system),
+            bodies: Volume::new(system, zoning),
             surfaces: (0..system.contacts.len())
                 .map(|contact| SurfaceGrid::new(system, contact))
                 .collect(),
@@ -121,6 +122,7 @@ impl FieldOutput {
             name(&format!("contact-{}", contact.name))?;
         }
         snapshot.fill(&self.fields, state);
+        snapshot.first = self.count == 0;
         self.count += 1;
         self.last = Some(state.time);
         self.writer.send(snapshot)
@@ -185,14 +187,28 @@ struct Volume {
     cells: Vec<(Kind, Vec<u32>)>,
     /// Number of the body of each cell, in the order of the case.
     body: Vec<i32>,
+    /// Zone of each cell, and its mean weights of inertia and internal work; empty without zones.
+    zone: Vec<i32>,
+    weights: [Vec<f64>; 2],
 }
 
 impl Volume {
-    fn new(system: &System) -> Volume {
+    fn new(system: &System, zoning: Option<&Zoning>) -> Volume {
         let mut volume = Volume {
             cells: Vec::new(),
             body: Vec::new(),
+            zone: Vec::new(),
+            weights: [Vec::new(), Vec::new()],
         };
+        if let Some(zoning) = zoning {
+            for (zone, weights) in zoning.of_body.iter().zip(&zoning.weights) {
+                let zone = *zone as i32;
+                volume.zone.extend(weights[0].iter().map(|_| zone));
+                for (all, own) in volume.weights.iter_mut().zip(weights) {
+                    all.extend(own);
+                }
+            }
+        }
         for (number, body) in system.bodies.iter().enumerate() {
             let mut last = None;
             for &cell in body.cells() {
@@ -241,6 +257,24 @@ impl Volume {
             name: "body",
             values: Values::Integer(&self.body),
         }];
+        // they never change: the first file has them
+        if snapshot.first && !self.zone.is_empty() {
+            let [inertia, stiffness] = &self.weights;
+            cell_fields.extend([
+                Field {
+                    name: "zone",
+                    values: Values::Integer(&self.zone),
+                },
+                Field {
+                    name: "inertia_weight",
+                    values: Values::Scalar(inertia),
+                },
+                Field {
+                    name: "stiffness_weight",
+                    values: Values::Scalar(stiffness),
+                },
+            ]);
+        }
         if fields.stress {
             cell_fields.push(Field {
                 name: "stress",

@@ -73,7 +73,9 @@ impl Curves {
             }
         }
         if let Some(contact) = self.contact {
-            self.force.push(t, report.contacts[contact].force);
+            for (end, _, contacts) in report.parts() {
+                self.force.push(end, contacts[contact].force);
+            }
         }
         self.kinetic.push(t, balance.kinetic);
         self.strain.push(t, balance.strain);

@@ -1,15 +1,19 @@
-//! The row of `histories.csv` that every accepted state adds.
+//! The row of `histories.csv` that every accepted state adds, and the rows of `contact.csv`.
+//!
+//! `contact.csv` is there where steps have parts, as in a run in zones: its rows are at the ends of the parts, its columns
+//! the contacts' ones, every cell filled. The forces in `histories.csv` are then means over the step, so that in both
+//! files the sum of a column of forces times the step is the impulse. (One file with both would be half blank.)
 
-use carom_dynamics::{State, StepReport, System};
+use carom_dynamics::{ContactReport, State, StepReport, System};
 
 use crate::history::column;
 use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor};
-use crate::results::{Probe, Settings};
+use crate::results::{Probe, Settings, Zoning};
 use crate::rows::unique;
 use crate::{Error, Folder, History};
 
-/// Its name.
 const FILE: &str = "histories.csv";
+const CONTACT_FILE: &str = "contact.csv";
 
 /// Names of a motion with its unit, in the order displacement, velocity, acceleration.
 const MOTIONS: [(&str, &str); 3] = [
@@ -22,6 +26,8 @@ const MOTIONS: [(&str, &str); 3] = [
 #[derive(Debug)]
 pub(crate) struct Histories {
     file: Option<History>,
+    contact: Option<History>,
+    links: bool,
     probes: Vec<([bool; 3], Vec<Sensor>)>,
     row: Vec<f64>,
 }
@@ -31,19 +37,32 @@ impl Histories {
     pub(crate) fn create(
         folder: &mut Folder,
         columns: &[String],
-        probes: &[Probe],
+        (system, settings): (&System, &Settings),
         sensors: Vec<Vec<Sensor>>,
     ) -> Result<Histories, Error> {
         let path = folder.file(FILE)?;
-        let recorded = probes.iter().map(Probe::recorded);
+        let recorded = settings.probes.iter().map(Probe::recorded);
+        let zoning = settings.zoning.as_ref();
+        let contact = match zoning.is_some_and(Zoning::has_parts) && !system.contacts.is_empty() {
+            true => {
+                let mut names = vec![column(&["time"], "s")];
+                for contact in &system.contacts {
+                    names.extend(contact_columns(system, &contact.name));
+                }
+                Some(History::create(&folder.file(CONTACT_FILE)?, &names)?)
+            }
+            false => None,
+        };
         Ok(Histories {
             file: Some(History::create(&path, columns)?),
+            contact,
+            links: zoning.is_some(),
             probes: recorded.zip(sensors).collect(),
             row: Vec::with_capacity(columns.len()),
         })
     }
 
-    /// Adds the row of an accepted state.
+    /// Adds the rows of an accepted state.
     pub(crate) fn push(
         &mut self,
         system: &System,
@@ -59,9 +78,7 @@ impl Histories {
         row.clear();
         row.push(report.time);
         for (k, contact) in report.contacts.iter().enumerate() {
-            row.push(contact.force);
-            row.extend(&contact.resultant[..dim]);
-            row.extend([contact.gap, contact.rate, contact.closed as f64]);
+            put(contact, dim, row);
             if let Some(point) = point.filter(|point| point.contact == k) {
                 for (_, sensor) in &point.sides {
                     row.extend(vectors.map(|vector| sensor.of(vector)));
@@ -83,16 +100,52 @@ impl Histories {
             balance.dissipation_scheme,
             balance.energy_residual,
         ]);
+        row.extend(self.links.then_some(balance.work_links));
         row.extend(&balance.momentum.linear[..dim]);
         row.extend(&balance.momentum_residual.linear[..dim]);
         row.push(report.passes as f64);
-        file.push(row)
+        file.push(row)?;
+        let Some(file) = &mut self.contact else {
+            return Ok(());
+        };
+        for (end, _, contacts) in report.parts() {
+            row.clear();
+            row.push(end);
+            for contact in contacts {
+                put(contact, dim, row);
+            }
+            file.push(row)?;
+        }
+        Ok(())
     }
 
-    /// Forces all rows to the disk and closes the file. Nothing to do the second time.
+    /// Forces all rows to the disk and closes the files. Nothing to do the second time.
     pub(crate) fn finish(&mut self) -> Result<(), Error> {
-        self.file.take().map_or(Ok(()), History::finish)
+        let files = [self.file.take(), self.contact.take()];
+        let closed = files.map(|file| file.map_or(Ok(()), History::finish));
+        closed.into_iter().collect()
     }
+}
+
+/// Adds what a contact did to a row, in the order of [`contact_columns`].
+fn put(contact: &ContactReport, dim: usize, row: &mut Vec<f64>) {
+    row.push(contact.force);
+    row.extend(&contact.resultant[..dim]);
+    row.extend([contact.gap, contact.rate, contact.closed as f64]);
+}
+
+/// Names of the columns of what a contact did.
+fn contact_columns(system: &System, contact: &str) -> Vec<String> {
+    let add = |what: &str, unit| column(&["contact", contact, what], unit);
+    let mut names = vec![add("force", "N")];
+    let resultant = |i: &&str| add(&format!("resultant {i}"), "N");
+    names.extend(COMPONENTS[..system.dim].iter().map(resultant));
+    names.extend([
+        add("gap", "m"),
+        add("gap rate", "m/s"),
+        add("closed points", ""),
+    ]);
+    names
 }
 
 /// Names of the columns.
@@ -107,21 +160,11 @@ pub(crate) fn columns(
     let components = &COMPONENTS[..system.dim];
     let mut names = vec![column(&["time"], "s")];
     for (k, contact) in system.contacts.iter().enumerate() {
-        let mut add = |what: &[&str], unit| {
-            let path = [&["contact", contact.name.as_str()], what].concat();
-            names.push(column(&path, unit));
-        };
-        add(&["force"], "N");
-        for i in components {
-            add(&[&format!("resultant {i}")], "N");
-        }
-        add(&["gap"], "m");
-        add(&["gap rate"], "m/s");
-        add(&["closed points"], "");
+        names.extend(contact_columns(system, &contact.name));
         if let Some(point) = point.filter(|point| point.contact == k) {
             for side in &["secondary", "primary"][..point.sides.len()] {
                 for (motion, unit) in MOTIONS {
-                    add(&[side, motion], unit);
+                    names.push(column(&["contact", &contact.name, side, motion], unit));
                 }
             }
         }
@@ -142,6 +185,11 @@ pub(crate) fn columns(
         ["energy", "residual"],
     ];
     names.extend(energies.map(|path| column(&path, "J")));
+    let links = settings
+        .zoning
+        .as_ref()
+        .map(|_| column(&["work", "links"], "J"));
+    names.extend(links);
     names.extend(components.iter().map(|i| column(&["momentum", i], "N s")));
     let residual = |i: &&str| column(&["momentum", &format!("residual {i}")], "N s");
     names.extend(components.iter().map(residual));

@@ -2,6 +2,7 @@
 
 use carom_dynamics::{Impact, State, StepReport, System};
 
+use crate::results::Zoning;
 use crate::window::PeakOfMean;
 use crate::{Error, Folder, ImpactRow, ImpactTable};
 
@@ -35,9 +36,14 @@ pub(crate) struct ContactTotals {
 }
 
 impl Impacts {
-    pub(crate) fn create(folder: &mut Folder, system: &System) -> Result<Impacts, Error> {
+    pub(crate) fn create(
+        folder: &mut Folder,
+        system: &System,
+        zoning: Option<&Zoning>,
+    ) -> Result<Impacts, Error> {
         let totals = |contact| {
-            let steps = (mean_window(system, contact) / system.dt).round().max(1.0);
+            let window = mean_window(system, zoning, contact);
+            let steps = (window / system.dt).round().max(1.0);
             let window = steps * system.dt;
             ContactTotals {
                 mean: PeakOfMean::new(window),
@@ -60,12 +66,14 @@ impl Impacts {
         state: &State,
         report: &StepReport,
     ) -> Result<(), Error> {
-        for (totals, contact) in self.contacts.iter_mut().zip(&report.contacts) {
-            if report.step > 0 {
-                totals.mean.push(report.dt, contact.force);
-            }
-            if contact.closed > 0 {
-                totals.closed += report.dt;
+        for (_, dt, contacts) in report.parts() {
+            for (totals, contact) in self.contacts.iter_mut().zip(contacts) {
+                if report.step > 0 {
+                    totals.mean.push(dt, contact.force);
+                }
+                if contact.closed > 0 {
+                    totals.closed += dt;
+                }
             }
         }
         let ended = &state.records.impacts;
@@ -115,11 +123,14 @@ impl Impacts {
 }
 
 /// A tenth of the time that a wave takes along the secondary body (the diagonal of its box), s: longer than the
-/// oscillations behind a front, which are a matter of the mesh, and shorter than the impact.
-fn mean_window(system: &System, contact: usize) -> f64 {
+/// oscillations behind a front, which are a matter of the mesh, and shorter than the impact. Bodies joined by links are one.
+fn mean_window(system: &System, zoning: Option<&Zoning>, contact: usize) -> f64 {
     let (body, _) = system.sides[contact];
+    let own = [body];
+    let bodies = zoning.map_or(&own[..], |zoning| &zoning.joined[body]);
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for (node, _) in &system.body_masses[body] {
+    let nodes = bodies.iter().flat_map(|body| &system.body_masses[*body]);
+    for (node, _) in nodes {
         let x = system.x[*node as usize];
         for i in 0..3 {
             low[i] = low[i].min(x[i]);

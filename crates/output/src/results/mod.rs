@@ -8,6 +8,7 @@
 //! What a run writes is complete whenever it is cut: tables grow by whole rows, all other files appear by one rename.
 
 mod conclusion;
+mod costs;
 pub(crate) mod exact;
 mod fields;
 mod figures;
@@ -15,15 +16,18 @@ mod histories;
 mod impacts;
 pub(crate) mod sensor;
 pub(crate) mod trace;
+mod zoning;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Control, Costs, Ledger, Observer, Records, State, StepReport, System};
+use carom_dynamics::{
+    Control, Costs, Ledger, Observer, Records, State, StepReport, Stepper, System,
+};
 use carom_exact::Solution;
 
-use crate::summary::{self, Summary};
+use crate::summary::{self, Summary, Zones};
 use crate::{Error, Folder, atomic, checkpoint};
 use exact::Comparison;
 use fields::FieldOutput;
@@ -31,6 +35,8 @@ use figures::Curves;
 use histories::Histories;
 use impacts::Impacts;
 use sensor::ContactPoint;
+
+pub use zoning::Zoning;
 
 /// What is written and where.
 #[derive(Clone, Debug)]
@@ -51,6 +57,8 @@ pub struct Settings {
     pub fields: Option<Fields>,
     /// Exact solution to compare with.
     pub reference: Option<Reference>,
+    /// Zones and weights of a model in zones.
+    pub zoning: Option<Zoning>,
     /// Warnings of the check.
     pub warnings: Vec<String>,
 }
@@ -112,6 +120,8 @@ pub struct Ending<'a> {
     pub unfinished: Option<String>,
     /// What the steps cost.
     pub costs: &'a Costs,
+    /// What the zones of a run in zones did.
+    pub zones: Option<Zones>,
     /// Wall time of the whole run, reading and factorisation included.
     pub wall: Duration,
 }
@@ -177,10 +187,14 @@ impl Results {
         let mut folder = Folder::create(&settings.folder)?;
         atomic::write_text(&folder.file("case.toml")?, &settings.case_text)?;
         let curves = Curves::new(&system, &settings, point.as_ref(), &probes);
-        let histories = Histories::create(&mut folder, &columns, &settings.probes, probes)?;
-        let impacts = Impacts::create(&mut folder, &system)?;
+        let histories = Histories::create(&mut folder, &columns, (&system, &settings), probes)?;
+        let impacts = Impacts::create(&mut folder, &system, settings.zoning.as_ref())?;
         let fields = match &settings.fields {
-            Some(fields) => Some(FieldOutput::create(&mut folder, &system, fields)?),
+            Some(fields) => Some(FieldOutput::create(
+                &mut folder,
+                &system,
+                (fields, settings.zoning.as_ref()),
+            )?),
             None => None,
         };
         Ok(Results {
@@ -219,7 +233,8 @@ impl Results {
     }
 
     /// Ends the tables and the thread, and keeps what the summary needs. Everything is tried, whatever fails.
-    fn end(&mut self, state: &State) -> Result<(), Error> {
+    fn end(&mut self, run: &dyn Stepper) -> Result<(), Error> {
+        let state = run.state();
         let forces = |k: usize| {
             let points = self.system.first_point[k]..self.system.first_point[k + 1];
             state.interface.force[points].iter().any(|f| *f != 0.0)
@@ -240,15 +255,19 @@ impl Results {
                 Some(fields) => fields.finish(&mut self.folder, &self.system, state),
                 None => Ok(()),
             },
-            self.keep(state),
+            self.keep(run),
         ];
         outcomes.into_iter().collect()
     }
 
     /// The last good state on disk.
-    fn keep(&mut self, state: &State) -> Result<(), Error> {
+    fn keep(&mut self, run: &dyn Stepper) -> Result<(), Error> {
         let path = self.folder.file("checkpoints/last.state")?;
-        checkpoint::write(&path, &summary::hash(&self.settings.case_text), state)
+        let bytes = run.saved().map_err(|cause| Error::Checkpoint {
+            path: path.clone(),
+            cause: cause.to_string(),
+        })?;
+        checkpoint::write(&path, &summary::hash(&self.settings.case_text), &bytes)
     }
 
     /// Writes one more file into the folder, atomically.
@@ -282,9 +301,9 @@ impl Observer for Results {
         outcome.map_err(observer)
     }
 
-    fn finish(&mut self, _system: &System, state: &State) -> Result<(), carom_dynamics::Error> {
+    fn finish(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
         let begin = Instant::now();
-        let outcome = self.end(state);
+        let outcome = self.end(run);
         self.totals.spent += begin.elapsed();
         outcome.map_err(observer)
     }

@@ -159,6 +159,7 @@ pub fn settings(folder: &Path) -> Settings {
         probes: Vec::new(),
         fields: None,
         reference: None,
+        zoning: None,
         warnings: Vec::new(),
     }
 }

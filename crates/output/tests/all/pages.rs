@@ -38,6 +38,7 @@ fn sample(verdict: Verdict) -> Summary {
             steps: 1200,
             ..summary::Time::default()
         },
+        zones: None,
         contacts: BTreeMap::from([("shock".to_owned(), contact)]),
         energy,
         momentum: Momentum {

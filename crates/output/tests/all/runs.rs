@@ -7,7 +7,7 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Driver, Error, Observer, State, StepReport, System, march};
+use carom_dynamics::{Driver, Error, Observer, State, StepReport, Stepper, System, march};
 use carom_output::{Ending, Results, Settings, Summary};
 
 use crate::models::{self, AREA, LENGTH, SPEED};
@@ -23,7 +23,7 @@ impl Observer for Reports {
         Ok(())
     }
 
-    fn finish(&mut self, _: &System, _: &State) -> Result<(), Error> {
+    fn finish(&mut self, _: &dyn Stepper) -> Result<(), Error> {
         Ok(())
     }
 }
@@ -48,6 +48,7 @@ fn attempt(
     let ending = Ending {
         unfinished: outcome.as_ref().err().map(ToString::to_string),
         costs: &driver.costs(),
+        zones: None,
         wall: begin.elapsed(),
     };
     (reports.0, outcome.map(|_| ()), results.conclude(&ending))
@@ -386,6 +387,7 @@ fn a_run_stopped_by_the_user_has_a_summary_that_says_so() {
     let ending = Ending {
         unfinished: Some("stopped by the user".to_owned()),
         costs: &driver.costs(),
+        zones: None,
         wall: Duration::ZERO,
     };
     // before the first state, even

@@ -1,0 +1,391 @@
+//! The zones of a model as one: a state and a report of all bodies and contacts at outer instants, for all that looks at
+//! runs.
+//!
+//! Nothing here influences the steps. The largest terms of the balance are those of the sum over the zones, which no
+//! zone knows: they are saved beside the state of the zones.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Zoned, Zones, ZonesState};
+use crate::control::Control;
+use crate::driver::{Costs, Driver};
+use crate::error::Error;
+use crate::interface::InterfaceProblem;
+use crate::ledger::{Balance, Ledger};
+use crate::march::Stepper;
+use crate::records::{ContactRecord, Records};
+use crate::state::{ContactReport, ContactSample, Motion, State, StepReport, empty_state};
+use crate::system::System;
+
+/// Zones with the model as one.
+pub struct Whole {
+    zones: Zones,
+    system: Arc<System>,
+    names: Vec<String>,
+    links: Vec<[usize; 2]>,
+    places: Vec<Places>,
+    /// Impacts of each zone that the records hold.
+    impacts: Vec<usize>,
+    /// Samples of each zone placed so far in a step.
+    placed: Vec<usize>,
+    state: State,
+    report: StepReport,
+}
+
+/// Where the numbers of a zone are in the whole: its number and that of the whole.
+struct Places {
+    /// Unknowns.
+    unknowns: Vec<(u32, u32)>,
+    /// Those that no zone before it has.
+    own: Vec<(u32, u32)>,
+    /// Contact points.
+    points: Vec<(u32, u32)>,
+}
+
+/// What a run in zones goes on from.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    zones: ZonesState,
+    control: Control,
+    ledger: Ledger,
+}
+
+impl Whole {
+    /// Starts the zones of a model. `system`: [`System::whole`] of the same model.
+    ///
+    /// # Errors
+    /// As [`Zones::new`].
+    pub fn new(zoned: &Zoned, system: Arc<System>) -> Result<Whole, Error> {
+        let mut whole = Whole::around(Zones::new(zoned)?, zoned, system);
+        whole.gather();
+        whole.state.control = Control::start(whole.system.dt);
+        Ok(whole)
+    }
+
+    /// Goes on from the bytes of [`Stepper::saved`].
+    ///
+    /// # Errors
+    /// As [`Whole::new`]; bytes that are no state, or one of another model.
+    pub fn resume(zoned: &Zoned, system: Arc<System>, bytes: &[u8]) -> Result<Whole, Error> {
+        let refused = |cause: String| Error::State { cause };
+        let saved: Saved = postcard::from_bytes(bytes).map_err(|e| refused(e.to_string()))?;
+        let mut zones = Zones::new(zoned)?;
+        let (found, expected) = (saved.zones.zones.len(), zones.drivers.len());
+        let rows = [saved.zones.multipliers.len(), zones.multipliers().len()];
+        if found != expected || rows[0] != rows[1] {
+            return Err(refused(format!(
+                "it has {found} zones and {} rows of links, the model {expected} and {}",
+                rows[0], rows[1]
+            )));
+        }
+        for (state, driver) in saved.zones.zones.iter().zip(&zones.drivers) {
+            state.check(driver.system())?;
+        }
+        zones.resume(&saved.zones);
+        let mut whole = Whole::around(zones, zoned, system);
+        whole.state.ledger = saved.ledger;
+        whole.gather();
+        whole.state.control = saved.control;
+        Ok(whole)
+    }
+
+    fn around(zones: Zones, zoned: &Zoned, system: Arc<System>) -> Whole {
+        let mut taken = vec![false; system.unknowns()];
+        let drivers = zones.drivers.iter().zip(&zones.contacts);
+        let places = drivers
+            .map(|(driver, contacts)| Places::new(driver.system(), contacts, &system, &mut taken));
+        let mut state = empty_state(&system);
+        state.motion.link_force = vec![0.0; system.unknowns()];
+        state.records = Records {
+            contacts: vec![ContactRecord::default(); system.contacts.len()],
+            impacts: Vec::new(),
+        };
+        Whole {
+            names: zoned.zones.iter().map(|zone| zone.name.clone()).collect(),
+            links: zoned.links.iter().map(|link| link.zones).collect(),
+            places: places.collect(),
+            impacts: vec![0; zones.drivers.len()],
+            placed: vec![0; zones.drivers.len()],
+            state,
+            report: StepReport {
+                contacts: vec![ContactReport::default(); system.contacts.len()],
+                ..StepReport::default()
+            },
+            zones,
+            system,
+        }
+    }
+
+    /// The zones.
+    pub fn zones(&self) -> &Zones {
+        &self.zones
+    }
+
+    /// Names of the zones.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Name, zones and number of rows of each link.
+    pub fn links(&self) -> impl Iterator<Item = (&str, [usize; 2], usize)> {
+        let links = self.zones.links().iter().zip(&self.links);
+        links.map(|((name, rows), zones)| (name.as_str(), *zones, rows.len()))
+    }
+
+    /// State and report from those of the zones. Needs no memory once contacts and samples have their places.
+    fn gather(&mut self) {
+        self.state.step = self.zones.step;
+        self.state.time = self.zones.time();
+        self.gather_motion();
+        self.gather_interface();
+        self.gather_records();
+        let sum = |of: fn(&Ledger) -> &Balance| {
+            let drivers = self.zones.drivers.iter();
+            drivers
+                .map(|driver| of(&driver.state().ledger))
+                .fold(Balance::default(), |sum, one| sum.plus(one))
+        };
+        let (initial, balance) = (sum(|l| &l.initial), sum(|l| &l.balance));
+        self.state.ledger.gather(initial, balance);
+        self.tell();
+    }
+
+    /// Motion from the first zone that has a node, forces from all.
+    fn gather_motion(&mut self) {
+        let whole = &mut self.state.motion;
+        for force in forces_mut(whole) {
+            force.fill(0.0);
+        }
+        for (driver, places) in self.zones.drivers.iter().zip(&self.places) {
+            let motion = &driver.state().motion;
+            for &(from, to) in &places.own {
+                let (from, to) = (from as usize, to as usize);
+                whole.u[to] = motion.u[from];
+                whole.v[to] = motion.v[from];
+                whole.a[to] = motion.a[from];
+            }
+            let forces = [
+                &motion.internal_force,
+                &motion.contact_force,
+                &motion.link_force,
+            ];
+            for (whole, force) in forces_mut(whole).into_iter().zip(forces) {
+                // a zone without links has no link forces
+                for &(from, to) in places.unknowns.iter().filter(|_| !force.is_empty()) {
+                    whole[to as usize] += force[from as usize];
+                }
+            }
+        }
+    }
+
+    fn gather_interface(&mut self) {
+        let whole = &mut self.state.interface;
+        for (driver, places) in self.zones.drivers.iter().zip(&self.places) {
+            let interface = &driver.state().interface;
+            for &(from, to) in &places.points {
+                let (from, to) = (from as usize, to as usize);
+                whole.force[to] = interface.force[from];
+                whole.carried[to] = interface.carried[from];
+                whole.gap[to] = interface.gap[from];
+                whole.rate[to] = interface.rate[from];
+                whole.status[to] = interface.status[from];
+                whole.watched[to] = interface.watched[from];
+            }
+        }
+    }
+
+    /// Records by contact of the model; impacts in the order of their end, then of the zones.
+    fn gather_records(&mut self) {
+        let whole = &mut self.state.records;
+        let before = whole.impacts.len();
+        for (k, driver) in self.zones.drivers.iter().enumerate() {
+            let records = &driver.state().records;
+            let contacts = &self.zones.contacts[k];
+            for (record, contact) in records.contacts.iter().zip(contacts) {
+                whole.contacts[*contact].clone_from(record);
+            }
+            for impact in &records.impacts[self.impacts[k]..] {
+                let mut impact = impact.clone();
+                impact.contact = contacts[impact.contact as usize] as u32;
+                whole.impacts.push(impact);
+            }
+            self.impacts[k] = records.impacts.len();
+        }
+        whole.impacts[before..]
+            .sort_by(|a, b| (a.start + a.duration).total_cmp(&(b.start + b.duration)));
+    }
+
+    fn tell(&mut self) {
+        let report = &mut self.report;
+        report.step = self.state.step;
+        report.time = self.state.time;
+        report.balance = self.state.ledger.balance;
+        report.passes = self.zones.passes;
+        if report.step == 0 {
+            report.dt = 0.0;
+            for (driver, contacts) in self.zones.drivers.iter().zip(&self.zones.contacts) {
+                for (own, contact) in driver.report().contacts.iter().zip(contacts) {
+                    report.contacts[*contact].clone_from(own);
+                }
+            }
+            return;
+        }
+        report.dt = self.zones.dt;
+        report.attempts = 1;
+        self.place_samples();
+        let report = &mut self.report;
+        for (contact, whole) in report.contacts.iter_mut().enumerate() {
+            let parts = report.samples.iter();
+            join(parts.map(|part| (part.dt, &part.contacts[contact])), whole);
+        }
+        for sample in self.zones.samples() {
+            let zone = sample.zone;
+            if self.zones.substeps[zone] == 1 {
+                for (own, contact) in sample.contacts.iter().zip(&self.zones.contacts[zone]) {
+                    report.contacts[*contact].clone_from(own);
+                }
+            }
+        }
+    }
+
+    /// The samples of the zones, contact by contact in the parts of the step; none where no zone has inner steps.
+    fn place_samples(&mut self) {
+        let parts = self.zones.substeps.iter().copied().max().unwrap_or(1) as usize;
+        let samples = &mut self.report.samples;
+        if parts == 1 {
+            return;
+        }
+        samples.resize_with(parts, || ContactSample {
+            contacts: vec![ContactReport::default(); self.system.contacts.len()],
+            ..ContactSample::default()
+        });
+        self.placed.fill(0);
+        for sample in self.zones.samples() {
+            let zone = sample.zone;
+            let range = match self.zones.substeps[zone] {
+                1 => 0..parts,
+                _ => self.placed[zone]..self.placed[zone] + 1,
+            };
+            self.placed[zone] += 1;
+            let of_part = range.len() == 1;
+            for part in &mut samples[range] {
+                if of_part {
+                    (part.time, part.dt) = (sample.time, sample.dt);
+                }
+                for (own, contact) in sample.contacts.iter().zip(&self.zones.contacts[zone]) {
+                    part.contacts[*contact].clone_from(own);
+                }
+            }
+        }
+    }
+}
+
+/// What a contact did in the parts of a step, as [`StepReport::contacts`] has it.
+fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut ContactReport) {
+    let (mut sum, mut length) = (ContactReport::default(), 0.0);
+    for (dt, part) in parts {
+        length += dt;
+        sum.force += dt * part.force;
+        for i in 0..3 {
+            sum.resultant[i] += dt * part.resultant[i];
+        }
+        (sum.gap, sum.rate) = (part.gap, part.rate);
+        sum.closed = sum.closed.max(part.closed);
+        sum.mixed = sum.mixed.max(part.mixed);
+        sum.status_changes += part.status_changes;
+        sum.persistency_defect += part.persistency_defect;
+    }
+    if length > 0.0 {
+        *whole = ContactReport {
+            force: sum.force / length,
+            resultant: sum.resultant.map(|r| r / length),
+            ..sum
+        };
+    }
+}
+
+fn forces_mut(motion: &mut Motion) -> [&mut Vec<f64>; 3] {
+    [
+        &mut motion.internal_force,
+        &mut motion.contact_force,
+        &mut motion.link_force,
+    ]
+}
+
+impl Places {
+    /// `taken`: unknowns of the whole that a zone before this one has.
+    fn new(zone: &System, contacts: &[usize], whole: &System, taken: &mut [bool]) -> Places {
+        let dim = zone.dim as u32;
+        let numbers = zone.mesh_node.iter().zip(0..);
+        let unknowns: Vec<(u32, u32)> = numbers
+            .flat_map(|(&node, own)| {
+                let number = whole.number[node as usize];
+                (0..dim).map(move |i| (dim * own + i, dim * number + i))
+            })
+            .collect();
+        let mut own = unknowns.clone();
+        own.retain(|(_, to)| !std::mem::replace(&mut taken[*to as usize], true));
+        let mut points = Vec::new();
+        for (k, contact) in contacts.iter().enumerate() {
+            let from = zone.first_point[k]..zone.first_point[k + 1];
+            let to = whole.first_point[*contact]..whole.first_point[*contact + 1];
+            points.extend(from.zip(to).map(|(from, to)| (from as u32, to as u32)));
+        }
+        Places {
+            unknowns,
+            own,
+            points,
+        }
+    }
+}
+
+impl Stepper for Whole {
+    /// One outer step.
+    fn step(&mut self) -> Result<(), Error> {
+        self.zones.step()?;
+        let (before, time) = (self.state.step, self.state.time);
+        self.gather();
+        let dt = self.zones.dt;
+        let control = &mut self.state.control;
+        control.take(None, (before, time, dt), dt);
+        Ok(())
+    }
+
+    fn system(&self) -> &System {
+        &self.system
+    }
+
+    fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    fn saved(&self) -> Result<Vec<u8>, Error> {
+        let saved = Saved {
+            zones: self.zones.state(),
+            control: self.state.control,
+            ledger: self.state.ledger.clone(),
+        };
+        postcard::to_stdvec(&saved).map_err(|cause| Error::State {
+            cause: cause.to_string(),
+        })
+    }
+
+    /// Those of all zones.
+    fn costs(&self) -> Costs {
+        let mut costs = Costs::default();
+        for driver in &self.zones.drivers {
+            costs.add(driver.costs());
+        }
+        costs
+    }
+
+    fn failed_problem(&self) -> Option<&InterfaceProblem> {
+        self.zones.drivers.iter().find_map(Driver::failed_problem)
+    }
+}

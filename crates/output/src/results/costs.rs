@@ -1,0 +1,102 @@
+//! Work done and time spent, and what each zone did.
+
+use std::collections::BTreeMap;
+
+use carom_dynamics::{Costs, Driver, Stepper, System, Whole};
+
+use crate::results::conclusion::courant;
+use crate::results::{Ending, Results};
+use crate::summary::{Counts, Link, Zone, Zones};
+
+pub(super) fn counts(costs: &Costs, passes: u64) -> Counts {
+    let factors = &costs.factors;
+    Counts {
+        factorisations: costs.work.factorisations as u64,
+        sweeps: costs.work.sweeps as u64,
+        factor_entries: factors.iter().map(|f| f.nnz_factor as u64).sum(),
+        factor_bytes: factors.iter().map(|f| f.bytes as u64).sum(),
+        contact_columns: costs.work.columns as u64,
+        compliance_bytes: costs.compliance_bytes as u64,
+        force_sweeps: costs.force_sweeps as u64,
+        element_updates: costs.element_updates,
+        solves: costs.solves(),
+        status_iterations: passes,
+    }
+}
+
+pub(super) fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f64> {
+    let phases = &ending.costs.phases;
+    let parts = [
+        ("total", ending.wall),
+        ("factorisation", phases.factorisation),
+        ("internal forces", phases.forces),
+        ("triangular sweeps", phases.sweeps),
+        ("contact", phases.contact),
+        ("balance", phases.balance),
+        ("output", results.totals.spent),
+    ];
+    let mut timings: BTreeMap<String, f64> = parts
+        .map(|(name, time)| (name.to_owned(), time.as_secs_f64()))
+        .into();
+    if results.last.step > 0 {
+        let steps = phases.forces + phases.sweeps + phases.contact + phases.balance;
+        let per_step = steps.as_secs_f64() / results.last.step as f64;
+        timings.insert("per step".to_owned(), per_step);
+    }
+    timings
+}
+
+impl Zones {
+    /// What the zones of a run did so far.
+    pub fn of(run: &Whole) -> Zones {
+        let zones = run.zones();
+        let names = run.names();
+        let one = |(k, driver): (usize, &Driver)| {
+            let (system, costs) = (driver.system(), driver.costs());
+            let ledger = &driver.state().ledger;
+            let scheme = system.scheme.get();
+            Zone {
+                name: names[k].clone(),
+                scheme: scheme.name().to_owned(),
+                has_identity: scheme.energy_identity(system.dt).is_some(),
+                step: system.dt,
+                substeps: (run.system().dt / system.dt).round() as u32,
+                bodies: system
+                    .bodies
+                    .iter()
+                    .map(|body| body.name().to_owned())
+                    .collect(),
+                elements: system.bodies.iter().map(|body| body.cells().len()).sum(),
+                unknowns: free(system),
+                courant: courant(system, system.dt),
+                work_of_links: ledger.balance.work_links,
+                largest_residual: ledger.largest_energy_residual,
+                factorisations: costs.work.factorisations as u64,
+                element_updates: costs.element_updates,
+                solves: costs.solves(),
+            }
+        };
+        let link = |(name, [inner, outer], rows): (&str, [usize; 2], usize)| Link {
+            name: name.to_owned(),
+            zones: [names[inner].clone(), names[outer].clone()],
+            rows,
+        };
+        let ledger = &run.state().ledger;
+        let (work, start) = (ledger.balance.work_links, ledger.initial.energy());
+        Zones {
+            zones: zones.drivers().iter().enumerate().map(one).collect(),
+            links: run.links().map(link).collect(),
+            work_of_links: work,
+            relative_work_of_links: (start > 0.0).then(|| work / start),
+            passes_per_step: match zones.outer_step() {
+                0 => 0.0,
+                steps => zones.all_passes() as f64 / steps as f64,
+            },
+        }
+    }
+}
+
+/// Unknowns that no support holds.
+fn free(system: &System) -> usize {
+    system.fixed.iter().filter(|fixed| !**fixed).count()
+}
