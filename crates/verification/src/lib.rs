@@ -13,10 +13,15 @@ mod check;
 mod error;
 mod figures;
 mod glued;
+mod glued_bar;
 
 mod adaptive;
 mod arlequin_bars;
 mod arlequin_block;
+mod arlequin_energy;
+mod arlequin_pulse;
+mod arlequin_stability;
+mod arlequin_start;
 mod bar_dropped;
 mod bar_on_stop;
 mod bar_on_wall;
@@ -81,6 +86,10 @@ registry! {
     adaptive
     arlequin_bars
     arlequin_block
+    arlequin_energy
+    arlequin_pulse
+    arlequin_stability
+    arlequin_start
     bar_on_stop
     bar_dropped
     bar_on_wall

@@ -314,7 +314,8 @@ impl Zones {
         Ok(())
     }
 
-    /// Whether the rows hold; corrects the multipliers `which` (0 pointwise, 1 of the outer step) if not.
+    /// Whether the rows hold, or would after a change of the multipliers by rounding; corrects the multipliers `which`
+    /// (0 pointwise, 1 of the outer step) if not.
     fn corrected(&mut self, which: usize) -> Result<bool, Error> {
         let speed = self.speed();
         let rows = self.defect.iter().zip(&self.norms);
@@ -326,10 +327,16 @@ impl Zones {
             return Ok(true);
         };
         factor.solve(&mut self.defect);
+        let [old, new] = &mut self.multipliers;
         let target = match which {
             0 => &mut self.pointwise[1],
-            _ => &mut self.multipliers[1],
+            _ => new,
         };
+        // at rest all velocities are rounding; then the forces tell what is small
+        let forces = largest(old).max(largest(target));
+        if largest(&self.defect) <= TOLERANCE * forces {
+            return Ok(true);
+        }
         for (l, d) in target.iter_mut().zip(&self.defect) {
             *l -= d;
         }
@@ -338,7 +345,6 @@ impl Zones {
 
     /// Largest velocity of all zones, at the end of the step or at its start.
     fn speed(&self) -> f64 {
-        let largest = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
         let of = |driver: &Driver| {
             largest(driver.next_velocity()).max(largest(&driver.state().motion.v))
         };
@@ -449,6 +455,10 @@ impl Zones {
             defect: rows.fold(0.0, |worst: f64, (d, n)| worst.max(d.abs() / n)),
         }
     }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
 /// Row of a square matrix, row-major, times a vector.
