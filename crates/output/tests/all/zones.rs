@@ -235,6 +235,8 @@ fn every_inner_step_is_in_the_table_of_contacts_and_in_what_is_made_of_it() {
     let separation = 2.0 * contact.impulse / mass - SPEED;
     let found = exact.restitution.unwrap() * SPEED;
     assert!((found - separation).abs() < 2.0 * slip(dt) / mass);
+    // which the two tips alone do not show
+    assert_eq!((contact.impacts, contact.restitution), (1, None));
     // and a comparison sees the inner steps too
     let history = recorder.into_history();
     assert!((history.force.impulse(end) / impulse - 1.0).abs() < 1e-12);
