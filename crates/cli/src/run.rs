@@ -108,6 +108,24 @@ fn print(summary: &Summary, folder: &Path) {
         time.steps,
         quantity(time.end, "s")
     );
+    if let Some(zones) = &summary.zones {
+        for zone in &zones.zones {
+            println!(
+                "  zone {}: {}, {} to an outer step, step {}, {} unknowns",
+                zone.name,
+                zone.scheme,
+                zone.substeps,
+                quantity(zone.step, "s"),
+                zone.unknowns
+            );
+        }
+        println!(
+            "  links: {} rows, work {}, {:.2} passes a step",
+            zones.links.iter().map(|link| link.rows).sum::<usize>(),
+            quantity(zones.work_of_links, "J"),
+            zones.passes_per_step
+        );
+    }
     for (name, contact) in &summary.contacts {
         println!("  contact {name} ({} law)", contact.law);
         println!(

@@ -28,12 +28,13 @@ pub struct ImpactRow {
     /// Speed at which the two bodies near each other before the impact, m/s, positive: of their mean velocities
     /// (momentum / mass).
     pub approach_speed: f64,
-    /// Speed at which they part after it, m/s, positive when parting; `None` while still closed.
+    /// Speed at which they part after it, m/s, positive when parting; `None` while still closed, and where links join
+    /// further bodies to one of the two, whose motion it would leave out.
     pub rebound_speed: Option<f64>,
-    /// `rebound_speed / approach_speed`; `None` while still closed or if there was no approach.
+    /// `rebound_speed / approach_speed`; `None` with that, or if there was no approach.
     pub restitution: Option<f64>,
     /// Kinetic energy of the approach, ½ m w² with w the approach speed and m the reduced mass of the two bodies
-    /// (the mass of the one on an obstacle), J.
+    /// (the mass of the one on an obstacle; without what links join to them), J.
     pub energy_given: f64,
     /// Energy lost in the contact, minus the work of its forces, J, positive when lost.
     pub energy_lost: f64,

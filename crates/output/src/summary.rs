@@ -245,7 +245,8 @@ pub struct Contact {
     pub mixed_supports: Option<u64>,
     /// Impacts from closing to release.
     pub impacts: usize,
-    /// Restitution of the last complete impact, from the mean velocities (momentum / mass).
+    /// Restitution of the last complete impact, from the mean velocities (momentum / mass); `None` where links join
+    /// further bodies to one of the two.
     pub restitution: Option<f64>,
 }
 

@@ -279,7 +279,7 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 impacts: impacts().count() + usize::from(still_closed),
                 restitution: impacts()
                     .next_back()
-                    .filter(|impact| impact.approach > 0.0)
+                    .filter(|impact| impact.approach > 0.0 && !totals.of_parts)
                     .map(|impact| impact.restitution()),
             },
         )

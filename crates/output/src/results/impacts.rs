@@ -31,6 +31,8 @@ pub(crate) struct ContactTotals {
     pub(crate) mean: PeakOfMean,
     /// Length of its window, s.
     pub(crate) window: f64,
+    /// Whether links join further bodies to one of its sides: the mean velocities of impacts are without them.
+    pub(crate) of_parts: bool,
     /// Time of the steps with a force, s.
     pub(crate) closed: f64,
 }
@@ -48,6 +50,11 @@ impl Impacts {
             ContactTotals {
                 mean: PeakOfMean::new(window),
                 window,
+                of_parts: zoning.is_some_and(|zoning| {
+                    let (secondary, primary) = system.sides[contact];
+                    let sides = [Some(secondary), primary];
+                    sides.iter().flatten().any(|body| zoning.is_part(*body))
+                }),
                 closed: 0.0,
             }
         };
@@ -98,18 +105,20 @@ impl Impacts {
             return Ok(());
         };
         let totals = &mut self.contacts[impact.contact as usize];
+        let peak_mean_force = totals.mean.take();
         let over = |value: f64| (!impact.unfinished).then_some(value);
+        let parting = |value: f64| over(value).filter(|_| !totals.of_parts);
         let row = ImpactRow {
             pair: system.contacts[impact.contact as usize].name.clone(),
             start: impact.start,
             duration: over(impact.duration),
             peak_force: impact.peak_force,
-            peak_mean_force: totals.mean.take(),
+            peak_mean_force,
             window: totals.window,
             impulse: impact.impulse,
             approach_speed: impact.approach,
-            rebound_speed: over(impact.rebound),
-            restitution: over(impact.restitution()).filter(|_| impact.approach > 0.0),
+            rebound_speed: parting(impact.rebound),
+            restitution: parting(impact.restitution()).filter(|_| impact.approach > 0.0),
             energy_given: impact.energy_given,
             energy_lost: impact.energy_lost,
             energy_crushed: impact.energy_crushed,

@@ -64,6 +64,11 @@ impl Zoning {
         shapes
     }
 
+    /// Whether a body is a part of one that links join.
+    pub(crate) fn is_part(&self, body: usize) -> bool {
+        self.joined[body].len() > 1
+    }
+
     /// Whether steps have parts.
     pub(crate) fn has_parts(&self) -> bool {
         self.substeps.iter().any(|steps| *steps > 1)

@@ -11,3 +11,4 @@ mod pages;
 mod runs;
 mod tables;
 mod windows;
+mod zones;

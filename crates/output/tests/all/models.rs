@@ -16,7 +16,7 @@ use carom_output::{Fields, Probe, Reference, Settings};
 pub const LENGTH: f64 = 0.254;
 pub const AREA: f64 = 6.45e-4;
 pub const SPEED: f64 = 5.1359;
-const STEEL: Elastic = Elastic {
+pub const STEEL: Elastic = Elastic {
     density: 7844.0,
     young: 2.07e11,
     poisson: 0.0,
