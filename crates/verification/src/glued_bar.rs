@@ -110,6 +110,7 @@ impl GluedBar {
             bodies: vec![body],
             scheme,
             substeps,
+            far: None,
         };
         Ok(Zoned {
             zones: vec![

@@ -105,6 +105,16 @@ fn two_bars_with_fine_tips_become_two_zones_that_take_a_step() {
 }
 
 #[test]
+fn the_exact_bars_are_those_that_overlaps_make() {
+    let text = bars(TWO).replace("[zone.rest]", "[reference.two-bars]\n[zone.rest]");
+    let reference = built(&text).reference.unwrap();
+    // two bars of length, modulus and density 1: in contact for the two transits of the shorter
+    let contacts = reference.solution.contacts();
+    assert_eq!(contacts.len(), 1);
+    assert!((contacts[0].end - contacts[0].start - 2.0).abs() < 1e-9);
+}
+
+#[test]
 fn steps_in_the_inner_zone_say_the_same_as_in_the_outer_one() {
     let other = TWO.replace("substeps = { impact = 4 }", "");
     let text = bars(&other).replace(
