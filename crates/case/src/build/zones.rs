@@ -8,7 +8,7 @@ use carom_mesh::{ElementId, Mesh};
 use super::time::scheme;
 use super::{Builder, BuiltProbe};
 use crate::error::Problem;
-use crate::schema::{self, Link, Step, StepRule, Substeps};
+use crate::schema::{self, InnerSteps, Link, Step, StepRule, Substeps};
 
 /// A zone as the case says it, names resolved.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub(super) struct Zone {
     /// Key of the scheme.
     pub(super) scheme_path: String,
     pub(super) substeps: u32,
+    /// Steps while nothing can touch.
+    pub(super) far: u32,
 }
 
 /// Zones, none of them in an ordinary case, and how their joints run.
@@ -49,7 +51,7 @@ impl Plan {
             bodies: zone.bodies.clone(),
             scheme: scheme(&zone.scheme),
             substeps: zone.substeps,
-            far: None,
+            far: Some(zone.far).filter(|far| *far != zone.substeps),
         };
         self.zones.iter().map(zone).collect()
     }
@@ -111,6 +113,7 @@ impl Builder<'_> {
                     None => "time.scheme".to_string(),
                 },
                 substeps: 1,
+                far: 1,
             });
         }
         if !zones.is_empty() {
@@ -126,15 +129,19 @@ impl Builder<'_> {
     /// Inner steps of each zone: one of them takes the outer step, the others all the same number.
     fn substeps(&mut self, zones: &mut [Zone]) {
         let case = self.case;
-        let mut given: Vec<(String, &str, u32)> = Vec::new();
+        let mut given: Vec<(String, &str, [u32; 2])> = Vec::new();
         for (name, zone) in case.zone.iter() {
             let path = format!("zone.{name}.substeps");
             match &zone.substeps {
                 None => {}
-                Some(Substeps::Own(count)) => given.push((path, name, count.0)),
+                Some(Substeps::Own(count)) => given.push((path, name, [count.0; 2])),
                 Some(Substeps::Of(counts)) => {
                     for (inner, count) in counts.iter() {
-                        given.push((format!("{path}.{inner}"), inner, count.0));
+                        let steps = match count {
+                            InnerSteps::Always(count) => [count.0; 2],
+                            InnerSteps::Choice(choice) => [choice.near.0, choice.far.0],
+                        };
+                        given.push((format!("{path}.{inner}"), inner, steps));
                     }
                 }
             }
@@ -142,7 +149,7 @@ impl Builder<'_> {
         let names: Vec<&str> = case.zone.names().collect();
         let mut said = vec![false; zones.len()];
         let mut many = None;
-        for (path, name, count) in given {
+        for (path, name, [count, far]) in given {
             let Some(zone) = names.iter().position(|one| *one == name) else {
                 let problem = Problem::new(path, "no zone of this name");
                 self.problems
@@ -154,7 +161,7 @@ impl Builder<'_> {
                 self.problems.push(Problem::new(path, message).found(count));
                 continue;
             }
-            zones[zone].substeps = count;
+            (zones[zone].substeps, zones[zone].far) = (count, far);
             if count > 1 && *many.get_or_insert(count) != count {
                 let message = "zones with inner steps take all the same number to an outer one";
                 let accepted = many.map(|many| format!("1 or {many}"));

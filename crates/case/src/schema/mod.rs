@@ -40,9 +40,9 @@ pub use time::{
     Scheme, Step, StepRule, TchamwaWielgosz, Theta, Time,
 };
 pub use zone::{
-    Arlequin, Bracket, BracketLength, BracketName, BracketWith, H1Bracket, Interface, LengthName,
-    Link, Mediator, OverlapBox, OverlapName, OverlapRegion, OverlapShape, Profile, ProfileName,
-    ProfileWith, StepCount, Substeps, WeightTable, Weights, Zone,
+    Arlequin, Bracket, BracketLength, BracketName, BracketWith, H1Bracket, InnerSteps, Interface,
+    LengthName, Link, Mediator, OverlapBox, OverlapName, OverlapRegion, OverlapShape, Profile,
+    ProfileName, ProfileWith, StepChoice, StepCount, Substeps, WeightTable, Weights, Zone,
 };
 
 /// A case: bodies, what joins them, and the time to simulate.

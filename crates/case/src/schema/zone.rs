@@ -18,7 +18,7 @@ pub struct Zone {
     /// Its time scheme, as `time.scheme`, which is the default. Zones that are joined take theta, newmark or central-difference.
     pub scheme: Option<Scheme>,
     /// Steps of this zone to one outer step, which is `time.step`; or, in the outer zone, those of other zones by name:
-    /// `{ impact = 4 }`. Default: 1. At least one zone takes the outer step; the others take all the same number to it.
+    /// `{ impact = 4 }`, or `{ impact = { near = 400, far = 1 } }` where few are enough while nothing can touch. Default: 1. At least one zone takes the outer step; the others take all the same number to it.
     pub substeps: Option<Substeps>,
 }
 
@@ -29,7 +29,27 @@ pub enum Substeps {
     /// Of the zone itself.
     Own(StepCount),
     /// Of other zones, by name.
-    Of(Named<StepCount>),
+    Of(Named<InnerSteps>),
+}
+
+/// Inner steps of a zone to one outer step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum InnerSteps {
+    /// Always as many.
+    Always(StepCount),
+    /// As many as contact asks for.
+    Choice(StepChoice),
+}
+
+/// Inner steps where contact asks for them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct StepChoice {
+    /// In outer steps in which a contact is closed or may close.
+    pub near: StepCount,
+    /// In the others.
+    pub far: StepCount,
 }
 
 /// A number of inner steps, from 1 to 1000.
