@@ -4,22 +4,17 @@ use std::collections::BTreeMap;
 
 use carom_arlequin::{
     Bracket, CellWeights, Coupling, Error, Mediator, Model, Models, Overlap, Profile, Region, Rows,
-    Warning, Weighting,
+    Weighting,
 };
 use carom_dynamics::{ModelBody, ModelContact, ModelLink, ModelTarget, Support};
 use carom_mesh::{ElementId, Mesh};
 
 use super::Builder;
-use super::ties::Ties;
+use super::ties::Held;
+use super::unfit::doubt;
 use crate::error::Problem;
-use crate::offenders::Offenders;
 use crate::schema::{self, BracketLength, BracketWith, OverlapRegion, OverlapShape, ProfileWith};
 
-/// Least eigenvalue of the Gram matrix of the rows, each of length one, below which they count as dependent: the
-/// multipliers would keep less than half of their digits.
-const LEAST_RANK: f64 = 1e-8;
-/// Nodes named in one message; the others are counted.
-const LISTED: usize = 3;
 /// Cells of the outer body across an overlap below which waves notice it.
 const FEW_LAYERS: f64 = 2.0;
 
@@ -45,42 +40,6 @@ pub(super) struct Joints {
     pub(super) overlaps: Vec<BuiltOverlap>,
     /// Cells in an overlap, and which.
     inside: BTreeMap<ElementId, usize>,
-}
-
-/// Directions in which supports hold each node of the mesh.
-struct Held(Vec<[bool; 3]>);
-
-impl Held {
-    fn new(mesh: &Mesh, supports: &[Support]) -> Held {
-        let mut held = vec![[false; 3]; mesh.nodes.len()];
-        for support in supports {
-            for &node in &support.nodes {
-                for (held, fix) in held[node as usize].iter_mut().zip(support.fix) {
-                    *held |= fix;
-                }
-            }
-        }
-        Held(held)
-    }
-
-    fn has(&self, node: u32, component: u32) -> bool {
-        self.0[node as usize][component as usize]
-    }
-
-    /// Drops the rows whose node supports hold in both bodies; the multiplier there has nothing to do.
-    fn drop_rows(&self, rows: &mut Rows) -> Vec<(u32, u32)> {
-        let held = |terms: &[carom_arlequin::Term], component| {
-            let mut terms = terms.iter();
-            terms.any(|t| t.component == component && self.has(t.node, component))
-        };
-        let both = rows.rows.iter().filter(|row| {
-            self.has(row.node, row.component)
-                && held(&row.inner, row.component)
-                && held(&row.outer, row.component)
-        });
-        let both: Vec<(u32, u32)> = both.map(|row| (row.node, row.component)).collect();
-        rows.drop(|node, component| both.contains(&(node, component)))
-    }
 }
 
 impl Builder<'_> {
@@ -112,7 +71,13 @@ impl Builder<'_> {
         joints
     }
 
-    fn link(&mut self, name: &str, bodies: (&str, &str), rows: Rows, joints: &mut Joints) {
+    pub(super) fn link(
+        &mut self,
+        name: &str,
+        bodies: (&str, &str),
+        rows: Rows,
+        joints: &mut Joints,
+    ) {
         let zone = |body: &str| {
             let number = self.case.body.names().position(|one| one == body);
             number.and_then(|number| self.plan.zone_of(number))
@@ -302,101 +267,6 @@ impl Builder<'_> {
         rows
     }
 
-    /// Refuses rows that are dependent on the unknowns that are free.
-    fn full_rank(
-        &mut self,
-        path: &str,
-        mesh: &Mesh,
-        bodies: &[ModelBody],
-        rows: &Rows,
-        held: &Held,
-    ) {
-        let rank = match rows.rank(|node, component| held.has(node, component)) {
-            Ok(rank) => rank,
-            Err(error) => {
-                self.problems.push(Problem::new(path, error.to_string()));
-                return;
-            }
-        };
-        if rank.smallest >= LEAST_RANK {
-            return;
-        }
-        let (node, component) = rank.weakest;
-        let at = place(mesh, node);
-        let message =
-            "the mediator has functions that the two bodies do not see: their rows are dependent";
-        let problem = Problem::new(format!("{path}.mediator"), message)
-            .found(format!(
-                "a least eigenvalue of {:.1e} of the scaled rows, most of it of node {node}, {at}, in {}",
-                rank.smallest,
-                axis(component)
-            ))
-            .accepted([
-                format!("at least {LEAST_RANK:e}"),
-                "mediator = \"coarser\"".to_string(),
-                "supports that end outside the overlap".to_string(),
-            ]);
-        let cells = bodies.iter().flat_map(|body| &body.spec.cells);
-        let around = cells.filter(|&&cell| mesh.element_nodes(cell).contains(&node));
-        let around: Vec<ElementId> = around.copied().collect();
-        let name = path.rsplit('.').next().unwrap_or(path);
-        let problem = self.shown(problem, (name, mesh), &around);
-        self.problems.push(problem);
-    }
-
-    /// The borders where zones are tied node to node.
-    fn borders(&mut self, mesh: &Mesh, bodies: &[ModelBody], held: &Held, joints: &mut Joints) {
-        let case = self.case;
-        let mut ties = Ties::new(mesh, bodies, &self.plan);
-        for (name, given) in case.interface.iter() {
-            let path = format!("interface.{name}");
-            let (Some(inner), Some(outer)) = (
-                self.body(&format!("{path}.inner"), &given.inner),
-                self.body(&format!("{path}.outer"), &given.outer),
-            ) else {
-                continue;
-            };
-            let mut rows = match ties.rows(inner, outer) {
-                Ok(rows) => rows,
-                Err(error) => {
-                    let problem = Problem::new(path, error.to_string());
-                    self.problems
-                        .push(problem.accepted(["two bodies with nodes at the same places"]));
-                    continue;
-                }
-            };
-            let known = ties.join([inner, outer], &mut rows);
-            self.name_rows(
-                name,
-                mesh,
-                &known,
-                "dropped: other interfaces tie them already",
-            );
-            let dropped = held.drop_rows(&mut rows);
-            self.name_rows(
-                name,
-                mesh,
-                &dropped,
-                "dropped: supports hold both bodies there",
-            );
-            self.link(name, (&given.inner, &given.outer), rows, joints);
-        }
-        for (bodies, nodes) in ties.loose() {
-            let message = format!(
-                "the bodies `{}` and `{}` share {} and are in two zones, which nothing ties",
-                bodies[0],
-                bodies[1],
-                super::plural(nodes.len(), "node")
-            );
-            let accepted = format!(
-                "[interface.<name>] with inner = \"{}\", outer = \"{}\"",
-                bodies[0], bodies[1]
-            );
-            self.problems
-                .push(Problem::new("zone", message).accepted([accepted]));
-        }
-    }
-
     /// Refuses contact surfaces in an overlap.
     pub(super) fn contacts_outside(
         &mut self,
@@ -432,99 +302,6 @@ impl Builder<'_> {
                 self.problems.push(problem);
             }
         }
-    }
-
-    /// The problem behind an error of an overlap. `all`: cells of both bodies.
-    fn unfit(
-        &self,
-        (path, name): (&str, &str),
-        mesh: &Mesh,
-        error: &Error,
-        all: &[ElementId],
-    ) -> Problem {
-        let (key, cells, accepted): (&str, &[ElementId], &str) = match error {
-            Error::NotCovered { cells, .. } => {
-                (".overlap", cells, "a group of cells that both bodies cover")
-            }
-            Error::EndsOutside { cells } => (
-                ".overlap",
-                cells,
-                "an overlap up to the end of the inner body",
-            ),
-            Error::Thin { cells, .. } => (
-                ".overlap",
-                cells,
-                "at least one cell of the outer body, better two to four",
-            ),
-            Error::Empty => (".overlap", all, "a place where both bodies are"),
-            Error::NoBorder { .. } => (".weights", all, "an overlap in which each body ends"),
-            Error::Range { .. } | Error::Reflects { .. } => (".weights", &[], "\"linear\""),
-            Error::NoMediator => (".mediator", all, "\"coarser\""),
-            Error::Dimension { cell, .. } | Error::InverseMap { cell } => (
-                "",
-                std::slice::from_ref(cell),
-                "sound cells that fill the space of the mesh",
-            ),
-            Error::SharedNode { .. } => ("", &[], "bodies with meshes of their own"),
-            Error::NoCells { .. } => ("", &[], "bodies with cells"),
-            Error::Defect(_)
-            | Error::NoInterface { .. }
-            | Error::Ambiguous { .. }
-            | Error::Algebra(_) => ("", &[], "two sound bodies"),
-        };
-        let problem = Problem::new(format!("{path}{key}"), error.to_string()).accepted([accepted]);
-        self.shown(problem, (name, mesh), cells)
-    }
-
-    /// A problem with the cells that it is about, if there are any.
-    fn shown(&self, problem: Problem, (name, mesh): (&str, &Mesh), cells: &[ElementId]) -> Problem {
-        if cells.is_empty() {
-            return problem;
-        }
-        let offenders = Offenders::new(format!("overlap-{name}"), mesh, cells);
-        let path = offenders.path(&self.file);
-        let note = format!("`carom check` writes the cells to {}", path.display());
-        Problem {
-            offenders: Some(offenders),
-            ..problem.note(note)
-        }
-    }
-
-    /// Warns of rows, named by node and direction.
-    fn name_rows(&mut self, joint: &str, mesh: &Mesh, rows: &[(u32, u32)], what: &str) {
-        let name = |&(node, component): &(u32, u32)| {
-            format!("{} of node {node}, {}", axis(component), place(mesh, node))
-        };
-        self.name_all(joint, rows.iter().map(name), "row", what);
-    }
-
-    /// Warns of mediator functions, named by their node.
-    fn name_nodes(&mut self, joint: &str, mesh: &Mesh, nodes: &[(u32, u32)], what: &str) {
-        let name = |&(node, _): &(u32, u32)| format!("node {node}, {}", place(mesh, node));
-        self.name_all(joint, nodes.iter().map(name), "mediator function", what);
-    }
-
-    fn name_all(
-        &mut self,
-        joint: &str,
-        names: impl ExactSizeIterator<Item = String>,
-        noun: &str,
-        what: &str,
-    ) {
-        let count = names.len();
-        if count == 0 {
-            return;
-        }
-        let first: Vec<String> = names.take(LISTED).collect();
-        let more = match count > LISTED {
-            true => format!("; and {} more", count - LISTED),
-            false => String::new(),
-        };
-        self.warnings.push(format!(
-            "joint `{joint}`: {} {what} ({}{more})",
-            super::plural(count, noun),
-            first.join("; ")
-        ));
     }
 }
 
@@ -591,22 +368,4 @@ fn coupling(given: &schema::Arlequin) -> Coupling {
         },
         ..Coupling::default()
     }
-}
-
-fn doubt(warning: &Warning) -> String {
-    match warning {
-        Warning::NotPatchExact => "a constant strain is not reproduced exactly: only linear weights between two plane parallel borders do that".to_string(),
-        Warning::SmallStep { model, factor } => format!(
-            "the weights cut the critical step of the {model} body to about {factor:.2} of its own"
-        ),
-    }
-}
-
-fn axis(component: u32) -> &'static str {
-    ["x", "y", "z"][component.min(2) as usize]
-}
-
-fn place(mesh: &Mesh, node: u32) -> String {
-    let x = mesh.nodes[node as usize];
-    format!("({:.6}, {:.6}, {:.6}) m", x[0], x[1], x[2])
 }

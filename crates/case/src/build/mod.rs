@@ -8,6 +8,7 @@ mod mesh;
 mod reference;
 mod ties;
 mod time;
+mod unfit;
 mod zones;
 
 use std::collections::BTreeMap;

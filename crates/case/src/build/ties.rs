@@ -1,12 +1,15 @@
-//! Which nodes of which zones move together across borders.
+//! Which nodes of which zones move together across borders, and which do not move.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use carom_arlequin::{Error, Rows, trace};
-use carom_dynamics::ModelBody;
+use carom_arlequin::{Error, Rows, Term, trace};
+use carom_dynamics::{ModelBody, Support};
 use carom_mesh::Mesh;
 
+use super::Builder;
+use super::arlequin::Joints;
 use super::zones::Plan;
+use crate::error::Problem;
 
 /// Largest distance of nodes at the same place, as a part of the size of the mesh.
 const COINCIDENT: f64 = 1e-9;
@@ -55,7 +58,7 @@ impl<'a> Ties<'a> {
     /// Drops rows between nodes that are tied already, and ties the others; returns those dropped.
     pub(super) fn join(&mut self, bodies: [usize; 2], rows: &mut Rows) -> Vec<(u32, u32)> {
         let [inner, outer] = bodies.map(|body| self.zones[body]);
-        let mut known = Vec::new();
+        let mut known = BTreeSet::new();
         let mut pairs = Vec::new();
         for row in &rows.rows {
             let (Some(one), Some(other)) = (row.inner.first(), row.outer.first()) else {
@@ -63,7 +66,7 @@ impl<'a> Ties<'a> {
             };
             let ends = [(inner, one.node), (outer, other.node)];
             if self.find(ends[0]) == self.find(ends[1]) {
-                known.push((row.node, row.component));
+                known.insert((row.node, row.component));
             } else {
                 pairs.push(ends);
             }
@@ -105,5 +108,102 @@ impl<'a> Ties<'a> {
             node = leader;
         }
         node
+    }
+}
+
+/// Directions in which supports hold each node of the mesh.
+pub(super) struct Held(Vec<[bool; 3]>);
+
+impl Held {
+    pub(super) fn new(mesh: &Mesh, supports: &[Support]) -> Held {
+        let mut held = vec![[false; 3]; mesh.nodes.len()];
+        for support in supports {
+            for &node in &support.nodes {
+                for (held, fix) in held[node as usize].iter_mut().zip(support.fix) {
+                    *held |= fix;
+                }
+            }
+        }
+        Held(held)
+    }
+
+    pub(super) fn has(&self, node: u32, component: u32) -> bool {
+        self.0[node as usize][component as usize]
+    }
+
+    /// Drops the rows whose node supports hold in both bodies; the multiplier there has nothing to do.
+    pub(super) fn drop_rows(&self, rows: &mut Rows) -> Vec<(u32, u32)> {
+        let held = |terms: &[Term], component| {
+            let mut terms = terms.iter();
+            terms.any(|t| t.component == component && self.has(t.node, component))
+        };
+        let both = rows.rows.iter().filter(|row| {
+            self.has(row.node, row.component)
+                && held(&row.inner, row.component)
+                && held(&row.outer, row.component)
+        });
+        let both: BTreeSet<(u32, u32)> = both.map(|row| (row.node, row.component)).collect();
+        rows.drop(|node, component| both.contains(&(node, component)))
+    }
+}
+
+impl Builder<'_> {
+    /// The borders where zones are tied node to node.
+    pub(super) fn borders(
+        &mut self,
+        mesh: &Mesh,
+        bodies: &[ModelBody],
+        held: &Held,
+        joints: &mut Joints,
+    ) {
+        let case = self.case;
+        let mut ties = Ties::new(mesh, bodies, &self.plan);
+        for (name, given) in case.interface.iter() {
+            let path = format!("interface.{name}");
+            let (Some(inner), Some(outer)) = (
+                self.body(&format!("{path}.inner"), &given.inner),
+                self.body(&format!("{path}.outer"), &given.outer),
+            ) else {
+                continue;
+            };
+            let mut rows = match ties.rows(inner, outer) {
+                Ok(rows) => rows,
+                Err(error) => {
+                    let problem = Problem::new(path, error.to_string());
+                    self.problems
+                        .push(problem.accepted(["two bodies with nodes at the same places"]));
+                    continue;
+                }
+            };
+            let known = ties.join([inner, outer], &mut rows);
+            self.name_rows(
+                name,
+                mesh,
+                &known,
+                "dropped: other interfaces tie them already",
+            );
+            let dropped = held.drop_rows(&mut rows);
+            self.name_rows(
+                name,
+                mesh,
+                &dropped,
+                "dropped: supports hold both bodies there",
+            );
+            self.link(name, (&given.inner, &given.outer), rows, joints);
+        }
+        for (bodies, nodes) in ties.loose() {
+            let message = format!(
+                "the bodies `{}` and `{}` share {} and are in two zones, which nothing ties",
+                bodies[0],
+                bodies[1],
+                super::plural(nodes.len(), "node")
+            );
+            let accepted = format!(
+                "[interface.<name>] with inner = \"{}\", outer = \"{}\"",
+                bodies[0], bodies[1]
+            );
+            self.problems
+                .push(Problem::new("zone", message).accepted([accepted]));
+        }
     }
 }

@@ -214,6 +214,15 @@ impl Builder<'_> {
         let overlaps = overlaps.map(|(n, j)| (format!("arlequin.{n}"), [&j.inner, &j.outer]));
         let borders = case.interface.iter();
         let borders = borders.map(|(n, j)| (format!("interface.{n}"), [&j.inner, &j.outer]));
+        for (name, _) in case.interface.iter() {
+            if case.arlequin.get(name).is_some() {
+                let problem = Problem::new(
+                    format!("interface.{name}"),
+                    "an overlap has this name too, and results name both by it",
+                );
+                self.problems.push(problem.accepted(["another name"]));
+            }
+        }
         let mut linked = vec![false; plan.zones.len()];
         for (path, bodies) in overlaps.chain(borders) {
             let sides = ["inner", "outer"].iter().zip(bodies);
