@@ -4,8 +4,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod allocation;
+mod dense;
 mod interface;
 mod momentum;
+mod monolithic;
 mod quadrature;
 mod stability;
 mod weak_form;
