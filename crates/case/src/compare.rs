@@ -10,13 +10,15 @@ use crate::input::{Input, Source};
 use crate::sweep::{Job, Sweep, SweepError, folder_name, prepare, run_all, unique_name};
 
 /// What the user wants compared.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default)]
 pub struct Choices {
     /// Schemes, each `name` (with its defaults), `name={ parameters }`, or `case` for the one of the case; none: that of
     /// the case.
     pub schemes: Vec<String>,
     /// Contact laws, written in the same way; each is given to all contacts of the case.
     pub laws: Vec<String>,
+    /// Other cases, as they are, in the same table.
+    pub beside: Vec<Input>,
     /// `exact`, `finest`, `none`, or the name of a variant; by default the exact solution, or without one `finest`.
     pub reference: Option<String>,
 }
@@ -84,6 +86,18 @@ fn variants(base: &Job, input: &Input, choices: &Choices) -> Result<Vec<Job>, Sw
                 jobs.push(Job::new(&name, input, overrides)?);
             }
         }
+    }
+    for other in &choices.beside {
+        let path = other
+            .sources
+            .first()
+            .map(|source| PathBuf::from(&source.name));
+        let stem = path.as_deref().and_then(|path| path.file_stem());
+        let name = stem.map_or("beside".to_owned(), |stem| {
+            stem.to_string_lossy().into_owned()
+        });
+        let name = unique_name(folder_name(&name), &mut taken);
+        jobs.push(Job::new(&name, other, Vec::new())?);
     }
     Ok(jobs)
 }

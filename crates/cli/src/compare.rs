@@ -1,5 +1,7 @@
 //! `carom compare`.
 
+use std::path::PathBuf;
+
 use carom_case::{Choices, Input};
 
 use crate::sweep;
@@ -15,6 +17,9 @@ pub struct Arguments {
     /// Contact laws, for all contacts: `displacement`, `"damped={adhesion='clip'}"`, or `case`
     #[arg(long, num_args = 1.., value_name = "LAW")]
     law: Vec<String>,
+    /// Other case files of the same problem, run as they are and put into the same table
+    #[arg(long, num_args = 1.., value_name = "CASE")]
+    beside: Vec<PathBuf>,
     /// What to compare with: `exact`, `finest` (a run with a quarter of the step), `none`, or a variant of the table;
     /// default: the exact solution that the case names, else `finest`
     #[arg(long, value_name = "NAME")]
@@ -28,7 +33,15 @@ pub fn compare(arguments: &Arguments) -> u8 {
         Ok(input) => input,
         Err(problems) => return crate::refuse(&[], &problems),
     };
+    let mut beside = Vec::new();
+    for other in &arguments.beside {
+        match Input::read(other, &[]) {
+            Ok(input) => beside.push(input),
+            Err(problems) => return crate::refuse(&[], &problems),
+        }
+    }
     let choices = Choices {
+        beside,
         schemes: arguments.with.clone(),
         laws: arguments.law.clone(),
         reference: arguments.reference.clone(),

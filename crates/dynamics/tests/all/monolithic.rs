@@ -193,6 +193,7 @@ impl Problem {
             bodies: vec![body],
             scheme,
             substeps,
+            far: None,
         };
         Zones::new(&Zoned {
             zones: vec![
