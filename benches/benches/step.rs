@@ -65,14 +65,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let read = read(entries);
     report(&mut driver, "flight", FLIGHT, read)?;
     let mut closing = Duration::ZERO;
-    while driver.costs().columns == 0 {
+    while driver.costs().work.columns == 0 {
         closing = steps(&mut driver, 1)?[0];
     }
     println!("closing step       {:9.1} ms", milliseconds(closing));
     let columns = driver.costs();
     println!(
         "columns            {:9} of {:.0} MB",
-        columns.columns,
+        columns.work.columns,
         columns.compliance_bytes as f64 / 1e6
     );
     report(&mut driver, "contact", CONTACT, read)?;

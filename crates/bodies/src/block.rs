@@ -202,6 +202,19 @@ impl Block {
         }
     }
 
+    /// For each element, whether its weights vary within it.
+    pub(crate) fn varying(&self) -> Vec<bool> {
+        let chunks = self.chunks.iter().flat_map(|chunk| {
+            let nodes = self.kind.table().nodes;
+            let count = chunk.connectivity.len() / nodes;
+            (0..count).map(move |element| match &chunk.weights {
+                Some(weights) => weights.varies(nodes, element),
+                None => false,
+            })
+        });
+        chunks.collect()
+    }
+
     /// Place of an element whose stiffness has a negative weight, and that weight.
     pub(crate) fn negative_stiffness(&self) -> Option<(usize, f64)> {
         let mut chunks = self.chunks.iter().enumerate();

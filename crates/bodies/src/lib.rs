@@ -12,6 +12,7 @@ mod force;
 mod lanes;
 mod size;
 mod stability;
+mod together;
 mod weights;
 
 pub use block::Scratch;

@@ -102,6 +102,13 @@ impl ChunkWeights {
         Some((place % self.stride, self.stiffness[place]))
     }
 
+    /// Whether one of the weights of an element differs from point to point by more than rounding.
+    pub(crate) fn varies(&self, nodes: usize, element: usize) -> bool {
+        let inertia = self.inertia[nodes * element..][..nodes].iter();
+        let stiffness = self.stiffness.chunks_exact(self.stride);
+        uneven(inertia.copied()) || uneven(stiffness.map(|row| row[element]))
+    }
+
     /// The force kernels' view.
     #[inline(always)]
     pub(crate) fn at_points(&self) -> AtPoints<'_> {
@@ -143,6 +150,12 @@ impl<const N: usize> ElementWeights<N> {
             *weight = chunk.stiffness[q * chunk.stride + element];
         }
     }
+}
+
+fn uneven(values: impl Iterator<Item = f64> + Clone) -> bool {
+    let least = values.clone().fold(f64::INFINITY, f64::min);
+    let most = values.fold(f64::NEG_INFINITY, f64::max);
+    most - least > 1e-12 * most.abs()
 }
 
 fn interpolate(point: &Point, nodal: &[f64]) -> f64 {

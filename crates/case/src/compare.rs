@@ -39,6 +39,7 @@ pub fn compare(
     sweep: &Sweep,
 ) -> Result<(Comparison, PathBuf), SweepError> {
     let base = Job::new("", input, Vec::new())?;
+    base.has_contact(sweep.contact)?;
     let mut jobs = variants(&base, input, choices)?;
     let standard = standard(&base, input, choices, &mut jobs)?;
     let mut folder = prepare(&jobs, sweep)?;

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::offenders::Offenders;
+
 /// A place in one of the texts that make up a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Place {
@@ -14,7 +16,7 @@ pub struct Place {
 }
 
 /// One thing that is wrong, where it stands, and what would be right.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// Key path of the value concerned (`contact.shock.primary`); empty for the file as a whole.
     pub path: String,
@@ -30,6 +32,8 @@ pub struct Problem {
     pub nearest: Option<String>,
     /// Further facts, one sentence each.
     pub notes: Vec<String>,
+    /// The cells that it is about.
+    pub offenders: Option<Offenders>,
 }
 
 impl Problem {
@@ -43,6 +47,7 @@ impl Problem {
             accepted: Vec::new(),
             nearest: None,
             notes: Vec::new(),
+            offenders: None,
         }
     }
 

@@ -1,7 +1,9 @@
 //! What can be said of a case before it runs.
 
+use std::sync::Arc;
+
 use carom_contact::{Places, Rows, Search};
-use carom_dynamics::{System, step_count};
+use carom_dynamics::{LinkKind, ModelLink, ModelZone, System, Zoned, step_count};
 
 use crate::build::Built;
 
@@ -56,34 +58,94 @@ pub fn facts(built: &Built) -> Vec<Fact> {
             contact_facts(system, k),
         ));
     }
-    let crossing = system
-        .bodies
-        .iter()
-        .map(|body| body.smallest_size() / body.wave_speed())
-        .fold(f64::INFINITY, f64::min);
+    let steps = format!(
+        "{} steps of {:.6e} s{}",
+        step_count(built.end, system.dt),
+        system.dt,
+        system.adaptive.map_or(String::new(), |rules| format!(
+            " or less, down to {:.2e} s",
+            rules.smallest
+        )),
+    );
     let scheme = system.scheme.get();
-    facts.push(fact(
-        "time",
-        format!(
-            "{}, {} steps of {:.6e} s{} (Courant number {:.3}) to {:.4e} s",
-            scheme.name(),
-            step_count(built.end, system.dt),
-            system.dt,
-            system.adaptive.map_or(String::new(), |rules| format!(
-                " or less, down to {:.2e} s",
-                rules.smallest
-            )),
-            system.dt / crossing,
-            built.end
-        ),
-    ));
-    if scheme.is_explicit() {
+    let time = match built.zoned {
+        None => format!("{}, {steps} ({})", scheme.name(), courant(system)),
+        Some(_) => format!("{steps}, the outer ones,"),
+    };
+    facts.push(fact("time", format!("{time} to {:.4e} s", built.end)));
+    if let Some(zoned) = &built.zoned {
+        facts.extend(zone_facts(zoned));
+        facts.extend(joint_facts(built, zoned));
+    } else if scheme.is_explicit() {
         facts.push(fact(
             "critical step",
             format!("{:.6e} s, from element eigenvalues", system.critical_step()),
         ));
     }
     facts
+}
+
+/// Step over the least time in which a wave crosses an element.
+fn courant(system: &System) -> String {
+    let crossing = system
+        .bodies
+        .iter()
+        .map(|body| body.smallest_size() / body.wave_speed())
+        .fold(f64::INFINITY, f64::min);
+    format!("Courant number {:.3}", system.dt / crossing)
+}
+
+/// A line for each zone: bodies, scheme, steps.
+fn zone_facts(zoned: &Zoned) -> Vec<Fact> {
+    let systems = zoned.systems().unwrap_or_default();
+    let zone = |(zone, system): (&ModelZone, &Arc<System>)| {
+        let bodies: Vec<&str> = system.bodies.iter().map(|body| body.name()).collect();
+        let scheme = system.scheme.get();
+        let critical = match scheme.is_explicit() {
+            true => format!(", critical step {:.4e} s", system.critical_step()),
+            false => String::new(),
+        };
+        fact(
+            format!("zone {}", zone.name),
+            format!(
+                "{}: {}, {} to an outer step, of {:.4e} s ({}){critical}",
+                bodies.join(", "),
+                scheme.name(),
+                match zone.substeps {
+                    1 => "1 step".to_string(),
+                    steps => format!("{steps} steps"),
+                },
+                system.dt,
+                courant(system)
+            ),
+        )
+    };
+    zoned.zones.iter().zip(&systems).map(zone).collect()
+}
+
+/// A line for each joint: rows, link, and the sizes of overlaps.
+fn joint_facts(built: &Built, zoned: &Zoned) -> Vec<Fact> {
+    let kind = match zoned.kind {
+        LinkKind::GravouilCombescure => "gravouil-combescure",
+        LinkKind::PrakashHjelmstad => "prakash-hjelmstad",
+    };
+    let unit = ["m", "m", "m^2", "m^3"][built.system.dim];
+    let joint = |link: &ModelLink| {
+        let rows = format!("{} rows, {kind}", link.rows.len());
+        let overlap = built.overlaps.iter().find(|one| one.name == link.name);
+        let Some(overlap) = overlap else {
+            return fact(format!("interface {}", link.name), rows);
+        };
+        let [inner, outer] = overlap.sizes;
+        fact(
+            format!("overlap {}", link.name),
+            format!(
+                "{:.4e} {unit}, {:.2} outer cells across, cells of {inner:.4e} m on {outer:.4e} m, {} outer cells fall away, {rows}",
+                overlap.measure, overlap.layers, overlap.removed
+            ),
+        )
+    };
+    zoned.links.iter().map(joint).collect()
 }
 
 /// Largest extent of a body along the axes, m.

@@ -177,6 +177,7 @@ fn history(path: &Path) -> Result<StepForce, SweepError> {
 /// goal that does not lie in the range, are told in what is returned.
 pub fn fit(input: &Input, fit: &Fit, sweep: &Sweep) -> Result<Fitted, SweepError> {
     let base = Job::new("", input, Vec::new())?;
+    base.has_contact(sweep.contact)?;
     let [a, b] = fit.between;
     let ends = [a, b].map(|value| Job::new("end", input, vec![format!("{}={value:?}", fit.key)]));
     let ends = ends.into_iter().collect::<Result<Vec<Job>, _>>()?;
@@ -209,6 +210,7 @@ pub fn fit(input: &Input, fit: &Fit, sweep: &Sweep) -> Result<Fitted, SweepError
             variant: one.variant,
             x: None,
             exact_mean_force: None,
+            series: String::new(),
         }) else {
             return Ok(Err("nothing was run".to_owned()));
         };

@@ -16,6 +16,7 @@ mod fit;
 mod input;
 mod keys;
 mod locate;
+mod offenders;
 mod reference;
 mod rules;
 mod run;
@@ -24,16 +25,17 @@ mod sweep;
 mod tree;
 mod validate;
 
-pub use build::{Built, BuiltProbe, ExactReference, build};
+pub use build::{Built, BuiltOverlap, BuiltProbe, ExactReference, build};
 pub use compare::{Choices, compare};
 pub use error::{Place, Problem};
 pub use facts::{Fact, facts};
 pub use fit::{Fit, Fitted, Goal, fit};
 pub use input::{Input, Source};
 pub use locate::Locator;
+pub use offenders::Offenders;
 pub use reference::reference_page;
 pub use run::{Failed, Finished, run};
-pub use study::{Vary, study};
+pub use study::{Axis, study};
 pub use sweep::{Sweep, SweepError};
 
 /// Reads a case: syntax, overrides, schema.

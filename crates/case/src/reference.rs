@@ -1,6 +1,6 @@
 //! The reference page of the case file, written from the schema: every key, what it accepts, its default.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use serde_json::Value;
@@ -29,6 +29,7 @@ pub fn reference_page() -> String {
     let mut page = Page {
         root: &root,
         text: PREFACE.to_owned(),
+        told: BTreeSet::new(),
     };
     page.keys("The file", &description(&root), &root, 2);
     for key in ORDER {
@@ -48,6 +49,9 @@ const ORDER: &[&str] = &[
     "load",
     "contact",
     "time",
+    "zone",
+    "arlequin",
+    "interface",
     "probe",
     "output",
     "reference",
@@ -56,6 +60,8 @@ const ORDER: &[&str] = &[
 struct Page<'a> {
     root: &'a Value,
     text: String,
+    /// Types whose tables are on the page: each is told once, where it comes first.
+    told: BTreeSet<String>,
 }
 
 impl<'a> Page<'a> {
@@ -66,6 +72,11 @@ impl<'a> Page<'a> {
 
     /// A table at `path`: its keys, then the tables in it.
     fn table(&mut self, path: &str, schema: &'a Value, level: usize) {
+        if let Some(name) = schema.get("$ref").and_then(Value::as_str)
+            && !self.told.insert(name.to_owned())
+        {
+            return;
+        }
         let target = resolve(self.root, schema);
         if let Some(inner) = target
             .get("additionalProperties")
@@ -106,6 +117,19 @@ impl<'a> Page<'a> {
                     .get("additionalProperties")
                     .is_some_and(Value::is_object);
             let item = target.get("items").map(|item| resolve(self.root, item));
+            let branches = alternatives(self.root, target).into_iter();
+            for branch in branches.filter(|branch| keyed(branch).is_none()) {
+                if branch.get("properties").is_some() {
+                    let path = format!("{path}.{key}");
+                    self.keys(
+                        &format!("`{path}`"),
+                        &description(branch),
+                        branch,
+                        (level + 1).min(3),
+                    );
+                    self.inner_tables(&path, branch, level);
+                }
+            }
             if is_table || !self.choices(target).is_empty() {
                 self.table(&format!("{path}.{key}"), inner, (level + 1).min(3));
             } else if let Some(item) = item.filter(|item| item.get("properties").is_some()) {

@@ -2,8 +2,8 @@
 
 use crate::error::Problem;
 use crate::schema::{
-    Capture, Case, Contact, Count, Integration, IntegrationWith, Law, Line, Obstacle, Part, Sign,
-    Step,
+    Adaptive, Capture, Case, Contact, Count, Integration, IntegrationWith, LargestStep, Law, Line,
+    Obstacle, Part, Sign, Step, StepRule,
 };
 
 /// Most nodes of a generated part: beyond it a case is a slip of the pen.
@@ -18,10 +18,18 @@ pub(crate) fn check(case: &Case) -> Vec<Problem> {
     for (name, contact) in case.contact.iter() {
         check_contact(&format!("contact.{name}"), contact, &mut problems);
     }
-    if let Step::Fixed(step) = case.time.step
+    let given = match case.time.step {
+        Step::Fixed(step) => Some(("time.step", step)),
+        Step::Rule(StepRule::Adaptive(Adaptive {
+            largest: LargestStep::Fixed(step),
+            ..
+        })) => Some(("time.step.adaptive.largest", step)),
+        Step::Rule(_) => None,
+    };
+    if let Some((path, step)) = given
         && step > case.time.end
     {
-        let problem = Problem::new("time.step", "the step is longer than the time to simulate");
+        let problem = Problem::new(path, "the step is longer than the time to simulate");
         problems.push(
             problem
                 .found(format!("{} s", step.0))

@@ -9,7 +9,7 @@ use crate::error::{Place, Problem};
 use crate::input::{Input, Source};
 use crate::sweep::{Ended, Job, Sweep, SweepError, folder_name, prepare, run_all};
 
-/// A key path and the values that it takes, one per run, in TOML.
+/// A key path and the values that it takes, one after the other, in TOML.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vary {
     /// The key path: `time.step.courant`.
@@ -18,12 +18,62 @@ pub struct Vary {
     pub values: Vec<String>,
 }
 
-impl Vary {
-    /// Reads `key.path=value,value,...`. Commas inside brackets, braces or quotes belong to a value.
+/// Keys that vary together: the first run takes the first value of each.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Axis {
+    /// The keys; at least one, with equally many values each.
+    keys: Vec<Vary>,
+}
+
+impl Axis {
+    /// Reads `key.path=value,value,...`, or several of them with semicolons between. Commas and semicolons inside brackets,
+    /// braces or quotes belong to a value.
     ///
     /// # Errors
-    /// There is no `=`, no key before it, or an empty value.
-    pub fn read(text: &str) -> Result<Vary, SweepError> {
+    /// There is no `=`, no key before it, an empty value, or the keys have not equally many values.
+    pub fn read(text: &str) -> Result<Axis, SweepError> {
+        let keys = split(text, ';');
+        let keys = keys.iter().map(|key| Vary::read(key));
+        let keys = keys.collect::<Result<Vec<Vary>, SweepError>>()?;
+        let count = keys[0].values.len();
+        match keys.iter().find(|key| key.values.len() != count) {
+            None => Ok(Axis { keys }),
+            Some(other) => {
+                let message = "keys that vary together need equally many values";
+                let found = format!("{} values of {}", other.values.len(), other.key);
+                let problem = Problem::new("", message).found(found);
+                Err(SweepError::Input {
+                    sources: vec![Source {
+                        name: "--vary".to_owned(),
+                        text: text.to_owned(),
+                    }],
+                    problems: vec![problem.accepted([format!("{count}")])],
+                })
+            }
+        }
+    }
+
+    /// How many values it has.
+    fn len(&self) -> usize {
+        self.keys[0].values.len()
+    }
+
+    /// The overrides of its value number `k`.
+    fn overrides(&self, k: usize) -> impl Iterator<Item = String> + '_ {
+        let one = move |vary: &Vary| format!("{}={}", vary.key, vary.values[k]);
+        self.keys.iter().map(one)
+    }
+
+    /// Last part of the first key and its value number `k`: `courant 0.5`.
+    fn name(&self, k: usize) -> String {
+        let Vary { key, values } = &self.keys[0];
+        format!("{} {}", last_part(key), values[k])
+    }
+}
+
+impl Vary {
+    /// Reads `key.path=value,value,...`.
+    fn read(text: &str) -> Result<Vary, SweepError> {
         let wrong = |message: &str| {
             let all = Place {
                 source: 0,
@@ -47,7 +97,7 @@ impl Vary {
         };
         let vary = Vary {
             key: key.trim().to_owned(),
-            values: split(values),
+            values: split(values, ','),
         };
         if vary.key.is_empty() {
             return Err(wrong("no key stands before the `=`"));
@@ -59,8 +109,8 @@ impl Vary {
     }
 }
 
-/// Splits at the commas that stand in no bracket, brace or quotes.
-fn split(text: &str) -> Vec<String> {
+/// Splits at the separators that stand in no bracket, brace or quotes.
+fn split(text: &str, separator: char) -> Vec<String> {
     let mut values = vec![String::new()];
     let (mut depth, mut quote) = (0_i32, None);
     for letter in text.chars() {
@@ -69,7 +119,7 @@ fn split(text: &str) -> Vec<String> {
             (None, '"' | '\'') => quote = Some(letter),
             (None, '[' | '{') => depth += 1,
             (None, ']' | '}') => depth -= 1,
-            (None, ',') if depth == 0 => {
+            (None, letter) if letter == separator && depth == 0 => {
                 values.push(String::new());
                 continue;
             }
@@ -82,77 +132,107 @@ fn split(text: &str) -> Vec<String> {
     values.iter().map(|value| value.trim().to_owned()).collect()
 }
 
-/// Runs the case once for every value and writes the study into the folder of `sweep`; returns it with the path of its
-/// page. Several keys vary together: the first run takes the first value of each.
+/// Runs the case for every combination of the values of the axes, the last axis fastest, and writes the study into the
+/// folder of `sweep`; returns it with the path of its page.
 ///
 /// # Errors
-/// The case, a key or a value is wrong, the keys have not equally many values, or no run can be made: nothing is written
-/// then. A common file cannot be written.
-pub fn study(input: &Input, vary: &[Vary], sweep: &Sweep) -> Result<(Study, PathBuf), SweepError> {
+/// The case, a key or a value is wrong, or no run can be made: nothing is written then. A common file cannot be written.
+pub fn study(input: &Input, axes: &[Axis], sweep: &Sweep) -> Result<(Study, PathBuf), SweepError> {
     let base = Job::new("", input, Vec::new())?;
-    let count = vary.first().map_or(0, |vary| vary.values.len());
-    if let Some(other) = vary.iter().find(|other| other.values.len() != count) {
-        let message = "keys that vary together need equally many values";
-        let found = format!("{} values of {}", other.values.len(), other.key);
-        let problem = Problem::new("", message).found(found);
-        return Err(base.refuse(vec![problem.accepted([format!("{count}")])]));
-    }
-    let job = |k: usize| {
-        let overrides = vary
-            .iter()
-            .map(|vary| format!("{}={}", vary.key, vary.values[k]));
-        let name = run_name(&vary[0].key, &vary[0].values[k], k);
+    base.has_contact(sweep.contact)?;
+    let grid = combinations(axes);
+    let job = |(k, places): (usize, &Vec<usize>)| {
+        let chosen = || axes.iter().zip(places);
+        let overrides = chosen().flat_map(|(axis, place)| axis.overrides(*place));
+        let names: Vec<String> = chosen().map(|(axis, place)| axis.name(*place)).collect();
+        let name = format!("{}-{}", k + 1, folder_name(&names.join(" ")));
         Job::new(&name, input, overrides.collect())
     };
-    let jobs = (0..count).map(job).collect::<Result<Vec<Job>, _>>()?;
+    let jobs = grid.iter().enumerate().map(job);
+    let jobs = jobs.collect::<Result<Vec<Job>, _>>()?;
     let mut folder = prepare(&jobs, sweep)?;
-    let study = gather(base.title(), vary, run_all(&jobs, sweep));
+    let study = gather(base.title(), axes, &grid, run_all(&jobs, sweep));
     let page = study.write(&mut folder)?;
     Ok((study, page))
 }
 
-/// Number, last part of the key, value: `2-courant-0.5`.
-pub(crate) fn run_name(key: &str, value: &str, k: usize) -> String {
-    let last = key.rsplit('.').next().unwrap_or_default();
-    format!("{}-{}", k + 1, folder_name(&format!("{last} {value}")))
+/// Places of the values on the axes, for every combination; none without an axis.
+fn combinations(axes: &[Axis]) -> Vec<Vec<usize>> {
+    let mut all = match axes.is_empty() {
+        true => Vec::new(),
+        false => vec![Vec::new()],
+    };
+    for axis in axes {
+        let with = |places: Vec<usize>| (0..axis.len()).map(move |k| [&places[..], &[k]].concat());
+        all = all.into_iter().flat_map(with).collect();
+    }
+    all
 }
 
-fn gather(title: String, vary: &[Vary], ended: Vec<Ended>) -> Study {
+/// Number, last part of the key, value: `2-courant-0.5`.
+pub(crate) fn run_name(key: &str, value: &str, k: usize) -> String {
+    let text = format!("{} {value}", last_part(key));
+    format!("{}-{}", k + 1, folder_name(&text))
+}
+
+fn last_part(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or_default()
+}
+
+fn gather(title: String, axes: &[Axis], grid: &[Vec<usize>], ended: Vec<Ended>) -> Study {
     let step = |one: &Ended| {
         one.variant
             .done()
             .map(|done| done.summary.time.largest_step)
     };
-    let steps: Vec<f64> = ended.iter().filter_map(step).collect();
-    let numbers = vary.first().map_or(Vec::new(), |vary| {
-        let number = |value: &String| value.parse::<f64>().ok();
-        vary.values.iter().map(number).collect()
-    });
-    let same = |pair: &[f64]| (pair[1] - pair[0]).abs() <= 1e-9 * pair[0];
-    let abscissa = match steps.windows(2).all(same) {
-        false => Abscissa::Step,
-        true if !numbers.is_empty() && numbers.iter().all(Option::is_some) => Abscissa::Key,
-        true => Abscissa::Nothing,
+    let series = |places: &Vec<usize>| {
+        let others = axes.iter().zip(places).skip(1);
+        let names: Vec<String> = others.map(|(axis, place)| axis.name(*place)).collect();
+        names.join(", ")
     };
-    let run = |(k, one): (usize, Ended)| Run {
+    // whether the step differs along the first axis, the others standing
+    let steps = ended.iter().zip(grid);
+    let steps: Vec<(String, f64)> = steps
+        .filter_map(|(one, places)| Some((series(places), step(one)?)))
+        .collect();
+    let differ = steps.iter().any(|(name, step)| {
+        let same = |other: f64| (other - step).abs() <= 1e-9 * step;
+        steps
+            .iter()
+            .any(|(other, value)| other == name && !same(*value))
+    });
+    let numbers = axes.first().map_or(Vec::new(), |axis| {
+        let number = |value: &String| value.parse::<f64>().ok();
+        axis.keys[0].values.iter().map(number).collect()
+    });
+    let abscissa = match differ {
+        true => Abscissa::Step,
+        false if !numbers.is_empty() && numbers.iter().all(Option::is_some) => Abscissa::Key,
+        false => Abscissa::Nothing,
+    };
+    let run = |(one, places): (Ended, &Vec<usize>)| Run {
         x: match abscissa {
             Abscissa::Step => step(&one),
-            Abscissa::Key => numbers.get(k).copied().flatten(),
+            Abscissa::Key => numbers.get(places[0]).copied().flatten(),
             Abscissa::Nothing => None,
         },
         exact_mean_force: one.exact.as_ref().and_then(|exact| {
             let end = one.variant.done()?.summary.time.end;
             exact_mean_force(exact, end)
         }),
+        series: series(places),
         variant: one.variant,
     };
+    let keys = axes.iter().enumerate().flat_map(|(at, axis)| {
+        axis.keys.iter().map(move |vary| {
+            let values = grid.iter().map(|places| vary.values[places[at]].clone());
+            (vary.key.clone(), values.collect())
+        })
+    });
     Study {
         title,
-        keys: vary
-            .iter()
-            .map(|vary| (vary.key.clone(), vary.values.clone()))
-            .collect(),
-        runs: ended.into_iter().enumerate().map(run).collect(),
+        keys: keys.collect(),
+        runs: ended.into_iter().zip(grid).map(run).collect(),
         abscissa,
     }
 }
@@ -171,17 +251,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn commas_inside_a_value_do_not_split_it() {
-        let vary = Vary::read("a.b = [1, 2], { x = 1, y = \"3,4\" } ,5").unwrap();
+    fn commas_and_semicolons_inside_a_value_do_not_split_it() {
+        let axis = Axis::read("a.b = [1, 2], { x = 1, y = \"3,4\" } ,\"5;6\"; c=7,8,9").unwrap();
+        let [vary, other] = &axis.keys[..] else {
+            panic!("{axis:?}");
+        };
         assert_eq!(vary.key, "a.b");
-        assert_eq!(vary.values, ["[1, 2]", "{ x = 1, y = \"3,4\" }", "5"]);
+        assert_eq!(vary.values, ["[1, 2]", "{ x = 1, y = \"3,4\" }", "\"5;6\""]);
+        assert_eq!(other.values, ["7", "8", "9"]);
+    }
+
+    #[test]
+    fn a_grid_has_every_combination_once_the_last_axis_fastest() {
+        let axes = ["a=1,2;b=3,4", "c=5,6,7"].map(|text| Axis::read(text).unwrap());
+        let places = [[0, 0], [0, 1], [0, 2], [1, 0], [1, 1], [1, 2]];
+        assert_eq!(combinations(&axes), places);
+        assert!(combinations(&[]).is_empty());
     }
 
     #[test]
     fn what_is_no_list_of_values_is_refused() {
-        for text in ["a.b", "=1,2", "a=", "a=1,,2"] {
+        for text in ["a.b", "=1,2", "a=", "a=1,,2", "a=1;", "a=1,2;b=3"] {
             assert!(
-                matches!(Vary::read(text), Err(SweepError::Input { .. })),
+                matches!(Axis::read(text), Err(SweepError::Input { .. })),
                 "{text}"
             );
         }

@@ -25,6 +25,8 @@ use crate::schema::Case;
 pub struct Sweep<'a> {
     /// The common folder; an earlier one is replaced, with the runs in it ([`Folder::create`]).
     pub folder: &'a Path,
+    /// Name of the contact that is looked at; by default that of the exact solution, else the first.
+    pub contact: Option<&'a str>,
     /// Runs at one time. Times are comparable with 1 only.
     pub jobs: usize,
     /// Makes an observer for the run of this name up to this time, s.
@@ -80,6 +82,23 @@ impl Job {
                 problems,
             }),
         }
+    }
+
+    /// # Errors
+    /// The case has no contact of this name.
+    pub(crate) fn has_contact(&self, chosen: Option<&str>) -> Result<(), SweepError> {
+        let Some(name) = chosen else { return Ok(()) };
+        if self.case.contact.names().any(|own| own == name) {
+            return Ok(());
+        }
+        let problem = Problem::new("", "no contact of this name to look at");
+        Err(SweepError::Input {
+            sources: vec![Source {
+                name: "--contact".to_owned(),
+                text: name.to_owned(),
+            }],
+            problems: vec![problem.unknown(name, self.case.contact.names())],
+        })
     }
 
     pub(crate) fn build(&self) -> Result<Built, Vec<Problem>> {
@@ -174,9 +193,14 @@ fn run_one(job: &Job, sweep: &Sweep) -> Ended {
         Ok(built) => built,
         Err(problems) => return end(Outcome::Refused(sentence(&problems)), None),
     };
+    let place = |name: &str| {
+        let mut contacts = built.system.contacts.iter();
+        contacts.position(|contact| contact.name == name)
+    };
+    let chosen = sweep.contact.and_then(place);
     let exact = reference(&built);
     let mut observer = Watched {
-        recorder: Recorder::new(&built.system, exact.as_ref()),
+        recorder: Recorder::new(&built.system, exact.as_ref(), chosen),
         watch: (sweep.watch)(&job.name, built.end),
     };
     let folder = sweep.folder.join(&job.name);

@@ -75,9 +75,11 @@ impl<'a> Walker<'a> {
             }
             node => {
                 let kind = json_type(node);
-                let plain = branches
-                    .iter()
-                    .find(|branch| allows(branch, kind) && listed(self.schema, branch).is_empty());
+                let whole = matches!(node, Node::Integer(_));
+                let plain = branches.iter().find(|branch| {
+                    (allows(branch, kind) || whole && allows(branch, "integer"))
+                        && listed(self.schema, branch).is_empty()
+                });
                 match (plain, node) {
                     (Some(branch), _) if keyed(branch).is_none() => self.visit(branch, item, path),
                     (_, Node::Text(text)) if !names.is_empty() => {

@@ -42,7 +42,8 @@ pub fn compare(arguments: &Arguments) -> u8 {
         Err(error) => return sweep::refuse(&error),
     };
     println!("{}", comparison.title);
-    println!("Errors against {}.\n", comparison.standard_text());
+    let contact = sweep::contact(comparison.contact());
+    println!("{contact}Errors against {}.\n", comparison.standard_text());
     println!("{}", comparison.table().text(sweep::WIDTH));
     let variants = || comparison.variants.iter();
     sweep::reasons(variants());

@@ -96,12 +96,32 @@ fn main() -> ExitCode {
 
 /// Reads and builds a case, or prints all its problems.
 fn load(case: &Path, set: &[String]) -> Result<(Input, carom_case::schema::Case, Built), u8> {
+    load_with(case, set, |_| Ok(()))
+}
+
+/// As [`load`]; `keep` sees the problems after they are printed.
+fn load_with(
+    case: &Path,
+    set: &[String],
+    keep: impl Fn(&[Problem]) -> Result<(), carom_output::Error>,
+) -> Result<(Input, carom_case::schema::Case, Built), u8> {
     let input = Input::read(case, set).map_err(|problems| refuse(&[], &problems))?;
-    let (parsed, locator) =
-        carom_case::parse(&input).map_err(|problems| refuse(&input.sources, &problems))?;
-    let built = carom_case::build(&parsed, &locator, &input)
-        .map_err(|problems| refuse(&input.sources, &problems))?;
+    let refused = |problems: Vec<Problem>| {
+        let code = refuse(&input.sources, &problems);
+        if let Err(error) = keep(&problems) {
+            eprintln!("error: {error}");
+        }
+        code
+    };
+    let (parsed, locator) = carom_case::parse(&input).map_err(refused)?;
+    let built = carom_case::build(&parsed, &locator, &input).map_err(refused)?;
     Ok((input, parsed, built))
+}
+
+/// Writes the cells that problems are about beside the case.
+fn keep_offenders(case: &Path, problems: &[Problem]) -> Result<(), carom_output::Error> {
+    let mut offenders = problems.iter().filter_map(|one| one.offenders.as_ref());
+    offenders.try_for_each(|cells| cells.write(case))
 }
 
 fn refuse(sources: &[carom_case::Source], problems: &[Problem]) -> u8 {
@@ -113,7 +133,7 @@ fn refuse(sources: &[carom_case::Source], problems: &[Problem]) -> u8 {
 }
 
 fn check(case: &Path, set: &[String]) -> u8 {
-    let built = match load(case, set) {
+    let built = match load_with(case, set, |problems| keep_offenders(case, problems)) {
         Ok((_, _, built)) => built,
         Err(code) => return code,
     };

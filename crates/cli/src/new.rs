@@ -1,4 +1,4 @@
-//! `carom new`: the cases of the project that need no mesh file, as templates.
+//! `carom new`: templates, most of them cases of the project that need no mesh file.
 
 use std::io::Write;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::{BAD_INPUT, FAILED};
 
 /// Name, what it shows, text.
-const TEMPLATES: [(&str, &str, &str); 4] = [
+const TEMPLATES: [(&str, &str, &str); 5] = [
     (
         "two-bars",
         "two bars in impact, velocity law",
@@ -26,6 +26,11 @@ const TEMPLATES: [(&str, &str, &str); 4] = [
         "block-drop",
         "a 3D block on a rigid plane",
         include_str!("../../../cases/block-drop/case.toml"),
+    ),
+    (
+        "arlequin",
+        "two bars with fine tips, in zones that overlap",
+        include_str!("../templates/arlequin.toml"),
     ),
 ];
 

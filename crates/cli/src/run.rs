@@ -89,9 +89,19 @@ fn print(summary: &Summary, folder: &Path) {
             quantity(time.largest_step, "s")
         ),
     };
-    let rejected = match time.rejected {
-        0 => String::new(),
-        count => format!(", {count} attempts dropped"),
+    let causes = [
+        (time.rejected.closing, "a contact closed"),
+        (time.rejected.energy_growth, "energy grew"),
+        (time.rejected.failure, "there was no solution"),
+    ];
+    let causes: Vec<String> = causes
+        .into_iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, cause)| format!("{count} because {cause}"))
+        .collect();
+    let rejected = match causes.is_empty() {
+        true => String::new(),
+        false => format!("; attempts dropped: {}", causes.join(", ")),
     };
     println!(
         "  {} steps of {sizes} to {}{rejected}",

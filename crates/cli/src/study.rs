@@ -1,6 +1,6 @@
 //! `carom study`.
 
-use carom_case::{Fit, Goal, Input, SweepError, Vary};
+use carom_case::{Axis, Fit, Goal, Input, SweepError};
 use carom_output::study::RAW_PEAK;
 
 use crate::{FAILED, sweep};
@@ -10,7 +10,8 @@ use crate::{FAILED, sweep};
 pub struct Arguments {
     #[command(flatten)]
     common: sweep::Arguments,
-    /// A key of the case with its values, `time.step.courant=1,0.5,0.25`; several keys vary together
+    /// A key of the case with its values, `time.step.courant=1,0.5,0.25`; keys with `;` between vary together, `a=1,2;b=3,4`;
+    /// given several times, all combinations are run
     #[arg(long, required_unless_present = "fit", value_name = "KEY=VALUES")]
     vary: Vec<String>,
     /// A key to find the value of, so that the case gives what `--to` wants
@@ -42,8 +43,8 @@ pub fn study(arguments: &Arguments) -> u8 {
     {
         return fit(common, &input, Fit::read(key, between, to));
     }
-    let vary = arguments.vary.iter().map(|text| Vary::read(text));
-    let vary = match vary.collect::<Result<Vec<Vary>, _>>() {
+    let vary = arguments.vary.iter().map(|text| Axis::read(text));
+    let vary = match vary.collect::<Result<Vec<Axis>, _>>() {
         Ok(vary) => vary,
         Err(error) => return sweep::refuse(&error),
     };
@@ -53,7 +54,8 @@ pub fn study(arguments: &Arguments) -> u8 {
         Ok(studied) => studied,
         Err(error) => return sweep::refuse(&error),
     };
-    println!("{}\n", study.title);
+    println!("{}", study.title);
+    println!("{}\n", sweep::contact(study.contact()));
     println!("{}", study.table().text(sweep::WIDTH));
     let orders = study.order_table();
     if !orders.rows.is_empty() {
@@ -78,7 +80,8 @@ fn fit(common: &sweep::Arguments, input: &Input, fit: Result<Fit, SweepError>) -
         Ok(fitted) => fitted,
         Err(error) => return sweep::refuse(&error),
     };
-    println!("{}\n", fitted.study.title);
+    println!("{}", fitted.study.title);
+    println!("{}\n", sweep::contact(fitted.study.contact()));
     println!("{}", fitted.study.table().text(sweep::WIDTH));
     let what = match &fit.goal {
         Goal::Quantity(quantity, _) => quantity.name(),

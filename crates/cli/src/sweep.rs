@@ -26,6 +26,9 @@ pub struct Arguments {
     /// Common results folder; default: the case file's name with the ending `.compare` or `.study`, beside it
     #[arg(long, value_name = "FOLDER")]
     pub results: Option<PathBuf>,
+    /// The contact that is looked at; default: the first one
+    #[arg(long, value_name = "NAME")]
+    pub contact: Option<String>,
     /// Runs at one time; wall times are comparable with 1 only
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub jobs: usize,
@@ -57,6 +60,7 @@ impl Arguments {
         };
         work(&Sweep {
             folder,
+            contact: self.contact.as_deref(),
             jobs: self.jobs,
             watch: &watch,
             stop: &|| stopped.load(Ordering::Relaxed),
@@ -73,6 +77,11 @@ pub fn refuse(error: &SweepError) -> u8 {
             FAILED
         }
     }
+}
+
+/// The contact that a table looks at, in a sentence: which one is a choice where there are several.
+pub fn contact(name: Option<&str>) -> String {
+    name.map_or(String::new(), |name| format!("Contact `{name}`. "))
 }
 
 /// Prints the reasons of what is not good.

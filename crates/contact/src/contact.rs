@@ -3,7 +3,7 @@
 use carom_elements::Kind;
 use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
 
-use crate::{Law, Plane, Point, Rows};
+use crate::{Law, Plane, Point, Rows, Sphere};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +12,8 @@ pub enum Target {
     Surface(Vec<Face>),
     /// A rigid plane.
     Plane(Plane),
+    /// A rigid sphere.
+    Sphere(Sphere),
 }
 
 /// How far bodies slide along each other.
@@ -101,6 +103,11 @@ impl Contact {
                 Target::Plane(plane) => {
                     rows.push(plane.gap(&x), plane.normal);
                     add_point(places, point, &plane.normal, rows);
+                }
+                Target::Sphere(sphere) => {
+                    let (gap, normal) = sphere.gap(&x);
+                    rows.push(gap, normal);
+                    add_point(places, point, &normal, rows);
                 }
                 Target::Surface(faces) => match search.closest(places, faces, &x) {
                     Some((foot, face)) if faces_point(&foot, face) => {

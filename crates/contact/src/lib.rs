@@ -11,6 +11,7 @@ pub mod law;
 mod plane;
 mod point;
 mod rows;
+mod sphere;
 mod weak;
 
 pub use contact::{Contact, Integration, Places, Search, Sliding, Target};
@@ -18,4 +19,5 @@ pub use law::Law;
 pub use plane::Plane;
 pub use point::Point;
 pub use rows::Rows;
+pub use sphere::Sphere;
 pub use weak::Weak;

@@ -47,7 +47,7 @@ pub(crate) fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usi
     };
     let primary = match &contact.primary {
         ModelTarget::Surface(surface) => body(surface),
-        ModelTarget::Plane(_) => None,
+        ModelTarget::Plane(_) | ModelTarget::Sphere(_) => None,
     };
     (body(&contact.secondary).unwrap_or(0), primary)
 }
@@ -78,6 +78,7 @@ pub(crate) fn numbered(
     };
     let target = match &contact.primary {
         ModelTarget::Plane(plane) => Target::Plane(*plane),
+        ModelTarget::Sphere(sphere) => Target::Sphere(*sphere),
         ModelTarget::Surface(surface) => Target::Surface(faces(surface)),
     };
     Contact {

@@ -22,8 +22,8 @@ pub struct Adaptive {
     pub smallest: f64,
     /// What a closing contact does.
     pub closing: Closing,
-    /// A step after which kinetic and strain energy, less the work of the loads, exceed their largest value so far by more
-    /// than this fraction of the largest energy is tried again with half the size.
+    /// A step after which kinetic and strain energy, less the work of the loads, exceed their value at the start by more than
+    /// this fraction of the largest energy so far is tried again with half the size.
     pub growth: Option<f64>,
     /// Steps without event after which the size doubles.
     pub patience: u32,
@@ -59,24 +59,16 @@ pub struct Control {
     quiet: u32,
     /// Step and time from which steps of the size `taken` are counted: the instants of equal steps are products, not sums.
     origin: (u64, f64),
-    /// Largest kinetic and strain energy less the work of the loads so far, J.
-    highest: f64,
 }
 
 impl Control {
-    /// At the start, with the energy there.
-    pub(crate) fn start(dt: f64, energy: f64) -> Control {
+    /// At the start.
+    pub(crate) fn start(dt: f64) -> Control {
         Control {
             dt,
             taken: dt,
-            highest: energy,
             ..Control::default()
         }
-    }
-
-    /// Attempts dropped so far.
-    pub fn rejected(&self) -> u64 {
-        self.cut + self.grown + self.failed
     }
 
     /// The instant after one more step of this size from step `step` at `time`, s.
@@ -86,11 +78,6 @@ impl Control {
             false => (step, time),
         };
         start + (step + 1 - first) as f64 * dt
-    }
-
-    /// Whether this energy (kinetic and strain less the work of the loads, J) is a growth beyond `tolerance` (J).
-    pub(crate) fn grows(&self, energy: f64, tolerance: f64) -> bool {
-        energy > self.highest + tolerance
     }
 
     /// Drops an attempt of size `dt`; returns the size of the next one (`cut`: where a closing falls, s), or `None` below
@@ -120,12 +107,11 @@ impl Control {
         Some(next)
     }
 
-    /// Takes a step of size `dt` from step `step` at `time`, with the energy after it. `largest`: the step of the model.
+    /// Takes a step of size `dt` from step `step` at `time`. `largest`: the step of the model.
     pub(crate) fn take(
         &mut self,
         rules: Option<&Adaptive>,
         (step, time, dt): (u64, f64, f64),
-        energy: f64,
         largest: f64,
     ) {
         if dt != self.taken {
@@ -136,7 +122,6 @@ impl Control {
             true => [dt; 2],
             false => [self.range[0].min(dt), self.range[1].max(dt)],
         };
-        self.highest = self.highest.max(energy);
         let Some(rules) = rules else { return };
         self.quiet += 1;
         if self.quiet >= rules.patience && self.dt < largest {

@@ -167,6 +167,14 @@ pub enum Error {
         /// Name of the scheme.
         scheme: &'static str,
     },
+    /// A zone that could not be built.
+    #[error("zone '{zone}': {cause}")]
+    Zone {
+        /// Name of the zone.
+        zone: String,
+        /// Cause.
+        cause: Box<Error>,
+    },
     /// A contact whose sides are in different zones.
     #[error(
         "contact '{contact}': its two sides are in the zones '{one}' and '{other}'; they must be in the same"

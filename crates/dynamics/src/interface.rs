@@ -350,6 +350,7 @@ fn end(
 #[cfg(test)]
 mod tests {
     use carom_contact::law::{Adhesion, Damped, Displacement};
+    use carom_testing::Random;
 
     use super::*;
 
@@ -367,16 +368,9 @@ mod tests {
         }
     }
 
-    /// Random positive definite matrices B Bᵀ + small I from a linear congruential generator.
-    fn random_problem(n: usize, seed: &mut u64) -> (Vec<f64>, Vec<f64>) {
-        let mut next = || {
-            *seed = seed
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        };
-        let b: Vec<f64> = (0..n * n).map(|_| next()).collect();
-        let q: Vec<f64> = (0..n).map(|_| next()).collect();
+    /// Random positive definite matrices B Bᵀ + small I.
+    fn random_problem(n: usize, random: &mut Random) -> (Vec<f64>, Vec<f64>) {
+        let (b, q) = (random.vector(n * n), random.vector(n));
         let mut d = vec![0.0; n * n];
         for i in 0..n {
             for j in 0..n {
@@ -389,10 +383,10 @@ mod tests {
 
     #[test]
     fn random_complementarity_problems_are_solved() {
-        let mut seed = 1;
+        let mut random = Random(1);
         for trial in 0..300 {
             let n = 1 + trial % 40;
-            let (d, q) = random_problem(n, &mut seed);
+            let (d, q) = random_problem(n, &mut random);
             let candidates: Vec<_> = q
                 .iter()
                 .map(|&q| candidate(Law::Displacement(Displacement::default()), q))

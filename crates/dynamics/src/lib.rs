@@ -23,7 +23,7 @@ mod system;
 mod zones;
 
 pub use control::{Adaptive, Closing, Control};
-pub use driver::{Costs, Driver, Phases};
+pub use driver::{Costs, Driver, Phases, Work};
 pub use error::Error;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Resultant};

@@ -211,15 +211,6 @@ impl Operators {
         })
     }
 
-    /// Number of factors.
-    pub(crate) fn factored(&self) -> usize {
-        let factors = self
-            .operators
-            .iter()
-            .filter(|operator| operator.stats().is_some());
-        factors.count()
-    }
-
     /// `begin` on every part; vectors of the whole system.
     pub(crate) fn begin(&mut self, r: &[f64], y: &mut [f64]) {
         for (part, operator) in self.parts.iter().zip(&mut self.operators) {
@@ -241,7 +232,12 @@ impl Operators {
 }
 
 /// `mass_factor` M + `stiffness_factor` K of one part.
-fn assembled(system: &System, part: &Range<usize>, mass_factor: f64, stiffness_factor: f64) -> Csr {
+pub(crate) fn assembled(
+    system: &System,
+    part: &Range<usize>,
+    mass_factor: f64,
+    stiffness_factor: f64,
+) -> Csr {
     let mut cliques = Cliques::new();
     for body in &system.bodies {
         push_cliques(body, system.dim, part, &mut cliques);

@@ -31,6 +31,8 @@ pub struct ContactRecord {
     pub status_changes: u64,
     /// Largest penetration at the end of a step, m.
     pub penetration: f64,
+    /// Energy lost in crush so far, J: what it took to crush the points, less what they can give back.
+    pub energy_crushed: f64,
     /// Most nodes at the end of a step whose supports are partly closed; see [`ContactReport::mixed`].
     pub mixed: u64,
     /// Total force and force on the secondary body in the last step as they enter impulses, N.
@@ -74,6 +76,8 @@ pub struct Impact {
     pub energy_given: f64,
     /// Energy lost in the contact, J: minus the work of its forces.
     pub energy_lost: f64,
+    /// The part of it that is lost in crush, J; zero of laws without memory.
+    pub energy_crushed: f64,
     /// Whether the run ended before the impact did.
     pub unfinished: bool,
 }
@@ -92,6 +96,7 @@ struct OpenImpact {
     impulse: [Sum; 3],
     work: Sum,
     velocity: [f64; 3],
+    crushed: Sum,
 }
 
 /// What a step adds to the record of a contact.
@@ -104,6 +109,8 @@ pub(crate) struct Step<'a> {
     pub(crate) report: &'a ContactReport,
     /// Work of the contact's forces and impulses, J.
     pub(crate) work: f64,
+    /// Energy lost in crush until its end, J.
+    pub(crate) crushed: f64,
     /// Of a projection after the step: impulse in N s, and change of the force that the next step begins with in N; each
     /// as a sum over the points and as a vector on the secondary body.
     pub(crate) jump: [(f64, [f64; 3]); 2],
@@ -152,6 +159,8 @@ impl Records {
         if report.force > record.peak_force {
             (record.peak_force, record.peak_time) = (report.force, step.span[1]);
         }
+        let crushed = step.crushed - record.energy_crushed;
+        record.energy_crushed = step.crushed;
         let active = report.closed > 0;
         if active {
             record.first_closing.get_or_insert(step.span[0]);
@@ -165,6 +174,7 @@ impl Records {
         if let Some(open) = &mut record.open {
             open.peak_force = open.peak_force.max(report.force);
             open.work.add(step.work);
+            open.crushed.add(crushed);
             for i in 0..3 {
                 open.impulse[i].add(mean(before.1[i], resultant[i]));
                 open.impulse[i].add(projected.1[i]);
@@ -218,6 +228,7 @@ impl OpenImpact {
             rebound: along(after),
             energy_given: 0.5 * approach * approach / inverse,
             energy_lost: -self.work.get(),
+            energy_crushed: self.crushed.get(),
             unfinished: false,
         }
     }

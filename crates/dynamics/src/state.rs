@@ -62,6 +62,8 @@ pub struct InterfaceState {
     pub status: Vec<Status>,
     /// S_d: the point took part in the last step.
     pub watched: Vec<bool>,
+    /// Memory of the law: the largest penetration of the point so far, m; zero of laws without memory.
+    pub crush: Vec<f64>,
 }
 
 impl State {
@@ -137,8 +139,9 @@ pub(crate) fn empty_state(system: &System) -> State {
             rate: vec![0.0; points],
             status: vec![Status::Open; points],
             watched: vec![false; points],
+            crush: vec![0.0; points],
         },
-        control: Control::start(system.dt, 0.0),
+        control: Control::start(system.dt),
         ledger: Ledger::default(),
         records: Records::default(),
     }

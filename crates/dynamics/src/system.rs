@@ -7,7 +7,7 @@ use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_bodies::{Body, BodySpec, Kinematics, MassKind};
 use carom_contact::law::Level;
-use carom_contact::{Contact, Integration, Law, Plane, Sliding};
+use carom_contact::{Contact, Integration, Law, Plane, Sliding, Sphere};
 use carom_mesh::{Face, Mesh, Surface};
 
 use crate::contacts::{numbered, renumbered, sides};
@@ -83,6 +83,8 @@ pub enum ModelTarget {
     Surface(Surface),
     /// A rigid plane.
     Plane(Plane),
+    /// A rigid sphere.
+    Sphere(Sphere),
 }
 
 /// Mass of the system: a diagonal, and the consistent part where there is one.

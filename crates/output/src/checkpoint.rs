@@ -1,6 +1,6 @@
 //! The state of a run on disk: its bytes, with a head that tells whose they are and whether they are whole.
 //!
-//! One line of text, `carom-state 1 <case hash> <checksum>`, then the bytes that the run goes on from: those of
+//! One line of text, `carom-state 2 <case hash> <checksum>`, then the bytes that the run goes on from: those of
 //! `State`, or of all zones.
 
 use std::path::Path;
@@ -9,7 +9,7 @@ use crate::summary::hash_bytes;
 use crate::{Error, atomic};
 
 /// First word and version of the head.
-const HEAD: &str = "carom-state 1";
+const HEAD: &str = "carom-state 2";
 
 /// Writes the bytes of a state ([`saved`](carom_dynamics::Stepper::saved)) atomically. `case_hash`: [`hash`](crate::summary::hash) of the case file.
 ///

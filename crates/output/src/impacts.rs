@@ -38,10 +38,12 @@ pub struct ImpactRow {
     pub energy_given: f64,
     /// Energy lost in the contact, minus the work of its forces, J, positive when lost.
     pub energy_lost: f64,
+    /// The part of it that is lost in crush, J; zero of laws without memory.
+    pub energy_crushed: f64,
 }
 
 /// Names of the columns of `impacts.csv`, with their units.
-pub const COLUMNS: [&str; 12] = [
+pub const COLUMNS: [&str; 13] = [
     "pair",
     "start_s",
     "duration_s",
@@ -54,6 +56,7 @@ pub const COLUMNS: [&str; 12] = [
     "restitution",
     "energy_given_j",
     "energy_lost_j",
+    "energy_crushed_j",
 ];
 
 /// The file `impacts.csv`, open for appending.
@@ -91,6 +94,7 @@ impl ImpactTable {
             impact.restitution.into(),
             Cell::Number(impact.energy_given),
             Cell::Number(impact.energy_lost),
+            Cell::Number(impact.energy_crushed),
         ];
         self.rows.push(cells.into_iter())?;
         self.rows.flush()

@@ -128,14 +128,25 @@ pub struct Time {
     pub end: f64,
     /// Accepted steps.
     pub steps: u64,
-    /// Steps tried and not accepted.
-    pub rejected: u64,
+    /// Attempts that were dropped.
+    pub rejected: Rejected,
     /// Smallest accepted step, s.
     pub smallest_step: f64,
     /// Largest accepted step, s.
     pub largest_step: f64,
     /// Largest step times wave speed over element size (Courant number); each body with the step of its zone.
     pub courant: Option<f64>,
+}
+
+/// Attempts at a step that were dropped, by cause.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Rejected {
+    /// A contact closed within the step.
+    pub closing: u64,
+    /// Energy grew.
+    pub energy_growth: u64,
+    /// There was no solution.
+    pub failure: u64,
 }
 
 /// What the zones of a run did, and the links between them.
@@ -227,6 +238,8 @@ pub struct Contact {
     pub max_penetration: f64,
     /// Persistency defect: Σ |P · gap rate| dt over the steps, J.
     pub persistency_defect: f64,
+    /// Energy lost in crush, J; zero of laws without memory.
+    pub energy_crushed: f64,
     /// Most nodes of the secondary surface in a step whose supports are partly closed: the pressure of the weak form
     /// depends on r there. `None` with another integration.
     pub mixed_supports: Option<u64>,
@@ -312,7 +325,7 @@ pub struct Exact {
 /// Work done, in counts that do not depend on the machine.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
-    /// Numeric factorisations of the effective matrix.
+    /// Numeric factorisations of the effective matrix, over all sizes of the step.
     pub factorisations: u64,
     /// Triangular sweeps (a forward or a backward pass each).
     pub sweeps: u64,

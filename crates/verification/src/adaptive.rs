@@ -128,6 +128,26 @@ fn growth() -> Result<Vec<Row>, Error> {
     ])
 }
 
+/// The bar at rest, under gravity: energy begins with nothing, and falls into motion.
+fn falling() -> Result<Row, Error> {
+    let run = flying();
+    let mut model = run.model()?;
+    model.adaptive = Some(rules(&run, Some(0.01)));
+    for body in &mut model.bodies {
+        body.velocity = [0.0; 3];
+    }
+    model.gravity = [1.0, 0.0, 0.0];
+    let mut driver = Driver::new(System::new(model)?)?;
+    for _ in 0..100 {
+        driver.step()?;
+    }
+    Ok(Row::count(
+        "fall from rest: attempts dropped",
+        driver.state().control.grown as usize,
+        0,
+    ))
+}
+
 /// A run resumed after a cut.
 fn resumed() -> Result<Row, Error> {
     let run = flying();
@@ -157,6 +177,7 @@ pub(crate) const CHECK: Check = Check {
     run: |_| {
         let mut rows = flights()?;
         rows.extend(growth()?);
+        rows.push(falling()?);
         rows.push(resumed()?);
         Ok(rows)
     },

@@ -11,7 +11,7 @@
 //! that disperses; with a damper, where the force itself jumps, 2 % and 1 %. Energy and momentum balances to round-off.
 
 use carom_contact::Law;
-use carom_contact::law::{Adhesion, Curve, Damped, Penalty, Stop};
+use carom_contact::law::{Adhesion, Crush, Curve, Damped, Penalty, Stop};
 use carom_dynamics::Scheme;
 
 use crate::Error;
@@ -62,6 +62,7 @@ impl Spring {
             Spring::Stop => Law::Stop(Stop {
                 clearance: 7.3 * case.set.speed * case.dt(),
                 curve: Curve::new(&[[half / k, half], [4.0 / 3.0 * half / k, 2.0 * half]])?,
+                crush: Crush::Recovered,
                 damping: 0.0,
                 adhesion: Adhesion::AsPrinted,
             }),

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use carom_contact::Law;
-use carom_contact::law::{Adhesion, Capture, Curve, Damped, Level, Penalty, Restitution, Stop};
+use carom_contact::law::{
+    Adhesion, Capture, Crush, Curve, Damped, Level, Penalty, Restitution, Stop,
+};
 use carom_dynamics::{Model, Scheme, State, System};
 use carom_materials::Elastic;
 
@@ -30,8 +32,16 @@ pub(crate) fn laws(
     let stop = Stop {
         clearance: 1e-4 * size,
         curve: Curve::new(&curve.map(|[x, f]| [x * size, f * material.young * area]))?,
+        crush: Crush::Recovered,
         damping: 0.1 * material.density * (material.young / material.density).sqrt() * area,
         adhesion: Adhesion::Clip,
+    };
+    // slopes of 1, 0.5 and 0.1 times E A / h
+    let crushed = [[1e-4, 1e-4], [3e-4, 2e-4], [1e-3, 2.7e-4]];
+    let crushed = Stop {
+        curve: Curve::new(&crushed.map(|[x, f]| [x * size, f * material.young * area]))?,
+        crush: Crush::Permanent,
+        ..stop
     };
     let restitution = Restitution {
         coefficient: 0.5,
@@ -51,6 +61,7 @@ pub(crate) fn laws(
         ("restitution", Law::Restitution(restitution)),
         ("penalty", Law::Penalty(penalty)),
         ("stop", Law::Stop(stop)),
+        ("stop, crushed", Law::Stop(crushed)),
     ])
 }
 

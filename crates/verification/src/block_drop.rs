@@ -82,7 +82,7 @@ fn velocity_law(name: &str, driver: &Driver, value: f64, law: Law) -> Vec<Row> {
     });
     let ledger = &state.ledger;
     let costs = driver.costs();
-    let sweeps: usize = costs.factors.iter().map(|stats| stats.sweeps).sum();
+    let sweeps = costs.work.sweeps;
     let bound = match law == HALF {
         true => penetration_bound_half(value, SPEED, dt),
         false => penetration_bound_now(value, SPEED, dt),
@@ -98,7 +98,7 @@ fn velocity_law(name: &str, driver: &Driver, value: f64, law: Law) -> Vec<Row> {
         ),
         Row::count(
             row("columns computed"),
-            costs.columns,
+            costs.work.columns,
             driver.system().points(),
         ),
         Row::at_most(row("mean velocity at the end / v0"), velocity / SPEED, 1.0),

@@ -84,6 +84,19 @@ impl Row {
         Row::near(quantity, value, reference, unit)
     }
 
+    /// As [`Row::printed`], or within `part` of the number where that is more.
+    pub fn printed_or(quantity: impl Into<String>, value: f64, printed: &str, part: f64) -> Row {
+        let mut row = Row::printed(quantity, value, printed);
+        if let Expected::Near {
+            reference,
+            tolerance,
+        } = &mut row.expected
+        {
+            *tolerance = tolerance.max(part * reference.abs());
+        }
+        row
+    }
+
     /// An exact count.
     pub fn count(quantity: impl Into<String>, value: usize, reference: usize) -> Row {
         Row::near(quantity, value as f64, reference as f64, 0.0)

@@ -9,6 +9,9 @@ pub enum Error {
     /// A mesh file could not be read.
     #[error(transparent)]
     Read(#[from] carom_mesh::read::ReadError),
+    /// Models that cannot be coupled.
+    #[error(transparent)]
+    Arlequin(#[from] carom_arlequin::Error),
     /// A system was refused or a step failed.
     #[error(transparent)]
     Dynamics(#[from] carom_dynamics::Error),

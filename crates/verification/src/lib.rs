@@ -12,8 +12,16 @@ mod build;
 mod check;
 mod error;
 mod figures;
+mod glued;
+mod glued_bar;
 
 mod adaptive;
+mod arlequin_bars;
+mod arlequin_block;
+mod arlequin_energy;
+mod arlequin_pulse;
+mod arlequin_stability;
+mod arlequin_start;
 mod bar_dropped;
 mod bar_on_stop;
 mod bar_on_wall;
@@ -31,6 +39,7 @@ mod bars_theta;
 mod block_drop;
 mod blocks;
 mod closed_field_as_printed;
+mod crushed_stop;
 mod energy_identity;
 mod first_force;
 mod interface_problems;
@@ -42,6 +51,7 @@ mod rejections;
 mod restitution;
 mod resume;
 mod sdnl111;
+mod sdnl111_bars;
 mod shapes;
 mod supports;
 mod threads;
@@ -74,6 +84,12 @@ macro_rules! registry {
 
 registry! {
     adaptive
+    arlequin_bars
+    arlequin_block
+    arlequin_energy
+    arlequin_pulse
+    arlequin_stability
+    arlequin_start
     bar_on_stop
     bar_dropped
     bar_on_wall
@@ -91,6 +107,7 @@ registry! {
     block_drop
     blocks
     closed_field_as_printed
+    crushed_stop
     energy_identity
     first_force
     interface_problems
@@ -102,6 +119,7 @@ registry! {
     restitution
     resume
     sdnl111
+    sdnl111_bars
     shapes
     supports
     threads

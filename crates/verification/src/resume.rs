@@ -1,6 +1,6 @@
 //! Runs that are cut and resumed.
 //!
-//! Problem: two bars of the set "slow", n = 20, and two blocks with meshes that do not match, one coming down sideways on
+//! Problem: two bars of the set "slow", n = 8, and two blocks with meshes that do not match, one coming down sideways on
 //! the other and paired at every step; every registered scheme with every law; cuts while the bodies press, when they
 //! part, and later, gone on with to the end, and a cut before every step, gone on with for that step. Closed solution: a state written as bytes, read back and gone on with by a new driver ends in the
 //! bytes of the run that was not cut. Combinations without meaning are refused, and only they: explicit schemes with
@@ -18,10 +18,12 @@ use crate::blocks::{FACE, FINER, RUBBER, SMALLEST};
 use crate::build::{DISPLACEMENT, newmark};
 use crate::check::{Check, Row};
 
-/// Steps of the bars' runs, and where they are cut: contact lasts 80 steps.
-const BARS: (u64, [u64; 4]) = (120, [1, 30, 60, 90]);
+/// Elements of each bar.
+const ELEMENTS: usize = 8;
+/// Steps of the bars' runs, and where they are cut: contact lasts 32 steps.
+const BARS: (u64, [u64; 4]) = (40, [1, 12, 24, 36]);
 /// The same of the blocks, which press for about 12 steps.
-const BLOCKS: (u64, [u64; 4]) = (40, [1, 5, 10, 25]);
+const BLOCKS: (u64, [u64; 4]) = (16, [1, 5, 10, 14]);
 
 pub(crate) const CHECK: Check = Check {
     name: "resume",
@@ -30,12 +32,12 @@ pub(crate) const CHECK: Check = Check {
         let (mut bars, mut solids) = (Battery::default(), Battery::default());
         let mut combinations = 0;
         for scheme in Scheme::registered() {
-            for (_, law) in laws(&SLOW.material(), SLOW.length / 20.0, SLOW.area)? {
+            for (_, law) in laws(&SLOW.material(), SLOW.length / ELEMENTS as f64, SLOW.area)? {
                 combinations += usize::from(!is_senseless(scheme, law));
                 let case = Run {
                     scheme,
                     law,
-                    ..Run::slow(20)
+                    ..Run::slow(ELEMENTS)
                 };
                 if let Some(system) = bars.system(case.model()?)? {
                     cuts(&mut bars, &system, BARS)?;
@@ -53,7 +55,7 @@ pub(crate) const CHECK: Check = Check {
             scheme: newmark(0.25, 0.5),
             law: DISPLACEMENT,
             massless: true,
-            ..Run::slow(20)
+            ..Run::slow(ELEMENTS)
         };
         cuts(&mut bars, &System::new(massless.model()?)?, BARS)?;
         let mut model = FINER.model(massless.scheme, DISPLACEMENT, Sliding::Finite)?;

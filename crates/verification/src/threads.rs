@@ -1,10 +1,10 @@
 //! Runs on one thread and on two.
 //!
 //! Problem: two blocks with meshes that do not match, one coming down sideways on the other and paired at every step, of
-//! 576 and 270 elements: forces are summed in chunks of 256, and columns of the compliance computed in groups, which
+//! 261 and 260 elements in long columns: forces are summed in chunks of 256, and columns of the compliance computed in groups, which
 //! threads share. Every registered scheme with every kind of law. Closed solution: sums have a fixed order, so the number of
 //! threads changes no bit. Reference: the run on one thread. Tolerance: none, bytes are equal or not.
-//! Sizes: quick 6 steps with one law of each kind, full 60 steps with all.
+//! Sizes: quick 3 steps with one law of each kind, full 60 steps with all.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use crate::check::{Check, Size};
 use crate::resume::advance;
 
 const BLOCKS: Blocks = Blocks {
-    elements: [[4, 4, 36], [3, 3, 30]],
+    elements: [[3, 3, 29], [2, 2, 65]],
     ..SMALLEST
 };
 
@@ -28,7 +28,7 @@ pub(crate) const CHECK: Check = Check {
     fact: "runs on one thread and on two end in the same bytes",
     run: |size| {
         let (steps, parameters) = match size {
-            Size::Quick => (6, 1),
+            Size::Quick => (3, 1),
             Size::Full => (60, usize::MAX),
         };
         let [one, two] = [pool(1)?, pool(2)?];
@@ -36,7 +36,7 @@ pub(crate) const CHECK: Check = Check {
         let mut combinations = 0;
         for scheme in Scheme::registered() {
             let mut kinds = Vec::new();
-            for (_, law) in laws(&RUBBER, 0.4 / 36.0, FACE)? {
+            for (_, law) in laws(&RUBBER, 0.4 / 29.0, FACE)? {
                 let kind = law.get().name();
                 kinds.push(kind);
                 if kinds.iter().filter(|other| **other == kind).count() > parameters {

@@ -6,11 +6,13 @@
 
 mod cholesky;
 mod panel;
+mod quasi_definite;
 mod response;
 mod supernodal;
 mod sweep;
 
 pub use cholesky::{Cholesky, FactorStats};
+pub use quasi_definite::QuasiDefinite;
 pub use response::{Response, SparseRow, gram};
 
 pub(crate) use panel::{backward, forward};

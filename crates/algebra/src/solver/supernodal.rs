@@ -19,9 +19,9 @@ pub(super) type Symbolic = supernodal::SymbolicSupernodalCholesky<usize>;
 
 /// Lower triangle of the permuted matrix by columns.
 pub(super) struct Lower {
-    col_ptr: Vec<usize>,
-    row: Vec<usize>,
-    values: Vec<f64>,
+    pub(super) col_ptr: Vec<usize>,
+    pub(super) row: Vec<usize>,
+    pub(super) values: Vec<f64>,
 }
 
 impl Lower {

@@ -1,7 +1,9 @@
 //! Factor, solve, sweeps, errors, counts.
 
 use crate::block::{System, block};
-use crate::numbers::{Random, dense, distance, random};
+use carom_testing::Random;
+
+use crate::numbers::{dense, distance, random};
 use carom_algebra::{Error, csr::Csr, dense::DenseCholesky, solver::Cholesky};
 
 fn factor(system: &System) -> Cholesky {
@@ -298,8 +300,8 @@ mod dense_factor {
 
 mod allocations {
     use super::*;
-    use crate::counter::allocations;
     use carom_algebra::solver::SparseRow;
+    use carom_testing::allocations;
 
     #[test]
     fn sweeps_and_products_allocate_nothing() {

@@ -4,7 +4,9 @@
 #![allow(clippy::unwrap_used)]
 
 mod block;
-mod counter;
 mod factor;
 mod numbers;
 mod respond;
+
+#[global_allocator]
+static COUNTER: carom_testing::Counter = carom_testing::Counter;

@@ -2,22 +2,7 @@
 
 use crate::block::System;
 use carom_algebra::{csr::Csr, pattern::Cliques};
-
-/// Numbers in [-1, 1) from a fixed seed (xorshift64*).
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    pub fn vector(&mut self, n: usize) -> Vec<f64> {
-        (0..n).map(|_| self.next()).collect()
-    }
-}
+use carom_testing::Random;
 
 /// Random diagonally dominant symmetric matrix: `n` unknowns, about `degree` neighbours each, nodes of uneven size, several
 /// components and some unknowns alone.

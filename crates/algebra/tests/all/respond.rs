@@ -1,7 +1,9 @@
 //! Sparse responses Y = L⁻¹ P Nᵀ.
 
 use crate::block::{System, block};
-use crate::numbers::{Random, distance, random};
+use carom_testing::Random;
+
+use crate::numbers::{distance, random};
 use carom_algebra::solver::{Cholesky, Response, SparseRow, gram};
 
 /// `count` rows of `width` unknowns each, with a repeated and an isolated unknown among them where there is one.

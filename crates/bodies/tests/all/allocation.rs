@@ -1,35 +1,10 @@
 //! The internal-force sweep allocates on its first call only.
 
-#![allow(unsafe_code)]
-
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
 use carom_bodies::{Kinematics, Scratch};
 use carom_mesh::generate;
+use carom_testing::allocations;
 
 use crate::sample::{Sample, plain_and_weighted};
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-struct Counter;
-
-// SAFETY: every call goes to the system allocator unchanged; the counter itself never allocates.
-unsafe impl GlobalAlloc for Counter {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|count| count.set(count.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static COUNTER: Counter = Counter;
 
 /// On the one thread of a pool, so that all of it is counted: the threads' own queues are rayon's.
 #[test]
@@ -45,11 +20,11 @@ fn internal_force_allocates_nothing_after_its_first_call() {
             let (u, mut f) = (vec![1e-3; sample.n], vec![0.0; sample.n]);
             let mut scratch = Scratch::default();
             sample.body.internal_force(&u, &mut scratch, &mut f);
-            let before = COUNT.get();
+            let before = allocations();
             for _ in 0..10 {
                 sample.body.internal_force(&u, &mut scratch, &mut f);
             }
-            COUNT.get() - before
+            allocations() - before
         });
         assert_eq!(count, 0, "{}", sample.name);
     }

@@ -1,7 +1,8 @@
 //! Force is the gradient of energy, stiffness that of force. Energies are quadratic, so central differences with large
 //! steps are exact but for rounding.
 
-use crate::sample::{Random, distance, dot, largest, multiply, plain_and_weighted};
+use crate::sample::{distance, dot, largest, multiply, plain_and_weighted};
+use carom_testing::Random;
 
 #[test]
 fn force_is_the_derivative_of_energy() {

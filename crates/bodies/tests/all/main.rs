@@ -15,3 +15,6 @@ mod sizes;
 mod stiffness;
 mod threads;
 mod weights;
+
+#[global_allocator]
+static COUNTER: carom_testing::Counter = carom_testing::Counter;

@@ -6,6 +6,7 @@ use carom_bodies::{Body, BodySpec, CellWeights, Kinematics, Scratch};
 use carom_elements::Kind;
 use carom_materials::Elastic;
 use carom_mesh::{ElementId, Mesh, generate};
+use carom_testing::Random;
 
 /// Numbers of order one, so that tolerances are plain.
 pub const MATERIAL: Elastic = Elastic {
@@ -272,23 +273,6 @@ pub fn interior(x: &[[f64; 3]], dim: usize) -> Vec<bool> {
     x.iter()
         .map(|x| (0..dim).all(|i| x[i] > sides[i].0 + 1e-9 && x[i] < sides[i].1 - 1e-9))
         .collect()
-}
-
-/// Numbers in [-1, 1] from a fixed seed.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    pub fn vector(&mut self, n: usize) -> Vec<f64> {
-        (0..n).map(|_| self.next()).collect()
-    }
 }
 
 pub fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {

@@ -49,7 +49,7 @@ fn wave_speed_is_the_largest_of_the_material_in_its_plane() {
 /// Largest eigenvalue of M⁻¹ K, from below, by power iterations with the Rayleigh quotient.
 pub fn highest_frequency(sample: &Sample) -> f64 {
     let (k, mass) = (sample.matrix(1.0, 0.0), sample.lumped_mass());
-    let mut v: Vec<f64> = crate::sample::Random(9).vector(sample.n);
+    let mut v: Vec<f64> = carom_testing::Random(9).vector(sample.n);
     let mut squared = 0.0;
     for _ in 0..2000 {
         let force = multiply(&k, &v);

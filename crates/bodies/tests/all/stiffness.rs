@@ -1,9 +1,10 @@
 //! Symmetry, rigid motions and frame indifference.
 
 use carom_bodies::Kinematics;
+use carom_testing::Random;
 
 use crate::sample::{
-    MATERIAL, Random, Sample, all, bars, cholesky, continua, distance, dot, largest, multiply,
+    MATERIAL, Sample, all, bars, cholesky, continua, distance, dot, largest, multiply,
 };
 
 #[test]

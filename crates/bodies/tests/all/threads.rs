@@ -2,8 +2,9 @@
 
 use carom_bodies::{Kinematics, Scratch};
 use carom_mesh::generate;
+use carom_testing::Random;
 
-use crate::sample::{Random, Sample, all};
+use crate::sample::{Sample, all};
 
 /// Bodies of several chunks, the last one short.
 fn large() -> Vec<Sample> {

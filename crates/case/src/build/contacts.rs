@@ -2,7 +2,7 @@
 
 use carom_contact::law::Level;
 use carom_contact::law::{Displacement, Reading, Restitution, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding, Sphere};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{ElementId, Mesh, Surface};
 
@@ -12,12 +12,15 @@ use crate::error::Problem;
 use crate::schema::{self, IntegrationName, IntegrationWith, Obstacle, Scheme};
 
 impl Builder<'_> {
-    pub(super) fn contacts(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Vec<ModelContact> {
+    /// The contacts. `of`: cells of each body.
+    pub(super) fn contacts(
+        &mut self,
+        mesh: &Mesh,
+        bodies: &[ModelBody],
+        of: &[Vec<ElementId>],
+    ) -> Vec<ModelContact> {
         let mut contacts = Vec::new();
-        let cells: Vec<ElementId> = bodies
-            .iter()
-            .flat_map(|body| body.spec.cells.iter().copied())
-            .collect();
+        let cells = of.concat();
         for (name, contact) in self.case.contact.iter() {
             let path = format!("contact.{name}");
             let secondary = self.surface(
@@ -33,13 +36,21 @@ impl Builder<'_> {
                 (None, Some(Obstacle::Plane(plane))) => {
                     self.plane(mesh, &path, plane).map(ModelTarget::Plane)
                 }
+                (None, Some(Obstacle::Sphere(sphere))) => {
+                    let path = format!("{path}.obstacle.sphere.centre");
+                    Some(ModelTarget::Sphere(Sphere {
+                        centre: self.vector(mesh, &path, &sphere.centre),
+                        radius: sphere.radius.0,
+                    }))
+                }
                 (None, None) => None,
             };
             let (Some(secondary), Some(primary)) = (secondary, primary) else {
                 continue;
             };
             let sides = sides(mesh, bodies, &secondary, &primary);
-            let Some(law) = self.law(name, &contact.law, &sides) else {
+            let scheme = self.scheme_at(secondary.faces.first().map(|face| face.parent), of);
+            let Some(law) = self.law(name, &contact.law, (&sides, &scheme)) else {
                 continue;
             };
             let sliding = match contact.sliding {
@@ -145,10 +156,31 @@ impl Builder<'_> {
         }
     }
 
+    /// Warns where a step is too long for the spring of a damped law: 2 sqrt(k h/E) CFL > 2. An explicit scheme has its
+    /// critical step.
+    fn warn_of_springs(&mut self, system: &System) {
+        for (name, rate) in std::mem::take(&mut self.springs) {
+            let value = rate * system.dt;
+            // h / c, the step of Courant number 1, is at the bound for the default stiffness
+            if value > 2.0 * (1.0 + 1e-9) && !system.scheme.get().is_explicit() {
+                self.warnings.push(format!(
+                    "contact `{name}`: the damped law is too stiff for the step, 2 sqrt(k h/E) CFL = {value:.3} instead of at most 2; take a step of at most {:.4e} s or a stiffness {:.3} times as large",
+                    system.dt * 2.0 / value,
+                    (2.0 / value).powi(2)
+                ));
+            }
+        }
+    }
+
     /// What is strange about contacts and schemes, without being wrong.
     pub(super) fn advise(&mut self, system: &System) {
-        for contact in &system.contacts {
+        if self.plan.zones.is_empty() {
+            self.warn_of_springs(system);
+        }
+        for (contact, (secondary, _)) in system.contacts.iter().zip(&system.sides) {
             let name = &contact.name;
+            let zone = self.plan.zone_of(*secondary);
+            let scheme = zone.map_or(self.case.time.scheme, |zone| self.plan.zones[zone].scheme);
             if let Law::Velocity(Velocity {
                 reading: Reading::AsPrinted,
                 ..
@@ -159,7 +191,7 @@ impl Builder<'_> {
                 ));
             }
             if let (Law::Restitution(Restitution { coefficient, .. }), Scheme::Theta(theta)) =
-                (contact.law, &self.case.time.scheme)
+                (contact.law, &scheme)
                 && theta.theta * (1.0 + coefficient) > 1.0
             {
                 self.warnings.push(format!(
@@ -168,7 +200,7 @@ impl Builder<'_> {
                 ));
             }
             if let (Law::Displacement(Displacement { projection: false }), Scheme::Newmark(newmark)) =
-                (contact.law, &self.case.time.scheme)
+                (contact.law, &scheme)
                 && newmark.beta == 0.25
             {
                 self.warnings.push(format!("contact `{name}`: the trapezoid with the displacement law gains energy below a Courant number of about 4; look at the ledger"));

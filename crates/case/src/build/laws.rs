@@ -3,8 +3,8 @@
 use carom_bodies::height;
 use carom_contact::Law;
 use carom_contact::law::{
-    Adhesion, Capture, Compliance, Curve, CurveError, Damped, Displacement, Penalty, Reading,
-    Restitution, Stop, Velocity,
+    Adhesion, Capture, Compliance, Crush, Curve, CurveError, Damped, Displacement, Penalty,
+    Reading, Restitution, Stop, Velocity,
 };
 use carom_dynamics::{ModelBody, ModelTarget};
 use carom_mesh::{Mesh, Surface};
@@ -17,10 +17,15 @@ use crate::schema::{self, ComplianceLaw, DampedLaw, Scheme, StopLaw};
 const LOSS: f64 = 0.01;
 
 impl Builder<'_> {
-    /// The law of the contact `name`; `sides`: one for each deformable surface, the softer one first.
-    pub(super) fn law(&mut self, name: &str, law: &schema::Law, sides: &[Side]) -> Option<Law> {
-        let capture =
-            |given| capture(given).unwrap_or_else(|| default_capture(&self.case.time.scheme));
+    /// The law of the contact `name`; `sides`: one for each deformable surface, the softer one first; `scheme`: that of
+    /// its zone.
+    pub(super) fn law(
+        &mut self,
+        name: &str,
+        law: &schema::Law,
+        (sides, scheme): (&[Side], &Scheme),
+    ) -> Option<Law> {
+        let capture = |given| capture(given).unwrap_or_else(|| default_capture(scheme));
         Some(match law {
             schema::Law::Displacement(law) => Law::Displacement(Displacement {
                 projection: law.projection,
@@ -44,7 +49,12 @@ impl Builder<'_> {
                 coefficient: restitution.coefficient,
                 capture: capture(restitution.capture),
             }),
-            schema::Law::Damped(damped) => Law::Damped(damped_law(damped, sides)),
+            schema::Law::Damped(damped) => {
+                let law = damped_law(damped, sides);
+                let rate = 2.0 * spring_rate(law.stiffness, &sides[0]);
+                self.springs.push((name.to_string(), rate));
+                Law::Damped(law)
+            }
             schema::Law::Penalty(penalty) => Law::Penalty(Penalty(Damped {
                 stiffness: penalty.stiffness.0,
                 damping: penalty.damping.map_or(0.0, |damping| damping.0),
@@ -60,18 +70,27 @@ impl Builder<'_> {
             .iter()
             .map(|point| [point.penetration.0, point.force.0])
             .collect();
-        match Curve::new(&points) {
-            Ok(curve) => Some(Stop {
-                clearance: law.clearance.map_or(0.0, |clearance| clearance.0),
-                curve,
-                damping: law.damping.map_or(0.0, |damping| damping.0),
-                adhesion: adhesion(law.adhesion),
-            }),
-            Err(error) => {
-                self.problems.push(no_curve(name, &error));
-                None
-            }
-        }
+        let crush = match law.crush {
+            schema::Crush::Recovered => Crush::Recovered,
+            schema::Crush::Permanent => Crush::Permanent,
+        };
+        let problem = match Curve::new(&points) {
+            Ok(curve) => match curve.first_steeper() {
+                Some(point) if crush == Crush::Permanent => too_steep(name, &points, point),
+                _ => {
+                    return Some(Stop {
+                        clearance: law.clearance.map_or(0.0, |clearance| clearance.0),
+                        curve,
+                        crush,
+                        damping: law.damping.map_or(0.0, |damping| damping.0),
+                        adhesion: adhesion(law.adhesion),
+                    });
+                }
+            },
+            Err(error) => no_curve(name, &error),
+        };
+        self.problems.push(problem);
+        None
     }
 
     /// Warns where a compliance absorbs more than a part [`LOSS`] of an impact: 2 φ (1 - φ) between equal bars and twice
@@ -105,6 +124,18 @@ fn no_curve(name: &str, error: &CurveError) -> Problem {
         .found(format!("{} m, {} N", found[0], found[1]))
         .accepted([format!("more than {} m and {} N", before[0], before[1])]),
     }
+}
+
+/// A piece that would give back more than it took; `point`: its end, from 1.
+fn too_steep(name: &str, points: &[[f64; 2]], point: usize) -> Problem {
+    let (end, start) = (points[point - 1], points[point - 2]);
+    let stiffness = (end[1] - start[1]) / (end[0] - start[0]);
+    Problem::new(
+        format!("contact.{name}.law.stop.curve[{}]", point - 1),
+        "with crush = \"permanent\" no piece of the curve may be steeper than the first, along which the stop is unloaded",
+    )
+    .found(format!("{stiffness:.4e} N/m up to this point"))
+    .accepted([format!("at most {:.4e} N/m", points[0][1] / points[0][0])])
 }
 
 fn capture(given: Option<schema::Capture>) -> Option<Capture> {
@@ -160,10 +191,12 @@ pub(super) fn sides(
     sides
 }
 
-/// One side of a contact: Young's modulus (Pa), impedance per area rho c (Pa s/m), element size normal to it (m).
+/// One side of a contact: Young's modulus (Pa), impedance per area rho c (Pa s/m), wave speed (m/s), element size normal to it
+/// (m).
 pub(super) struct Side {
     pub(super) young: f64,
     pub(super) impedance: f64,
+    wave_speed: f64,
     pub(super) size: f64,
 }
 
@@ -172,6 +205,7 @@ fn side(mesh: &Mesh, bodies: &[ModelBody], surface: &Surface) -> Side {
     let mut side = Side {
         young: 0.0,
         impedance: 0.0,
+        wave_speed: 0.0,
         size: 0.0,
     };
     for face in &surface.faces {
@@ -187,7 +221,8 @@ fn side(mesh: &Mesh, bodies: &[ModelBody], surface: &Surface) -> Side {
     if let Some(body) = owner {
         let material = &body.spec.material;
         side.young = material.young;
-        side.impedance = material.density * material.wave_speed(body.spec.kinematics.plane());
+        side.wave_speed = material.wave_speed(body.spec.kinematics.plane());
+        side.impedance = material.density * side.wave_speed;
     }
     side
 }
@@ -203,6 +238,11 @@ fn damped_law(law: &DampedLaw, sides: &[Side]) -> Damped {
         damping: law.damping.map_or(from_factor, |damping| damping.0),
         adhesion: adhesion(law.adhesion),
     }
+}
+
+/// sqrt(k h/E) c/h in 1/s, for k in Pa/m: the frequency of a spring on half an element, over sqrt 2.
+fn spring_rate(stiffness: f64, side: &Side) -> f64 {
+    (stiffness * side.size / side.young).sqrt() * side.wave_speed / side.size
 }
 
 /// C, given or as a multiple of rho c of the softer side.

@@ -1,16 +1,20 @@
 //! Stage two: names resolved, meshes read, ranges that need the mesh checked; a system, or every problem found.
 
+mod arlequin;
 mod bodies;
 mod contacts;
 mod laws;
 mod mesh;
 mod reference;
+mod ties;
 mod time;
+mod zones;
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use carom_dynamics::{Model, System, Zoned};
+use carom_dynamics::{LinkKind, Model, System, Zoned};
 use carom_mesh::{Group, Mesh};
 
 use crate::error::Problem;
@@ -18,15 +22,19 @@ use crate::input::Input;
 use crate::locate::Locator;
 use crate::schema::{Case, Motion, Vector};
 
+pub use arlequin::BuiltOverlap;
 pub use reference::ExactReference;
+use zones::Plan;
 
 /// What a case amounts to.
 #[derive(Debug)]
 pub struct Built {
-    /// The system, ready to be driven.
+    /// The system, ready to be driven; with zones all of the model, for output.
     pub system: Arc<System>,
-    /// The model in zones; `None`: one driver for all. Then `system` is of the whole model ([`System::whole`]).
+    /// The model in zones, if the case has some.
     pub zoned: Option<Zoned>,
+    /// Its overlaps, in the order of their names.
+    pub overlaps: Vec<BuiltOverlap>,
     /// Time at the end, s.
     pub end: f64,
     /// Probes, in the order of their names.
@@ -57,7 +65,17 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
         case,
         problems: Vec::new(),
         warnings: Vec::new(),
+        springs: Vec::new(),
+        plan: Plan {
+            zones: Vec::new(),
+            kind: LinkKind::GravouilCombescure,
+        },
+        file: input
+            .sources
+            .first()
+            .map_or_else(PathBuf::new, |source| PathBuf::from(&source.name)),
     };
+    builder.plan = builder.plan_zones();
     let built = builder.build(input);
     match built {
         Some(built) if builder.problems.is_empty() => Ok(built),
@@ -70,41 +88,75 @@ struct Builder<'a> {
     case: &'a Case,
     problems: Vec<Problem>,
     warnings: Vec<String>,
+    /// Name of each contact with the damped law, and twice the rate of its spring against the elements behind it, 1/s.
+    springs: Vec<(String, f64)>,
+    /// The zones of the case.
+    plan: Plan,
+    /// Path of the case file.
+    file: PathBuf,
 }
 
 impl Builder<'_> {
     fn build(&mut self, input: &Input) -> Option<Built> {
         let materials = self.materials();
-        self.scheme_and_laws();
+        self.schemes();
+        if self.plan.zones.is_empty() {
+            let one = |_: &str| self.case.time.scheme;
+            self.laws(one);
+        }
         let mesh = self.mesh(input)?;
-        let bodies = self.bodies(&mesh, &materials);
+        let mut bodies = self.bodies(&mesh, &materials);
         let supports = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
         let probes = self.probes(&mesh);
         if !self.problems.is_empty() {
             return None;
         }
-        let contacts = self.contacts(&mesh, &bodies);
+        let joints = self.joints_of(&mesh, &mut bodies, &supports);
+        let cells: Vec<Vec<carom_mesh::ElementId>> =
+            bodies.iter().map(|body| body.spec.cells.clone()).collect();
+        let contacts = self.contacts(&mesh, &bodies, &cells);
+        self.contacts_outside(&mesh, &contacts, &joints);
+        self.zones_of_contacts(&contacts, &cells);
+        self.within_bodies(&mesh, &probes, &cells);
         if !self.problems.is_empty() {
             return None;
         }
-        let scheme = self.scheme();
         let mut model = Model {
             mesh,
             bodies,
             supports,
             gravity,
             contacts,
-            scheme,
+            scheme: self.outer_scheme(),
             dt: f64::MIN_POSITIVE,
             adaptive: None,
         };
-        model.dt = self.step(&model)?;
-        model.adaptive = self.adaptive(model.dt);
+        let mut zoned = None;
+        if self.plan.zones.is_empty() {
+            model.dt = self.step(&model.mesh, &model.bodies, || {
+                System::new(model.clone()).map(|system| vec![system])
+            })?;
+            model.adaptive = self.adaptive(model.dt);
+        } else {
+            let mut parts = Zoned {
+                model: model.clone(),
+                zones: self.plan.model_zones(),
+                links: joints.links,
+                kind: self.plan.kind,
+            };
+            model.dt = self.step(&model.mesh, &model.bodies, || parts.systems())?;
+            parts.model.dt = model.dt;
+            zoned = Some(parts);
+        }
         if !self.problems.is_empty() {
             return None;
         }
-        let system = match System::new(model) {
+        let system = match &zoned {
+            None => System::new(model),
+            Some(zoned) => zoned.systems().and_then(|_| System::whole(model)),
+        };
+        let system = match system {
             Ok(system) => system,
             Err(error) => {
                 self.problems.push(self.refused(&error));
@@ -117,7 +169,8 @@ impl Builder<'_> {
         let reference = self.reference(&system, end);
         Some(Built {
             system,
-            zoned: None,
+            zoned,
+            overlaps: joints.overlaps,
             end,
             probes,
             reference,

@@ -1,5 +1,7 @@
 //! The exact solution of bars, with the sizes, speeds and gap of the case.
 
+use std::collections::BTreeSet;
+
 use carom_bodies::Body;
 use carom_contact::{Places, Rows, Search};
 use carom_dynamics::{System, step_count};
@@ -30,7 +32,7 @@ impl Builder<'_> {
             Reference::BarOnWall(bar) => ("bar-on-wall", bar.sides, false),
         };
         let path = format!("reference.{name}");
-        match solve(system, sides, two, end) {
+        match solve(system, (sides, two), end, |body| self.joined(body)) {
             Ok((solution, normal)) => Some(ExactReference {
                 name,
                 solution,
@@ -45,14 +47,41 @@ impl Builder<'_> {
             }
         }
     }
+
+    /// The bodies that joints make one with a body, itself first.
+    fn joined(&self, body: usize) -> Vec<usize> {
+        let case = self.case;
+        let names: Vec<&str> = case.body.names().collect();
+        let number = |name: &str| names.iter().position(|one| *one == name);
+        let overlaps = case.arlequin.iter().map(|(_, j)| (&j.inner, &j.outer));
+        let borders = case.interface.iter().map(|(_, j)| (&j.inner, &j.outer));
+        let pairs: Vec<(usize, usize)> = overlaps
+            .chain(borders)
+            .filter_map(|(inner, outer)| Some((number(inner)?, number(outer)?)))
+            .collect();
+        let mut all = vec![body];
+        let mut next = 0;
+        while let Some(&one) = all.get(next) {
+            next += 1;
+            for &(inner, outer) in &pairs {
+                for (from, to) in [(inner, outer), (outer, inner)] {
+                    if from == one && !all.contains(&to) {
+                        all.push(to);
+                    }
+                }
+            }
+        }
+        all
+    }
 }
 
-/// The solution, and the contact normal, which points from the primary side to the secondary one.
+/// The solution, and the contact normal, which points from the primary side to the secondary one. `joined`:
+/// the bodies that are one with a body.
 fn solve(
     system: &System,
-    sides: Sides,
-    two: bool,
+    (sides, two): (Sides, bool),
     end: f64,
+    joined: impl Fn(usize) -> Vec<usize>,
 ) -> Result<(Solution, [f64; 3]), String> {
     let [contact] = &system.contacts[..] else {
         return Err(format!(
@@ -66,11 +95,16 @@ fn solve(
         (false, Some(_)) => return Err("its contact is between two bodies".to_string()),
         (true, Some(_)) | (false, None) => {}
     }
-    let bodies = if two { 2 } else { 1 };
-    if system.bodies.len() != bodies {
+    let one = joined(secondary);
+    let other = primary.map(joined).unwrap_or_default();
+    if one.iter().any(|body| other.contains(body)) {
+        return Err("its two sides are joined".to_string());
+    }
+    let others = system.bodies.len() - one.len() - other.len();
+    if others > 0 {
+        let bars = if two { "the two bars" } else { "the bar" };
         return Err(format!(
-            "it has {} bodies instead of {bodies}",
-            system.bodies.len()
+            "it has {others} bodies besides {bars} in contact, which nothing joins to them"
         ));
     }
     let mut rows = Rows::default();
@@ -98,12 +132,12 @@ fn solve(
     };
     let normal = rows.normal(0);
     let area: f64 = contact.points.iter().map(|point| point.area).sum();
-    let one = bar(system, secondary, normal, sides, area)?;
+    let one = bar(system, &one, normal, (sides, area))?;
     let impact = match primary {
         None => Impact::Wall { bar: one, gap },
-        Some(primary) => Impact::TwoBars {
+        Some(_) => Impact::TwoBars {
             secondary: one,
-            primary: bar(system, primary, normal.map(|n| -n), sides, area)?,
+            primary: bar(system, &other, normal.map(|n| -n), (sides, area))?,
             gap,
         },
     };
@@ -115,29 +149,34 @@ fn solve(
     Ok((solution, normal))
 }
 
-/// The bar behind a body, whose contact end lies against `inward`, the unit vector from the contact into the bar.
+/// The bar that bodies make, whose contact end lies against `inward`, the unit vector from the contact into the bar.
 fn bar(
     system: &System,
-    index: usize,
+    indices: &[usize],
     inward: [f64; 3],
-    sides: Sides,
-    area: f64,
+    (sides, area): (Sides, f64),
 ) -> Result<Bar, String> {
-    let body: &Body = &system.bodies[index];
+    let body: &Body = &system.bodies[indices[0]];
+    let alike = |&index: &usize| system.bodies[index].material() == body.material();
+    if !indices.iter().all(alike) {
+        return Err(format!(
+            "the bodies joined to `{}` have other materials",
+            body.name()
+        ));
+    }
     let along = |vector: &[f64]| {
         (0..vector.len())
             .map(|i| inward[i] * vector[i])
             .sum::<f64>()
     };
-    let places = system.body_masses[index]
-        .iter()
-        .map(|&(node, _)| (along(&system.x[node as usize]), node));
+    let masses = indices.iter().flat_map(|&index| &system.body_masses[index]);
+    let places = masses.map(|&(node, _)| (along(&system.x[node as usize]), node));
     let (mut near, mut far) = (f64::INFINITY, f64::NEG_INFINITY);
     places
         .clone()
         .for_each(|(s, _)| (near, far) = (near.min(s), far.max(s)));
     let length = far - near;
-    let mass: f64 = system.body_mass(index);
+    let mass: f64 = indices.iter().map(|&index| system.body_mass(index)).sum();
     let density = body.material().density;
     if (mass - density * area * length).abs() > 1e-6 * mass {
         return Err(format!(
@@ -167,14 +206,18 @@ fn bar(
         .find(|&(_, node)| !clamped(node))
         .map_or(0, |(_, node)| system.dim * node as usize);
     let velocity = along(&system.initial_velocity[first..first + system.dim]);
-    let gravity: f64 = along(&gravity(system, index));
+    let gravity: f64 = along(&gravity(system, indices));
     Ok(bar.with_velocity(velocity).with_gravity(-gravity))
 }
 
-/// Acceleration of the dead load of a body, m/s².
-fn gravity(system: &System, index: usize) -> Vec<f64> {
-    let (mut force, mass) = (vec![0.0; system.dim], system.body_mass(index));
-    for &(node, _) in &system.body_masses[index] {
+/// Acceleration of the dead load of bodies, m/s².
+fn gravity(system: &System, indices: &[usize]) -> Vec<f64> {
+    let masses = indices.iter().flat_map(|&index| &system.body_masses[index]);
+    let mass: f64 = masses.clone().map(|(_, m)| m).sum();
+    // bodies may have nodes in common
+    let nodes: BTreeSet<u32> = masses.map(|(node, _)| *node).collect();
+    let mut force = vec![0.0; system.dim];
+    for node in nodes {
         for (i, force) in force.iter_mut().enumerate() {
             *force += system.load[system.dim * node as usize + i];
         }

@@ -1,11 +1,13 @@
 //! Step and scheme, and what the scheme refuses.
 
+use std::sync::Arc;
+
 use carom_contact::law::Level;
 use carom_dynamics::scheme::{
     CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, Krenk, LaursenChawla,
     LaursenLove, Newmark, NonsmoothAlpha, PaoliSchatzman, TchamwaWielgosz, Theta,
 };
-use carom_dynamics::{Adaptive, Closing, Error, Model, ModelBody, Scheme, System, step_count};
+use carom_dynamics::{Adaptive, Closing, Error, ModelBody, Scheme, System, step_count};
 use carom_mesh::Mesh;
 
 use super::Builder;
@@ -27,46 +29,22 @@ enum Size {
 }
 
 impl Builder<'_> {
-    pub(super) fn scheme(&self) -> Scheme {
-        match self.case.time.scheme {
-            schema::Scheme::Newmark(newmark) => Scheme::Newmark(Newmark {
-                beta: newmark.beta,
-                gamma: newmark.gamma,
-            }),
-            schema::Scheme::Theta(theta) => Scheme::Theta(Theta { theta: theta.theta }),
-            schema::Scheme::CentralDifference(_) => Scheme::CentralDifference(CentralDifference),
-            schema::Scheme::GeneralisedAlpha(alpha) => Scheme::GeneralisedAlpha(GeneralisedAlpha {
-                rho_inf: alpha.rho_inf,
-            }),
-            schema::Scheme::Hht(hht) => Scheme::Hht(Hht { alpha: hht.alpha }),
-            schema::Scheme::TchamwaWielgosz(scheme) => {
-                Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: scheme.phi })
-            }
-            schema::Scheme::PaoliSchatzman(scheme) => Scheme::PaoliSchatzman(PaoliSchatzman {
-                restitution: scheme.restitution,
-            }),
-            schema::Scheme::LaursenChawla(_) => Scheme::LaursenChawla(LaursenChawla),
-            schema::Scheme::LaursenLove(_) => Scheme::LaursenLove(LaursenLove),
-            schema::Scheme::Krenk(krenk) => Scheme::Krenk(Krenk {
-                rho_inf: krenk.rho_inf,
-            }),
-            schema::Scheme::NonsmoothAlpha(alpha) => Scheme::NonsmoothAlpha(NonsmoothAlpha {
-                rho_inf: alpha.rho_inf,
-            }),
-            schema::Scheme::ContactStabilised(_) => Scheme::ContactStabilised(ContactStabilised),
-            schema::Scheme::Kane(kane) => Scheme::Kane(Kane {
-                beta: kane.beta,
-                gamma: kane.gamma,
-            }),
-        }
+    /// The scheme of the bodies that take the outer step; of the first such zone, if there are several.
+    pub(super) fn outer_scheme(&self) -> Scheme {
+        let outer = self.plan.zones.iter().find(|zone| zone.substeps == 1);
+        scheme(&outer.map_or(self.case.time.scheme, |zone| zone.scheme))
     }
 
-    /// Refuses what the scheme cannot take, one problem a reason.
-    pub(super) fn scheme_and_laws(&mut self) {
-        let scheme = self.scheme();
-        let scheme = scheme.get();
+    /// Refuses a critical step of implicit schemes, and masses that a scheme cannot take.
+    pub(super) fn schemes(&mut self) {
+        let zones = self.plan.zones.iter().filter(|zone| zone.substeps == 1);
+        let mut outer: Vec<Scheme> = zones.map(|zone| scheme(&zone.scheme)).collect();
+        if self.plan.zones.is_empty() {
+            outer.push(scheme(&self.case.time.scheme));
+        }
         if let (path, Size::Critical(_)) = self.size()
-            && !scheme.is_explicit()
+            && let Some(scheme) = outer.first().map(Scheme::get)
+            && outer.iter().all(|scheme| !scheme.get().is_explicit())
         {
             let problem = Problem::new(path, "only an explicit scheme has a critical step");
             self.problems.push(
@@ -75,7 +53,27 @@ impl Builder<'_> {
                     .accepted(["step = { courant = ... }", "a fixed step"]),
             );
         }
+        for (number, (name, body)) in self.case.body.iter().enumerate() {
+            let zone = self.plan.zone_of(number);
+            let given = zone.map_or(self.case.time.scheme, |zone| self.plan.zones[zone].scheme);
+            let scheme = scheme(&given);
+            if scheme.get().needs_lumped_mass() && body.mass == Mass::Consistent {
+                let message = "the scheme divides by the mass: it must be diagonal";
+                let problem = Problem::new(format!("body.{name}.mass"), message);
+                self.problems.push(
+                    problem
+                        .found(format!("consistent with {}", scheme.get().name()))
+                        .accepted(["lumped"]),
+                );
+            }
+        }
+    }
+
+    /// Refuses laws that the scheme of their contact cannot take, one problem a reason.
+    pub(super) fn laws(&mut self, scheme_of: impl Fn(&str) -> schema::Scheme) {
         for (name, contact) in self.case.contact.iter() {
+            let scheme = scheme(&scheme_of(name));
+            let scheme = scheme.get();
             let level = level(&contact.law);
             if scheme.takes(level) {
                 continue;
@@ -106,30 +104,25 @@ impl Builder<'_> {
                 );
             }
         }
-        if !scheme.needs_lumped_mass() {
-            return;
-        }
-        for (name, body) in self.case.body.iter() {
-            if body.mass == Mass::Consistent {
-                let message = "the scheme divides by the mass: it must be diagonal";
-                let problem = Problem::new(format!("body.{name}.mass"), message);
-                self.problems.push(
-                    problem
-                        .found(format!("consistent with {}", scheme.name()))
-                        .accepted(["lumped"]),
-                );
-            }
-        }
     }
 
-    /// The step in seconds.
-    pub(super) fn step(&mut self, model: &Model) -> Option<f64> {
+    /// The step in seconds, with zones the outer one. `systems`: that of each zone, or of all.
+    pub(super) fn step(
+        &mut self,
+        mesh: &Mesh,
+        bodies: &[ModelBody],
+        systems: impl FnOnce() -> Result<Vec<Arc<System>>, Error>,
+    ) -> Option<f64> {
         let end = self.case.time.end.0;
         let (path, size) = self.size();
         let dt = match size {
             Size::Fixed(dt) => dt,
-            Size::Courant(courant) => courant * crossing(&model.mesh, &model.bodies),
-            Size::Critical(fraction) => fraction * self.critical(model)?,
+            Size::Courant(courant) => {
+                let outer = bodies.iter().enumerate();
+                let outer = outer.filter(|(body, _)| self.plan.is_outer(*body));
+                courant * crossing(mesh, outer.map(|(_, body)| body))
+            }
+            Size::Critical(fraction) => fraction * self.critical(systems)?,
         };
         let steps = step_count(end, dt);
         if !(dt > 0.0 && dt.is_finite()) || steps > MOST_STEPS {
@@ -195,10 +188,21 @@ impl Builder<'_> {
         })
     }
 
-    /// Critical step of the model, in s.
-    fn critical(&mut self, model: &Model) -> Option<f64> {
-        match System::new(model.clone()) {
-            Ok(system) => Some(system.critical_step()),
+    /// Critical step of the explicit schemes among those that take the outer step, in s.
+    fn critical(
+        &mut self,
+        systems: impl FnOnce() -> Result<Vec<Arc<System>>, Error>,
+    ) -> Option<f64> {
+        let zones = &self.plan.zones;
+        match systems() {
+            Ok(systems) => {
+                let outer = systems.iter().enumerate().filter(|(k, system)| {
+                    system.scheme.get().is_explicit()
+                        && zones.get(*k).is_none_or(|zone| zone.substeps == 1)
+                });
+                let steps = outer.map(|(_, system)| system.critical_step());
+                Some(steps.fold(f64::INFINITY, f64::min))
+            }
             Err(error) => {
                 self.problems.push(self.refused(&error));
                 None
@@ -243,8 +247,76 @@ impl Builder<'_> {
             Error::Massless { body, .. } => {
                 Problem::new(format!("body.{body}.mass"), error.to_string())
             }
+            Error::Zone { zone, cause } => self.refused_zone(zone, cause),
             other => Problem::new("time", other.to_string()),
         }
+    }
+}
+
+impl Builder<'_> {
+    /// The problem behind an error of a zone's system.
+    fn refused_zone(&self, name: &str, cause: &Error) -> Problem {
+        let zone = self.plan.zones.iter().find(|zone| zone.name == name);
+        match (cause, zone) {
+            (Error::Unstable { dt, critical }, Some(zone)) => {
+                let steps = f64::from(zone.substeps);
+                let enough = (steps * dt / critical).ceil();
+                let message = format!(
+                    "the step of the zone `{name}` is above the critical step of its explicit scheme, weights of overlaps included"
+                );
+                let path = match self
+                    .case
+                    .zone
+                    .get(name)
+                    .and_then(|zone| zone.substeps.as_ref())
+                {
+                    Some(schema::Substeps::Own(_)) => format!("zone.{name}.substeps"),
+                    _ => "time.step".to_string(),
+                };
+                Problem::new(path, message)
+                    .found(format!("{dt:.4e} s"))
+                    .accepted([
+                        format!("an outer step of at most {:.4e} s", steps * critical),
+                        format!("zone.{name}.substeps = {enough}"),
+                    ])
+            }
+            _ => self.refused(cause).note(format!("in the zone `{name}`")),
+        }
+    }
+}
+
+/// The scheme that the case names.
+pub(super) fn scheme(given: &schema::Scheme) -> Scheme {
+    match *given {
+        schema::Scheme::Newmark(newmark) => Scheme::Newmark(Newmark {
+            beta: newmark.beta,
+            gamma: newmark.gamma,
+        }),
+        schema::Scheme::Theta(theta) => Scheme::Theta(Theta { theta: theta.theta }),
+        schema::Scheme::CentralDifference(_) => Scheme::CentralDifference(CentralDifference),
+        schema::Scheme::GeneralisedAlpha(alpha) => Scheme::GeneralisedAlpha(GeneralisedAlpha {
+            rho_inf: alpha.rho_inf,
+        }),
+        schema::Scheme::Hht(hht) => Scheme::Hht(Hht { alpha: hht.alpha }),
+        schema::Scheme::TchamwaWielgosz(scheme) => {
+            Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: scheme.phi })
+        }
+        schema::Scheme::PaoliSchatzman(scheme) => Scheme::PaoliSchatzman(PaoliSchatzman {
+            restitution: scheme.restitution,
+        }),
+        schema::Scheme::LaursenChawla(_) => Scheme::LaursenChawla(LaursenChawla),
+        schema::Scheme::LaursenLove(_) => Scheme::LaursenLove(LaursenLove),
+        schema::Scheme::Krenk(krenk) => Scheme::Krenk(Krenk {
+            rho_inf: krenk.rho_inf,
+        }),
+        schema::Scheme::NonsmoothAlpha(alpha) => Scheme::NonsmoothAlpha(NonsmoothAlpha {
+            rho_inf: alpha.rho_inf,
+        }),
+        schema::Scheme::ContactStabilised(_) => Scheme::ContactStabilised(ContactStabilised),
+        schema::Scheme::Kane(kane) => Scheme::Kane(Kane {
+            beta: kane.beta,
+            gamma: kane.gamma,
+        }),
     }
 }
 
@@ -258,7 +330,7 @@ fn level(law: &Law) -> Level {
 }
 
 /// Least time in which a wave crosses an element, h_e / c, in s.
-fn crossing(mesh: &Mesh, bodies: &[ModelBody]) -> f64 {
+fn crossing<'m>(mesh: &Mesh, bodies: impl Iterator<Item = &'m ModelBody>) -> f64 {
     let time = |body: &ModelBody| {
         let speed = body.spec.material.wave_speed(body.spec.kinematics.plane());
         body.spec
@@ -267,5 +339,5 @@ fn crossing(mesh: &Mesh, bodies: &[ModelBody]) -> f64 {
             .map(|&cell| carom_bodies::smallest_size(mesh, cell) / speed)
             .fold(f64::INFINITY, f64::min)
     };
-    bodies.iter().map(time).fold(f64::INFINITY, f64::min)
+    bodies.map(time).fold(f64::INFINITY, f64::min)
 }

@@ -49,6 +49,8 @@ pub enum Nodes {
 pub enum Obstacle {
     /// A half space behind a plane.
     Plane(Plane),
+    /// A ball; a disc in the plane.
+    Sphere(Sphere),
 }
 
 /// A rigid plane.
@@ -59,6 +61,16 @@ pub struct Plane {
     pub point: Vector<Coordinate>,
     /// Normal of the plane out of the obstacle, towards the bodies; of any length but zero.
     pub normal: NormalVector,
+}
+
+/// A rigid sphere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Sphere {
+    /// Its centre.
+    pub centre: Vector<Coordinate>,
+    /// Its radius.
+    pub radius: Length,
 }
 
 /// One to three numbers, not all zero; those left out are zero.
@@ -194,11 +206,26 @@ pub struct StopLaw {
     /// last one as before it. One point gives a spring.
     #[schemars(extend("minItems" = 1, "maxItems" = 16))]
     pub curve: Vec<CurvePoint>,
+    /// What becomes of the crush when the stop is unloaded.
+    #[serde(default)]
+    pub crush: Crush,
     /// Dashpot. Default: 0.
     pub damping: Option<Damping>,
     /// What becomes of a force that the dashpot makes tensile.
     #[serde(default)]
     pub adhesion: Adhesion,
+}
+
+/// What becomes of the crush of a stop.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Crush {
+    /// All of it is given back: unloading follows the curve.
+    #[default]
+    Recovered,
+    /// It stays but for its elastic part: unloading and reloading follow a line of the initial stiffness from the point of largest
+    /// crush, and beyond that point the curve goes on. No piece of the curve may be steeper than the first.
+    Permanent,
 }
 
 /// A point of the curve of a stop.

@@ -10,6 +10,7 @@ mod mesh;
 mod output;
 mod quantity;
 mod time;
+mod zone;
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -23,9 +24,9 @@ pub use body::{
     PlaneSection, Section, Support,
 };
 pub use contact::{
-    Adhesion, Capture, ComplianceLaw, Contact, CurvePoint, DampedLaw, DisplacementLaw, Integration,
-    IntegrationName, IntegrationWith, Law, Nodes, NormalVector, Obstacle, PenaltyLaw, Plane,
-    RestitutionLaw, Sign, Sliding, StopLaw, VelocityLaw,
+    Adhesion, Capture, ComplianceLaw, Contact, Crush, CurvePoint, DampedLaw, DisplacementLaw,
+    Integration, IntegrationName, IntegrationWith, Law, Nodes, NormalVector, Obstacle, PenaltyLaw,
+    Plane, RestitutionLaw, Sign, Sliding, Sphere, StopLaw, VelocityLaw,
 };
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};
@@ -37,6 +38,11 @@ pub use time::{
     Adaptive, CentralDifference, Closing, ContactStabilised, GeneralisedAlpha, Hht, Kane, Krenk,
     LargestStep, LaursenChawla, LaursenLove, MeshStep, Newmark, NonsmoothAlpha, PaoliSchatzman,
     Scheme, Step, StepRule, TchamwaWielgosz, Theta, Time,
+};
+pub use zone::{
+    Arlequin, Bracket, BracketLength, BracketName, BracketWith, H1Bracket, Interface, LengthName,
+    Link, Mediator, OverlapBox, OverlapName, OverlapRegion, OverlapShape, Profile, ProfileName,
+    ProfileWith, StepCount, Substeps, WeightTable, Weights, Zone,
 };
 
 /// A case: bodies, what joins them, and the time to simulate.
@@ -64,6 +70,15 @@ pub struct Case {
     /// Contacts, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub contact: Named<Contact>,
+    /// Zones, by name: parts with their own scheme and step.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub zone: Named<Zone>,
+    /// Overlaps of two bodies that are glued in volume, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub arlequin: Named<Arlequin>,
+    /// Borders where bodies of two zones are tied node to node, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub interface: Named<Interface>,
     /// Time and scheme.
     pub time: Time,
     /// Points whose motion is written at every step, by name.

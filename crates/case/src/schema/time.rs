@@ -11,9 +11,9 @@ use super::quantity::Duration;
 pub struct Time {
     /// Time at the end; the beginning is 0.
     pub end: Duration,
-    /// Time step.
+    /// Time step. With zones: the outer one. Rules from the mesh then look at the zones that take it.
     pub step: Step,
-    /// Time scheme.
+    /// Time scheme. With zones: that of every zone without its own.
     pub scheme: Scheme,
 }
 
@@ -50,11 +50,12 @@ pub struct Adaptive {
     /// What a contact that closes within a step does to it.
     #[serde(default)]
     pub closing: Closing,
-    /// A step in which energy grows without load by more than this fraction of the largest energy is halved.
+    /// A step after which the energy exceeds that of the start and the work of the loads by more than this fraction of the
+    /// largest energy is halved.
     #[serde(default = "hundredth")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub energy_growth: f64,
-    /// Steps without event after which the step doubles.
+    /// Steps without a halving after which the step doubles.
     #[serde(default = "ten")]
     #[schemars(extend("minimum" = 1))]
     pub patience: u32,

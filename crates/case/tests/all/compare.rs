@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use carom_case::{Choices, Fit, Input, Sweep, SweepError, Vary, compare, fit, study};
+use carom_case::{Axis, Choices, Fit, Input, Sweep, SweepError, compare, fit, study};
 use carom_dynamics::{Observer, State, StepReport, System};
 use carom_output::Summary;
 use carom_output::compare::{COLUMNS, Comparison, Outcome, Standard};
@@ -48,6 +48,7 @@ impl Observer for Nobody {
 fn sweep<T>(folder: &Path, jobs: usize, work: impl FnOnce(&Sweep) -> T) -> T {
     work(&Sweep {
         folder,
+        contact: None,
         jobs,
         watch: &|_, _| Box::new(Nobody),
         stop: &|| false,
@@ -235,7 +236,7 @@ fn refused_pairs_keep_their_rows_and_wrong_words_are_bad_input() {
 }
 
 fn studied(folder: &Path, input: &Input, vary: &[&str]) -> Study {
-    let vary: Vec<Vary> = vary.iter().map(|text| Vary::read(text).unwrap()).collect();
+    let vary: Vec<Axis> = vary.iter().map(|text| Axis::read(text).unwrap()).collect();
     sweep(folder, 1, |sweep| study(input, &vary, sweep))
         .unwrap()
         .0
@@ -249,7 +250,7 @@ fn impulse_and_restitution_of_two_bars_converge_with_the_width_of_the_front() {
     let study = studied(
         work.path().join("s").as_path(),
         &two_bars(10, EXACT),
-        &[&vary[0], &vary[1]],
+        &[&vary.join(";")],
     );
     let orders = study.orders();
     let of = |quantity| {
@@ -283,7 +284,7 @@ fn without_an_exact_solution_the_order_comes_from_differences() {
     let elements = "50,100,200,400";
     let vary = ["one", "two"].map(|bar| format!("mesh.generate.{bar}.line.elements={elements}"));
     let folder = work.path().join("s");
-    let study = studied(&folder, &two_bars(10, ""), &[&vary[0], &vary[1]]);
+    let study = studied(&folder, &two_bars(10, ""), &[&vary.join(";")]);
     let orders = study.orders();
     let energy = orders
         .iter()
@@ -349,5 +350,103 @@ fn a_goal_that_is_none_is_refused() {
             matches!(read, Err(SweepError::Input { .. })),
             "{between} {goal}"
         );
+    }
+}
+
+#[test]
+fn a_grid_has_a_row_for_each_combination_and_orders_for_each_value_of_the_second_axis() {
+    let work = tempfile::tempdir().unwrap();
+    let folder = work.path().join("study");
+    let axes = [
+        "time.step.courant=0.5,0.25,0.125",
+        "time.scheme.theta.theta=0.5,1.0",
+    ];
+    let input = two_bars(10, EXACT);
+    let study = studied(&folder, &input, &axes);
+    let names: Vec<&str> = study
+        .runs
+        .iter()
+        .map(|run| run.variant.name.as_str())
+        .collect();
+    assert_eq!(names.len(), 6);
+    assert_eq!(names[0], "1-courant-0.5-theta-0.5");
+    assert_eq!(names[5], "6-courant-0.125-theta-1.0");
+    let [courant, theta] = &study.keys[..] else {
+        panic!("{:?}", study.keys);
+    };
+    assert_eq!(courant.1, ["0.5", "0.5", "0.25", "0.25", "0.125", "0.125"]);
+    assert_eq!(theta.1, ["0.5", "1.0", "0.5", "1.0", "0.5", "1.0"]);
+    // each run is that of the study of one axis with the other value set
+    for (at, value) in ["0.5", "1.0"].iter().enumerate() {
+        let single = folder.with_extension(value);
+        let set = format!("time.scheme.theta.theta={value}");
+        let text = input.sources[0].text.clone();
+        let set = Input::from_text("case.toml", &text, &[set]);
+        let one = studied(&single, &set, &axes[..1]);
+        for (k, run) in one.runs.iter().enumerate() {
+            let same = &study.runs[2 * k + at];
+            for quantity in Quantity::ALL {
+                assert_eq!(quantity.of(run), quantity.of(same), "{quantity:?}");
+            }
+        }
+        let series = format!("theta {value}");
+        let orders = study.orders();
+        let orders = orders.iter().filter(|order| order.series == series);
+        let points = |orders: &mut dyn Iterator<Item = &carom_output::study::Order>| {
+            orders.map(|order| order.points.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            points(&mut orders.into_iter()),
+            points(&mut one.orders().iter())
+        );
+    }
+    let csv = std::fs::read_to_string(folder.join("orders.csv")).unwrap();
+    assert!(csv.contains("\nimpulse_n_s,theta 1.0,"), "{csv}");
+}
+
+/// Two bars between a wall and each other: the second contact closes when the wave has passed.
+fn bars_and_wall() -> Input {
+    let mut text = two_bars(10, "").sources[0].text.clone();
+    text += r#"
+[contact.wall]
+secondary = "two.right"
+obstacle.plane = { point = ["254 mm"], normal = [-1.0] }
+law.velocity = {}
+"#;
+    Input::from_text("case.toml", &text, &[])
+}
+
+#[test]
+fn the_contact_that_is_looked_at_is_chosen_and_named() {
+    let work = tempfile::tempdir().unwrap();
+    let looked_at = |contact: Option<&str>| {
+        let folder = work.path().join(contact.unwrap_or("default"));
+        let choices = Choices {
+            reference: Some("none".to_owned()),
+            ..Choices::default()
+        };
+        sweep(&folder, 1, |sweep| {
+            let sweep = Sweep { contact, ..*sweep };
+            compare(&bars_and_wall(), &choices, &sweep)
+        })
+    };
+    let (first, _) = looked_at(None).unwrap();
+    let (wall, _) = looked_at(Some("wall")).unwrap();
+    assert_eq!(first.contact(), Some("shock"));
+    assert_eq!(wall.contact(), Some("wall"));
+    for (comparison, name) in [(&first, "shock"), (&wall, "wall")] {
+        let summary = &comparison.variants[0].done().unwrap().summary;
+        let impulse = value(comparison, "case", "impulse_n_s");
+        assert_eq!(impulse, Some(summary.contacts[name].impulse));
+    }
+    assert_ne!(
+        value(&first, "case", "impulse_n_s"),
+        value(&wall, "case", "impulse_n_s")
+    );
+    match looked_at(Some("wal")) {
+        Err(SweepError::Input { problems, .. }) => {
+            assert_eq!(problems[0].nearest.as_deref(), Some("wall"));
+        }
+        other => panic!("{other:?}"),
     }
 }

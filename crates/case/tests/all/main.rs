@@ -6,3 +6,5 @@
 mod compare;
 mod quadrature;
 mod stage_one;
+mod warnings;
+mod zones;

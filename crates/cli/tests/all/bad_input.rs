@@ -1,4 +1,5 @@
-//! Every wrong case of `tests/bad-input` gives its expected message, exits 2 and leaves nothing.
+//! Every wrong case of `tests/bad-input` gives its expected message, exits 2 and leaves nothing but, from `carom check`, the
+//! files that the message names.
 //!
 //! A folder there holds `case.toml` (or not, where that is what is wrong), what it refers to, the message in `expected.txt`, and the
 //! further arguments of the command in `arguments`, one a line. `CAROM_BLESS=1` writes the messages anew: read them by eye then.
@@ -46,10 +47,32 @@ fn answer(command: &str, case: &Path, work: &Path) -> (String, Vec<String>) {
     if output.status.code() != Some(2) {
         wrong.push(format!("exit {:?} instead of 2", output.status.code()));
     }
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let pictures = work.join("case.check");
     for left in names(work).difference(&before) {
-        wrong.push(format!("left {}", left.display()));
+        if command != "check" || *left != pictures {
+            wrong.push(format!("left {}", left.display()));
+        }
     }
-    (String::from_utf8_lossy(&output.stderr).into_owned(), wrong)
+    wrong.extend(not_as_named(&message, command, &pictures));
+    (message, wrong)
+}
+
+/// Files with cells that the message names and `carom check` did not write, or the other way round.
+fn not_as_named(message: &str, command: &str, pictures: &Path) -> Vec<String> {
+    let written = match command == "check" && pictures.is_dir() {
+        true => names(pictures),
+        false => BTreeSet::new(),
+    };
+    let named = message.split_whitespace().filter_map(|word| {
+        let name = word.strip_prefix("case.check/")?;
+        Some(pictures.join(name))
+    });
+    let named: BTreeSet<PathBuf> = named.filter(|_| command == "check").collect();
+    let differ = written.symmetric_difference(&named);
+    differ
+        .map(|file| format!("named or written, not both: {}", file.display()))
+        .collect()
 }
 
 #[test]

@@ -49,7 +49,13 @@ fn every_case_of_the_project_passes_the_check_and_leaves_nothing() {
 fn every_template_passes_the_check_and_no_file_is_overwritten() {
     let listed = text(&carom(&project(), &["new"]));
     let work = tempfile::tempdir().unwrap();
-    for name in ["two-bars", "two-bars-newmark", "bar-on-wall", "block-drop"] {
+    for name in [
+        "two-bars",
+        "two-bars-newmark",
+        "bar-on-wall",
+        "block-drop",
+        "arlequin",
+    ] {
         assert!(listed.contains(name));
         let file = format!("{name}.toml");
         assert_eq!(

@@ -2,7 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 use crate::commands::{carom, project, text};
 
@@ -52,9 +53,9 @@ fn a_comparison_leaves_its_table_its_figures_and_the_results_of_each_variant() {
     let csv = fs::read_to_string(folder.join("comparison.csv")).unwrap();
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!(lines.len(), 3);
-    assert!(lines[0].starts_with("variant,scheme,law,force_error,overshoot,"));
+    assert!(lines[0].starts_with("variant,scheme,contact,law,force_error,overshoot,"));
     assert!(
-        lines[1].starts_with("theta,\"theta, theta = 0.5\",velocity,0."),
+        lines[1].starts_with("theta,\"theta, theta = 0.5\",shock,velocity,0."),
         "{}",
         lines[1]
     );
@@ -113,7 +114,7 @@ fn a_pair_that_is_refused_is_in_the_table_with_its_reason() {
 fn bad_input_exits_2_and_leaves_nothing() {
     let work = tempfile::tempdir().unwrap();
     case(work.path());
-    let wrong: [&[&str]; 7] = [
+    let wrong: [&[&str]; 8] = [
         &["compare", "case.toml", "--with", "newmrk"],
         &[
             "compare",
@@ -138,9 +139,15 @@ fn bad_input_exits_2_and_leaves_nothing() {
             "study",
             "case.toml",
             "--vary",
-            "time.step.courant=1,0.5",
-            "--vary",
-            "time.end=1e-4",
+            "time.step.courant=1,0.5; time.end=1e-4",
+        ],
+        &[
+            "compare",
+            "case.toml",
+            "--with",
+            "theta",
+            "--contact",
+            "shok",
         ],
     ];
     for arguments in wrong {
@@ -194,20 +201,14 @@ fn a_study_gives_orders_with_error_bars_and_a_figure() {
         ["striker", "target"].map(|bar| format!("mesh.generate.{bar}.line.elements=20,40,80"));
     let output = carom(
         work.path(),
-        &[
-            "study",
-            "case.toml",
-            "--vary",
-            &elements[0],
-            "--vary",
-            &elements[1],
-        ],
+        &["study", "case.toml", "--vary", &elements.join(";")],
     );
     let said = text(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
     for word in [
         "against time step (s)",
         "± 0.",
+        "Contact `shock`.",
         "raw peak of a single step does not converge",
     ] {
         assert!(said.contains(word), "{word}: {said}");
@@ -217,7 +218,7 @@ fn a_study_gives_orders_with_error_bars_and_a_figure() {
     assert!(
         orders
             .lines()
-            .any(|line| line.starts_with("impulse_n_s,0.7")),
+            .any(|line| line.starts_with("impulse_n_s,,0.7")),
         "{orders}"
     );
     assert!(
@@ -260,4 +261,68 @@ fn a_fit_prints_the_value_that_it_found() {
     let output = fit("restitution=0.1");
     assert_eq!(output.status.code(), Some(3), "{}", text(&output));
     assert_eq!(fit("rest=0.1").status.code(), Some(2));
+}
+
+/// Starts a sweep, interrupts it while the run in the folder `running` goes on, and gives the table that it left.
+fn interrupted(arguments: &[&str], running: &str, table: &str) -> String {
+    let work = tempfile::tempdir().unwrap();
+    case(work.path());
+    let mut child = Command::new(env!("CARGO_BIN_EXE_carom"))
+        .args(arguments)
+        .current_dir(work.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let begin = Instant::now();
+    let histories = work.path().join(running).join("histories.csv");
+    while fs::metadata(&histories).map_or(0, |data| data.len()) < 100_000 {
+        let waited = begin.elapsed();
+        assert!(
+            waited < Duration::from_secs(60),
+            "the run writes as it goes"
+        );
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let folder = work.path().join(running);
+    let summary = fs::read_to_string(folder.join("summary.json")).unwrap();
+    assert!(summary.contains("interrupted"), "{summary}");
+    fs::read_to_string(work.path().join(table)).unwrap()
+}
+
+/// The rows of a table that end in the verdict `stopped`, or were computed.
+fn counts(table: &str) -> [usize; 2] {
+    let count = |word: &str| table.lines().filter(|line| line.contains(word)).count();
+    [count(",stopped,"), count(",good,")]
+}
+
+#[test]
+fn an_interrupted_comparison_has_a_table_and_exits_130() {
+    let arguments = [
+        "compare",
+        "case.toml",
+        "--with",
+        "theta",
+        "newmark={beta=0.49,gamma=0.9}",
+        "--reference",
+        "finest",
+        "--set",
+        "time.end=10.0",
+    ];
+    let running = "case.compare/theta";
+    let table = interrupted(&arguments, running, "case.compare/comparison.csv");
+    assert_eq!(counts(&table), [3, 0], "{table}");
+}
+
+#[test]
+fn an_interrupted_study_keeps_the_runs_before_and_exits_130() {
+    let arguments = ["study", "case.toml", "--vary", "time.end=1e-4,10.0,20.0"];
+    let running = "case.study/2-end-10.0";
+    let table = interrupted(&arguments, running, "case.study/study.csv");
+    assert_eq!(counts(&table), [2, 1], "{table}");
 }

@@ -173,3 +173,38 @@ fn a_contact_problem_without_solution_ends_the_run_and_is_kept() {
             .is_file()
     );
 }
+
+#[test]
+fn an_adaptive_step_that_cannot_go_on_ends_the_run_with_its_cause_and_what_was_computed() {
+    let work = tempfile::tempdir().unwrap();
+    case("two-bars-newmark", work.path());
+    // the trapezoid with the displacement law makes energy in contact, however small the step
+    let step = "time.step={ adaptive = { largest = { courant = 0.5 } } }";
+    let output = carom(work.path(), &["run", "case.toml", "--set", step]);
+    assert_eq!(output.status.code(), Some(3), "{}", text(&output));
+    assert!(
+        text(&output).contains("the energy grows without a load"),
+        "{}",
+        text(&output)
+    );
+    let results = work.path().join("case.carom");
+    for name in ["report.html", "checkpoints/last.state", "plots/energy.svg"] {
+        assert!(results.join(name).is_file(), "{name}");
+    }
+    let summary = summary(work.path());
+    let time = &summary["time"];
+    // the initial state has a row too
+    assert_eq!(
+        rows(work.path()) as u64,
+        time["steps"].as_u64().unwrap() + 1
+    );
+    assert!(time["rejected"]["energy_growth"].as_u64().unwrap() > 0);
+    assert!(time["end"].as_f64().unwrap() < 5.8e-3);
+    let verdict = &summary["verdict"];
+    assert_eq!(verdict["good"], false);
+    let reason = verdict["reasons"][0].as_str().unwrap();
+    assert!(
+        reason.contains("the energy grows without a load"),
+        "{reason}"
+    );
+}

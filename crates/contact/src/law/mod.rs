@@ -10,6 +10,7 @@
 
 mod capture;
 mod compliance;
+mod curve;
 mod damped;
 mod displacement;
 mod penalty;
@@ -21,11 +22,12 @@ use serde::{Deserialize, Serialize};
 
 pub use capture::Capture;
 pub use compliance::Compliance;
+pub use curve::{Curve, CurveError, MOST_CURVE_POINTS};
 pub use damped::{Adhesion, Damped};
 pub use displacement::Displacement;
 pub use penalty::Penalty;
 pub use restitution::Restitution;
-pub use stop::{Curve, CurveError, MOST_CURVE_POINTS, Stop};
+pub use stop::{Crush, Stop};
 pub use velocity::{Reading, Velocity};
 
 /// Status of a contact point in a step.
@@ -59,6 +61,9 @@ pub struct Local {
     pub dt: f64,
     /// Gap below which a point counts as closed, m.
     pub tolerance: f64,
+    /// What a law with memory keeps of the point, m: the largest penetration so far.
+    #[serde(default)]
+    pub crush: f64,
 }
 
 /// Which quantity at the end of the step a law constrains.
@@ -166,6 +171,23 @@ impl Law {
         matches!(self, Law::Displacement(Displacement { projection: true }))
     }
 
+    /// The largest penetration of a point that has carried a force, in m, after a step that ended with the gap `gap` in
+    /// m; `before`: the one before the step. Only laws with memory change it.
+    pub fn crushed(&self, before: f64, gap: f64) -> f64 {
+        match self {
+            Law::Stop(stop) => stop.crushed(before, gap),
+            _ => before,
+        }
+    }
+
+    /// Energy that a contact all of whose points have this largest penetration (m) does not give back, J.
+    pub fn crush_energy(&self, crush: f64) -> f64 {
+        match self {
+            Law::Stop(stop) => stop.crush_energy(crush),
+            _ => 0.0,
+        }
+    }
+
     /// Whether it is complementarity of the force and one quantity, for which there is a weak form with a multiplier.
     pub fn has_weak_form(&self) -> bool {
         matches!(
@@ -211,6 +233,7 @@ mod tests {
         gap_free: 0.0,
         dt: 1.0,
         tolerance: 0.0,
+        crush: 0.0,
     };
 
     fn end(gap: f64, rate: f64, force: f64) -> End {

@@ -3,140 +3,42 @@
 use serde::{Deserialize, Serialize};
 
 use super::damped::pressing;
-use super::{Adhesion, ContactLaw, End, Level, Local, Relation, Status};
+use super::{Adhesion, ContactLaw, Curve, End, Level, Local, MOST_CURVE_POINTS, Relation, Status};
 
-/// Most points of a curve.
-pub const MOST_CURVE_POINTS: usize = 16;
-
-/// Force over penetration of a whole contact, linear in pieces from (0, 0) through increasing points; beyond the last
-/// point the last piece goes on. A fixed array, so that laws stay plain values.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Vec<[f64; 2]>", into = "Vec<[f64; 2]>")]
-pub struct Curve {
-    points: [[f64; 2]; MOST_CURVE_POINTS],
-    pieces: u16,
-}
-
-/// Why points make no curve.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum CurveError {
-    /// No point, or too many.
-    #[error("a curve of {points} points: it has 1 to {MOST_CURVE_POINTS}")]
-    Count {
-        /// How many there are.
-        points: usize,
-    },
-    /// A point that is not above the one before it in penetration and in force, the first above (0, 0).
-    #[error(
-        "point {point} of the curve, {found:?} m and N, is not above {before:?}: penetration and force must increase"
-    )]
-    NotIncreasing {
-        /// Its number, from 1.
-        point: usize,
-        /// The point.
-        found: [f64; 2],
-        /// The point before it.
-        before: [f64; 2],
-    },
-}
-
-impl Curve {
-    /// A curve through (0, 0) and these points: penetration in m, force of the whole contact in N.
-    ///
-    /// # Errors
-    /// No point or more than [`MOST_CURVE_POINTS`]; points that do not increase.
-    pub fn new(points: &[[f64; 2]]) -> Result<Curve, CurveError> {
-        let count = points.len();
-        if count == 0 || count > MOST_CURVE_POINTS {
-            return Err(CurveError::Count { points: count });
-        }
-        let mut curve = Curve {
-            points: [[0.0; 2]; MOST_CURVE_POINTS],
-            pieces: count as u16,
-        };
-        let mut before = [0.0; 2];
-        for (k, &found) in points.iter().enumerate() {
-            if !(found[0] > before[0] && found[1] > before[1]) {
-                return Err(CurveError::NotIncreasing {
-                    point: k + 1,
-                    found,
-                    before,
-                });
-            }
-            curve.points[k] = found;
-            before = found;
-        }
-        Ok(curve)
-    }
-
-    /// Force at a penetration in m, N; zero where it is negative.
-    pub fn force(&self, penetration: f64) -> f64 {
-        let piece = self.piece(penetration);
-        let [start, force] = self.start(piece);
-        force + self.stiffness(piece) * (penetration.max(0.0) - start)
-    }
-
-    /// The piece that holds a penetration.
-    fn piece(&self, penetration: f64) -> u16 {
-        let inner = &self.points[..self.pieces as usize - 1];
-        inner.partition_point(|point| point[0] < penetration) as u16
-    }
-
-    /// First point of a piece.
-    fn start(&self, piece: u16) -> [f64; 2] {
-        match piece {
-            0 => [0.0; 2],
-            _ => self.points[piece as usize - 1],
-        }
-    }
-
-    /// Slope of a piece, N/m.
-    fn stiffness(&self, piece: u16) -> f64 {
-        let ([x0, f0], [x1, f1]) = (self.start(piece), self.points[piece as usize]);
-        (f1 - f0) / (x1 - x0)
-    }
-
-    /// The piece with the greatest slope.
-    fn stiffest(&self) -> u16 {
-        let steeper = |best, piece| {
-            if self.stiffness(piece) > self.stiffness(best) {
-                piece
-            } else {
-                best
-            }
-        };
-        (1..self.pieces).fold(0, steeper)
-    }
-}
-
-impl TryFrom<Vec<[f64; 2]>> for Curve {
-    type Error = CurveError;
-
-    fn try_from(points: Vec<[f64; 2]>) -> Result<Curve, CurveError> {
-        Curve::new(&points)
-    }
-}
-
-impl From<Curve> for Vec<[f64; 2]> {
-    fn from(curve: Curve) -> Vec<[f64; 2]> {
-        curve.points[..usize::from(curve.pieces)].to_vec()
-    }
+/// What becomes of the crush of a stop when it is unloaded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Crush {
+    /// All of it is given back: unloading follows the curve.
+    #[default]
+    Recovered,
+    /// It stays but for the elastic part: unloading follows a line of the initial stiffness.
+    Permanent,
 }
 
 /// Stop: `P = share (F(δ) - C ġ₊)` where the penetration `δ = -(g₊ + j)` is positive, F a curve that is linear in
-/// pieces, j the clearance. Elastic: unloading follows the same curve. As in the damped law a point whose damper leaves
-/// it no sign takes the corner δ = 0.
+/// pieces, j the clearance. As in the damped law a point whose damper leaves it no sign takes the corner δ = 0.
+///
+/// Where the crush is permanent, F has a memory δ_m, the largest penetration so far of the point. Below δ_m it is
+/// `k₁ max(0, δ - δ_p)` with the stiffness k₁ of the first piece, `δ_p = δ_m - F(δ_m)/k₁` the crush that stays; beyond δ_m
+/// the curve goes on. No piece may be steeper than the first ([`Curve::first_steeper`]): unloading would give more energy
+/// than loading took. Lost for good is `∫₀^δ_m F dδ - F(δ_m)²/(2 k₁)`.
 ///
 /// Within a step a point first goes to the piece of its penetration, and to the next one towards it where that has not
-/// settled: for one point the solution is always on that side, since force and compliance increase.
+/// settled: for one point the solution is always on that side, since force and compliance increase. Status piece 0 is the
+/// first piece of the curve, or the line below δ_m. A point on the curve goes down to that line only below δ_m by more
+/// than the tolerance of gaps: where it rests at δ_m, rounding must not decide between two pieces that give the same force.
 ///
-/// Source: the force-gap elements of structural codes; the pieces are solved as signs of a semi-smooth Newton method.
+/// Source: the force-gap elements of structural codes, and elastic unloading as in the plasticity of a bar; the pieces are
+/// solved as signs of a semi-smooth Newton method.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// j in m, zero or more.
     pub clearance: f64,
     /// F, in N over m, of the whole contact.
     pub curve: Curve,
+    /// Whether F has a memory.
+    #[serde(default)]
+    pub crush: Crush,
     /// C of the whole contact, N s/m.
     pub damping: f64,
     /// Whether tension is cut off.
@@ -144,12 +46,48 @@ pub struct Stop {
 }
 
 impl Stop {
+    /// The largest penetration after a step that ended with the gap `gap` in m, m.
+    pub(super) fn crushed(&self, before: f64, gap: f64) -> f64 {
+        match self.crush {
+            Crush::Recovered => before,
+            Crush::Permanent => before.max(-(gap + self.clearance)),
+        }
+    }
+
+    /// Energy that the whole contact does not give back after the largest penetration `crush` in m, J.
+    pub(super) fn crush_energy(&self, crush: f64) -> f64 {
+        if self.crush == Crush::Recovered || self.curve.piece(crush) == 0 {
+            return 0.0;
+        }
+        let force = self.curve.force(crush);
+        self.curve.energy(crush) - 0.5 * force * force / self.curve.stiffness(0)
+    }
+
+    /// δ_p in m: where the force begins.
+    fn permanent(&self, crush: f64) -> f64 {
+        match self.curve.piece(crush) {
+            0 => 0.0,
+            _ => crush - self.curve.force(crush) / self.curve.stiffness(0),
+        }
+    }
+
     /// The piece after `now` for this penetration in m.
-    fn piece(&self, now: Status, penetration: f64, reversals: u32) -> u16 {
-        let wanted = self.curve.piece(penetration);
+    fn piece(&self, now: Status, penetration: f64, local: &Local, reversals: u32) -> u16 {
+        let slack = match now {
+            Status::Piece(1..) => local.tolerance,
+            _ => 0.0,
+        };
+        let wanted = match penetration <= local.crush - slack {
+            true => 0,
+            false => self.curve.piece(penetration),
+        };
+        // the pieces of the curve below the largest penetration are gone
+        let first = self.curve.piece(local.crush);
         match now {
+            Status::Piece(0) if reversals >= 3 => wanted.min(first.max(1)),
             Status::Piece(piece) if reversals >= 3 => {
-                wanted.clamp(piece.saturating_sub(1), piece + 1)
+                let below = if piece <= first { 0 } else { piece - 1 };
+                wanted.clamp(below, piece + 1)
             }
             _ => wanted,
         }
@@ -177,16 +115,19 @@ impl ContactLaw for Stop {
         let piece = match status {
             Status::Corner => {
                 return Relation {
-                    offset: self.clearance,
+                    offset: self.clearance + self.permanent(local.crush),
                     ..Relation::GAP
                 };
             }
-            Status::Piece(piece) => piece.min(self.curve.pieces - 1),
+            Status::Piece(piece) => piece.min(self.curve.pieces() - 1),
             // where the piece is not known, the one that bounds the stiffness
             Status::Open | Status::Closed => self.curve.stiffest(),
         };
-        let ([penetration, force], stiffness) =
-            (self.curve.start(piece), self.curve.stiffness(piece));
+        let [penetration, force] = match piece {
+            0 => [self.permanent(local.crush), 0.0],
+            _ => self.curve.start(piece),
+        };
+        let stiffness = self.curve.stiffness(piece);
         Relation {
             gap: local.share * stiffness,
             rate: local.share * self.damping,
@@ -195,13 +136,15 @@ impl ContactLaw for Stop {
         }
     }
 
-    fn status(&self, now: Status, end: &End, _local: &Local, reversals: u32) -> Status {
+    fn status(&self, now: Status, end: &End, local: &Local, reversals: u32) -> Status {
+        let penetration = -(end.gap + self.clearance);
+        let start = self.clearance + self.permanent(local.crush);
         let end = End {
-            gap: end.gap + self.clearance,
-            gap_released: end.gap_released + self.clearance,
+            gap: end.gap + start,
+            gap_released: end.gap_released + start,
             ..*end
         };
-        let piece = || Status::Piece(self.piece(now, -end.gap, reversals));
+        let piece = || Status::Piece(self.piece(now, penetration, local, reversals));
         if let Status::Closed | Status::Piece(1..) = now {
             // a piece that goes on below its start says nothing about opening: only the first one opens
             return piece();
@@ -229,35 +172,9 @@ mod tests {
         Stop {
             clearance: 0.5,
             curve: Curve::new(&POINTS).unwrap(),
+            crush: Crush::Recovered,
             damping: 0.0,
             adhesion: Adhesion::Clip,
-        }
-    }
-
-    #[test]
-    fn curve_goes_through_its_points_and_on() {
-        let curve = stop().curve;
-        for [penetration, force] in POINTS {
-            assert_eq!(curve.force(penetration), force);
-        }
-        assert_eq!(curve.force(-1.0), 0.0);
-        assert_eq!(curve.force(0.5), 5.0);
-        assert_eq!(curve.force(1.5), 10.5);
-        assert_eq!(curve.force(4.0), 51.0);
-    }
-
-    #[test]
-    fn points_that_make_no_curve_are_told() {
-        assert_eq!(Curve::new(&[]), Err(CurveError::Count { points: 0 }));
-        let many: Vec<[f64; 2]> = (1..=17).map(|k| [k as f64; 2]).collect();
-        assert_eq!(Curve::new(&many), Err(CurveError::Count { points: 17 }));
-        assert!(Curve::new(&many[..16]).is_ok());
-        for bad in [[2.0, 10.0], [1.0, 11.0], [f64::NAN, 11.0]] {
-            let points = [[1.0, 10.0], bad];
-            assert!(matches!(
-                Curve::new(&points),
-                Err(CurveError::NotIncreasing { point: 2, .. })
-            ));
         }
     }
 
@@ -300,33 +217,111 @@ mod tests {
                 Status::Piece(1),
                 Status::Piece(2),
             ] {
-                let (mut status, mut passes) = (start, 0);
-                let (force, gap) = loop {
-                    let force = match status {
-                        Status::Open => 0.0,
-                        _ => {
-                            let relation = law.relation(status, &local);
-                            -(relation.gap * free + relation.offset)
-                                / (relation.gap * d + relation.compliance)
-                        }
-                    };
-                    let gap = free + d * force;
-                    let end = End {
-                        gap_released: free,
-                        gap,
-                        rate: 0.0,
-                        force,
-                    };
-                    let next = law.status(status, &end, &local, passes);
-                    if next == status {
-                        break (force, gap);
-                    }
-                    status = next;
-                    passes += 1;
-                    assert!(passes < 20, "{free} {start:?}");
-                };
+                let (force, gap) = solve(&law, &local, start, free, d);
                 let expected = law.curve.force(-gap - law.clearance);
                 assert!((force - expected).abs() < 1e-9 * (1.0 + expected));
+            }
+        }
+    }
+
+    const CRUSHED: [[f64; 2]; 3] = [[1.0, 10.0], [2.0, 15.0], [4.0, 16.0]];
+
+    fn crushed() -> Stop {
+        Stop {
+            curve: Curve::new(&CRUSHED).unwrap(),
+            crush: Crush::Permanent,
+            ..stop()
+        }
+    }
+
+    /// Force and gap of a scalar step g₊ = g_f + d P.
+    fn solve(law: &Stop, local: &Local, start: Status, free: f64, d: f64) -> (f64, f64) {
+        let (mut status, mut passes) = (start, 0);
+        loop {
+            let force = match status {
+                Status::Open => 0.0,
+                _ => {
+                    let relation = law.relation(status, local);
+                    -(relation.gap * free + relation.offset)
+                        / (relation.gap * d + relation.compliance)
+                }
+            };
+            let gap = free + d * force;
+            let end = End {
+                gap_released: free,
+                gap,
+                rate: 0.0,
+                force,
+            };
+            let next = law.status(status, &end, local, passes);
+            if next == status {
+                return (force, gap);
+            }
+            (status, passes) = (next, passes + 1);
+            assert!(passes < 20, "{free} {start:?}");
+        }
+    }
+
+    #[test]
+    fn a_crushed_stop_unloads_and_reloads_along_the_initial_stiffness_and_goes_on_along_the_curve()
+    {
+        let law = crushed();
+        for crush in [0.0, 0.7, 1.4, 2.0, 3.0, 5.0] {
+            let local = Local {
+                share: 1.0,
+                crush,
+                ..Local::default()
+            };
+            let most = law.curve.force(crush);
+            for k in 0..300 {
+                let free = -0.05 * f64::from(k);
+                for start in [
+                    Status::Open,
+                    Status::Piece(0),
+                    Status::Piece(1),
+                    Status::Piece(2),
+                ] {
+                    let (force, gap) = solve(&law, &local, start, free, 0.05);
+                    let penetration = -gap - law.clearance;
+                    let expected = match penetration < crush {
+                        true => (most + 10.0 * (penetration - crush)).max(0.0),
+                        false => law.curve.force(penetration),
+                    };
+                    assert!(
+                        (force - expected).abs() < 1e-12 * (1.0 + expected),
+                        "{crush} {free}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_cycle_loses_is_the_energy_of_the_crush() {
+        let law = crushed();
+        // the area between loading to 3 and unloading: 5 + 12.5 + 15.25, less 15.5² / 20
+        assert_eq!(law.crushed(0.0, -3.5), 3.0);
+        assert!((law.crush_energy(3.0) - (32.75 - 15.5 * 15.5 / 20.0)).abs() < 1e-13);
+        assert_eq!(law.crushed(3.0, -1.0), 3.0);
+        // the first piece is elastic
+        assert_eq!(law.crush_energy(0.9), 0.0);
+        assert_eq!(stop().crushed(0.0, -3.5), 0.0);
+    }
+
+    #[test]
+    fn rounding_at_the_largest_penetration_turns_no_status() {
+        let law = crushed();
+        let local = Local {
+            share: 1.0,
+            crush: 1.5,
+            tolerance: 1e-12,
+            ..Local::default()
+        };
+        for shift in [-1e-15, 0.0, 1e-15] {
+            let free = -(1.5 + law.clearance) - 0.05 * law.curve.force(1.5) + shift;
+            for start in [Status::Piece(0), Status::Piece(1)] {
+                let (force, _) = solve(&law, &local, start, free, 0.05);
+                assert!((force - 12.5).abs() < 1e-12);
             }
         }
     }

@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use carom_contact::law::Status;
 
-use super::Driver;
 use super::weak::WithWeak;
+use super::{Driver, Work};
 use crate::compliance::Compliance;
 use crate::control::{Adaptive, Closing, Control, Event};
 use crate::error::Error;
@@ -55,7 +55,7 @@ impl Driver {
             self.size(dt)?;
             self.report.attempts += 1;
             let outcome = self.attempt();
-            match self.judge(&control, outcome) {
+            match self.judge(outcome) {
                 Ok(None) if forced.take().is_some() => self.forget_predictor(),
                 Ok(None) => {
                     self.accept(control);
@@ -91,11 +91,7 @@ impl Driver {
     }
 
     /// What speaks against an attempt, and the size to go on from.
-    fn judge(
-        &self,
-        control: &Control,
-        outcome: Result<(), Error>,
-    ) -> Result<Option<(Event, f64)>, (Event, Error)> {
+    fn judge(&self, outcome: Result<(), Error>) -> Result<Option<(Event, f64)>, (Event, Error)> {
         outcome.map_err(|error| (Event::Failure, error))?;
         let Some(rules) = &self.system.adaptive else {
             return Ok(None);
@@ -106,19 +102,16 @@ impl Driver {
         {
             return Ok(Some((Event::Closing, dt)));
         }
-        let grows = rules.growth.is_some_and(|growth| {
-            control.grows(
-                self.free_energy(),
-                growth * self.state.ledger.largest_energy,
-            )
-        });
+        let grows = rules.growth.is_some_and(|growth| self.grows(growth));
         Ok(grows.then_some((Event::Growth, self.dt)))
     }
 
-    /// Kinetic and strain energy less the work of the loads at the end of the step, J.
-    fn free_energy(&self) -> f64 {
-        let balance = &self.next.ledger.balance;
-        balance.energy() - balance.work_loads
+    /// Whether kinetic and strain energy less the work of the loads exceed their value at the start of the run by more than
+    /// this fraction of the largest energy.
+    fn grows(&self, growth: f64) -> bool {
+        let ledger = &self.next.ledger;
+        let free = ledger.balance.energy() - ledger.balance.work_loads;
+        free > ledger.initial.energy() + growth * ledger.largest_energy
     }
 
     /// The first instant within the step at which an open gap closes without the forces of the step, counted from its
@@ -167,11 +160,9 @@ impl Driver {
 
     /// Makes the attempt the state.
     pub(super) fn accept(&mut self, mut control: Control) {
-        let energy = self.free_energy();
         control.take(
             self.system.adaptive.as_ref(),
             (self.state.step, self.state.time, self.dt),
-            energy,
             self.system.dt,
         );
         self.next.control = control;
@@ -181,7 +172,7 @@ impl Driver {
     }
 
     /// Makes `dt` the size of the next attempt: operators and columns kept from before, or new ones.
-    fn size(&mut self, dt: f64) -> Result<(), Error> {
+    pub(crate) fn size(&mut self, dt: f64) -> Result<(), Error> {
         if dt == self.dt {
             return Ok(());
         }
@@ -197,10 +188,22 @@ impl Driver {
         std::mem::swap(&mut self.with_weak, &mut other.with_weak);
         std::mem::swap(&mut self.interface, &mut other.interface);
         if self.kept.len() == KEPT {
-            self.kept.remove(0);
+            let forgotten = self.kept.remove(0);
+            self.retired
+                .add(&forgotten.operators, &forgotten.compliance);
         }
         self.kept.push(other);
         Ok(())
+    }
+
+    /// Work over all sizes so far.
+    pub(super) fn work(&self) -> Work {
+        let mut work = self.retired;
+        work.add(&self.operators, &self.compliance);
+        for kept in &self.kept {
+            work.add(&kept.operators, &kept.compliance);
+        }
+        work
     }
 
     fn sized(&mut self, dt: f64) -> Result<Sized, Error> {
@@ -210,7 +213,6 @@ impl Driver {
         let operators =
             Operators::new(&self.system, map.inertia.x, map.force.x, "effective matrix")?;
         self.phases.factorisation += begin.elapsed();
-        self.factorisations += operators.factored();
         Ok(Sized {
             dt,
             map,
@@ -220,6 +222,17 @@ impl Driver {
             with_weak: WithWeak::default(),
             interface: Interface::default(),
         })
+    }
+}
+
+impl Work {
+    fn add(&mut self, operators: &Operators, compliance: &Compliance) {
+        let factors = operators.operators.iter();
+        for stats in factors.filter_map(|operator| operator.stats()) {
+            self.factorisations += stats.factorisations;
+            self.sweeps += stats.sweeps;
+        }
+        self.columns += compliance.columns_computed;
     }
 }
 

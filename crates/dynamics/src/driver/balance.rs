@@ -194,6 +194,7 @@ impl Driver {
                     + points(&system, k)
                         .map(|point| self.projected.work(point))
                         .sum::<f64>(),
+                crushed: crush_energy(&system, k, interface),
                 jump: [
                     total(&system, k, &self.rows, |point| {
                         self.projected.impulse(point)
@@ -412,6 +413,15 @@ fn contact_work(
             force * (place(point, &new.motion) - place(point, &old.motion))
         })
         .sum()
+}
+
+/// Energy that the crush of one contact has taken so far, J: a function of the largest penetrations.
+fn crush_energy(system: &System, contact: usize, interface: &InterfaceState) -> f64 {
+    let (first, contact) = (system.first_point[contact], &system.contacts[contact]);
+    let of_point = |(k, point): (usize, &carom_contact::Point)| {
+        point.share * contact.law.crush_energy(interface.crush[first + k])
+    };
+    contact.points.iter().enumerate().map(of_point).sum()
 }
 
 /// Contact points of a contact.

@@ -128,6 +128,7 @@ impl Driver {
                     gap_free: self.rows.gap(at) + value(&self.map.gap.since(&self.captured[at])),
                     dt: self.dt,
                     tolerance: system.tolerance,
+                    crush: self.state.interface.crush[at],
                 },
                 rate_free: value(&self.map.rate),
                 status: self.state.interface.status[at],
@@ -183,6 +184,19 @@ impl Driver {
         }
         self.spread();
         Ok(())
+    }
+
+    /// Renews the memory of the laws at the points that carry a force at the end of the step.
+    pub(super) fn crush(&mut self) {
+        let (old, new) = (&self.state.interface, &mut self.next.interface);
+        new.crush.clone_from(&old.crush);
+        for &point in &self.candidates {
+            let point = point as usize;
+            if new.status[point] != Status::Open {
+                let law = &self.system.point(point).0.law;
+                new.crush[point] = law.crushed(old.crush[point], new.gap[point]);
+            }
+        }
     }
 
     /// Nodal contact forces of the step, and the acceleration that they give by themselves where the scheme uses it.
@@ -283,6 +297,7 @@ impl Driver {
                 gap_free: gap,
                 dt: self.dt,
                 tolerance: self.system.tolerance,
+                crush: self.state.interface.crush[point],
                 ..Local::default()
             };
             if law.status(Status::Open, &end, &local, 0) != Status::Open {

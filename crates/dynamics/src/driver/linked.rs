@@ -37,6 +37,21 @@ impl Driver {
         });
     }
 
+    /// Whether a contact point carries a force or may do so within `dt` (s), at twice its present rate.
+    pub(crate) fn may_touch(&self, dt: f64) -> bool {
+        let interface = &self.state.interface;
+        let points = interface.gap.iter().zip(&interface.rate);
+        let touches = |((gap, rate), force): ((&f64, &f64), &f64)| {
+            *force != 0.0 || gap + 2.0 * dt * rate.min(0.0) <= self.system.tolerance
+        };
+        points.zip(&interface.force).any(touches)
+    }
+
+    /// Makes the driver forget links until its next `link`.
+    pub(crate) fn unlink(&mut self) {
+        self.linked = None;
+    }
+
     /// Sets Cᵀ Λ of the step, N.
     pub(crate) fn set_link_force(&mut self, rows: &[(u32, LinkRow)], multipliers: &[f64]) {
         if let Some(linked) = &mut self.linked {
@@ -94,6 +109,11 @@ impl Driver {
     /// Weights of L at the start and the end of a step in Λ.
     pub(crate) fn link_weights(&self) -> [f64; 2] {
         self.system.scheme.link_weights().unwrap_or([0.0, 1.0])
+    }
+
+    /// Factors of M and K in the effective matrix, and of its solution in the velocity at the end of a step.
+    pub(crate) fn effective(&self) -> (f64, f64, f64) {
+        (self.map.inertia.x, self.map.force.x, self.map.velocity.x)
     }
 
     /// Velocity that multipliers growing linearly from 0 to 1 in `steps` steps leave in the rows, without contact: the

@@ -57,8 +57,8 @@ pub struct Driver {
     interface: Interface,
     /// The same for other step sizes, the last used last.
     kept: Vec<Sized>,
-    /// Factors computed so far.
-    factorisations: usize,
+    /// Work with sizes that are not kept any more.
+    retired: Work,
     /// Every which step is dropped once, in tests.
     forced: Option<u64>,
     forces: Forces,
@@ -132,16 +132,25 @@ pub struct Phases {
     pub balance: Duration,
 }
 
+/// Counts of what factors were made and used for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Factors computed.
+    pub factorisations: usize,
+    /// Triangular sweeps, forward or backward.
+    pub sweeps: usize,
+    /// Columns A⁻¹ Nᵀ computed.
+    pub columns: usize,
+}
+
 /// What the run cost so far.
 #[derive(Clone, Debug, Default)]
 pub struct Costs {
-    /// One entry per connected part with a factor.
+    /// One entry per connected part with a factor, for the present size of the step.
     pub factors: Vec<FactorStats>,
-    /// Factors computed, over all sizes of the step.
-    pub factorisations: usize,
-    /// Columns A⁻¹ Nᵀ computed.
-    pub columns: usize,
-    /// Bytes of columns and compliance.
+    /// Over all sizes of the step.
+    pub work: Work,
+    /// Bytes of columns and compliance for the present size of the step.
     pub compliance_bytes: usize,
     /// Internal-force sweeps.
     pub force_sweeps: usize,
@@ -155,8 +164,10 @@ impl Costs {
     /// Adds the costs of another driver.
     pub(crate) fn add(&mut self, other: Costs) {
         self.factors.extend(other.factors);
-        self.factorisations += other.factorisations;
-        self.columns += other.columns;
+        let (work, its) = (&mut self.work, other.work);
+        work.factorisations += its.factorisations;
+        work.sweeps += its.sweeps;
+        work.columns += its.columns;
         self.compliance_bytes += other.compliance_bytes;
         self.force_sweeps += other.force_sweeps;
         self.element_updates += other.element_updates;
@@ -170,8 +181,7 @@ impl Costs {
 
     /// Solutions with a factor: pairs of a forward and a backward sweep.
     pub fn solves(&self) -> u64 {
-        let sweeps = self.factors.iter().map(|factor| factor.sweeps as u64);
-        sweeps.sum::<u64>() / 2
+        self.work.sweeps as u64 / 2
     }
 }
 
@@ -204,13 +214,13 @@ impl Driver {
             dt: system.dt,
             map,
             identity,
-            factorisations: operators.factored(),
             operators,
             compliance: Compliance::new(points),
             weak: WeakForms::new(&system)?,
             with_weak: WithWeak::default(),
             interface: Interface::default(),
             kept: Vec::new(),
+            retired: Work::default(),
             forced: None,
             forces: Forces {
                 scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
@@ -316,8 +326,7 @@ impl Driver {
                 .iter()
                 .filter_map(|operator| operator.stats().cloned())
                 .collect(),
-            factorisations: self.factorisations,
-            columns: self.compliance.columns_computed,
+            work: self.work(),
             compliance_bytes: self.compliance.bytes(),
             force_sweeps: self.forces.sweeps,
             element_updates: (self.forces.sweeps * elements) as u64,
@@ -384,8 +393,7 @@ impl Driver {
         let link = Resultant::of(&system, &self.state.motion.link_force);
         let forces = [loads, none, supports, none, link];
         self.state.ledger = Ledger::start(&energies, &identity, forces);
-        let energy = self.state.ledger.balance.energy();
-        self.state.control = Control::start(system.dt, energy);
+        self.state.control = Control::start(system.dt);
         self.state.records = Records {
             contacts: vec![ContactRecord::default(); system.contacts.len()],
             impacts: Vec::new(),
@@ -524,6 +532,7 @@ impl Driver {
             ..
         } = &self.state;
         self.next.time = control.instant(*step, *time, self.dt);
+        self.crush();
     }
 
     /// Internal forces at the end of the step; returns the strain energy.

@@ -8,11 +8,11 @@
 //! Sources: Gravouil, Combescure (2001); Prakash, Hjelmstad (2004); Ben Dhia et al. (2003), equations (11)-(12). The form
 //! for any pair of schemes with weights of the multipliers in time is this project's.
 
+mod condensed;
 mod model;
 mod start;
 mod whole;
 
-use carom_algebra::dense::DenseCholesky;
 use serde::{Deserialize, Serialize};
 
 use crate::driver::Driver;
@@ -21,14 +21,22 @@ use crate::error::Error;
 use crate::ledger::Balance;
 use crate::state::{ContactReport, State};
 
+use condensed::Condensed;
 pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
 pub use whole::Whole;
 
 /// Defect of a row at which it holds, as a part of the largest velocity.
-const TOLERANCE: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-10;
 
 /// Most passes over an outer step.
 const MOST_PASSES: usize = 30;
+
+/// The condensed problem of some numbers of inner steps.
+struct Kept {
+    substeps: Vec<u32>,
+    factor: Option<Condensed>,
+    outer: Vec<f64>,
+}
 
 /// What the contacts of a zone did at one of its instants.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,6 +60,8 @@ pub struct ZonesState {
     pub time: f64,
     /// Multipliers of the rows, N per unit of the row.
     pub multipliers: Vec<f64>,
+    /// The same one and two steps before.
+    pub earlier: [Vec<f64>; 2],
     /// By zone.
     pub zones: Vec<State>,
 }
@@ -59,8 +69,10 @@ pub struct ZonesState {
 /// The drivers of all zones, and the links between them.
 pub struct Zones {
     drivers: Vec<Driver>,
-    /// Inner steps of each zone to an outer one.
+    /// Inner steps of each zone to the outer step that is taken.
     substeps: Vec<u32>,
+    /// The same where contacts may close, and where they cannot.
+    choices: [Vec<u32>; 2],
     /// Contacts of the model by zone.
     contacts: Vec<Vec<usize>>,
     /// By zone, number of the row and its terms there.
@@ -74,10 +86,14 @@ pub struct Zones {
     step: u64,
     /// L at the start and at the end of the step.
     multipliers: [Vec<f64>; 2],
+    /// L one and two outer steps before the start of the step.
+    earlier: [Vec<f64>; 2],
     /// H of the multipliers that a pass looks for.
-    factor: Option<DenseCholesky>,
+    factor: Option<Condensed>,
     /// Part of H of the zones with one step, row-major: for pointwise multipliers.
     outer: Vec<f64>,
+    /// Both for other numbers of inner steps.
+    kept: Vec<Kept>,
     saved: Vec<Option<State>>,
     samples: Vec<Sample>,
     /// Passes of the last step, over all steps, and factorisations of H.
@@ -129,6 +145,12 @@ impl Zones {
         self.all_passes
     }
 
+    /// Bytes held for the condensed problem of the links.
+    pub fn condensed_bytes(&self) -> usize {
+        let rows = self.norms.len();
+        self.factor.as_ref().map_or(0, |factor| factor.bytes(rows))
+    }
+
     /// The balance of all zones together.
     pub fn balance(&self) -> Balance {
         let balances = self.drivers.iter().map(|d| &d.state().ledger.balance);
@@ -140,8 +162,11 @@ impl Zones {
     /// # Errors
     /// A step of a zone that fails, or multipliers that are not found. The state is then the one before the step.
     pub fn step(&mut self) -> Result<(), Error> {
-        for (driver, saved) in self.drivers.iter().zip(&mut self.saved) {
-            if let Some(saved) = saved {
+        self.choose_substeps()?;
+        for (k, driver) in self.drivers.iter().enumerate() {
+            if self.substeps[k] > 1
+                && let Some(saved) = &mut self.saved[k]
+            {
                 saved.clone_from(driver.state());
             }
         }
@@ -162,6 +187,39 @@ impl Zones {
         }
     }
 
+    /// Takes the inner steps of a shock if a contact may close in the outer step, else those far from it.
+    fn choose_substeps(&mut self) -> Result<(), Error> {
+        if self.choices[0] == self.choices[1] {
+            return Ok(());
+        }
+        let near = self.drivers.iter().any(|driver| driver.may_touch(self.dt));
+        let choice = &self.choices[usize::from(!near)];
+        if *choice == self.substeps {
+            return Ok(());
+        }
+        let now = Kept {
+            substeps: std::mem::replace(&mut self.substeps, choice.clone()),
+            factor: self.factor.take(),
+            outer: std::mem::take(&mut self.outer),
+        };
+        for (driver, m) in self.drivers.iter_mut().zip(&self.substeps) {
+            driver.size(self.dt / f64::from(*m))?;
+        }
+        match self
+            .kept
+            .iter()
+            .position(|kept| kept.substeps == self.substeps)
+        {
+            Some(place) => {
+                let kept = self.kept.swap_remove(place);
+                (self.factor, self.outer) = (kept.factor, kept.outer);
+            }
+            None => self.factorise()?,
+        }
+        self.kept.push(now);
+        Ok(())
+    }
+
     fn accept(&mut self) {
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] == 1 {
@@ -171,13 +229,18 @@ impl Zones {
         }
         self.step += 1;
         self.all_passes += self.passes as u64;
+        let [before, first] = &mut self.earlier;
         let [old, new] = &mut self.multipliers;
+        std::mem::swap(before, first);
+        before.copy_from_slice(old);
         old.copy_from_slice(new);
     }
 
     fn go_back(&mut self) {
-        for (driver, saved) in self.drivers.iter_mut().zip(&self.saved) {
-            if let Some(saved) = saved {
+        for (k, driver) in self.drivers.iter_mut().enumerate() {
+            if self.substeps[k] > 1
+                && let Some(saved) = &self.saved[k]
+            {
                 driver.go_back(saved);
             }
         }
@@ -185,8 +248,7 @@ impl Zones {
 
     /// Multipliers linear over the outer step, rows that hold at its end.
     fn step_ramped(&mut self) -> Result<(), Error> {
-        let [old, new] = &mut self.multipliers;
-        new.copy_from_slice(old);
+        self.guess();
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] == 1 {
                 driver.prepare()?;
@@ -206,13 +268,22 @@ impl Zones {
         Err(self.parted())
     }
 
+    /// Multipliers at the end of the step from those of the last three instants, by a parabola.
+    fn guess(&mut self) {
+        let ([old, new], [before, first]) = (&mut self.multipliers, &self.earlier);
+        for (i, new) in new.iter_mut().enumerate() {
+            *new = 3.0 * (old[i] - before[i]) + first[i];
+        }
+    }
+
     /// Takes the steps of one zone with the multipliers as they stand, and adds its part of the defect.
     fn ramp_zone(&mut self, k: usize) -> Result<(), Error> {
         let m = self.substeps[k];
         let driver = &mut self.drivers[k];
         let [old, new] = &self.multipliers;
         let [_, end] = driver.link_weights();
-        if let Some(saved) = &self.saved[k]
+        if m > 1
+            && let Some(saved) = &self.saved[k]
             && driver.state().step != saved.step
         {
             driver.go_back(saved);
@@ -243,7 +314,8 @@ impl Zones {
         Ok(())
     }
 
-    /// Whether the rows hold; corrects the multipliers `which` (0 pointwise, 1 of the outer step) if not.
+    /// Whether the rows hold, or would after a change of the multipliers by rounding; corrects the multipliers `which`
+    /// (0 pointwise, 1 of the outer step) if not.
     fn corrected(&mut self, which: usize) -> Result<bool, Error> {
         let speed = self.speed();
         let rows = self.defect.iter().zip(&self.norms);
@@ -251,14 +323,20 @@ impl Zones {
         if worst <= TOLERANCE * speed {
             return Ok(true);
         }
-        let Some(factor) = &self.factor else {
+        let Some(factor) = &mut self.factor else {
             return Ok(true);
         };
         factor.solve(&mut self.defect);
+        let [old, new] = &mut self.multipliers;
         let target = match which {
             0 => &mut self.pointwise[1],
-            _ => &mut self.multipliers[1],
+            _ => new,
         };
+        // at rest all velocities are rounding; then the forces tell what is small
+        let forces = largest(old).max(largest(target));
+        if largest(&self.defect) <= TOLERANCE * forces {
+            return Ok(true);
+        }
         for (l, d) in target.iter_mut().zip(&self.defect) {
             *l -= d;
         }
@@ -267,7 +345,6 @@ impl Zones {
 
     /// Largest velocity of all zones, at the end of the step or at its start.
     fn speed(&self) -> f64 {
-        let largest = |v: &[f64]| v.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
         let of = |driver: &Driver| {
             largest(driver.next_velocity()).max(largest(&driver.state().motion.v))
         };
@@ -378,6 +455,10 @@ impl Zones {
             defect: rows.fold(0.0, |worst: f64, (d, n)| worst.max(d.abs() / n)),
         }
     }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
 /// Row of a square matrix, row-major, times a vector.

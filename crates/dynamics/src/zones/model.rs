@@ -1,12 +1,14 @@
 //! What zones and links are made of.
 
+use std::sync::Arc;
+
 use carom_arlequin::Row;
 use serde::{Deserialize, Serialize};
 
 use crate::contacts::sides;
 use crate::error::Error;
 use crate::scheme::Scheme;
-use crate::system::Model;
+use crate::system::{Model, System};
 
 /// A group of bodies with its own scheme and step.
 #[derive(Clone, Debug)]
@@ -19,6 +21,8 @@ pub struct ModelZone {
     pub scheme: Scheme,
     /// Steps to one outer step.
     pub substeps: u32,
+    /// Steps to one outer step in which none of its contacts can close; `None` for as many.
+    pub far: Option<u32>,
 }
 
 /// How the multipliers of links run over an outer step.
@@ -56,6 +60,22 @@ pub struct Zoned {
 }
 
 impl Zoned {
+    /// The systems of the zones, each with its own scheme and step.
+    ///
+    /// # Errors
+    /// Schemes, steps or contacts that do not go together, and [`Error::Zone`] where a zone cannot be built.
+    pub fn systems(&self) -> Result<Vec<Arc<System>>, Error> {
+        self.check()?;
+        let contacts = self.contacts()?;
+        let system = |(k, contacts): (usize, &Vec<usize>)| {
+            System::new(self.zone(k, contacts)).map_err(|cause| Error::Zone {
+                zone: self.zones[k].name.clone(),
+                cause: Box::new(cause),
+            })
+        };
+        contacts.iter().enumerate().map(system).collect()
+    }
+
     /// The contacts of each zone.
     ///
     /// # Errors
@@ -118,7 +138,7 @@ impl Zoned {
                     accepted,
                 })
             };
-            if zone.substeps == 0 {
+            if zone.substeps == 0 || zone.far == Some(0) {
                 return refuse("at least one");
             }
             if zone.substeps > 1 && *many.get_or_insert(zone.substeps) != zone.substeps {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use carom_algebra::dense::DenseCholesky;
 
+use super::condensed::{Answer, Condensed, DENSE, Joined};
 use super::{LinkKind, Zoned, Zones, ZonesState};
 use crate::driver::Driver;
 use crate::driver::linked::{LinkRow, on};
@@ -19,13 +20,8 @@ impl Zones {
     /// # Errors
     /// A zone that cannot be built, redundant rows, schemes or steps that do not go together.
     pub fn new(zoned: &Zoned) -> Result<Zones, Error> {
-        zoned.check()?;
+        let systems = zoned.systems()?;
         let contacts = zoned.contacts()?;
-        let systems = contacts
-            .iter()
-            .enumerate()
-            .map(|(k, contacts)| System::new(zoned.zone(k, contacts)))
-            .collect::<Result<Vec<_>, Error>>()?;
         let count = zoned.links.iter().map(|link| link.rows.len()).sum();
         let rows = rows(zoned, &systems);
         let mut norms = vec![0.0; count];
@@ -45,6 +41,8 @@ impl Zones {
             .collect::<Result<Vec<_>, Error>>()?;
         let multipliers = start(&mut drivers, &rows, count)?;
         let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
+        let far = zoned.zones.iter();
+        let far = far.map(|zone| zone.far.unwrap_or(zone.substeps)).collect();
         let saved = drivers.iter().zip(&substeps).map(|(driver, m)| {
             let inner = *m > 1;
             inner.then(|| driver.state().clone())
@@ -52,7 +50,9 @@ impl Zones {
         let mut zones = Zones {
             saved: saved.collect(),
             drivers,
+            choices: [substeps.clone(), far],
             substeps,
+            kept: Vec::new(),
             contacts,
             rows,
             norms,
@@ -60,6 +60,7 @@ impl Zones {
             kind: zoned.kind,
             dt: zoned.model.dt,
             step: 0,
+            earlier: [multipliers.clone(), multipliers.clone()],
             multipliers: [multipliers.clone(), multipliers],
             factor: None,
             outer: Vec::new(),
@@ -74,9 +75,56 @@ impl Zones {
         Ok(zones)
     }
 
+    /// Begins anew from other initial motions: displacement (m) and velocity (m/s) of each zone, one entry per unknown.
+    ///
+    /// # Errors
+    /// As [`Zones::new`].
+    pub fn restart(&mut self, motions: &[[Vec<f64>; 2]]) -> Result<(), Error> {
+        for (driver, [u, v]) in self.drivers.iter_mut().zip(motions) {
+            driver.unlink();
+            driver.restart(u, v)?;
+        }
+        let multipliers = start(&mut self.drivers, &self.rows, self.norms.len())?;
+        self.step = 0;
+        self.earlier = [multipliers.clone(), multipliers.clone()];
+        self.multipliers = [multipliers.clone(), multipliers];
+        Ok(())
+    }
+
+    /// Makes the factor of H anew in the joined form, whatever the number of rows: to compare the two.
+    ///
+    /// # Errors
+    /// Redundant rows.
+    pub fn join(&mut self) -> Result<(), Error> {
+        self.factor = Some(self.joined()?);
+        Ok(())
+    }
+
+    fn joined(&self) -> Result<Condensed, Error> {
+        let zones = self.drivers.iter().zip(&self.rows);
+        let answers: Vec<Answer> = zones
+            .map(|(driver, rows)| {
+                let (mass, stiffness, velocity) = driver.effective();
+                Answer {
+                    system: driver.system(),
+                    rows,
+                    mass,
+                    stiffness,
+                    scale: velocity * driver.link_weights()[1],
+                }
+            })
+            .collect();
+        let joined = Joined::new(&answers, self.norms.len())?;
+        Ok(Condensed::Joined(Box::new(joined)))
+    }
+
     /// Makes and factors H of the multipliers that a pass looks for.
-    fn factorise(&mut self) -> Result<(), Error> {
+    pub(super) fn factorise(&mut self) -> Result<(), Error> {
         let n = self.norms.len();
+        let alike = self.substeps.iter().all(|m| *m == 1);
+        if n > DENSE && alike {
+            return self.join();
+        }
         if n == 0 {
             return Ok(());
         }
@@ -101,7 +149,8 @@ impl Zones {
         }
         self.outer = outer;
         let factor = DenseCholesky::new(n, &h);
-        self.factor = Some(factor.map_err(|cause| Error::Redundant { rows: n, cause })?);
+        let factor = factor.map_err(|cause| Error::Redundant { rows: n, cause })?;
+        self.factor = Some(Condensed::Dense(factor));
         Ok(())
     }
 
@@ -111,6 +160,7 @@ impl Zones {
             step: self.step,
             time: self.time(),
             multipliers: self.multipliers[0].clone(),
+            earlier: self.earlier.clone(),
             zones: self.drivers.iter().map(|d| d.state().clone()).collect(),
         }
     }
@@ -119,6 +169,7 @@ impl Zones {
     pub fn resume(&mut self, state: &ZonesState) {
         self.step = state.step;
         self.multipliers[0].clone_from(&state.multipliers);
+        self.earlier.clone_from(&state.earlier);
         for (driver, state) in self.drivers.iter_mut().zip(&state.zones) {
             driver.go_back(state);
         }
@@ -170,7 +221,7 @@ fn start(
         .map(|driver| Operators::new(driver.system(), 1.0, 0.0, "mass matrix"))
         .collect::<Result<Vec<_>, Error>>()?;
     let mut mass = MassLinks { masses, rows };
-    let factor = mass.factor(drivers, count)?;
+    let mut factor = mass.factor(drivers, count)?;
     // velocities
     let mut defect = vec![0.0; count];
     add(rows, drivers, &mut defect, |driver| {
@@ -264,7 +315,21 @@ impl MassLinks<'_> {
     }
 
     /// The factor of Σ C M⁻¹ Cᵀ.
-    fn factor(&mut self, drivers: &[Driver], count: usize) -> Result<DenseCholesky, Error> {
+    fn factor(&mut self, drivers: &[Driver], count: usize) -> Result<Condensed, Error> {
+        if count > DENSE {
+            let zones = drivers.iter().zip(self.rows);
+            let answers: Vec<Answer> = zones
+                .map(|(driver, rows)| Answer {
+                    system: driver.system(),
+                    rows,
+                    mass: 1.0,
+                    stiffness: 0.0,
+                    scale: 1.0,
+                })
+                .collect();
+            let joined = Joined::new(&answers, count)?;
+            return Ok(Condensed::Joined(Box::new(joined)));
+        }
         let mut matrix = vec![0.0; count * count];
         let mut unit = vec![0.0; count];
         for zone in 0..drivers.len() {
@@ -277,7 +342,9 @@ impl MassLinks<'_> {
                 }
             }
         }
-        DenseCholesky::new(count, &matrix).map_err(|cause| Error::Redundant { rows: count, cause })
+        let factor = DenseCholesky::new(count, &matrix);
+        let factor = factor.map_err(|cause| Error::Redundant { rows: count, cause })?;
+        Ok(Condensed::Dense(factor))
     }
 }
 

@@ -60,8 +60,7 @@ impl Whole {
     pub fn new(zoned: &Zoned, system: Arc<System>) -> Result<Whole, Error> {
         let mut whole = Whole::around(Zones::new(zoned)?, zoned, system);
         whole.gather();
-        let energy = whole.state.ledger.balance.energy();
-        whole.state.control = Control::start(whole.system.dt, energy);
+        whole.state.control = Control::start(whole.system.dt);
         Ok(whole)
     }
 
@@ -351,9 +350,8 @@ impl Stepper for Whole {
         let (before, time) = (self.state.step, self.state.time);
         self.gather();
         let dt = self.zones.dt;
-        let energy = self.state.ledger.balance.energy();
         let control = &mut self.state.control;
-        control.take(None, (before, time, dt), energy, dt);
+        control.take(None, (before, time, dt), dt);
         Ok(())
     }
 

@@ -1,13 +1,5 @@
 //! A step allocates nothing once contact has been met and the buffers have grown.
 
-#![allow(
-    unsafe_code,
-    reason = "an allocator that counts is the only way to see allocations"
-)]
-
-use std::alloc::{GlobalAlloc, Layout, System as Heap};
-use std::cell::Cell;
-
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
@@ -17,29 +9,9 @@ use carom_dynamics::{
 };
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
+use carom_testing::allocations;
 
 use crate::whole;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-// SAFETY: every call goes to the system's allocator unchanged; counting touches a thread-local without allocating.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|count| count.set(count.get() + 1));
-        unsafe { Heap.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { Heap.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// A cube resting on a plane under gravity: contact all the time, statuses settled.
 fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
@@ -113,9 +85,9 @@ fn a_step_in_contact_allocates_nothing() {
         let mut closed = 0;
         // statuses may still change in some steps, and a new closed set has a new factor: most steps must be clean
         for _ in 0..20 {
-            let before = COUNT.with(Cell::get);
+            let before = allocations();
             driver.step().unwrap();
-            fewest = fewest.min(COUNT.with(Cell::get) - before);
+            fewest = fewest.min(allocations() - before);
             closed = closed.max(driver.report().contacts[0].closed);
         }
         assert_eq!(fewest, 0, "{scheme:?}");
@@ -129,9 +101,9 @@ fn the_whole_of_zones_needs_no_memory_beyond_that_of_their_steps() {
     let mut zones = Zones::new(&zoned).unwrap();
     let mut whole = whole::whole(&zoned);
     let counted = |step: &mut dyn FnMut()| {
-        let before = COUNT.with(Cell::get);
+        let before = allocations();
         step();
-        COUNT.with(Cell::get) - before
+        allocations() - before
     };
     for step in 0..100 {
         let alone = counted(&mut || zones.step().unwrap());

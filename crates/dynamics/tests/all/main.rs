@@ -10,3 +10,6 @@ mod quadrature;
 mod stability;
 mod weak_form;
 mod whole;
+
+#[global_allocator]
+static COUNTER: carom_testing::Counter = carom_testing::Counter;

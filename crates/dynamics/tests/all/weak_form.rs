@@ -5,19 +5,7 @@ use carom_contact::{Law, Point, Weak};
 use carom_dynamics::{Candidate, InterfaceProblem};
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Face};
-
-/// Numbers in [-1, 1[ from a linear congruential generator (Knuth's MMIX).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
+use carom_testing::Random;
 
 /// Gauss points of a surface, and the places of its nodes.
 type Patch = (Vec<Point>, Vec<[f64; 3]>);

@@ -63,6 +63,7 @@ pub fn bar() -> Zoned {
         bodies: vec![body],
         scheme,
         substeps,
+        far: None,
     };
     Zoned {
         zones: vec![

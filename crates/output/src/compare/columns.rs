@@ -192,7 +192,7 @@ pub(crate) fn table(variants: &[Variant]) -> Table {
 /// Names of the columns of `comparison.csv`.
 pub(crate) fn names() -> Vec<&'static str> {
     let own = COLUMNS.iter().map(|column| column.name);
-    ["variant", "scheme", "law"]
+    ["variant", "scheme", "contact", "law"]
         .into_iter()
         .chain(own)
         .chain(["verdict", "reason"])
@@ -206,6 +206,7 @@ pub(crate) fn cells<'a>(variant: &'a Variant, reason: &'a str) -> Vec<Cell<'a>> 
     let mut cells = vec![
         Cell::Text(&variant.name),
         text(done.map(|done| done.summary.scheme.as_str())),
+        text(done.and_then(|done| done.history.contact.as_deref())),
         text(done.and_then(|done| Some(done.contact()?.law.as_str()))),
     ];
     cells.extend(COLUMNS.iter().map(|c| Cell::from(done.and_then(c.value))));

@@ -87,9 +87,9 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Follows the contact of the exact solution, else the first one.
-    pub fn new(system: &System, reference: Option<&Reference>) -> Recorder {
-        let point = contact_point(system, reference);
+    /// Follows the contact `chosen` (its index), else that of the exact solution, else the first one.
+    pub fn new(system: &System, reference: Option<&Reference>, chosen: Option<usize>) -> Recorder {
+        let point = contact_point(system, reference, chosen);
         let sides = point.iter().flat_map(|point| &point.sides);
         let history = History {
             contact: point

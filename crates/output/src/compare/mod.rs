@@ -169,6 +169,12 @@ impl Comparison {
         }
     }
 
+    /// Name of the contact that is looked at; `None` where no variant was computed, or the case has none.
+    pub fn contact(&self) -> Option<&str> {
+        let mut done = self.variants.iter().filter_map(Variant::done);
+        done.find_map(|done| done.history.contact.as_deref())
+    }
+
     /// The standard in words.
     pub fn standard_text(&self) -> String {
         match &self.standard {

@@ -11,8 +11,8 @@ use crate::results::exact;
 use crate::results::impacts::ContactTotals;
 use crate::results::{Comparison, Ending, Last, Results};
 use crate::summary::{
-    Check, Contact, ENERGY_CHECK, Energy, Exact, Model, Momentum, Summary, Time, Verdict, Zones,
-    hash,
+    Check, Contact, ENERGY_CHECK, Energy, Exact, Model, Momentum, Rejected, Summary, Time, Verdict,
+    Zones, hash,
 };
 use crate::{Error, Report, atomic};
 
@@ -222,7 +222,11 @@ fn time(system: &System, last: &Last, zones: Option<&Zones>) -> Time {
     Time {
         end: last.time,
         steps: last.step,
-        rejected: last.control.rejected(),
+        rejected: Rejected {
+            closing: last.control.cut,
+            energy_growth: last.control.grown,
+            failure: last.control.failed,
+        },
         smallest_step: last.control.range[0],
         largest_step: last.control.range[1],
         courant,
@@ -269,6 +273,7 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 status_changes: record.status_changes,
                 max_penetration: record.penetration,
                 persistency_defect: record.persistency_defect(),
+                energy_crushed: record.energy_crushed,
                 mixed_supports: matches!(contact.integration, Integration::Weak { .. })
                     .then_some(record.mixed),
                 impacts: impacts().count() + usize::from(still_closed),

@@ -11,11 +11,11 @@ use crate::summary::{Counts, Link, Zone, Zones};
 pub(super) fn counts(costs: &Costs, passes: u64) -> Counts {
     let factors = &costs.factors;
     Counts {
-        factorisations: factors.iter().map(|f| f.factorisations as u64).sum(),
-        sweeps: factors.iter().map(|f| f.sweeps as u64).sum(),
+        factorisations: costs.work.factorisations as u64,
+        sweeps: costs.work.sweeps as u64,
         factor_entries: factors.iter().map(|f| f.nnz_factor as u64).sum(),
         factor_bytes: factors.iter().map(|f| f.bytes as u64).sum(),
-        contact_columns: costs.columns as u64,
+        contact_columns: costs.work.columns as u64,
         compliance_bytes: costs.compliance_bytes as u64,
         force_sweeps: costs.force_sweeps as u64,
         element_updates: costs.element_updates,
@@ -71,7 +71,7 @@ impl Zones {
                 courant: courant(system, system.dt),
                 work_of_links: ledger.balance.work_links,
                 largest_residual: ledger.largest_energy_residual,
-                factorisations: costs.factorisations as u64,
+                factorisations: costs.work.factorisations as u64,
                 element_updates: costs.element_updates,
                 solves: costs.solves(),
             }

@@ -121,6 +121,7 @@ impl Impacts {
             restitution: parting(impact.restitution()).filter(|_| impact.approach > 0.0),
             energy_given: impact.energy_given,
             energy_lost: impact.energy_lost,
+            energy_crushed: impact.energy_crushed,
         };
         let outcome = file.push(&row);
         if self.rows.len() < SHOWN {

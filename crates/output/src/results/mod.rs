@@ -178,7 +178,7 @@ impl Results {
     /// A probe without a node of a body; two columns of one name; a folder that cannot be made or is not a results
     /// folder. Only the last may leave something on the disk.
     pub fn create(settings: Settings, system: Arc<System>) -> Result<Results, Error> {
-        let point = sensor::contact_point(&system, settings.reference.as_ref());
+        let point = sensor::contact_point(&system, settings.reference.as_ref(), None);
         let probes = settings.probes.iter();
         let probes = probes.map(|probe| sensor::of_probe(&system, probe));
         let probes = probes.collect::<Result<Vec<_>, Error>>()?;

@@ -67,13 +67,15 @@ pub(crate) struct ContactPoint {
 }
 
 /// The secondary node nearest the centroid of the surface (of its points, weighted by their areas), and the primary
-/// node nearest to that one; of the contact of the exact solution, else of the first one. The axis is that of the
-/// exact solution, else the normal at the point, turned so that its largest component is positive.
+/// node nearest to that one; of the contact `chosen`, else of that of the exact solution, else of the first one. The axis is
+/// that of the exact solution, else the normal at the point, turned so that its largest component is positive.
 pub(crate) fn contact_point(
     system: &System,
     reference: Option<&Reference>,
+    chosen: Option<usize>,
 ) -> Option<ContactPoint> {
-    let index = reference.map_or(0, |reference| reference.contact);
+    let index = chosen.or(reference.map(|reference| reference.contact));
+    let index = index.unwrap_or(0);
     let contact = system.contacts.get(index)?;
     let total: f64 = contact.points.iter().map(|point| point.area).sum();
     let at_rest = vec![0.0; system.unknowns()];
@@ -92,7 +94,7 @@ pub(crate) fn contact_point(
     let secondary = nearest(system, contact.points.iter().map(Point::node), &centroid)?;
     let place = system.x[secondary as usize];
     let primary = match &contact.target {
-        Target::Plane(_) => None,
+        Target::Plane(_) | Target::Sphere(_) => None,
         Target::Surface(faces) => {
             let corners = faces.iter().flat_map(|face| face.corners().iter().copied());
             nearest(system, corners, &place)

@@ -18,7 +18,7 @@ use crate::compare::Variant;
 pub struct Study {
     /// Title of the case.
     pub title: String,
-    /// Keys that vary together, with their values, one per run.
+    /// Keys that vary, with their values, one per run.
     pub keys: Vec<(String, Vec<String>)>,
     /// What the orders are taken against.
     pub abscissa: Abscissa,
@@ -31,7 +31,7 @@ pub struct Study {
 pub enum Abscissa {
     /// The time step, s.
     Step,
-    /// The value of the first key.
+    /// The value of the first key, that of the first axis of a grid.
     Key,
     /// Nothing: the key has no numbers.
     Nothing,
@@ -46,6 +46,8 @@ pub struct Run {
     pub x: Option<f64>,
     /// Mean of the exact force over the exact contact, N, where the case names an exact solution.
     pub exact_mean_force: Option<f64>,
+    /// Values of the keys of all axes but the first; empty where there is one axis. Orders are taken among runs that share it.
+    pub series: String,
 }
 
 /// What is known of the convergence of one quantity.
@@ -53,6 +55,8 @@ pub struct Run {
 pub struct Order {
     /// The quantity.
     pub quantity: Quantity,
+    /// [`Run::series`] of its runs.
+    pub series: String,
     /// From what the order is taken.
     pub source: Source,
     /// Abscissae and errors (or differences), by rising abscissa.
@@ -78,15 +82,35 @@ impl Study {
     pub fn orders(&self) -> Vec<Order> {
         let quantities = Quantity::ALL.into_iter();
         let converging = quantities.filter(|quantity| *quantity != Quantity::PeakForce);
+        let series = self.series();
         converging
-            .filter_map(|quantity| self.order(quantity))
+            .flat_map(|quantity| series.iter().map(move |series| (quantity, *series)))
+            .filter_map(|(quantity, series)| self.order(quantity, series))
             .collect()
     }
 
-    fn order(&self, quantity: Quantity) -> Option<Order> {
+    /// Name of the contact that is looked at; `None` where no run was computed, or the case has none.
+    pub fn contact(&self) -> Option<&str> {
+        let mut done = self.runs.iter().filter_map(|run| run.variant.done());
+        done.find_map(|done| done.history.contact.as_deref())
+    }
+
+    /// The series, each once, in the order of their first runs.
+    fn series(&self) -> Vec<&str> {
+        let mut all: Vec<&str> = Vec::new();
+        for run in &self.runs {
+            if !all.contains(&run.series.as_str()) {
+                all.push(&run.series);
+            }
+        }
+        all
+    }
+
+    fn order(&self, quantity: Quantity, series: &str) -> Option<Order> {
         let measured = self
             .runs
             .iter()
+            .filter(|run| run.series == series)
             .filter_map(|run| Some((run.x?, quantity.of(run)?)));
         let mut measured: Vec<(f64, Measure)> = measured.collect();
         measured.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -102,6 +126,7 @@ impl Study {
         };
         (x.len() > 1).then(|| Order {
             quantity,
+            series: series.to_owned(),
             source,
             fit: fit(&x, &errors),
             consecutive: consecutive(&x, &errors),

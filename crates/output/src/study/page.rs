@@ -50,7 +50,7 @@ impl Study {
             let error_bar = order.fit.and_then(|fit| fit.error_bar);
             let between: Vec<String> = order.consecutive.iter().map(|p| number(*p)).collect();
             vec![
-                order.quantity.name().to_owned(),
+                order.name(),
                 number(order.fit.map(|fit| fit.order)),
                 error_bar.map_or(NOTHING.to_owned(), |bar| format!("± {bar:.3}")),
                 between.join(", "),
@@ -74,7 +74,7 @@ impl Study {
         }
     }
 
-    /// Writes `study.csv`, `orders.csv`, `plots/orders.svg` (if there is an order) and `report.html` into the folder; returns
+    /// Writes `study.csv`, `orders.csv`, `plots/orders.svg` (if there is an order and one axis) and `report.html` into the folder; returns
     /// the path of the page.
     ///
     /// # Errors
@@ -84,7 +84,8 @@ impl Study {
         let orders = self.orders();
         self.write_orders(folder, &orders)?;
         let figure = self.figure(&orders);
-        let drawn = figure.series.iter().any(|series| !series.points.is_empty());
+        let one = self.series().len() == 1;
+        let drawn = one && figure.series.iter().any(|s| !s.points.is_empty());
         let svg = if drawn { figure.svg().ok() } else { None };
         if let Some(svg) = &svg {
             atomic::write_text(&folder.file("plots/orders.svg")?, svg)?;
@@ -120,17 +121,20 @@ impl Study {
     fn write_runs(&self, folder: &mut Folder) -> Result<(), Error> {
         let keys = self.keys.iter().map(|(key, _)| key.clone());
         let mut names: Vec<String> = ["run".to_owned()].into_iter().chain(keys).collect();
-        names.push("step_s".to_owned());
+        names.extend(["contact", "step_s"].map(str::to_owned));
         for quantity in Quantity::ALL {
             names.push(quantity.column().to_owned());
             names.push(format!("exact.{}", quantity.column()));
         }
         names.extend(["wall_s", "verdict", "reason"].map(str::to_owned));
         let verdicts: Vec<_> = self.runs.iter().map(|run| run.variant.verdict()).collect();
-        let row = |(k, run): (usize, &'_ Run)| {
+        let row = |k: usize| {
+            let run = &self.runs[k];
             let done = run.variant.done();
-            let mut cells = vec![Cell::Text(&self.runs[k].variant.name)];
+            let mut cells = vec![Cell::Text(&run.variant.name)];
             cells.extend(self.keys.iter().map(|(_, values)| Cell::Text(&values[k])));
+            let contact = done.and_then(|d| d.history.contact.as_deref());
+            cells.push(contact.map_or(Cell::Empty, Cell::Text));
             cells.push(done.map(|d| d.summary.time.largest_step).into());
             for quantity in Quantity::ALL {
                 let measure = quantity.of(run);
@@ -142,22 +146,25 @@ impl Study {
             cells.extend([wall.into(), Cell::Text(verdict), Cell::Text(reason)]);
             cells
         };
-        let rows: Vec<Vec<Cell>> = self.runs.iter().enumerate().map(row).collect();
+        let rows: Vec<Vec<Cell>> = (0..self.runs.len()).map(row).collect();
         write_csv(&folder.file("study.csv")?, &names, &rows)
     }
 
     fn write_orders(&self, folder: &mut Folder, orders: &[Order]) -> Result<(), Error> {
         let names = [
             "quantity",
+            "series",
             "order",
             "standard_error",
             "factor",
             "from",
             "points",
         ];
-        let row = |order: &Order| {
+        let row = |k: usize| {
+            let order = &orders[k];
             vec![
                 Cell::Text(order.quantity.column()),
+                Cell::Text(&order.series),
                 order.fit.map(|fit| fit.order).into(),
                 order.fit.and_then(|fit| fit.error_bar).into(),
                 order.fit.map(|fit| fit.factor).into(),
@@ -165,17 +172,17 @@ impl Study {
                 Cell::Number(order.points.len() as f64),
             ]
         };
-        let rows: Vec<Vec<Cell>> = orders.iter().map(row).collect();
+        let rows: Vec<Vec<Cell>> = (0..orders.len()).map(row).collect();
         write_csv(&folder.file("orders.csv")?, &names, &rows)
     }
 
     fn figure(&self, orders: &[Order]) -> Logarithmic {
         let series = |order: &Order| {
-            let name = order.quantity.name();
+            let name = order.name();
             Series {
                 name: match order.fit {
                     Some(fit) => format!("{name}, order {:.2}", fit.order).replace('-', "−"),
-                    None => name.to_owned(),
+                    None => name,
                 },
                 points: order.points.clone(),
                 law: order.fit.map(|fit| (fit.order, fit.factor)),
@@ -212,11 +219,23 @@ impl Study {
             runs,
             order_heads => orders.heads[1..].to_vec(),
             orders => orders.rows,
+            grid => self.series().len() > 1,
+            contact => self.contact(),
             raw_peak => RAW_PEAK,
             version => env!("CARGO_PKG_VERSION"),
             figure => figure.map(Value::from_safe_string),
         })?;
         Ok(page)
+    }
+}
+
+impl Order {
+    /// Quantity and series, for people.
+    fn name(&self) -> String {
+        match self.series.is_empty() {
+            true => self.quantity.name().to_owned(),
+            false => format!("{}, {}", self.quantity.name(), self.series),
+        }
     }
 }
 

@@ -132,6 +132,7 @@ fn an_impact_that_is_not_over_has_empty_cells() {
         restitution: Some(0.9),
         energy_given: 16.0,
         energy_lost: 0.1,
+        energy_crushed: 0.04,
     };
     let open = ImpactRow {
         duration: None,
@@ -148,7 +149,7 @@ fn an_impact_that_is_not_over_has_empty_cells() {
         rows[0],
         [
             "a, \"b\"", "0.0001", "0.0002", "70000.0", "66000.0", "5e-6", "6.6", "5.0", "4.5",
-            "0.9", "16.0", "0.1"
+            "0.9", "16.0", "0.1", "0.04"
         ]
     );
     table.push(&open).unwrap();

@@ -1,0 +1,350 @@
+//! Zones: who is in which, with which scheme and step, and how their joints run.
+
+use std::collections::BTreeMap;
+
+use carom_dynamics::{LinkKind, ModelContact, ModelTarget, ModelZone};
+use carom_mesh::{ElementId, Mesh};
+
+use super::time::scheme;
+use super::{Builder, BuiltProbe};
+use crate::error::Problem;
+use crate::schema::{self, Link, Step, StepRule, Substeps};
+
+/// A zone as the case says it, names resolved.
+#[derive(Clone, Debug)]
+pub(super) struct Zone {
+    pub(super) name: String,
+    /// Its bodies, by number in the order of their names.
+    pub(super) bodies: Vec<usize>,
+    pub(super) scheme: schema::Scheme,
+    /// Key of the scheme.
+    pub(super) scheme_path: String,
+    pub(super) substeps: u32,
+}
+
+/// Zones, none of them in an ordinary case, and how their joints run.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    pub(super) zones: Vec<Zone>,
+    pub(super) kind: LinkKind,
+}
+
+impl Plan {
+    /// The zone of a body.
+    pub(super) fn zone_of(&self, body: usize) -> Option<usize> {
+        self.zones
+            .iter()
+            .position(|zone| zone.bodies.contains(&body))
+    }
+
+    /// Whether a body takes the outer step.
+    pub(super) fn is_outer(&self, body: usize) -> bool {
+        self.zone_of(body)
+            .is_none_or(|zone| self.zones[zone].substeps == 1)
+    }
+
+    pub(super) fn model_zones(&self) -> Vec<ModelZone> {
+        let zone = |zone: &Zone| ModelZone {
+            name: zone.name.clone(),
+            bodies: zone.bodies.clone(),
+            scheme: scheme(&zone.scheme),
+            substeps: zone.substeps,
+            far: None,
+        };
+        self.zones.iter().map(zone).collect()
+    }
+}
+
+impl Builder<'_> {
+    /// Resolves the zones; refuses what can be told without the mesh.
+    pub(super) fn plan_zones(&mut self) -> Plan {
+        let mut zones = self.zones();
+        self.substeps(&mut zones);
+        let kind = self.link_kind(zones.iter().any(|zone| zone.substeps > 1));
+        let plan = Plan { zones, kind };
+        self.joints(&plan);
+        if !plan.zones.is_empty()
+            && let Step::Rule(StepRule::Adaptive(_)) = self.case.time.step
+        {
+            let problem = Problem::new("time.step.adaptive", "zones take equal steps only");
+            self.problems
+                .push(problem.accepted(["step = { courant = ... }", "a fixed step"]));
+        }
+        if !plan.zones.is_empty() && self.case.zone.iter().all(|(_, zone)| zone.scheme.is_some()) {
+            self.warnings
+                .push("time.scheme: every zone has its own scheme, so this one is not used".into());
+        }
+        plan
+    }
+
+    /// The zones with their bodies; each body in one of them.
+    fn zones(&mut self) -> Vec<Zone> {
+        let case = self.case;
+        let names: Vec<&str> = case.body.names().collect();
+        let mut owner: Vec<Option<&str>> = vec![None; names.len()];
+        let mut zones = Vec::new();
+        for (name, given) in case.zone.iter() {
+            let mut bodies = Vec::new();
+            for (k, body) in given.bodies.iter().enumerate() {
+                let path = format!("zone.{name}.bodies[{k}]");
+                let Some(number) = names.iter().position(|one| one == body) else {
+                    let problem = Problem::new(path, "no body of this name");
+                    self.problems
+                        .push(problem.unknown(body, names.iter().copied()));
+                    continue;
+                };
+                if let Some(other) = owner[number] {
+                    let message = format!("this body is in the zone `{other}` too");
+                    let problem = Problem::new(path, message).found(body);
+                    self.problems.push(problem.accepted(["a body of one zone"]));
+                    continue;
+                }
+                owner[number] = Some(name);
+                bodies.push(number);
+            }
+            zones.push(Zone {
+                name: name.to_string(),
+                bodies,
+                scheme: given.scheme.unwrap_or(case.time.scheme),
+                scheme_path: match given.scheme {
+                    Some(_) => format!("zone.{name}.scheme"),
+                    None => "time.scheme".to_string(),
+                },
+                substeps: 1,
+            });
+        }
+        if !zones.is_empty() {
+            for (body, _) in names.iter().zip(&owner).filter(|(_, zone)| zone.is_none()) {
+                let problem = Problem::new(format!("body.{body}"), "this body is in no zone");
+                let zones = zones.iter().map(|zone| zone.name.clone());
+                self.problems.push(problem.accepted(zones));
+            }
+        }
+        zones
+    }
+
+    /// Inner steps of each zone: one of them takes the outer step, the others all the same number.
+    fn substeps(&mut self, zones: &mut [Zone]) {
+        let case = self.case;
+        let mut given: Vec<(String, &str, u32)> = Vec::new();
+        for (name, zone) in case.zone.iter() {
+            let path = format!("zone.{name}.substeps");
+            match &zone.substeps {
+                None => {}
+                Some(Substeps::Own(count)) => given.push((path, name, count.0)),
+                Some(Substeps::Of(counts)) => {
+                    for (inner, count) in counts.iter() {
+                        given.push((format!("{path}.{inner}"), inner, count.0));
+                    }
+                }
+            }
+        }
+        let names: Vec<&str> = case.zone.names().collect();
+        let mut said = vec![false; zones.len()];
+        let mut many = None;
+        for (path, name, count) in given {
+            let Some(zone) = names.iter().position(|one| *one == name) else {
+                let problem = Problem::new(path, "no zone of this name");
+                self.problems
+                    .push(problem.unknown(name, names.iter().copied()));
+                continue;
+            };
+            if std::mem::replace(&mut said[zone], true) {
+                let message = format!("the steps of the zone `{name}` are given twice");
+                self.problems.push(Problem::new(path, message).found(count));
+                continue;
+            }
+            zones[zone].substeps = count;
+            if count > 1 && *many.get_or_insert(count) != count {
+                let message = "zones with inner steps take all the same number to an outer one";
+                let accepted = many.map(|many| format!("1 or {many}"));
+                self.problems
+                    .push(Problem::new(path, message).found(count).accepted(accepted));
+            }
+        }
+        if !zones.is_empty() && zones.iter().all(|zone| zone.substeps > 1) {
+            let problem = Problem::new("zone", "no zone takes the outer step, `time.step`");
+            self.problems
+                .push(problem.accepted(["one zone at least with substeps = 1"]));
+        }
+    }
+
+    /// The link of all joints: the one given, or that which suits the steps.
+    fn link_kind(&mut self, inner_steps: bool) -> LinkKind {
+        let overlaps = self.case.arlequin.iter();
+        let overlaps = overlaps.map(|(name, joint)| (format!("arlequin.{name}"), joint.link));
+        let borders = self.case.interface.iter();
+        let borders = borders.map(|(name, joint)| (format!("interface.{name}"), joint.link));
+        let given: Vec<(String, Link)> = overlaps
+            .chain(borders)
+            .filter_map(|(path, link)| Some((format!("{path}.link"), link?)))
+            .collect();
+        let text = |link: Link| match link {
+            Link::GravouilCombescure => "gravouil-combescure",
+            Link::PrakashHjelmstad => "prakash-hjelmstad",
+        };
+        let Some((first, link)) = given.first() else {
+            return match inner_steps {
+                false => LinkKind::GravouilCombescure,
+                true => LinkKind::PrakashHjelmstad,
+            };
+        };
+        for (path, other) in given.iter().filter(|(_, other)| other != link) {
+            let message = format!("all joints of a case have the same link, and `{first}` differs");
+            let problem = Problem::new(path, message).found(text(*other));
+            self.problems.push(problem.accepted([text(*link)]));
+        }
+        match link {
+            Link::GravouilCombescure => LinkKind::GravouilCombescure,
+            Link::PrakashHjelmstad => LinkKind::PrakashHjelmstad,
+        }
+    }
+
+    /// Refuses joints of unknown bodies, of one zone, and of zones whose scheme no link takes.
+    fn joints(&mut self, plan: &Plan) {
+        let case = self.case;
+        let overlaps = case.arlequin.iter();
+        let overlaps = overlaps.map(|(n, j)| (format!("arlequin.{n}"), [&j.inner, &j.outer]));
+        let borders = case.interface.iter();
+        let borders = borders.map(|(n, j)| (format!("interface.{n}"), [&j.inner, &j.outer]));
+        let mut linked = vec![false; plan.zones.len()];
+        for (path, bodies) in overlaps.chain(borders) {
+            let sides = ["inner", "outer"].iter().zip(bodies);
+            let found: Vec<Option<usize>> = sides
+                .map(|(key, body)| self.body(&format!("{path}.{key}"), body))
+                .collect();
+            let [Some(inner), Some(outer)] = found[..] else {
+                continue;
+            };
+            if plan.zones.is_empty() {
+                let problem = Problem::new(path, "this joins two zones, and the case has none");
+                self.problems
+                    .push(problem.accepted(["a table [zone.<name>] for each of them"]));
+                continue;
+            }
+            let (Some(one), Some(other)) = (plan.zone_of(inner), plan.zone_of(outer)) else {
+                continue;
+            };
+            if one == other {
+                let message = format!(
+                    "both bodies are in the zone `{}`: only zones are joined",
+                    plan.zones[one].name
+                );
+                let problem = Problem::new(format!("{path}.outer"), message).found(bodies[1]);
+                self.problems
+                    .push(problem.accepted(["a body of another zone"]));
+            }
+            (linked[one], linked[other]) = (true, true);
+        }
+        let zones = plan
+            .zones
+            .iter()
+            .zip(&linked)
+            .filter(|(_, linked)| **linked);
+        for (zone, _) in zones {
+            let own = scheme(&zone.scheme);
+            if own.link_weights().is_none() {
+                let message = format!(
+                    "the zone `{}` is joined, and no link takes its scheme",
+                    zone.name
+                );
+                let problem = Problem::new(&zone.scheme_path, message).found(own.get().name());
+                self.problems
+                    .push(problem.accepted(["theta", "newmark", "central-difference"]));
+            }
+        }
+    }
+
+    /// The number of the body called `name`, or a problem at `path`.
+    pub(super) fn body(&mut self, path: &str, name: &str) -> Option<usize> {
+        let names: Vec<&str> = self.case.body.names().collect();
+        let number = names.iter().position(|one| *one == name);
+        if number.is_none() {
+            let problem = Problem::new(path, "no body of this name");
+            self.problems.push(problem.unknown(name, names));
+        }
+        number
+    }
+
+    /// The scheme that moves a cell.
+    pub(super) fn scheme_at(
+        &self,
+        cell: Option<ElementId>,
+        of: &[Vec<ElementId>],
+    ) -> schema::Scheme {
+        let body = cell.and_then(|cell| body_of(cell, of));
+        let zone = body.and_then(|body| self.plan.zone_of(body));
+        zone.map_or(self.case.time.scheme, |zone| self.plan.zones[zone].scheme)
+    }
+
+    /// Refuses contacts between zones, and laws that the schemes of zones cannot take.
+    pub(super) fn zones_of_contacts(&mut self, contacts: &[ModelContact], of: &[Vec<ElementId>]) {
+        if self.plan.zones.is_empty() {
+            return;
+        }
+        let mut schemes: BTreeMap<&str, schema::Scheme> = BTreeMap::new();
+        for contact in contacts {
+            let primary = match &contact.primary {
+                ModelTarget::Surface(surface) => &surface.faces[..],
+                ModelTarget::Plane(_) | ModelTarget::Sphere(_) => &[],
+            };
+            let faces = contact.secondary.faces.iter().chain(primary);
+            let mut zones: Vec<usize> = faces
+                .filter_map(|face| self.plan.zone_of(body_of(face.parent, of)?))
+                .collect();
+            zones.sort_unstable();
+            zones.dedup();
+            match zones[..] {
+                [zone] => {
+                    schemes.insert(&contact.name, self.plan.zones[zone].scheme);
+                }
+                _ => {
+                    let names = zones
+                        .iter()
+                        .map(|&zone| self.plan.zones[zone].name.as_str());
+                    let names: Vec<&str> = names.collect();
+                    let message = "the two sides of a contact must be in the same zone";
+                    let problem = Problem::new(format!("contact.{}", contact.name), message)
+                        .found(format!("sides in the zones {}", names.join(", ")))
+                        .accepted(["one zone for all bodies of a contact"]);
+                    self.problems.push(problem);
+                }
+            }
+        }
+        let default = self.case.time.scheme;
+        self.laws(|name| schemes.get(name).copied().unwrap_or(default));
+    }
+
+    /// Refuses probes on nodes that no body has any more.
+    pub(super) fn within_bodies(
+        &mut self,
+        mesh: &Mesh,
+        probes: &[BuiltProbe],
+        of: &[Vec<ElementId>],
+    ) {
+        if self.case.arlequin.is_empty() {
+            return;
+        }
+        let mut used = vec![false; mesh.nodes.len()];
+        let nodes = of
+            .iter()
+            .flatten()
+            .flat_map(|&cell| mesh.element_nodes(cell));
+        nodes.for_each(|&node| used[node as usize] = true);
+        for probe in probes {
+            if probe.nodes.iter().any(|&node| !used[node as usize]) {
+                let message =
+                    "the probe has nodes of cells that fall away inside an overlapping body";
+                let problem = Problem::new(format!("probe.{}.on", probe.name), message);
+                self.problems
+                    .push(problem.accepted(["a group of the body that stays"]));
+            }
+        }
+    }
+}
+
+/// The body of a cell.
+fn body_of(cell: ElementId, of: &[Vec<ElementId>]) -> Option<usize> {
+    of.iter()
+        .position(|cells| cells.binary_search(&cell).is_ok())
+}

@@ -1,0 +1,277 @@
+//! `[zone]`, `[arlequin]` and `[interface]`: parts of the model with their own scheme and step, and what joins them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Named;
+use super::quantity::{Coordinate, Length, Vector};
+use super::time::Scheme;
+
+/// A zone: bodies with their own scheme and step. Either no body is in a zone, or each is in one. The two sides of a contact are in
+/// the same zone.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Zone {
+    /// Names of its bodies.
+    #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
+    pub bodies: Vec<String>,
+    /// Its time scheme, as `time.scheme`, which is the default. Zones that are joined take theta, newmark or central-difference.
+    pub scheme: Option<Scheme>,
+    /// Steps of this zone to one outer step, which is `time.step`; or, in the outer zone, those of other zones by name:
+    /// `{ impact = 4 }`. Default: 1. At least one zone takes the outer step; the others take all the same number to it.
+    pub substeps: Option<Substeps>,
+}
+
+/// Inner steps to one outer step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Substeps {
+    /// Of the zone itself.
+    Own(StepCount),
+    /// Of other zones, by name.
+    Of(Named<StepCount>),
+}
+
+/// A number of inner steps, from 1 to 1000.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(inline, extend("minimum" = 1, "maximum" = 1000))]
+pub struct StepCount(pub u32);
+
+/// An overlap of two bodies, which model the same material there and are glued in volume (the Arlequin method). The two bodies have
+/// meshes of their own and are in different zones. Contact surfaces lie outside.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Arlequin {
+    /// Body of the impact zone, the finer model. Outside the overlap it stands alone.
+    pub inner: String,
+    /// Body of the rest, the coarser model. It may cover the inner body: its cells that lie inside that and outside the overlap fall
+    /// away.
+    pub outer: String,
+    /// Where the two are glued, at least one cell of the outer body thick, better two to four.
+    #[serde(default)]
+    pub overlap: OverlapRegion,
+    /// How inertia and internal work go from one body to the other. Default `"linear"`: of the profiles the only one that reproduces
+    /// a constant strain.
+    #[serde(default)]
+    pub weights: Weights,
+    /// Whose shape functions carry the multiplier. Default `"coarser"`: a finer one locks the fine motion and reflects short waves.
+    #[serde(default)]
+    pub mediator: Mediator,
+    /// Product of multiplier and velocity. Default `"l2"`: it needs no length, and weights without jumps, which linear ones are.
+    #[serde(default)]
+    pub bracket: Bracket,
+    /// How the multiplier runs over an outer step. Default: `"gravouil-combescure"` if all zones take the outer step, otherwise
+    /// `"prakash-hjelmstad"`, which then dissipates nothing. All joints of a case have the same.
+    pub link: Option<Link>,
+}
+
+/// A border where two bodies in different zones are tied node to node: nodes that they share, or nodes at the same place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Interface {
+    /// One body.
+    pub inner: String,
+    /// The other body, in another zone.
+    pub outer: String,
+    /// How the multiplier runs over an outer step; as in `arlequin`.
+    pub link: Option<Link>,
+}
+
+/// Where two bodies are glued.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum OverlapRegion {
+    /// By its name.
+    Named(OverlapName),
+    /// A group of cells of either body.
+    Group(String),
+    /// A region.
+    Region(OverlapShape),
+}
+
+impl Default for OverlapRegion {
+    fn default() -> OverlapRegion {
+        OverlapRegion::Named(OverlapName::Intersection)
+    }
+}
+
+/// Where two bodies are glued, by a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum OverlapName {
+    /// Everywhere where both are. Other texts are groups of cells of either body.
+    Intersection,
+}
+
+/// A region in which two bodies are glued.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum OverlapShape {
+    /// A box with sides along the axes.
+    Box(OverlapBox),
+}
+
+/// A box with sides along the axes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct OverlapBox {
+    /// Least coordinates.
+    pub min: Vector<Coordinate>,
+    /// Largest coordinates.
+    pub max: Vector<Coordinate>,
+}
+
+/// Weights of the two bodies in the overlap, that of the inner one given; the two add up to one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Weights {
+    /// One profile for both.
+    Same(ProfileName),
+    /// Inertia and internal work apart.
+    Apart(WeightTable),
+}
+
+impl Default for Weights {
+    fn default() -> Weights {
+        Weights::Same(ProfileName::Linear)
+    }
+}
+
+/// Profile of a weight, from the border where the inner body ends to that where the outer one ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ProfileName {
+    /// Linear in the distances to the two borders.
+    #[default]
+    Linear,
+    /// 3 s² - 2 s³ of the linear profile s: no kinks, and strains wrong by some per cent.
+    Smooth,
+}
+
+/// Weights of inertia and of internal work.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct WeightTable {
+    /// Weight of the inertia, alpha.
+    #[serde(default)]
+    pub inertia: Profile,
+    /// Weight of the internal work, delta.
+    #[serde(default)]
+    pub stiffness: Profile,
+    /// Least weight of either body in the overlap, for profiles that are not constant. Above zero weights jump at the borders.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0.0, "exclusiveMaximum" = 0.5))]
+    pub floor: f64,
+}
+
+/// Profile of a weight.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Profile {
+    /// By its name.
+    Named(ProfileName),
+    /// With a value.
+    With(ProfileWith),
+}
+
+impl Default for Profile {
+    fn default() -> Profile {
+        Profile::Named(ProfileName::Linear)
+    }
+}
+
+/// Profile of a weight, with a value.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ProfileWith {
+    /// This weight of the inner body in all of the overlap. For the internal work it misses constant strains.
+    Constant(#[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0))] f64),
+}
+
+/// Whose shape functions carry the multiplier.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mediator {
+    /// Of the body with the larger cells in the overlap.
+    #[default]
+    Coarser,
+    /// Of the inner body.
+    Inner,
+    /// Of the outer body.
+    Outer,
+}
+
+/// Product of multiplier L and velocity w over the overlap.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Bracket {
+    /// By its name.
+    Named(BracketName),
+    /// With a length.
+    With(BracketWith),
+}
+
+impl Default for Bracket {
+    fn default() -> Bracket {
+        Bracket::Named(BracketName::L2)
+    }
+}
+
+/// Product of multiplier L and velocity w over the overlap, by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BracketName {
+    /// The integral of L w.
+    L2,
+}
+
+/// Product of multiplier L and velocity w over the overlap, with a length.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BracketWith {
+    /// The integral of L w + length² strain(L) : strain(w).
+    H1(H1Bracket),
+}
+
+/// The bracket with strains.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct H1Bracket {
+    /// The length.
+    #[serde(default)]
+    pub length: BracketLength,
+}
+
+/// The length of the bracket with strains.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum BracketLength {
+    /// By a word.
+    Named(LengthName),
+    /// A length.
+    Given(Length),
+}
+
+impl Default for BracketLength {
+    fn default() -> BracketLength {
+        BracketLength::Named(LengthName::Auto)
+    }
+}
+
+/// A length by a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum LengthName {
+    /// The size of the cells of the outer body in the overlap.
+    Auto,
+}
+
+/// How the multiplier of a joint runs over an outer step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Link {
+    /// Velocities are equal at every inner instant, those of the outer zone interpolated. Dissipates with inner steps.
+    GravouilCombescure,
+    /// Multipliers are linear over the outer step, velocities equal at its end.
+    PrakashHjelmstad,
+}

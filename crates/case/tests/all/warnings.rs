@@ -1,0 +1,52 @@
+//! What is strange about a case without being wrong.
+
+use carom_case::{Input, build, parse};
+
+/// Warnings of two bars of 10 elements of 25.4 mm, c = 5137 m/s, with the damped law.
+fn warnings(law: &str, courant: f64, scheme: &str) -> Vec<String> {
+    let text = format!(
+        r#"
+carom = 1
+mesh.generate.one.line = {{ from = ["-254 mm"], to = [0.0], elements = 10 }}
+mesh.generate.two.line = {{ from = [0.0], to = ["254 mm"], elements = 10 }}
+material.steel = {{ density = 7844.0, elastic = {{ young = "207 GPa", poisson = 0.0 }} }}
+body.one = {{ region = "one", material = "steel", section.bar.area = "645 mm^2", initial.velocity = [5.1359] }}
+body.two = {{ region = "two", material = "steel", section.bar.area = "645 mm^2" }}
+contact.shock = {{ secondary = "one.right", primary = "two.left", law.damped = {law} }}
+time = {{ end = "150 us", step.courant = {courant}, scheme.{scheme} }}
+"#
+    );
+    let input = Input::from_text("case.toml", &text, &[]);
+    let (case, locator) = parse(&input).unwrap();
+    build(&case, &locator, &input).unwrap().warnings
+}
+
+#[test]
+fn a_spring_too_stiff_for_an_implicit_step_is_told_with_its_remedy() {
+    let theta = "theta.theta = 0.5";
+    // the default k = E / h has 2 sqrt(k h / E) CFL = 2 CFL
+    assert!(warnings("{}", 1.0, theta).is_empty());
+    let told = warnings("{}", 2.0, theta);
+    let [warning] = &told[..] else {
+        panic!("{told:?}");
+    };
+    let h_over_c = 0.0254 / (207e9_f64 / 7844.0).sqrt();
+    for word in [
+        "contact `shock`".to_owned(),
+        "2 sqrt(k h/E) CFL = 4.000".to_owned(),
+        format!("a step of at most {h_over_c:.4e} s"),
+        "a stiffness 0.250 times".to_owned(),
+    ] {
+        assert!(warning.contains(&word), "{word}: {warning}");
+    }
+    // both remedies are enough: k is 8.15e12 Pa/m by default
+    assert!(warnings("{ stiffness = 2.03e12 }", 2.0, theta).is_empty());
+    assert_eq!(warnings("{ stiffness = 2.06e12 }", 2.0, theta).len(), 1);
+}
+
+#[test]
+fn an_explicit_scheme_has_its_critical_step_instead() {
+    let law = "{ stiffness = 1e13 }";
+    assert!(warnings(law, 0.4, "central-difference = {}").is_empty());
+    assert_eq!(warnings(law, 0.95, "theta.theta = 0.5").len(), 1);
+}
