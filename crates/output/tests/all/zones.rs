@@ -100,6 +100,7 @@ fn two_bars() -> Zoned {
         bodies,
         scheme,
         substeps,
+        far: None,
     };
     let rest = Scheme::CentralDifference(CentralDifference);
     Zoned {
@@ -136,7 +137,7 @@ fn run(folder: &Path, end: f64) -> (Summary, Recorder, Whole) {
     settings.fields = models::all_fields(0.5 * models::duration());
     settings.zoning = Some(Zoning::of(&zoned));
     settings.probes = vec![models::probe(&system, "tip", "striker-tip.right")];
-    let mut recorder = Recorder::new(&system, settings.reference.as_ref());
+    let mut recorder = Recorder::new(&system, settings.reference.as_ref(), None);
     let mut whole = Whole::new(&zoned, Arc::clone(&system)).unwrap();
     let mut results = Results::create(settings, system).unwrap();
     march(&mut whole, end, &mut [&mut results, &mut recorder], &|| {
