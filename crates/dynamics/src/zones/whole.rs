@@ -134,7 +134,8 @@ impl Whole {
         links.map(|((name, rows), zones)| (name.as_str(), *zones, rows.len()))
     }
 
-    /// State and report from those of the zones. Needs no memory once contacts and samples have their places.
+    /// State and report from those of the zones. Needs memory only where the number of parts of a step
+    /// grows.
     fn gather(&mut self) {
         self.state.step = self.zones.step;
         self.state.time = self.zones.time();
@@ -255,6 +256,7 @@ impl Whole {
         let parts = self.zones.substeps.iter().copied().max().unwrap_or(1) as usize;
         let samples = &mut self.report.samples;
         if parts == 1 {
+            samples.clear();
             return;
         }
         samples.resize_with(parts, || ContactSample {

@@ -195,3 +195,35 @@ fn bytes_of_another_model_are_refused() {
     assert!(refused(&other, &bytes).contains("another model"));
     assert!(refused(&zoned, &bytes[..50]).contains("state"));
 }
+
+#[test]
+fn a_step_has_parts_only_where_it_takes_inner_steps() {
+    let mut zoned = bar();
+    zoned.zones[0].far = Some(1);
+    // ten outer steps away from the wall
+    let gap = 10.0 * zoned.model.dt;
+    for body in &mut zoned.model.bodies {
+        body.displacement[0] = -gap;
+    }
+    let mut whole = whole(&zoned);
+    let (mut counts, mut impulse) = ([0; 2], 0.0);
+    for _ in 0..500 {
+        whole.step().unwrap();
+        let report = whole.report();
+        let parts = report.parts().count();
+        assert!(parts == 1 || parts == INNER as usize);
+        let last = report.parts().last().map_or(0.0, |(end, ..)| end);
+        // parts of an earlier step would end there
+        assert!((last / report.time - 1.0).abs() < 1e-12);
+        let length: f64 = report.parts().map(|(_, dt, _)| dt).sum();
+        assert!((length / report.dt - 1.0).abs() < 1e-12);
+        counts[usize::from(parts > 1)] += 1;
+        impulse += report
+            .parts()
+            .map(|(_, dt, c)| dt * c[0].force)
+            .sum::<f64>();
+    }
+    assert!(counts[0] > 5 && counts[1] > 100, "{counts:?}");
+    let record = &whole.state().records.contacts[0];
+    assert!((record.impulse() / impulse - 1.0).abs() < 1e-12);
+}
