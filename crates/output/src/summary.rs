@@ -210,6 +210,9 @@ pub struct Link {
     pub zones: [String; 2],
     /// Rows of its coupling, one multiplier each.
     pub rows: usize,
+    /// Energy that it gave to both its sides in sum, J: negative when it took some.
+    #[serde(with = "float")]
+    pub work: f64,
 }
 
 /// What one contact did. Force: the sum of the normal forces over its points.

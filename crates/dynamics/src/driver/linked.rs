@@ -91,6 +91,13 @@ impl Driver {
         self.next.motion.link_force.clone_from(&linked.force);
     }
 
+    /// Work of the force of one row in the step just completed, J: `before` and `now` are the row's Λ of the step before and
+    /// of this one.
+    pub(crate) fn row_work(&self, terms: &LinkRow, before: f64, now: f64) -> f64 {
+        let travel = on(terms, &self.next.motion.u) - on(terms, &self.state.motion.u);
+        (self.map.impulse.old * before + self.map.impulse.new * now) * travel
+    }
+
     /// Velocity at the end of the step just completed, which is not accepted yet.
     pub(crate) fn next_velocity(&self) -> &[f64] {
         &self.next.motion.v

@@ -62,6 +62,10 @@ pub struct ZonesState {
     pub multipliers: Vec<f64>,
     /// The same one and two steps before.
     pub earlier: [Vec<f64>; 2],
+    /// Λ of each zone in its last step.
+    pub forces: Vec<Vec<f64>>,
+    /// Work of each link on both its sides, J.
+    pub link_works: Vec<f64>,
     /// By zone.
     pub zones: Vec<State>,
 }
@@ -102,6 +106,10 @@ pub struct Zones {
     defect: Vec<f64>,
     free: [Vec<f64>; 2],
     pointwise: [Vec<f64>; 2],
+    /// Λ of each zone in the step that it takes, in its last one, and in its last one before the outer step.
+    mixes: Vec<[Vec<f64>; 3]>,
+    /// Work of each link on both its sides in the outer step, and before it, J.
+    works: [Vec<f64>; 2],
 }
 
 impl Zones {
@@ -149,6 +157,11 @@ impl Zones {
     pub fn condensed_bytes(&self) -> usize {
         let rows = self.norms.len();
         self.factor.as_ref().map_or(0, |factor| factor.bytes(rows))
+    }
+
+    /// Work of each link on both its sides since the start, J: what it makes (positive) or takes.
+    pub fn link_works(&self) -> &[f64] {
+        &self.works[1]
     }
 
     /// The balance of all zones together.
@@ -223,10 +236,20 @@ impl Zones {
     fn accept(&mut self) {
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] == 1 {
+                record(
+                    driver,
+                    &self.rows[k],
+                    &mut self.mixes[k],
+                    (&self.links, &mut self.works[0]),
+                );
                 driver.take();
                 sample(k, driver, &mut self.samples);
             }
+            let [_, last, before] = &mut self.mixes[k];
+            before.copy_from_slice(last);
         }
+        let [now, sum] = &mut self.works;
+        sum.iter_mut().zip(now).for_each(|(sum, now)| *sum += *now);
         self.step += 1;
         self.all_passes += self.passes as u64;
         let [before, first] = &mut self.earlier;
@@ -258,7 +281,10 @@ impl Zones {
             self.passes = pass;
             self.samples.clear();
             self.defect.fill(0.0);
+            self.works[0].fill(0.0);
             for k in 0..self.drivers.len() {
+                let [_, last, before] = &mut self.mixes[k];
+                last.copy_from_slice(before);
                 self.ramp_zone(k)?;
             }
             if self.corrected(1)? {
@@ -295,11 +321,18 @@ impl Zones {
                 *mix = (1.0 - part) * old[i] + part * new[i];
             }
             driver.set_link_force(&self.rows[k], mix);
+            self.mixes[k][0].copy_from_slice(mix);
             if m == 1 {
                 driver.complete()?;
             } else {
                 driver.prepare()?;
                 driver.complete()?;
+                record(
+                    driver,
+                    &self.rows[k],
+                    &mut self.mixes[k],
+                    (&self.links, &mut self.works[0]),
+                );
                 driver.take();
                 sample(k, driver, &mut self.samples);
             }
@@ -359,6 +392,7 @@ impl Zones {
         start.fill(0.0);
         end.fill(0.0);
         self.samples.clear();
+        self.works[0].fill(0.0);
         self.passes = 0;
         let old = &self.multipliers[0];
         for (k, driver) in self.drivers.iter_mut().enumerate() {
@@ -394,6 +428,7 @@ impl Zones {
                     self.pointwise[0][i] = weights[0] * old[i] + weights[1] * new[i];
                 }
                 driver.set_link_force(&self.rows[k], &self.pointwise[0]);
+                self.mixes[k][0].copy_from_slice(&self.pointwise[0]);
                 driver.complete()?;
             }
         }
@@ -425,6 +460,7 @@ impl Zones {
                     *mix = weights[0] * self.multipliers[1][i] + weights[1] * now[i];
                 }
                 driver.set_link_force(&self.rows[k], mix);
+                self.mixes[k][0].copy_from_slice(mix);
                 driver.complete()?;
                 for (row, terms) in &self.rows[k] {
                     self.defect[*row as usize] += on(terms, driver.next_velocity());
@@ -439,6 +475,12 @@ impl Zones {
         }
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] > 1 {
+                record(
+                    driver,
+                    &self.rows[k],
+                    &mut self.mixes[k],
+                    (&self.links, &mut self.works[0]),
+                );
                 driver.take();
                 sample(k, driver, &mut self.samples);
             }
@@ -466,6 +508,21 @@ fn dot_row(matrix: &[f64], row: usize, x: &[f64]) -> f64 {
     let n = x.len();
     let entries = matrix[row * n..(row + 1) * n].iter().zip(x);
     entries.map(|(a, x)| a * x).sum()
+}
+
+/// Adds the work of the links in the step of a zone just completed.
+fn record(
+    driver: &Driver,
+    rows: &[(u32, LinkRow)],
+    [now, last, _]: &mut [Vec<f64>; 3],
+    (links, works): (&[(String, std::ops::Range<usize>)], &mut [f64]),
+) {
+    for (row, terms) in rows {
+        let row = *row as usize;
+        let link = links.partition_point(|(_, range)| range.end <= row);
+        works[link] += driver.row_work(terms, last[row], now[row]);
+    }
+    last.copy_from_slice(now);
 }
 
 fn sample(zone: usize, driver: &Driver, samples: &mut Vec<Sample>) {

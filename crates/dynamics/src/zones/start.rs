@@ -70,9 +70,20 @@ impl Zones {
             defect: vec![0.0; count],
             free: [vec![0.0; count], vec![0.0; count]],
             pointwise: [vec![0.0; count], vec![0.0; count]],
+            mixes: Vec::new(),
+            works: [Vec::new(), Vec::new()],
         };
+        zones.start_works();
         zones.factorise()?;
         Ok(zones)
+    }
+
+    /// No work yet; Λ before the first step is L₀.
+    fn start_works(&mut self) {
+        let first = &self.multipliers[0];
+        let mixes = || [first.clone(), first.clone(), first.clone()];
+        self.mixes = self.drivers.iter().map(|_| mixes()).collect();
+        self.works = [vec![0.0; self.links.len()], vec![0.0; self.links.len()]];
     }
 
     /// Begins anew from other initial motions: displacement (m) and velocity (m/s) of each zone, one entry per unknown.
@@ -88,6 +99,7 @@ impl Zones {
         self.step = 0;
         self.earlier = [multipliers.clone(), multipliers.clone()];
         self.multipliers = [multipliers.clone(), multipliers];
+        self.start_works();
         Ok(())
     }
 
@@ -161,6 +173,8 @@ impl Zones {
             time: self.time(),
             multipliers: self.multipliers[0].clone(),
             earlier: self.earlier.clone(),
+            forces: self.mixes.iter().map(|[_, last, _]| last.clone()).collect(),
+            link_works: self.works[1].clone(),
             zones: self.drivers.iter().map(|d| d.state().clone()).collect(),
         }
     }
@@ -170,6 +184,11 @@ impl Zones {
         self.step = state.step;
         self.multipliers[0].clone_from(&state.multipliers);
         self.earlier.clone_from(&state.earlier);
+        for ([_, last, before], force) in self.mixes.iter_mut().zip(&state.forces) {
+            last.clone_from(force);
+            before.clone_from(force);
+        }
+        self.works[1].clone_from(&state.link_works);
         for (driver, state) in self.drivers.iter_mut().zip(&state.zones) {
             driver.go_back(state);
         }

@@ -76,7 +76,9 @@ impl Zones {
                 solves: costs.solves(),
             }
         };
-        let link = |(name, [inner, outer], rows): (&str, [usize; 2], usize)| Link {
+        type Of<'a> = ((&'a str, [usize; 2], usize), &'a f64);
+        let link = |((name, [inner, outer], rows), work): Of| Link {
+            work: *work,
             name: name.to_owned(),
             zones: [names[inner].clone(), names[outer].clone()],
             rows,
@@ -85,7 +87,7 @@ impl Zones {
         let (work, start) = (ledger.balance.work_links, ledger.initial.energy());
         Zones {
             zones: zones.drivers().iter().enumerate().map(one).collect(),
-            links: run.links().map(link).collect(),
+            links: run.links().zip(zones.link_works()).map(link).collect(),
             work_of_links: work,
             relative_work_of_links: (start > 0.0).then(|| work / start),
             passes_per_step: match zones.outer_step() {
