@@ -134,11 +134,6 @@ impl GluedBar {
             },
         })
     }
-
-    /// Size of the elements of each zone.
-    pub(crate) fn sizes(&self) -> [f64; 2] {
-        [1.0 / self.ratio as f64, 1.0]
-    }
 }
 
 /// Displacement and velocity of each zone from those at a place.

@@ -18,6 +18,7 @@ mod glued_bar;
 mod adaptive;
 mod arlequin_bars;
 mod arlequin_energy;
+mod arlequin_oblique;
 mod arlequin_pulse;
 mod arlequin_stability;
 mod arlequin_start;
@@ -83,6 +84,7 @@ registry! {
     adaptive
     arlequin_bars
     arlequin_energy
+    arlequin_oblique
     arlequin_pulse
     arlequin_stability
     arlequin_start
