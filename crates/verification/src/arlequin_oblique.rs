@@ -157,6 +157,7 @@ impl Strip {
             bodies: vec![body],
             scheme,
             substeps: 1,
+            far: None,
         };
         Ok(Zones::new(&Zoned {
             zones: vec![zone("fine", 0, theta(0.5)), zone("coarse", 1, CENTRAL)],

@@ -80,6 +80,7 @@ fn figures_of_a_variant_are_those_of_its_own_summary() {
     let work = tempfile::tempdir().unwrap();
     let folder = work.path().join("case.compare");
     let choices = Choices {
+        beside: Vec::new(),
         schemes: words(&["case", "theta={theta=1.0}", "newmark={beta=0.5}"]),
         laws: words(&["velocity", "damped"]),
         reference: None,
@@ -138,6 +139,7 @@ fn a_run_is_at_no_distance_from_itself_and_the_finest_has_a_quarter_of_the_step(
     let work = tempfile::tempdir().unwrap();
     let input = two_bars(40, EXACT);
     let choices = |reference: &str| Choices {
+        beside: Vec::new(),
         schemes: words(&["theta", "theta={theta=0.6}"]),
         laws: Vec::new(),
         reference: Some(reference.to_owned()),
@@ -165,6 +167,7 @@ fn a_run_is_at_no_distance_from_itself_and_the_finest_has_a_quarter_of_the_step(
 fn parallel_runs_give_the_numbers_of_runs_one_by_one() {
     let work = tempfile::tempdir().unwrap();
     let choices = Choices {
+        beside: Vec::new(),
         schemes: words(&["theta", "theta={theta=0.6}", "newmark"]),
         ..Choices::default()
     };
@@ -192,6 +195,7 @@ fn refused_pairs_keep_their_rows_and_wrong_words_are_bad_input() {
     let folder = work.path().join("case.compare");
     let input = two_bars(10, EXACT);
     let choices = Choices {
+        beside: Vec::new(),
         schemes: words(&["theta", "central-difference"]),
         laws: words(&["displacement", "velocity"]),
         reference: None,
@@ -205,6 +209,7 @@ fn refused_pairs_keep_their_rows_and_wrong_words_are_bad_input() {
     let nothing = work.path().join("nothing");
     let wrong = |scheme: &[&str], law: &[&str], reference: Option<&str>| {
         let choices = Choices {
+            beside: Vec::new(),
             schemes: words(scheme),
             laws: words(law),
             reference: reference.map(str::to_owned),
@@ -305,6 +310,7 @@ fn a_fit_finds_the_parameter_that_made_the_result() {
     let truth = 0.7;
     let folder = work.path().join("truth");
     let choices = Choices {
+        beside: Vec::new(),
         schemes: vec![format!("theta={{theta={truth}}}")],
         ..Choices::default()
     };
@@ -422,6 +428,7 @@ fn the_contact_that_is_looked_at_is_chosen_and_named() {
     let looked_at = |contact: Option<&str>| {
         let folder = work.path().join(contact.unwrap_or("default"));
         let choices = Choices {
+            beside: Vec::new(),
             reference: Some("none".to_owned()),
             ..Choices::default()
         };
