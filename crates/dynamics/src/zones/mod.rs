@@ -10,6 +10,7 @@
 
 mod condensed;
 mod model;
+mod moves;
 mod start;
 mod whole;
 
@@ -23,10 +24,11 @@ use crate::state::{ContactReport, State};
 
 use condensed::Condensed;
 pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
+use moves::Moves;
 pub use whole::Whole;
 
 /// Defect of a row at which it holds, as a part of the largest velocity.
-const TOLERANCE: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-12;
 
 /// Most passes over an outer step.
 const MOST_PASSES: usize = 30;
@@ -108,6 +110,8 @@ pub struct Zones {
     pointwise: [Vec<f64>; 2],
     /// Λ of each zone in the step that it takes, in its last one, and in its last one before the outer step.
     mixes: Vec<[Vec<f64>; 3]>,
+    /// Moves of the multipliers in the passes so far.
+    moves: Moves,
     /// Work of each link on both its sides in the outer step, and before it, J.
     works: [Vec<f64>; 2],
 }
@@ -277,6 +281,7 @@ impl Zones {
                 driver.prepare()?;
             }
         }
+        self.moves.clear();
         for pass in 1..=MOST_PASSES {
             self.passes = pass;
             self.samples.clear();
@@ -370,8 +375,9 @@ impl Zones {
         if largest(&self.defect) <= TOLERANCE * forces {
             return Ok(true);
         }
-        for (l, d) in target.iter_mut().zip(&self.defect) {
-            *l -= d;
+        self.moves.next(&mut self.defect);
+        for (l, move_) in target.iter_mut().zip(&self.defect) {
+            *l += move_;
         }
         Ok(false)
     }
@@ -443,6 +449,7 @@ impl Zones {
             }
         }
         self.pointwise[1].copy_from_slice(&self.multipliers[1]);
+        self.moves.clear();
         for pass in 1..=MOST_PASSES {
             self.passes += 1;
             for i in 0..self.defect.len() {

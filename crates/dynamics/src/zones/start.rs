@@ -5,6 +5,7 @@ use std::sync::Arc;
 use carom_algebra::dense::DenseCholesky;
 
 use super::condensed::{Answer, Condensed, DENSE, Joined};
+use super::moves::Moves;
 use super::{LinkKind, Zoned, Zones, ZonesState};
 use crate::driver::Driver;
 use crate::driver::linked::{LinkRow, on};
@@ -70,6 +71,7 @@ impl Zones {
             defect: vec![0.0; count],
             free: [vec![0.0; count], vec![0.0; count]],
             pointwise: [vec![0.0; count], vec![0.0; count]],
+            moves: Moves::default(),
             mixes: Vec::new(),
             works: [Vec::new(), Vec::new()],
         };
