@@ -4,7 +4,8 @@ use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting
 use carom_bodies::{CellWeights, Kinematics};
 use carom_contact::Law;
 use carom_dynamics::{
-    Balance, LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, Scheme, Zoned, Zones,
+    Balance, Costs, LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, Scheme, Zoned,
+    Zones,
 };
 use carom_mesh::{Mesh, generate};
 
@@ -178,6 +179,11 @@ impl Glued {
             figures.residual = figures.residual.max(balance.energy_residual.abs());
             figures.momentum = figures.momentum.max(balance.momentum_residual.largest());
         }
+        for driver in zones.drivers() {
+            let costs = driver.costs();
+            figures.element_updates += costs.element_updates as f64;
+            figures.swept += swept(&costs);
+        }
         figures.inner_steps = zones.drivers()[0].state().step;
         let end = zones.balance();
         figures.force_error = f64::sqrt(error / norm);
@@ -189,6 +195,12 @@ impl Glued {
         figures.passes = zones.all_passes() as f64 / zones.outer_step() as f64;
         Ok(figures)
     }
+}
+
+/// Entries of factors that the sweeps of a run have read.
+pub(crate) fn swept(costs: &Costs) -> f64 {
+    let factors = costs.factors.iter();
+    factors.map(|f| (f.sweeps * f.nnz_factor) as f64).sum()
 }
 
 /// A model with one contact, everything else free.
@@ -227,6 +239,10 @@ pub(crate) struct Figures {
     pub(crate) residual: f64,
     /// Largest momentum residual / momentum.
     pub(crate) momentum: f64,
+    /// Elements whose internal forces were computed.
+    pub(crate) element_updates: f64,
+    /// Entries of factors swept.
+    pub(crate) swept: f64,
     /// Steps of the tips.
     pub(crate) inner_steps: u64,
     /// Mean passes to an outer step.

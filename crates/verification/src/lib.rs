@@ -19,6 +19,7 @@ mod adaptive;
 mod arlequin_bars;
 mod arlequin_block;
 mod arlequin_energy;
+mod arlequin_large;
 mod arlequin_oblique;
 mod arlequin_pulse;
 mod arlequin_stability;
@@ -88,6 +89,7 @@ registry! {
     arlequin_bars
     arlequin_block
     arlequin_energy
+    arlequin_large
     arlequin_oblique
     arlequin_pulse
     arlequin_stability

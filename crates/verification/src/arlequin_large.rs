@@ -1,0 +1,132 @@
+//! An overlap with thousands of multipliers.
+//!
+//! Problem: a plate of 1 m × 1 m × 0.5 m in two halves that overlap on 0.1 m, all of it squeezed, one step for both: theta ½
+//! below, central differences above; meshes that do not match. Closed solution: none; facts instead: the rows join the factor
+//! of the lower half, H is never made, and the rows hold. Reference: a dense H of 20 000 rows would take 3.2 GB, its factor as
+//! much again; the limit is 4 GiB for all. Tolerance: two passes a step, balances as for other solids.
+
+use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
+use carom_bodies::{CellWeights, Kinematics};
+use carom_dynamics::{LinkKind, Model, ModelLink, ModelZone, Zoned, Zones};
+use carom_materials::{Elastic, Plane};
+use carom_mesh::generate;
+
+use crate::Error;
+use crate::build::{CENTRAL, body, group, theta};
+use crate::check::{Check, Row, Size};
+
+const RUBBER: Elastic = Elastic {
+    density: 1000.0,
+    young: 1e7,
+    poisson: 0.3,
+};
+const GIB: f64 = (1u64 << 30) as f64;
+
+/// Two halves with `n` cells along the sides of the upper one, one more in the lower one.
+fn zoned(n: usize) -> Result<Zoned, Error> {
+    let h = 1.0 / n as f64;
+    let layers = |height: f64| (height / h).round() as usize;
+    let lower = generate::box_(
+        "lower",
+        [0.0; 3],
+        [1.0, 1.0, 0.3],
+        [n + 1, n + 1, layers(0.3)],
+        false,
+    );
+    let upper = [0.0, 0.0, 0.2];
+    let mut mesh = lower;
+    mesh.merge(
+        "upper",
+        generate::box_("upper", upper, [1.0, 1.0, 0.3], [n, n, layers(0.3)], false),
+    )?;
+    let [inner, outer] = ["lower", "upper"].map(|name| group(&mesh, name));
+    let (inner, outer) = (inner?.elements.clone(), outer?.elements.clone());
+    let models = Models {
+        mesh: &mesh,
+        inner: &inner,
+        outer: &outer,
+    };
+    let overlap = Overlap::new(models, &Region::Intersection)?;
+    let weights = overlap.weights(&Weighting::default())?;
+    let mut bodies = Vec::new();
+    for (name, side, weights) in [
+        ("lower", Side::Inner, weights.inner),
+        ("upper", Side::Outer, weights.outer),
+    ] {
+        let mut part = body(&mesh, name, Kinematics::Solid, RUBBER)?;
+        part.spec.weights = Some(CellWeights {
+            inertia: weights.inertia,
+            stiffness: weights.stiffness,
+        });
+        part.velocity[2] = if name == "lower" { 1.0 } else { -1.0 };
+        bodies.push(part);
+    }
+    let links = vec![ModelLink {
+        name: "plate".to_string(),
+        zones: [0, 1],
+        rows: overlap.rows(&Coupling::default())?.rows,
+    }];
+    let zone = |name: &str, body, scheme| ModelZone {
+        name: name.to_string(),
+        bodies: vec![body],
+        scheme,
+        substeps: 1,
+        far: None,
+    };
+    Ok(Zoned {
+        zones: vec![zone("below", 0, theta(0.5)), zone("above", 1, CENTRAL)],
+        model: Model {
+            mesh,
+            bodies,
+            supports: Vec::new(),
+            gravity: [0.0; 3],
+            contacts: Vec::new(),
+            scheme: theta(0.5),
+            dt: 0.5 * h / RUBBER.wave_speed(Plane::Full),
+            adaptive: None,
+        },
+        links,
+        kind: LinkKind::GravouilCombescure,
+    })
+}
+
+pub(crate) const CHECK: Check = Check {
+    name: "arlequin-large",
+    fact: "thousands of multipliers join the factor of the implicit zone: no dense matrix of their number",
+    run: |size| {
+        let (n, rows) = match size {
+            Size::Quick => (10, 300.0),
+            Size::Full => (40, 20_000.0),
+        };
+        let mut zones = Zones::new(&zoned(n)?)?;
+        if size == Size::Quick {
+            zones.join()?;
+        }
+        let start = zones.balance().energy();
+        let steps = 4;
+        for _ in 0..steps {
+            zones.step()?;
+        }
+        let balance = zones.balance();
+        let passes = zones.all_passes() as f64 / f64::from(steps);
+        Ok(vec![
+            Row::at_least("rows", zones.multipliers().len() as f64, rows),
+            Row::at_most(
+                "joined factor, GiB",
+                zones.condensed_bytes() as f64 / GIB,
+                2.0,
+            ),
+            Row::at_most("passes to a step", passes, 2.5),
+            Row::at_most(
+                "energy residual / E0",
+                balance.energy_residual.abs() / start,
+                1e-9,
+            ),
+            Row::at_most(
+                "work of the link / E0",
+                balance.work_links.abs() / start,
+                1e-3,
+            ),
+        ])
+    },
+};
