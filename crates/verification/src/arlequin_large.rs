@@ -5,7 +5,7 @@
 //! of the lower half, H is never made, and the rows hold. Reference: a dense H of 20 000 rows would take 3.2 GB, its factor as
 //! much again; the limit is 4 GiB for all. Tolerance: two passes a step, balances as for other solids.
 
-use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
+use carom_arlequin::{Coupling, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
 use carom_dynamics::{LinkKind, Model, ModelLink, ModelZone, Zoned, Zones};
 use carom_materials::{Elastic, Plane};
@@ -49,10 +49,7 @@ fn zoned(n: usize) -> Result<Zoned, Error> {
     let overlap = Overlap::new(models, &Region::Intersection)?;
     let weights = overlap.weights(&Weighting::default())?;
     let mut bodies = Vec::new();
-    for (name, side, weights) in [
-        ("lower", Side::Inner, weights.inner),
-        ("upper", Side::Outer, weights.outer),
-    ] {
+    for (name, weights) in [("lower", weights.inner), ("upper", weights.outer)] {
         let mut part = body(&mesh, name, Kinematics::Solid, RUBBER)?;
         part.spec.weights = Some(CellWeights {
             inertia: weights.inertia,

@@ -17,7 +17,7 @@ const RIGHT: i32 = 18;
 const X_LABELS: i32 = 56;
 /// Height of a picture in one dimension, and the bounds of the others.
 const STRIP_HEIGHT: i32 = 300;
-const HEIGHTS: [i32; 2] = [120, 620];
+const HEIGHTS: [i32; 2] = [120, 820];
 /// Squares over the width of a picture in two or three dimensions, and the width of a stripe in squares.
 const SQUARES: usize = 220;
 const STRIPE: usize = 2;
@@ -80,8 +80,8 @@ impl Shape {
     }
 }
 
-/// The picture of a model: in one dimension the zones as strips with their weights over them, in two or three the
-/// projection on the two axes of largest extent, striped in the colours of all zones where they overlap.
+/// The picture of a model: in one dimension the zones as strips with their weights over them, in two the
+/// cells on the two axes of largest extent, in three a section, striped in the colours of all zones where they overlap.
 ///
 /// # Errors
 /// [`Error::EmptyPanel`] without cells; [`Error::Drawing`].
@@ -96,11 +96,34 @@ pub(crate) fn model_figure(dim: usize, zones: &[String], cells: &[Shape]) -> Res
             [a.min(low), b.max(high)]
         })
     });
+    let section = (dim == 3).then(|| section(cells, &ranges));
+    let (axes, note, cut);
+    let cells = match section {
+        Some((normal, place)) => {
+            let met = |cell: &&Shape| {
+                let [low, high] = cell.range(normal);
+                low < place && place < high
+            };
+            cut = cells.iter().filter(met).cloned().collect::<Vec<_>>();
+            axes = others(normal);
+            note = format!(
+                "at {} = {place:.4}; striped: overlap",
+                ["x", "y", "z"][normal]
+            );
+            &cut[..]
+        }
+        None => {
+            axes = largest(&ranges);
+            note = "striped: overlap".to_owned();
+            cells
+        }
+    };
     let picture = Picture {
         zones,
         cells,
         ranges,
-        axes: largest(&ranges),
+        axes,
+        note,
     };
     let height = match dim {
         1 => STRIP_HEIGHT,
@@ -124,6 +147,53 @@ pub(crate) fn model_figure(dim: usize, zones: &[String], cells: &[Shape]) -> Res
     Ok(shrink(&svg, &title, all))
 }
 
+/// The section in which a solid is drawn, normal axis and place: through the middle of the smallest zone, across the axis
+/// along which it lies nearest to the middle of the model.
+fn section(cells: &[Shape], ranges: &[[f64; 2]; 3]) -> (usize, f64) {
+    let count = cells.iter().map(|cell| cell.zone + 1).max().unwrap_or(1);
+    let extent = |zone: usize, axis: usize| {
+        let own = cells.iter().filter(|cell| cell.zone == zone);
+        own.map(|cell| cell.range(axis))
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [low, high]| {
+                [a.min(low), b.max(high)]
+            })
+    };
+    let size = |zone: &usize| -> f64 {
+        let lengths = [0, 1, 2].map(|axis| {
+            let [low, high] = extent(*zone, axis);
+            high - low
+        });
+        lengths.iter().product()
+    };
+    let smallest = (0..count).min_by(|a, b| size(a).total_cmp(&size(b)));
+    let smallest = smallest.unwrap_or(0);
+    let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
+    let offset = |axis: &usize| {
+        let length = ranges[*axis][1] - ranges[*axis][0];
+        ((middle(extent(smallest, *axis)) - middle(ranges[*axis])) / length).abs()
+    };
+    // of equal ones the second axis, so that the third, often the height, is seen
+    let normal = [1, 0, 2]
+        .into_iter()
+        .min_by(|a, b| offset(a).total_cmp(&offset(b)))
+        .unwrap_or(1);
+    let [low, high] = ranges[normal];
+    // beside the faces of cells, which meet there
+    (
+        normal,
+        middle(extent(smallest, normal)) + 1e-6 * (high - low),
+    )
+}
+
+/// The other two axes, in their order.
+fn others(axis: usize) -> [usize; 2] {
+    match axis {
+        0 => [1, 2],
+        1 => [0, 2],
+        _ => [0, 1],
+    }
+}
+
 /// The two axes of largest extent, in their order.
 fn largest(ranges: &[[f64; 2]; 3]) -> [usize; 2] {
     let extent = |axis: usize| ranges[axis][1] - ranges[axis][0];
@@ -133,11 +203,7 @@ fn largest(ranges: &[[f64; 2]; 3]) -> [usize; 2] {
             least = axis;
         }
     }
-    match least {
-        0 => [1, 2],
-        1 => [0, 2],
-        _ => [0, 1],
-    }
+    others(least)
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
@@ -148,6 +214,7 @@ struct Picture<'a> {
     cells: &'a [Shape],
     ranges: [[f64; 2]; 3],
     axes: [usize; 2],
+    note: String,
 }
 
 fn colour(zone: usize) -> RGBColor {
@@ -267,7 +334,7 @@ impl Picture<'_> {
     }
 
     fn projection(&self, root: &Area, title: &str, height: i32) -> Outcome {
-        self.head(root, title, "striped: overlap")?;
+        self.head(root, title, &self.note)?;
         let [a, b] = self.axes;
         let scale = |axis: usize| {
             let [low, high] = self.ranges[axis];
