@@ -81,6 +81,7 @@ pub(crate) const CHECK: Check = Check {
         rows.extend(same_mesh()?);
         rows.extend(two_forms()?);
         rows.extend(cheaper()?);
+        rows.extend(pairs_of_schemes()?);
         rows.extend(far_and_near()?);
         Ok(rows)
     },
@@ -260,4 +261,52 @@ fn cheaper() -> Result<Vec<Row>, Error> {
             0.5,
         ),
     ])
+}
+
+/// Every pair of schemes that links take, with one and with four inner steps, by both links: balances, and the mean force.
+fn pairs_of_schemes() -> Result<Vec<Row>, Error> {
+    let schemes = [
+        ("theta", theta(0.6)),
+        ("trapezoid", newmark(0.25, 0.5)),
+        ("damped newmark", newmark(0.3025, 0.6)),
+        ("central", CENTRAL),
+    ];
+    let f0 = 0.5 * SLOW.impedance() * SLOW.speed;
+    let kinds = [LinkKind::GravouilCombescure, LinkKind::PrakashHjelmstad];
+    let mut rows = Vec::new();
+    for (inner, of_tips) in schemes {
+        for (outer, of_rest) in schemes {
+            for (kind, substeps) in [(kinds[0], 1), (kinds[0], 4), (kinds[1], 4)] {
+                // the step is that of the fine mesh where both take the same
+                let courant = if substeps == 1 { 0.2 } else { 0.8 };
+                let glued = Glued {
+                    schemes: [of_tips, of_rest],
+                    kind,
+                    ..Glued::slow(0.6, of_rest, courant, substeps)
+                };
+                let figures = glued.run_to(0.9 * SLOW.duration())?;
+                let name = format!("{inner} in {outer}, {kind:?}, {substeps}");
+                rows.push(Row::at_most(
+                    format!("{name}: energy residual"),
+                    figures.residual,
+                    1e-11,
+                ));
+                rows.push(Row::at_most(
+                    format!("{name}: momentum residual"),
+                    figures.momentum,
+                    1e-11,
+                ));
+                // the impulse converges where single forces ring: momentum of the bars, with what the fronts are wide
+                let mean: f64 = figures.force.iter().map(|(_, force)| force).sum();
+                let mean = mean / figures.force.len() as f64 / f0;
+                rows.push(Row::near(
+                    format!("{name}: mean force / F0"),
+                    mean,
+                    1.0,
+                    0.02,
+                ));
+            }
+        }
+    }
+    Ok(rows)
 }

@@ -6,6 +6,7 @@ use carom_arlequin::{
     Bracket, CellWeights, Coupling, Error, Mediator, Model, Models, Overlap, Profile, Region, Rows,
     Weighting,
 };
+use carom_bodies::Kinematics;
 use carom_dynamics::{ModelBody, ModelContact, ModelLink, ModelTarget, Support};
 use carom_mesh::{ElementId, Mesh};
 
@@ -104,6 +105,14 @@ impl Builder<'_> {
         let inner = self.body(&format!("{path}.inner"), &given.inner)?;
         let outer = self.body(&format!("{path}.outer"), &given.outer)?;
         self.same_section(&path, &bodies[inner], &bodies[outer]);
+        if bodies[inner].spec.kinematics == Kinematics::Axisymmetric {
+            let message =
+                "axisymmetric bodies cannot be glued: the products of the link carry no radius";
+            let problem = Problem::new(format!("{path}.inner"), message).found(&given.inner);
+            self.problems
+                .push(problem.accepted(["bars, plane bodies, solids"]));
+            return None;
+        }
         let region = self.region(mesh, &path, &given.overlap)?;
         let cells = [inner, outer].map(|body| bodies[body].spec.cells.clone());
         let models = Models {
