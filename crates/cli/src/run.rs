@@ -207,12 +207,14 @@ fn cost(summary: &Summary) -> String {
             megabytes(counts.factor_bytes)
         ),
     };
-    let step = summary.timings.get("per step").copied().unwrap_or(f64::NAN);
+    let step = match summary.timings.get("per step") {
+        Some(&time) => format!("{} a step", quantity(time, "s")),
+        None => "no step taken".to_string(),
+    };
     format!(
-        "{factor}; {} contact columns, {}; {} a step",
+        "{factor}; {} contact columns, {}; {step}",
         counts.contact_columns,
-        megabytes(counts.compliance_bytes),
-        quantity(step, "s")
+        megabytes(counts.compliance_bytes)
     )
 }
 

@@ -86,7 +86,7 @@ impl Joined {
         let mut groups: Vec<u32> = (0..unknowns + count).map(|i| i as u32).collect();
         for (zone, &first) in zones.iter().zip(&first) {
             match zone.is_diagonal() {
-                true => add_diagonal(zone, (unknowns, &neighbours), &mut matrix),
+                true => add_diagonal(zone, unknowns, &mut matrix),
                 false => {
                     let dim = zone.system.dim;
                     for i in 0..zone.system.unknowns() {
@@ -183,7 +183,7 @@ fn cliques(zones: &[Answer], first: &[usize], neighbours: &[Vec<u32>]) -> Clique
 }
 
 /// -D of a diagonal zone.
-fn add_diagonal(zone: &Answer, (unknowns, _): (usize, &[Vec<u32>]), matrix: &mut Csr) {
+fn add_diagonal(zone: &Answer, unknowns: usize, matrix: &mut Csr) {
     for (dof, column) in by_unknown(zone).iter().enumerate() {
         let mass = zone.mass * zone.system.mass.lumped[dof];
         for (row, c) in column {
