@@ -1,0 +1,116 @@
+//! What a law at finite strain answers, and the list of all laws.
+
+use carom_algebra::tensor::Mat3;
+use thiserror::Error as ThisError;
+
+use crate::{Elastic, Plane};
+
+/// Derivative ∂P/∂F of the first Piola-Kirchhoff stress, in Pa: entry `[3 i + j][3 k + l]` is ∂P_ij/∂F_kl.
+pub type Tangent = [[f64; 9]; 9];
+
+/// What is wanted of a law beside stress and energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Want {
+    /// Nothing.
+    Stress,
+    /// The consistent tangent.
+    Tangent,
+}
+
+/// Stress and energy of a law at one point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// First Piola-Kirchhoff stress P in Pa.
+    pub stress: Mat3,
+    /// ∂P/∂F, where it was wanted.
+    pub tangent: Option<Box<Tangent>>,
+    /// Energy per reference volume that elastic strain stores, in J/m³.
+    pub stored: f64,
+    /// Energy per reference volume that hardening stores, in J/m³.
+    pub hardening: f64,
+    /// Energy per reference volume dissipated since the old history, in J/m³, not negative.
+    pub dissipated: f64,
+}
+
+/// Why a law gave no stress.
+#[derive(Clone, Debug, PartialEq, ThisError)]
+pub enum Failure {
+    /// The volume is turned inside out.
+    #[error("the deformation gradient has determinant {determinant:e}, which must be positive")]
+    Inverted {
+        /// det F.
+        determinant: f64,
+    },
+    /// The local equations of a law were not solved.
+    #[error("the return to the yield surface did not converge in {passes} passes (residual {residual:e})")]
+    NoReturn {
+        /// Passes made.
+        passes: usize,
+        /// What is left, relative.
+        residual: f64,
+    },
+}
+
+/// A law at finite strain, at one point.
+///
+/// F is the deformation gradient ∂x/∂X with all nine components: plane strain has F_33 = 1, axisymmetry F_33 = r/R.
+pub trait Material {
+    /// Numbers that the law keeps of a point from one step to the next.
+    fn history_len(&self) -> usize;
+    /// Writes the history of a point that nothing has happened to.
+    fn start(&self, history: &mut [f64]);
+    /// Stress at `f` at the end of a step of `dt` (s) that began with the history `old`; writes the history there into
+    /// `new`.
+    ///
+    /// # Errors
+    /// det F not positive; local equations without solution.
+    fn update(
+        &self,
+        f: &Mat3,
+        dt: f64,
+        history: (&[f64], &mut [f64]),
+        want: Want,
+    ) -> Result<Response, Failure>;
+    /// Algorithmic stress of a step from `f_0` to `f_1` whose work on the step is exactly the change of the stored energy,
+    /// P_alg : (F_1 - F_0) = ψ(F_1) - ψ(F_0), that turns with both, and its derivative by F_1; `None` of a law that has no
+    /// stored energy alone. `stored` is ψ(F_1).
+    ///
+    /// # Errors
+    /// As [`Material::update`].
+    fn between(&self, f_0: &Mat3, f_1: &Mat3, want: Want) -> Option<Result<Response, Failure>>;
+    /// Linear elasticity of the undeformed, unloaded material, and its density: wave speed and time step follow.
+    fn initial(&self) -> Elastic;
+}
+
+/// A material, as chosen in the case file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law {
+    /// Linear elasticity at small strain: no law at finite strain.
+    Elastic(Elastic),
+}
+
+impl Law {
+    /// The law at finite strain behind the choice; none for small strain.
+    pub fn finite(&self) -> Option<&dyn Material> {
+        match self {
+            Law::Elastic(_) => None,
+        }
+    }
+
+    /// Linear elasticity of the undeformed material.
+    pub fn initial(&self) -> Elastic {
+        match self {
+            Law::Elastic(elastic) => *elastic,
+        }
+    }
+
+    /// Mass density in kg/m³.
+    pub fn density(&self) -> f64 {
+        self.initial().density
+    }
+
+    /// Speed of compression waves in the undeformed material, in m/s.
+    pub fn wave_speed(&self, plane: Plane) -> f64 {
+        self.initial().wave_speed(plane)
+    }
+}
