@@ -69,6 +69,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
     }];
     let model = Model {
         bodies,
@@ -78,6 +79,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt: 0.5 * LENGTH / n as f64 / wave_speed(),
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     System::new(model).unwrap()
@@ -131,6 +133,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
     };
     let model = Model {
         bodies: vec![body],
@@ -143,6 +146,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         }),
         dt: 1e-4,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     System::new(model).unwrap()
