@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Theta};
@@ -33,7 +33,8 @@ pub fn bar() -> Zoned {
             name: name.into(),
             cells: mesh.groups[name].elements.clone(),
             kinematics: Kinematics::Bar { area: 1e-4 },
-            material: steel,
+            material: steel.into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,

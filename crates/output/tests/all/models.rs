@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{Newmark, Theta};
@@ -50,7 +50,8 @@ pub fn two_bars(n: usize) -> Arc<System> {
             name: name.to_owned(),
             cells: mesh.groups[name].elements.clone(),
             kinematics: Kinematics::Bar { area: AREA },
-            material: STEEL,
+            material: STEEL.into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -114,7 +115,9 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
                 density: 1000.0,
                 young: 1e9,
                 poisson: 0.3,
-            },
+            }
+            .into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
