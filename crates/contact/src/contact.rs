@@ -1,6 +1,6 @@
 //! One contact: secondary points that carry the forces, what they face, and the law between them.
 
-use carom_elements::Kind;
+use carom_elements::{Kind, MAX_FACE_NODES};
 use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
 
 use crate::{Law, Plane, Point, Rows, Sphere};
@@ -188,8 +188,8 @@ impl Search {
     }
 }
 
-fn positions(places: &Places, face: &Face) -> ([[f64; 3]; 4], usize) {
-    let mut positions = [[0.0; 3]; 4];
+fn positions(places: &Places, face: &Face) -> ([[f64; 3]; MAX_FACE_NODES], usize) {
+    let mut positions = [[0.0; 3]; MAX_FACE_NODES];
     for (position, &node) in positions.iter_mut().zip(face.corners()) {
         *position = places.of(node);
     }
@@ -206,7 +206,7 @@ fn add_row(places: &Places, point: &Point, foot: &Projection, face: &Face, rows:
     rows.push(foot.gap, foot.normal);
     add_point(places, point, &foot.normal, rows);
     let corners = face.corners();
-    let mut shape = [0.0; 4];
+    let mut shape = [0.0; MAX_FACE_NODES];
     (face.kind.table().shape)(&foot.xi, &mut shape[..corners.len()]);
     for (&node, n) in corners.iter().zip(shape) {
         rows.add_node(places.dim, node, &foot.normal.map(|m| -n * m));
@@ -229,7 +229,7 @@ fn faces_point(foot: &Projection, face: &Face) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use carom_mesh::ElementId;
+    use carom_mesh::{ElementId, face_nodes};
 
     use super::*;
     use crate::law::Displacement;
@@ -243,7 +243,7 @@ mod tests {
             let first = i % 4 + 5 * (i / 4);
             Face {
                 kind: Kind::Quad4,
-                nodes: [first, first + 1, first + 6, first + 5],
+                nodes: face_nodes(&[first, first + 1, first + 6, first + 5]),
                 parent: ElementId { block: 0, index: i },
                 axis: [0.0; 3],
             }
