@@ -7,6 +7,7 @@
 mod compliance;
 mod contacts;
 mod control;
+mod coulomb;
 mod driver;
 mod error;
 mod interface;
@@ -25,6 +26,7 @@ mod system;
 mod zones;
 
 pub use control::{Adaptive, Closing, Control};
+pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};
 pub use driver::{Costs, Driver, Phases, Work};
 pub use error::Error;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
