@@ -5,4 +5,7 @@
 
 mod battery;
 mod discrete_gradient;
+mod j2;
+mod maxwell;
+mod ranges;
 mod support;
