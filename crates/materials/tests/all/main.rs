@@ -9,3 +9,6 @@ mod j2;
 mod maxwell;
 mod ranges;
 mod support;
+
+#[global_allocator]
+static COUNTER: carom_testing::Counter = carom_testing::Counter;
