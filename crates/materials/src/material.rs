@@ -93,6 +93,12 @@ pub enum Law {
     Maxwell(Maxwell),
 }
 
+impl From<Elastic> for Law {
+    fn from(elastic: Elastic) -> Law {
+        Law::Elastic(elastic)
+    }
+}
+
 impl Law {
     /// The law at finite strain behind the choice; none for small strain.
     pub fn finite(&self) -> Option<&dyn Material> {
