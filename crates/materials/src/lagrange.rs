@@ -113,3 +113,21 @@ pub(crate) fn add_product(tangent: &mut Tangent, u: &Mat3, v: &Mat3) {
         }
     }
 }
+
+/// The symmetric matrix of six numbers of a history: 11, 22, 33, 12, 23, 13.
+pub(crate) fn unpack(v: &[f64]) -> Mat3 {
+    Mat3::new(v[0], v[3], v[5], v[3], v[1], v[4], v[5], v[4], v[2])
+}
+
+/// Writes a symmetric matrix as the six numbers 11, 22, 33, 12, 23, 13.
+pub(crate) fn pack(a: &Mat3, out: &mut [f64]) {
+    let numbers = [
+        a[(0, 0)],
+        a[(1, 1)],
+        a[(2, 2)],
+        a[(0, 1)],
+        a[(1, 2)],
+        a[(0, 2)],
+    ];
+    out.copy_from_slice(&numbers);
+}

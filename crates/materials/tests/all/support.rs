@@ -2,7 +2,8 @@
 
 use carom_algebra::tensor::Mat3;
 use carom_materials::{
-    Elastic, Failure, Law, Material, NeoHooke, Response, StVenantKirchhoff, Tangent, Want,
+    Branch, Elastic, Failure, J2Plasticity, Law, Material, Maxwell, MooneyRivlin, NeoHooke,
+    Response, StVenantKirchhoff, Tangent, Want,
 };
 use carom_testing::Random;
 
@@ -11,6 +12,38 @@ pub const INITIAL: Elastic = Elastic {
     density: 2.0,
     young: 1.3,
     poisson: 0.3,
+};
+
+/// Rubber with about the same moduli.
+pub const RUBBER: MooneyRivlin = MooneyRivlin {
+    density: INITIAL.density,
+    c10: 0.2,
+    c01: 0.05,
+    bulk: 1.1,
+};
+
+/// Metal that flows in all but the smallest deformations here.
+pub const METAL: J2Plasticity = J2Plasticity {
+    initial: INITIAL,
+    yield_stress: 0.05,
+    hardening: 0.2,
+};
+
+/// Two branches, one faster and one slower than the step of [`step`].
+pub const POLYMER: Maxwell = Maxwell {
+    initial: INITIAL,
+    branches: [
+        Some(Branch {
+            ratio: 0.4,
+            time: 0.1,
+        }),
+        None,
+        Some(Branch {
+            ratio: 0.3,
+            time: 2.0,
+        }),
+        None,
+    ],
 };
 
 /// A law at finite strain with its name.
@@ -22,6 +55,16 @@ pub fn laws() -> Vec<(&'static str, Law)> {
             Law::StVenantKirchhoff(StVenantKirchhoff { initial }),
         ),
         ("neo-hooke", Law::NeoHooke(NeoHooke { initial })),
+        ("mooney-rivlin", Law::MooneyRivlin(RUBBER)),
+        ("j2-plasticity", Law::J2Plasticity(METAL)),
+        (
+            "j2-plasticity, elastic",
+            Law::J2Plasticity(J2Plasticity {
+                yield_stress: 1e3,
+                ..METAL
+            }),
+        ),
+        ("maxwell", Law::Maxwell(POLYMER)),
     ]
 }
 
