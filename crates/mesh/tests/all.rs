@@ -3,5 +3,4 @@
 // Clippy's exemption for tests covers the test functions, not their helpers.
 #![allow(clippy::unwrap_used)]
 
-mod cases;
 mod gmsh;
