@@ -96,6 +96,19 @@ fn hertz_bodies_touch_in_the_origin_and_their_equators_are_a_diameter_apart() {
 }
 
 #[test]
+fn axes_are_exactly_at_radius_zero_and_no_cell_of_an_axisymmetric_mesh_is_beyond() {
+    for (name, axis, body) in [
+        ("hertz/spheres-fine.msh", "lower.axis", "lower"),
+        ("hertz/spheres-whole.msh", "upper.axis", "upper"),
+        ("taylor-bar/bar-plane.msh", "bar.axis", "bar"),
+    ] {
+        let mesh = load(name);
+        assert_eq!(range(&mesh, axis, 0), (0.0, 0.0), "{name}");
+        assert_eq!(range(&mesh, body, 0).0, 0.0, "{name}");
+    }
+}
+
+#[test]
 fn colliding_bodies_start_apart_by_the_gap_that_their_script_states() {
     // Nodes may lie on either side of the nearest points: the distance of nodes is at most an element longer.
     for (name, first, second, gap, element) in [
