@@ -2,7 +2,8 @@
 // y axis), in mm.
 // The mesh is uniform over 1.5 contact radii from the pole and from there grows with the distance.
 // Groups: lower, upper (cells); for each body .contact (the uniform part of the arc), .axis, and
-// .equator of half balls, .surface of whole ones (the rest of the arc). The equators are 100 mm apart, the poles both at the origin.
+// .equator of half balls, .surface of whole ones (the rest of the arc).
+// The equators are 100 mm apart, the poles both at the origin.
 //
 // Made with Gmsh 4.15.2 by: gmsh spheres.geo -2 -format msh41 -bin -setnumber n 16 -o spheres.msh
 //   n  8  spheres-coarse.msh   5 elements over the contact radius of 1 mm,   832 in all
