@@ -3,7 +3,7 @@
 use carom_algebra::tensor::Mat3;
 use thiserror::Error as ThisError;
 
-use crate::{Elastic, Plane};
+use crate::{Elastic, NeoHooke, Plane, StVenantKirchhoff};
 
 /// Derivative ∂P/∂F of the first Piola-Kirchhoff stress, in Pa: entry `[3 i + j][3 k + l]` is ∂P_ij/∂F_kl.
 pub type Tangent = [[f64; 9]; 9];
@@ -42,7 +42,9 @@ pub enum Failure {
         determinant: f64,
     },
     /// The local equations of a law were not solved.
-    #[error("the return to the yield surface did not converge in {passes} passes (residual {residual:e})")]
+    #[error(
+        "the return to the yield surface did not converge in {passes} passes (residual {residual:e})"
+    )]
     NoReturn {
         /// Passes made.
         passes: usize,
@@ -87,6 +89,16 @@ pub trait Material {
 pub enum Law {
     /// Linear elasticity at small strain: no law at finite strain.
     Elastic(Elastic),
+    /// St Venant-Kirchhoff elasticity.
+    StVenantKirchhoff(StVenantKirchhoff),
+    /// Compressible neo-Hookean elasticity.
+    NeoHooke(NeoHooke),
+}
+
+impl From<Elastic> for Law {
+    fn from(elastic: Elastic) -> Law {
+        Law::Elastic(elastic)
+    }
 }
 
 impl Law {
@@ -94,6 +106,8 @@ impl Law {
     pub fn finite(&self) -> Option<&dyn Material> {
         match self {
             Law::Elastic(_) => None,
+            Law::StVenantKirchhoff(law) => Some(law),
+            Law::NeoHooke(law) => Some(law),
         }
     }
 
@@ -101,6 +115,8 @@ impl Law {
     pub fn initial(&self) -> Elastic {
         match self {
             Law::Elastic(elastic) => *elastic,
+            Law::StVenantKirchhoff(law) => Material::initial(law),
+            Law::NeoHooke(law) => Material::initial(law),
         }
     }
 
