@@ -61,6 +61,8 @@ pub(crate) struct Chunk {
 pub struct Scratch {
     pub(crate) forces: Vec<Vec<[f64; 3]>>,
     pub(crate) energies: Vec<f64>,
+    /// A system vector.
+    pub(crate) middle: Vec<f64>,
 }
 
 impl Block {

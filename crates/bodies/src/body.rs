@@ -6,13 +6,14 @@ use std::ops::Range;
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Mat3;
 use carom_elements::Kind;
-use carom_materials::{Elastic, Plane};
+use carom_materials::{Law, Plane};
 use carom_mesh::{ElementId, Mesh};
 
 use crate::Error;
 use crate::bar::Bar;
 use crate::block::{Block, Physics, Scratch, Visit};
-use crate::continuum::Law;
+use crate::continuum;
+use crate::finite::Formulation;
 use crate::together::Together;
 use crate::weights::CellWeights;
 use crate::{size, stability};
@@ -108,7 +109,9 @@ pub struct BodySpec {
     /// Kinematics and section.
     pub kinematics: Kinematics,
     /// Material.
-    pub material: Elastic,
+    pub material: Law,
+    /// How the elements integrate the internal work; anything but [`Formulation::Full`] needs a law at finite strain.
+    pub formulation: Formulation,
     /// Weights of inertia and internal work; none for a body that is alone in its volume.
     pub weights: Option<CellWeights>,
 }
@@ -118,7 +121,7 @@ pub struct BodySpec {
 pub struct Body {
     name: String,
     kinematics: Kinematics,
-    material: Elastic,
+    material: Law,
     cells: Vec<ElementId>,
     blocks: Vec<Block>,
     dim: usize,
@@ -142,13 +145,14 @@ impl Body {
                 x[system as usize] = mesh.nodes[node];
             }
         }
+        let elastic = spec.material.initial();
         let physics = match spec.kinematics {
             Kinematics::Bar { area } => Physics::Bar(Bar {
-                young: spec.material.young,
+                young: elastic.young,
                 area,
-                density: spec.material.density,
+                density: elastic.density,
             }),
-            kinematics => Physics::Continuum(Law::new(kinematics, spec.material, mesh.dim)),
+            kinematics => Physics::Continuum(continuum::Law::new(kinematics, elastic, mesh.dim)),
         };
         let mut cells = Vec::with_capacity(spec.cells.len());
         let mut blocks = Vec::new();
@@ -235,13 +239,18 @@ impl Body {
     }
 
     /// Material.
-    pub fn material(&self) -> &Elastic {
+    pub fn material(&self) -> &Law {
         &self.material
     }
 
     /// Cells of the mesh, in the order of [`Body::stresses`].
     pub fn cells(&self) -> &[ElementId] {
         &self.cells
+    }
+
+    /// Unknowns of a node.
+    pub(crate) fn dim(&self) -> usize {
+        self.dim
     }
 
     /// Speed of compression waves in m/s.
@@ -337,7 +346,9 @@ impl Body {
     }
 
     /// Volume (m³) and mean stress (Pa) of each element, in the order of [`Body::cells`].
-    pub fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
+    ///
+    /// `history`: that of this body at `u`.
+    pub fn stresses(&self, u: &[f64], _history: &[f64]) -> Vec<(f64, Mat3)> {
         let mut out = Vec::with_capacity(self.cells.len());
         for block in &self.blocks {
             block.stresses(self.dim, u, &mut out);
@@ -401,7 +412,7 @@ impl Body {
         together.largest_eigenvalue()
     }
 
-    fn each_matrix(&self, stiffness: bool, visit: &mut Visit) {
+    pub(crate) fn each_matrix(&self, stiffness: bool, visit: &mut Visit) {
         for block in &self.blocks {
             block.matrices(self.dim, stiffness, visit);
         }

@@ -94,9 +94,7 @@ impl Contact {
     /// an infinite gap, where the foot lies beyond the rim: where the way from the foot to the point runs sideways by
     /// more than it runs along the normal. What `search` holds from before does not matter to the result.
     pub fn pair(&self, places: &Places, search: &mut Search, rows: &mut Rows) {
-        if let Target::Surface(faces) = &self.target {
-            search.renew(places, faces);
-        }
+        self.renew(places, search);
         for point in &self.points {
             let x = point.place(places);
             match &self.target {
@@ -109,13 +107,18 @@ impl Contact {
                     rows.push(gap, normal);
                     add_point(places, point, &normal, rows);
                 }
-                Target::Surface(faces) => match search.closest(places, faces, &x) {
-                    Some((foot, face)) if faces_point(&foot, face) => {
-                        add_row(places, point, &foot, face, rows)
-                    }
-                    _ => rows.push(f64::INFINITY, [0.0; 3]),
+                Target::Surface(faces) => match search.facing(places, faces, &x) {
+                    Some((foot, face)) => add_row(places, point, &foot, face, rows),
+                    None => rows.push(f64::INFINITY, [0.0; 3]),
                 },
             }
+        }
+    }
+
+    /// Brings the search to a configuration.
+    pub(crate) fn renew(&self, places: &Places, search: &mut Search) {
+        if let Target::Surface(faces) = &self.target {
+            search.renew(places, faces);
         }
     }
 }
@@ -131,6 +134,17 @@ impl Search {
             Some(tree) if tree.len() == faces.len() => tree.refit(&self.boxes),
             tree => *tree = Some(BoxTree::new(&self.boxes)),
         }
+    }
+
+    /// The closest point of a surface, if the point faces it.
+    pub(crate) fn facing<'a>(
+        &mut self,
+        places: &Places,
+        faces: &'a [Face],
+        x: &[f64; 3],
+    ) -> Option<(Projection, &'a Face)> {
+        self.closest(places, faces, x)
+            .filter(|(foot, face)| faces_point(foot, face))
     }
 
     /// Doubles the distance searched until a face is found, then looks once more as far as that face is.

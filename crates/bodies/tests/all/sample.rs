@@ -2,7 +2,7 @@
 
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
-use carom_bodies::{Body, BodySpec, CellWeights, Kinematics, Scratch};
+use carom_bodies::{Body, BodySpec, CellWeights, Formulation, Kinematics, Scratch};
 use carom_elements::Kind;
 use carom_materials::Elastic;
 use carom_mesh::{ElementId, Mesh, generate};
@@ -42,7 +42,8 @@ impl Sample {
             name: name.to_owned(),
             cells,
             kinematics,
-            material: MATERIAL,
+            material: MATERIAL.into(),
+            formulation: Formulation::Full,
             weights: None,
         };
         Sample {
@@ -62,7 +63,8 @@ impl Sample {
             name: self.name.clone(),
             cells: cells(&self.mesh, kinematics.dim()),
             kinematics,
-            material: MATERIAL,
+            material: MATERIAL.into(),
+            formulation: Formulation::Full,
             weights: Some(weights),
         };
         let body = Body::new(&self.mesh, spec, &self.number).unwrap();

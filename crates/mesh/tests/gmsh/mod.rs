@@ -3,6 +3,7 @@
 //! `tests/fixtures` holds six meshes that Gmsh 4.15.2 wrote from the `.geo` files beside them, each in four
 //! formats: `gmsh box.geo -3 -format msh41 -bin -o box-41-bin.msh` and so on.
 
+mod cases;
 mod damaged;
 mod malformed;
 mod malformed_binary;
