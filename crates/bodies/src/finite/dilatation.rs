@@ -51,10 +51,7 @@ impl Cells {
     pub(super) fn dilatation(&self, element: usize, u: &[f64]) -> Result<Dilatation, Fault> {
         let (mut reference, mut volume) = (0.0, 0.0);
         for point in 0..self.points {
-            let determinant = self
-                .gradient(element, point)
-                .deformation(u)
-                .determinant();
+            let determinant = self.gradient(element, point).deformation(u).determinant();
             if determinant.is_nan() || determinant <= 0.0 {
                 let failure = Failure::Inverted { determinant };
                 return Err(Fault::Law { point, failure });
@@ -107,8 +104,7 @@ impl Cells {
         let (mut stored, mut mean) = (Stored::default(), 0.0);
         let mut volume = [0.0; MAX_UNKNOWNS];
         for place in 0..self.points {
-            let point =
-                self.dilated_point((element, place), &dilatation, at, new, Want::Stress)?;
+            let point = self.dilated_point((element, place), &dilatation, at, new, Want::Stress)?;
             stored.add(point.weighted, &point.response);
             mean += point.weighted * point.pressure;
             let deviator = point.response.stress * point.s - point.g * point.pressure;

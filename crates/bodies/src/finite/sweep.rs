@@ -4,6 +4,7 @@
 //! threads.
 
 use carom_algebra::csr::Csr;
+use carom_algebra::tensor::Mat3;
 use carom_materials::Law;
 use rayon::prelude::*;
 
@@ -115,8 +116,9 @@ impl Finite {
             for (k, f) in forces.chunks_exact_mut(unknowns).enumerate() {
                 let element = place * PIECE + k;
                 let new = &mut new[kept * k..kept * (k + 1)];
-                let force =
-                    self.at_element(cells, element, at, |local| cells.force(element, local, new, f));
+                let force = self.at_element(cells, element, at, |local| {
+                    cells.force(element, local, new, f)
+                });
                 match force {
                     Ok(stored) => {
                         piece.stored.strain += stored.strain;
@@ -227,7 +229,7 @@ impl Finite {
     }
 
     /// Current volume (m³) and mean Cauchy stress (Pa) of each element; no number where the law gives none.
-    pub(super) fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, carom_algebra::tensor::Mat3)> {
+    pub(crate) fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
         let (mut out, mut kept) = (Vec::new(), 0);
         for cells in &self.cells {
             let mut new = vec![0.0; cells.points * self.kept];
@@ -243,7 +245,7 @@ impl Finite {
                 let stress = self.at_element(cells, element, &at, |local| {
                     cells.cauchy(element, local, &mut new)
                 });
-                stress.unwrap_or((f64::NAN, carom_algebra::tensor::Mat3::repeat(f64::NAN)))
+                stress.unwrap_or((f64::NAN, Mat3::repeat(f64::NAN)))
             }));
         }
         out
