@@ -114,6 +114,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
         }),
         sliding: Sliding::Finite,
         massless: false,
+        friction: 0.0,
         integration: carom_contact::Integration::Node,
     };
     Ok(Model {
@@ -125,6 +126,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
     })
 }
 

@@ -1,6 +1,6 @@
 //! One contact: secondary points that carry the forces, what they face, and the law between them.
 
-use carom_elements::Kind;
+use carom_elements::{Kind, MAX_FACE_NODES};
 use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
 
 use crate::{Law, Plane, Point, Rows, Sphere};
@@ -94,9 +94,7 @@ impl Contact {
     /// an infinite gap, where the foot lies beyond the rim: where the way from the foot to the point runs sideways by
     /// more than it runs along the normal. What `search` holds from before does not matter to the result.
     pub fn pair(&self, places: &Places, search: &mut Search, rows: &mut Rows) {
-        if let Target::Surface(faces) = &self.target {
-            search.renew(places, faces);
-        }
+        self.renew(places, search);
         for point in &self.points {
             let x = point.place(places);
             match &self.target {
@@ -109,13 +107,18 @@ impl Contact {
                     rows.push(gap, normal);
                     add_point(places, point, &normal, rows);
                 }
-                Target::Surface(faces) => match search.closest(places, faces, &x) {
-                    Some((foot, face)) if faces_point(&foot, face) => {
-                        add_row(places, point, &foot, face, rows)
-                    }
-                    _ => rows.push(f64::INFINITY, [0.0; 3]),
+                Target::Surface(faces) => match search.facing(places, faces, &x) {
+                    Some((foot, face)) => add_row(places, point, &foot, face, rows),
+                    None => rows.push(f64::INFINITY, [0.0; 3]),
                 },
             }
+        }
+    }
+
+    /// Brings the search to a configuration.
+    pub(crate) fn renew(&self, places: &Places, search: &mut Search) {
+        if let Target::Surface(faces) = &self.target {
+            search.renew(places, faces);
         }
     }
 }
@@ -131,6 +134,17 @@ impl Search {
             Some(tree) if tree.len() == faces.len() => tree.refit(&self.boxes),
             tree => *tree = Some(BoxTree::new(&self.boxes)),
         }
+    }
+
+    /// The closest point of a surface, if the point faces it.
+    pub(crate) fn facing<'a>(
+        &mut self,
+        places: &Places,
+        faces: &'a [Face],
+        x: &[f64; 3],
+    ) -> Option<(Projection, &'a Face)> {
+        self.closest(places, faces, x)
+            .filter(|(foot, face)| faces_point(foot, face))
     }
 
     /// Doubles the distance searched until a face is found, then looks once more as far as that face is.
@@ -174,8 +188,8 @@ impl Search {
     }
 }
 
-fn positions(places: &Places, face: &Face) -> ([[f64; 3]; 4], usize) {
-    let mut positions = [[0.0; 3]; 4];
+fn positions(places: &Places, face: &Face) -> ([[f64; 3]; MAX_FACE_NODES], usize) {
+    let mut positions = [[0.0; 3]; MAX_FACE_NODES];
     for (position, &node) in positions.iter_mut().zip(face.corners()) {
         *position = places.of(node);
     }
@@ -192,7 +206,7 @@ fn add_row(places: &Places, point: &Point, foot: &Projection, face: &Face, rows:
     rows.push(foot.gap, foot.normal);
     add_point(places, point, &foot.normal, rows);
     let corners = face.corners();
-    let mut shape = [0.0; 4];
+    let mut shape = [0.0; MAX_FACE_NODES];
     (face.kind.table().shape)(&foot.xi, &mut shape[..corners.len()]);
     for (&node, n) in corners.iter().zip(shape) {
         rows.add_node(places.dim, node, &foot.normal.map(|m| -n * m));
@@ -215,7 +229,7 @@ fn faces_point(foot: &Projection, face: &Face) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use carom_mesh::ElementId;
+    use carom_mesh::{ElementId, face_nodes};
 
     use super::*;
     use crate::law::Displacement;
@@ -229,7 +243,7 @@ mod tests {
             let first = i % 4 + 5 * (i / 4);
             Face {
                 kind: Kind::Quad4,
-                nodes: [first, first + 1, first + 6, first + 5],
+                nodes: face_nodes(&[first, first + 1, first + 6, first + 5]),
                 parent: ElementId { block: 0, index: i },
                 axis: [0.0; 3],
             }

@@ -8,6 +8,7 @@
 
 mod contact;
 pub mod law;
+mod pairing;
 mod plane;
 mod point;
 mod rows;
@@ -16,6 +17,7 @@ mod weak;
 
 pub use contact::{Contact, Integration, Places, Search, Sliding, Target};
 pub use law::Law;
+pub use pairing::Pairing;
 pub use plane::Plane;
 pub use point::Point;
 pub use rows::Rows;

@@ -20,6 +20,17 @@ impl Sphere {
             false => (-self.radius, [0.0, 0.0, 1.0]),
         }
     }
+
+    /// Second derivative of the gap by the place, (I - n nᵀ) / |x - centre|, in 1/m; zero at the centre itself.
+    pub fn hessian(&self, x: &[f64; 3]) -> [[f64; 3]; 3] {
+        let (gap, n) = self.gap(x);
+        let distance = gap + self.radius;
+        let entry = |i: usize, j: usize| match distance > 0.0 {
+            true => (f64::from(u8::from(i == j)) - n[i] * n[j]) / distance,
+            false => 0.0,
+        };
+        [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))
+    }
 }
 
 #[cfg(test)]

@@ -26,7 +26,10 @@ use serde::{Deserialize, Serialize};
 pub use quadrature::Rule;
 
 /// The largest number of nodes of any kind: the length of stack arrays in element loops.
-pub const MAX_NODES: usize = 8;
+pub const MAX_NODES: usize = 27;
+
+/// The largest number of nodes of a kind that is a face of another.
+pub const MAX_FACE_NODES: usize = 9;
 
 /// The kind of an element: the key of its row of data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

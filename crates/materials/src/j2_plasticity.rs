@@ -17,8 +17,8 @@ use crate::{Elastic, Failure, Material, Plane, Response, Tangent, Want};
 /// Δε_p = (q - σ_y - H ε_p)/(3μ + H), q = sqrt(3/2) 2μ |dev ε|, dev ε ← (1 - 3μ Δε_p/q) dev ε.
 ///
 /// Stored: ψ; in hardening H ε_p²/2; dissipated in a step σ_y Δε_p. The history is C_p⁻¹ - I (11, 22, 33, 12, 23, 13) and ε_p.
-/// Simo (1992), Comput. Methods Appl. Mech. Eng. 99, 61; de Souza Neto, Perić and Owen (2008), Computational Methods for
-/// Plasticity, 7.3 and 14.4.
+/// The method is that of Simo (1992), Comput. Methods Appl. Mech. Eng. 99, 61, and of de Souza Neto, Perić and Owen (2008),
+/// Computational Methods for Plasticity, chapters 7 and 14; the formulas here are derived from it, not taken over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct J2Plasticity {
     /// The law at small elastic strain, with the density.
@@ -114,7 +114,7 @@ impl J2Plasticity {
     /// ∂P/∂F. With the rate l = dF F⁻¹ in the principal axes,
     /// dP Fᵀ = dτ - τ lᵀ,   dτ_aa = Σ_c a_ac l_cc,   dτ_ab = w_ab (l_ab β_b + β_a l_ba) for a ≠ b,
     ///
-    /// a the consistent modulus of the return at small strain (de Souza Neto et al., 7.120) and
+    /// a = κ + 2μ left (δ - 1/3) + 6μ² (Δε_p/q - 1/(3μ + H)) flow flow the consistent modulus of the return at small strain, and
     /// w_ab = (τ_a - τ_b)/(β_a - β_b) = 2μ left (ε_a - ε_b)/(β_a - β_b), whose limit at equal eigenvalues is 1/(2β):
     /// the return scales the deviator, so that only the logarithm is left to divide.
     /// `g` is Nᵀ F⁻ᵀ.
@@ -202,7 +202,7 @@ impl Material for J2Plasticity {
         let g = at.n.tr_mul(&inverse_transposed);
         new.copy_from_slice(old);
         if at.slip > 0.0 {
-            // β exp(2 ln(β)-increment) - β on the principal axes, pulled back
+            // the flow sqrt(3/2) Δε_p of ε changes β by the factor exp(-2 flow); F⁻¹ pulls the change back to C_p⁻¹
             let change = std::array::from_fn::<f64, 3, _>(|a| {
                 at.beta[a] * (-6_f64.sqrt() * at.slip * at.flow[a]).exp_m1()
             });

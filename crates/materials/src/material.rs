@@ -43,16 +43,6 @@ pub enum Failure {
         /// det F.
         determinant: f64,
     },
-    /// The local equations of a law were not solved.
-    #[error(
-        "the return to the yield surface did not converge in {passes} passes (residual {residual:e})"
-    )]
-    NoReturn {
-        /// Passes made.
-        passes: usize,
-        /// What is left, relative.
-        residual: f64,
-    },
 }
 
 /// A law at finite strain, at one point.
@@ -67,7 +57,7 @@ pub trait Material {
     /// `new`.
     ///
     /// # Errors
-    /// det F not positive; local equations without solution.
+    /// det F not positive.
     fn update(
         &self,
         f: &Mat3,

@@ -28,7 +28,7 @@ pub struct Branch {
 /// κ and μ the instantaneous moduli: shear relaxes as μ (1 - Σ g_i (1 - exp(-t/τ_i))). A step solves this exactly for a strain
 /// that grows evenly over it, and its dissipation is the exact integral. At once, and at last, this is St Venant-Kirchhoff
 /// elasticity, with its limit to moderate strains. The history is e and all x_i (11, 22, 33, 12, 23, 13).
-/// Simo and Hughes (1998), Computational Inelasticity, 10.2.
+/// Simo and Hughes (1998), Computational Inelasticity, chapter 10.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Maxwell {
     /// Instantaneous law at small strain, with the density.

@@ -9,7 +9,7 @@ use crate::range::{OutOfRange, require};
 /// ψ = c_10 (I_1 - 3) + c_01 (I_2 - 3) - 2 (c_10 + 2 c_01) ln J + l/2 (ln J)², with the invariants of C = FᵀF and J = det F:
 /// free of stress at F = I. There μ = 2 (c_10 + c_01) and the bulk modulus is κ = l + 4/3 c_10 + 16/3 c_01, which is given in the
 /// place of l. With c_01 = 0 it is the neo-Hookean law. The invariants are those of C itself, not of its part of constant
-/// volume. Ciarlet (1988), Mathematical Elasticity I, 4.10, has the form with another function of J.
+/// volume. Ciarlet (1988), Mathematical Elasticity I, chapter 4, has the form with another function of J.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MooneyRivlin {
     /// Mass density in kg/m³, positive.

@@ -7,7 +7,7 @@ use crate::{Elastic, Plane};
 ///
 /// ψ = μ/2 (I_1 - 3) - μ ln J + λ/2 (ln J)², with I_1 = tr(FᵀF) and J = det F;
 /// P = μ (F - F⁻ᵀ) + λ ln(J) F⁻ᵀ. With Poisson's ratio not negative, ψ grows without bound as J goes to zero.
-/// Bonet and Wood (2008), Nonlinear Continuum Mechanics for Finite Element Analysis, 6.4.3.
+/// Bonet and Wood (2008), Nonlinear Continuum Mechanics for Finite Element Analysis, 6.4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHooke {
     /// The law at small strain, with the density.

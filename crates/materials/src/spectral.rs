@@ -15,21 +15,23 @@ pub(crate) fn spectral(a: &Mat3) -> ([f64; 3], Mat3) {
         if off <= 1e-18 * (a[(0, 0)].abs() + a[(1, 1)].abs() + a[(2, 2)].abs()) {
             break;
         }
-        for (p, q, r) in [(0, 1, 2), (1, 2, 0), (0, 2, 1)] {
-            rotate(&mut a, &mut n, (p, q, r));
-        }
+        rotate(&mut a, &mut n, (0, 1, 2));
+        rotate(&mut a, &mut n, (1, 2, 0));
+        rotate(&mut a, &mut n, (0, 2, 1));
     }
     ([a[(0, 0)], a[(1, 1)], a[(2, 2)]], n)
 }
 
 /// Turns the axes p and q so that A_pq, with its partner, becomes zero; r is the third axis.
+#[inline(always)]
 fn rotate(a: &mut Mat3, n: &mut Mat3, (p, q, r): (usize, usize, usize)) {
     let apart = a[(p, q)];
     if apart == 0.0 {
         return;
     }
     let cotangent = (a[(q, q)] - a[(p, p)]) / (2.0 * apart);
-    let tangent = 1.0_f64.copysign(cotangent) / (cotangent.abs() + cotangent.hypot(1.0));
+    let tangent =
+        1.0_f64.copysign(cotangent) / (cotangent.abs() + (cotangent * cotangent + 1.0).sqrt());
     let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
     let sine = tangent * cosine;
     a[(p, p)] -= tangent * apart;

@@ -19,4 +19,4 @@ pub use error::Error;
 pub use mesh::{Block, Defect, ElementId, Group, Mesh, gather};
 pub use project::{Projection, project};
 pub use search::{Bounds, BoxTree};
-pub use surface::{Face, Surface};
+pub use surface::{Face, Surface, face_nodes};

@@ -195,7 +195,7 @@ mod tests {
     fn face(kind: Kind, axis: [f64; 3]) -> Face {
         Face {
             kind,
-            nodes: [0, 1, 2, 3],
+            nodes: crate::face_nodes(&[0, 1, 2, 3]),
             parent: ElementId { block: 0, index: 0 },
             axis,
         }

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_elements::{Kind, MAX_NODES, map};
+use carom_elements::{Kind, MAX_FACE_NODES, MAX_NODES, map};
 
 use crate::mesh::gather;
 use crate::{ElementId, Error, Group, Mesh};
@@ -26,7 +26,7 @@ pub struct Face {
     /// Kind of the face.
     pub kind: Kind,
     /// Node numbers; only as many entries as the kind has nodes are used ([`Face::corners`]).
-    pub nodes: [u32; 4],
+    pub nodes: [u32; MAX_FACE_NODES],
     /// The cell that the face bounds.
     pub parent: ElementId,
     /// For a point, the end of a bar: unit vector along the bar, outward, in the reference position. Zero for
@@ -41,6 +41,14 @@ impl Face {
     }
 }
 
+/// A list of nodes as in [`Face::nodes`]: entries that are not used are the largest number, so that sorted lists
+/// compare.
+pub fn face_nodes(nodes: &[u32]) -> [u32; MAX_FACE_NODES] {
+    let mut out = [u32::MAX; MAX_FACE_NODES];
+    out[..nodes.len()].copy_from_slice(nodes);
+    out
+}
+
 impl Surface {
     /// The surface made of the facets of a group, seen as faces of these cells.
     ///
@@ -53,7 +61,7 @@ impl Surface {
         let wanted = by_nodes(mesh, facets)?;
         for &cell in cells {
             for (i, face) in mesh.kind(cell).table().faces.iter().enumerate() {
-                let Some(&facet) = wanted.get(&key(&face_nodes(mesh, cell, i))) else {
+                let Some(&facet) = wanted.get(&key(&nodes_of(mesh, cell, i))) else {
                     continue;
                 };
                 if let Some(first) = faces[facet] {
@@ -65,7 +73,7 @@ impl Surface {
                 }
                 faces[facet] = Some(Face {
                     kind: face.kind,
-                    nodes: face_nodes(mesh, cell, i),
+                    nodes: nodes_of(mesh, cell, i),
                     parent: cell,
                     axis: axis(mesh, cell, i),
                 });
@@ -116,11 +124,10 @@ impl Surface {
     }
 }
 
-/// Nodes of a face of a cell; entries that the kind does not use are the largest number, so that sorted node lists
-/// compare.
-fn face_nodes(mesh: &Mesh, cell: ElementId, face: usize) -> [u32; 4] {
+/// Nodes of a face of a cell, as in [`Face::nodes`].
+fn nodes_of(mesh: &Mesh, cell: ElementId, face: usize) -> [u32; MAX_FACE_NODES] {
     let nodes = mesh.element_nodes(cell);
-    let mut out = [u32::MAX; 4];
+    let mut out = [u32::MAX; MAX_FACE_NODES];
     let corners = mesh.kind(cell).table().faces[face].nodes;
     for (out, &a) in out.iter_mut().zip(corners) {
         *out = nodes[a];
@@ -129,22 +136,20 @@ fn face_nodes(mesh: &Mesh, cell: ElementId, face: usize) -> [u32; 4] {
 }
 
 /// What two lists of the same nodes have in common, whatever their order.
-fn key(nodes: &[u32; 4]) -> [u32; 4] {
+fn key(nodes: &[u32; MAX_FACE_NODES]) -> [u32; MAX_FACE_NODES] {
     let mut sorted = *nodes;
     sorted.sort_unstable();
     sorted
 }
 
 /// Facets by their nodes.
-fn by_nodes(mesh: &Mesh, facets: &Group) -> Result<BTreeMap<[u32; 4], usize>, Error> {
+fn by_nodes(mesh: &Mesh, facets: &Group) -> Result<BTreeMap<[u32; MAX_FACE_NODES], usize>, Error> {
     let mut map = BTreeMap::new();
     for (i, &id) in facets.elements.iter().enumerate() {
-        let mut nodes = [u32::MAX; 4];
-        let corners = mesh.element_nodes(id);
-        nodes[..corners.len()].copy_from_slice(corners);
-        if map.insert(key(&nodes), i).is_some() {
+        let nodes = mesh.element_nodes(id);
+        if map.insert(key(&face_nodes(nodes)), i).is_some() {
             return Err(Error::FacetTwice {
-                nodes: corners.to_vec(),
+                nodes: nodes.to_vec(),
                 centre: centre(mesh, id),
             });
         }

@@ -125,10 +125,12 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
             sliding: Sliding::Small,
             integration: Integration::Node,
             massless: false,
+            friction: 0.0,
         }],
         scheme: theta(0.5),
         dt: 0.5 * LENGTH / elements as f64 / 30.0,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     Ok(Driver::new(System::new(model)?)?)

@@ -109,6 +109,7 @@ pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> Mod
         sliding: Sliding::Finite,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
     }
 }
 

@@ -132,10 +132,12 @@ pub fn bounces(
             sliding: Sliding::Small,
             integration: Integration::Node,
             massless: false,
+            friction: 0.0,
         }],
         scheme,
         dt: 0.5 / elements as f64,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     let Ok(system) = System::new(model) else {

@@ -123,6 +123,7 @@ impl Zoned {
             scheme: part.scheme,
             dt: whole.dt / f64::from(part.substeps),
             adaptive: None,
+            nonlinear: Nonlinear::default(),
         }
     }
 

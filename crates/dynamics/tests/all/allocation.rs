@@ -49,10 +49,12 @@ fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
             sliding: Sliding::Finite,
             integration,
             massless: false,
+            friction: 0.0,
         }],
         scheme,
         dt: 5e-5,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     Driver::new(System::new(model).unwrap()).unwrap()

@@ -25,6 +25,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
     };
     let model = Model {
         bodies: vec![ModelBody {
@@ -51,6 +52,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         scheme: Scheme::Theta(Theta { theta: 1.0 }),
         dt: 0.1,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh: mesh.clone(),
     };
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();

@@ -47,10 +47,12 @@ fn a_cylinder_that_bulges_as_it_strikes_keeps_its_axial_momentum_balance() {
             sliding: Sliding::Finite,
             integration: Integration::Node,
             massless: false,
+            friction: 0.0,
         }],
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt: 5e-5,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();

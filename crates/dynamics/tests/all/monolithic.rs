@@ -165,6 +165,7 @@ impl Problem {
             sliding: Sliding::Finite,
             integration: Integration::Node,
             massless: false,
+            friction: 0.0,
         };
         let terms = |c: &[f64], first: usize| {
             let term = |(i, c): (usize, &f64)| Term {
@@ -221,6 +222,7 @@ impl Problem {
                 scheme: theta,
                 dt: self.dt,
                 adaptive: None,
+                nonlinear: carom_dynamics::Nonlinear::default(),
             },
         })
         .unwrap()

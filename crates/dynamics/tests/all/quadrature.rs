@@ -66,11 +66,13 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
             sliding: Sliding::Small,
             integration: Integration::Node,
             massless: false,
+            friction: 0.0,
         }],
         scheme,
         // c = 2 m/s, h = 0.25 m: CFL 0.5 along the body
         dt: 0.0625,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     }
 }

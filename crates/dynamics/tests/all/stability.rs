@@ -43,6 +43,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
     }];
     let model = Model {
         bodies: bodies.clone(),
@@ -52,6 +53,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         scheme: Scheme::CentralDifference(CentralDifference),
         dt,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh: mesh.clone(),
     };
     Driver::new(System::new(model)?)

@@ -58,6 +58,7 @@ pub fn bar() -> Zoned {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
     }];
     let zone = |name: &str, body, scheme, substeps| ModelZone {
         name: name.into(),
@@ -85,6 +86,7 @@ pub fn bar() -> Zoned {
             scheme: Scheme::CentralDifference(CentralDifference),
             dt: 0.5 * 0.02 / (steel.young / steel.density).sqrt(),
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
             mesh,
         },
     }

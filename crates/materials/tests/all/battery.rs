@@ -2,7 +2,7 @@
 
 use carom_algebra::tensor::Mat3;
 use carom_materials::{Failure, Plane, Want};
-use carom_testing::Random;
+use carom_testing::{Random, allocations};
 
 use crate::support::{
     INITIAL, asymmetry, for_each, random_f, random_rotation, start, step, tangent_error, times,
@@ -135,6 +135,20 @@ fn a_small_strain_gives_linear_elasticity_to_all_its_digits() {
         let stored = respond(&(Mat3::identity() + strain * h)).stored;
         let expected = 0.5 * h * h * linear.dot(&strain);
         assert!((stored - expected).abs() < 1e-8 * expected, "{name}");
+    });
+}
+
+#[test]
+fn a_stress_allocates_nothing_and_a_tangent_itself() {
+    for_each(|name, law| {
+        let f = random_f(&mut Random(16), 0.2);
+        let (old, mut new) = (start(law), start(law));
+        for (want, expected) in [(Want::Stress, 0), (Want::Tangent, 1)] {
+            let before = allocations();
+            let response = law.update(&f, 0.1, (&old, &mut new), want).unwrap();
+            assert_eq!(allocations() - before, expected, "{name}");
+            drop(response);
+        }
     });
 }
 

@@ -5,4 +5,10 @@
 
 mod battery;
 mod discrete_gradient;
+mod j2;
+mod maxwell;
+mod ranges;
 mod support;
+
+#[global_allocator]
+static COUNTER: carom_testing::Counter = carom_testing::Counter;

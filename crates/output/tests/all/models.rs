@@ -70,6 +70,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
     }];
     let model = Model {
         bodies,
@@ -79,6 +80,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt: 0.5 * LENGTH / n as f64 / wave_speed(),
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     System::new(model).unwrap()
@@ -134,6 +136,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
     };
     let model = Model {
         bodies: vec![body],
@@ -146,6 +149,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         }),
         dt: 1e-4,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     System::new(model).unwrap()

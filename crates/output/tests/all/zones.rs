@@ -95,6 +95,7 @@ fn two_bars() -> Zoned {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
     }];
     let zone = |name: &str, bodies, scheme, substeps| ModelZone {
         name: name.to_owned(),
@@ -124,6 +125,7 @@ fn two_bars() -> Zoned {
             scheme: rest,
             dt: 0.5 * h / models::wave_speed(),
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
             mesh,
         },
     }
