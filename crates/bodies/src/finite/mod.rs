@@ -16,10 +16,12 @@ mod element;
 mod gradient;
 mod hourglass;
 mod linear;
+mod pressure;
 mod sweep;
 
 pub(crate) use cells::{Cells, Shape};
 use element::Fault;
+pub use pressure::FollowerPressure;
 use sweep::Failed;
 pub(crate) use sweep::{Elements, Finite};
 
