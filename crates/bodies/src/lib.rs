@@ -19,6 +19,6 @@ mod weights;
 pub use block::Scratch;
 pub use body::{Body, BodySpec, Kinematics, MassKind};
 pub use error::Error;
-pub use finite::{Formulation, Placement, Stored};
+pub use finite::{FollowerPressure, Formulation, Placement, Stored};
 pub use size::{height, smallest as smallest_size};
 pub use weights::CellWeights;

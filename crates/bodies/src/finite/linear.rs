@@ -43,12 +43,12 @@ impl Body {
             factor
         };
         let (mut unknowns, mut block) = (Vec::new(), Vec::new());
-        self.each_matrix(true, &mut |nodes, k, _| {
+        self.each_matrix(true, &mut |element| {
             unknowns.clear();
             let of_node = |&node: &u32| (0..dim as u32).map(move |i| dim as u32 * node + i);
-            unknowns.extend(nodes.iter().flat_map(of_node));
+            unknowns.extend(element.nodes.iter().flat_map(of_node));
             block.clear();
-            block.extend(k.iter().map(|k| factor * k));
+            block.extend(element.stiffness.iter().map(|k| factor * k));
             matrix.add_block(&unknowns, &block);
         });
     }

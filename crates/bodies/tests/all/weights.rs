@@ -156,6 +156,7 @@ fn weights_follow_their_cells_and_zeros_leave_them_out() {
                 x: sample.x.clone(),
                 n: sample.n,
                 body,
+                formulation: sample.formulation,
             };
             let (force, energy) = sample.force(&u);
             [
