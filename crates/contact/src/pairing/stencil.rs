@@ -23,13 +23,11 @@
 
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Vec3;
-use carom_elements::{Element, map};
+use carom_elements::{Element, MAX_FACE_NODES as NODES, map};
 use carom_mesh::{Face, Projection};
 
 use crate::{Contact, Places, Point, Rows, Search, Target};
 
-/// The largest number of nodes of a face.
-const NODES: usize = 9;
 /// The largest number of unknowns of a stencil.
 const UNKNOWNS: usize = 6 * NODES;
 

@@ -1,0 +1,7 @@
+//! Facts about gaps, rows and curvature that hold for every kind of face and every integration.
+
+// Helpers of tests panic as the tests themselves do.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod derivatives;
+mod fixture;
