@@ -1,9 +1,10 @@
 //! One contact: secondary points that carry the forces, what they face, and the law between them.
 
-use carom_elements::{Kind, MAX_FACE_NODES};
-use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
+use carom_elements::MAX_FACE_NODES;
+use carom_mesh::{Face, Projection};
 
-use crate::{Law, Plane, Point, Rows, Sphere};
+use crate::sight::View;
+use crate::{Distance, Law, Obstacle, Point, Rows, Search, Sight};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,15 +104,13 @@ impl Contact {
                     rows.set_rate(placed.gap_rate(&x, &normal));
                     add_point(places, point, &normal, rows);
                 }
-                Target::Surface(faces) => {
-                    match search.facing(places, faces, self.view(k), &x) {
-                        Some((foot, face)) => {
-                            rows.push(foot.gap + self.offset(k), foot.normal);
-                            add_row(places, point, &foot, face, rows);
-                        }
-                        None => rows.push(f64::INFINITY, [0.0; 3]),
+                Target::Surface(faces) => match search.facing(places, faces, self.view(k), &x) {
+                    Some((foot, face)) => {
+                        rows.push(foot.gap + self.offset(k), foot.normal);
+                        add_row(places, point, &foot, face, rows);
                     }
-                }
+                    None => rows.push(f64::INFINITY, [0.0; 3]),
+                },
             }
         }
     }
@@ -157,6 +156,7 @@ fn add_row(places: &Places, point: &Point, foot: &Projection, face: &Face, rows:
 
 #[cfg(test)]
 mod tests {
+    use carom_elements::Kind;
     use carom_mesh::{ElementId, face_nodes};
 
     use super::*;

@@ -7,6 +7,7 @@
 //! Signs: gap positive when open, gap rate positive when opening, force and pressure positive in compression.
 
 mod contact;
+mod initial;
 pub mod law;
 mod obstacle;
 mod pairing;
@@ -17,6 +18,7 @@ mod sight;
 mod weak;
 
 pub use contact::{Contact, Integration, Places, Sliding, Target};
+pub use initial::{Initial, Penetration};
 pub use law::Law;
 pub use obstacle::{
     Cylinder, Distance, Motion, Obstacle, Placed, Plane, RigidSurface, Shape, Side, Sphere,

@@ -93,9 +93,10 @@ impl Search {
 
     /// Memory in bytes.
     pub fn bytes(&self) -> usize {
-        let lists = self.kept.iter().map(|kept| {
-            size_of::<Kept>() + kept.faces.capacity() * size_of::<(u32, f64)>()
-        });
+        let lists = self
+            .kept
+            .iter()
+            .map(|kept| size_of::<Kept>() + kept.faces.capacity() * size_of::<(u32, f64)>());
         self.tree.as_ref().map_or(0, BoxTree::bytes)
             + size_of_val(&self.boxes[..])
             + size_of_val(&self.taken[..])
@@ -160,11 +161,7 @@ impl Search {
         let mut count = 0;
         let foot = |item: u32| {
             let face = &faces[item as usize];
-            project(
-                face,
-                &positions(places, face)[..face.corners().len()],
-                x,
-            )
+            project(face, &positions(places, face)[..face.corners().len()], x)
         };
         let measure = |item: u32| {
             count += 1;

@@ -206,7 +206,12 @@ impl View<'_> {
             (0..3).map(|i| n[i] * foot.normal[i]).sum::<f64>() < OPPOSED
         };
         self.sight.around.of(self.point).iter().any(opposed)
-            && self.sight.beside.of(self.point).binary_search(&item).is_err()
+            && self
+                .sight
+                .beside
+                .of(self.point)
+                .binary_search(&item)
+                .is_err()
     }
 }
 

@@ -9,6 +9,7 @@ mod contacts;
 mod control;
 mod driver;
 mod error;
+mod initial;
 mod interface;
 mod ledger;
 mod march;

@@ -423,10 +423,7 @@ mod tests {
             let measure = |i: u32| Bounds::of(&[place(i)]).distance_squared(&point).sqrt();
             let all = (0..200).map(|i| (i, measure(i)));
             let closest = all.min_by(|a, b| a.1.total_cmp(&b.1));
-            assert_eq!(
-                tree.closest(&point, f64::INFINITY, moved, measure),
-                closest
-            );
+            assert_eq!(tree.closest(&point, f64::INFINITY, moved, measure), closest);
         }
     }
 

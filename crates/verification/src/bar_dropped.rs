@@ -9,7 +9,7 @@
 //! the energy: 1e-11 m g h, as for every run.
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
-use carom_contact::{Integration, Plane, Sliding};
+use carom_contact::{Initial, Integration, Plane, Sliding};
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, System, march};
 use carom_exact::{Bar, Impact};
 use carom_materials::Elastic;
@@ -116,7 +116,7 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
         contacts: vec![ModelContact {
             name: "ground".to_string(),
             secondary: Surface::new(&mesh, group(&mesh, "bar.left")?, &cells)?,
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal: [1.0, 0.0, 0.0],
             }),
@@ -124,6 +124,8 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
             sliding: Sliding::Small,
             integration: Integration::Node,
             massless: false,
+            initial: Initial::Keep,
+            depth: None,
         }],
         scheme: theta(0.5),
         dt: 0.5 * LENGTH / elements as f64 / 30.0,

@@ -9,7 +9,7 @@
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::Capture;
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::{
     Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, march,
 };
@@ -122,7 +122,7 @@ pub fn bounces(
         contacts: vec![ModelContact {
             name: "wall".to_string(),
             secondary: Surface::new(&mesh, group(&mesh, "bar.left")?, &cells)?,
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal: [1.0, 0.0, 0.0],
             }),
@@ -130,6 +130,8 @@ pub fn bounces(
             sliding: Sliding::Small,
             integration: Integration::Node,
             massless: false,
+            initial: Initial::Keep,
+            depth: None,
         }],
         scheme,
         dt: 0.5 / elements as f64,

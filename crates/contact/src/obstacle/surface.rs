@@ -124,11 +124,7 @@ fn tangents(face: &Face, places: &[[f64; 3]], xi: &[f64; 3]) -> [[f64; 3]; 2] {
 
 /// b_αβ = n·∂²y/∂ξ_α∂ξ_β: half the difference of the tangents one unit to both sides, which is exact because no shape
 /// function is of more than the second degree in one coordinate.
-fn curvature(
-    face: &Face,
-    places: &[[f64; 3]; MAX_FACE_NODES],
-    foot: &Projection,
-) -> [[f64; 2]; 2] {
+fn curvature(face: &Face, places: &[[f64; 3]; MAX_FACE_NODES], foot: &Projection) -> [[f64; 2]; 2] {
     let mut bend = [[0.0; 2]; 2];
     for j in 0..face.kind.table().dim {
         let at = |step: f64| {

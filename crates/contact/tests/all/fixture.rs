@@ -24,6 +24,8 @@ pub fn contact(points: Vec<Point>, target: Target) -> Contact {
         integration: Integration::Node,
         points,
         target,
+        sight: None,
+        offsets: Vec::new(),
     }
 }
 

@@ -4,7 +4,7 @@ use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::{
     Adhesion, Capture, Damped, Displacement, Level, Penalty, Reading, Velocity,
 };
-use carom_contact::{Integration, Law, Plane, Sliding, Weak};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding, Weak};
 use carom_dynamics::{
     Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, scheme,
 };
@@ -57,7 +57,7 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
         contacts: vec![ModelContact {
             name: "ground".into(),
             secondary: Surface::new(&mesh, &mesh.groups[side], &cells).unwrap(),
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal,
             }),
@@ -65,6 +65,8 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
             sliding: Sliding::Small,
             integration: Integration::Node,
             massless: false,
+            initial: Initial::Keep,
+            depth: None,
         }],
         scheme,
         // c = 2 m/s, h = 0.25 m: CFL 0.5 along the body

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Stepper,
@@ -46,7 +46,7 @@ pub fn bar() -> Zoned {
     let contacts = vec![ModelContact {
         name: "wall".into(),
         secondary: Surface::new(&mesh, &mesh.groups["tip.right"], &bodies[1].spec.cells).unwrap(),
-        primary: ModelTarget::Plane(Plane {
+        primary: ModelTarget::rigid(Plane {
             point: [0.0; 3],
             normal: [-1.0, 0.0, 0.0],
         }),
@@ -57,6 +57,8 @@ pub fn bar() -> Zoned {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        initial: Initial::Keep,
+        depth: None,
     }];
     let zone = |name: &str, body, scheme, substeps| ModelZone {
         name: name.into(),

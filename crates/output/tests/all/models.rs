@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{Newmark, Theta};
 use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System};
 use carom_exact::{Bar, Impact};
@@ -69,6 +69,8 @@ pub fn two_bars(n: usize) -> Arc<System> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        initial: Initial::Keep,
+        depth: None,
     }];
     let model = Model {
         bodies,
@@ -123,7 +125,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
     let ground = ModelContact {
         name: "ground".to_owned(),
         secondary: bottom,
-        primary: ModelTarget::Plane(Plane {
+        primary: ModelTarget::rigid(Plane {
             point: [0.0; 3],
             normal: [0.0, 0.0, 1.0],
         }),
@@ -131,6 +133,8 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        initial: Initial::Keep,
+        depth: None,
     };
     let model = Model {
         bodies: vec![body],

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
 use carom_bodies::{BodySpec, CellWeights, Kinematics, MassKind};
-use carom_contact::{Integration, Sliding};
+use carom_contact::{Initial, Integration, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Stepper,
@@ -94,6 +94,8 @@ fn two_bars() -> Zoned {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        initial: Initial::Keep,
+        depth: None,
     }];
     let zone = |name: &str, bodies, scheme, substeps| ModelZone {
         name: name.to_owned(),
