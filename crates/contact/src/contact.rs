@@ -3,7 +3,7 @@
 use carom_elements::{Kind, MAX_FACE_NODES};
 use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
 
-use crate::{Law, Plane, Point, Rows, Sphere};
+use crate::{Basis, Law, Mortar, Plane, Point, Rows, Sphere};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +37,11 @@ pub enum Integration {
         /// r of the augmented pressure p - r q, in Pa/m for a law in the gap, in Pa s/m for one in the rate.
         r: f64,
     },
+    /// At the corners of the faces in the mean: the weak gap of each multiplier, segment to segment.
+    Mortar {
+        /// Shape functions of the multipliers.
+        basis: Basis,
+    },
 }
 
 /// A frictionless contact.
@@ -52,6 +57,8 @@ pub struct Contact {
     pub integration: Integration,
     /// Secondary points: nodes, or Gauss points.
     pub points: Vec<Point>,
+    /// Faces of the secondary surface, where integration is by mortar; the points are then its own.
+    pub mortar: Option<Mortar>,
     /// What they face.
     pub target: Target,
 }
@@ -136,6 +143,14 @@ impl Search {
         }
     }
 
+    /// Faces whose boxes have a point in common with a box, sorted, into `found`, which is cleared first.
+    pub(crate) fn overlapping(&self, bounds: &Bounds, found: &mut Vec<u32>) {
+        found.clear();
+        if let Some(tree) = &self.tree {
+            tree.overlapping(bounds, found);
+        }
+    }
+
     /// The closest point of a surface, if the point faces it.
     pub(crate) fn facing<'a>(
         &mut self,
@@ -148,7 +163,7 @@ impl Search {
     }
 
     /// Doubles the distance searched until a face is found, then looks once more as far as that face is.
-    fn closest<'a>(
+    pub(crate) fn closest<'a>(
         &mut self,
         places: &Places,
         faces: &'a [Face],
@@ -213,7 +228,7 @@ fn add_row(places: &Places, point: &Point, foot: &Projection, face: &Face, rows:
     }
 }
 
-fn faces_point(foot: &Projection, face: &Face) -> bool {
+pub(crate) fn faces_point(foot: &Projection, face: &Face) -> bool {
     if foot.inside || face.kind == Kind::Point1 {
         return true;
     }
@@ -260,6 +275,7 @@ mod tests {
             sliding: Sliding::Finite,
             integration: Integration::Node,
             points: vec![Point::at_node(25, 1.0, 1.0)],
+            mortar: None,
             target: Target::Surface(faces),
         };
         let mut rows = Rows::default();

@@ -17,7 +17,7 @@ mod weak;
 
 pub use contact::{Contact, Integration, Places, Search, Sliding, Target};
 pub use law::Law;
-pub use pairing::Pairing;
+pub use pairing::{Basis, Mortar, Pairing};
 pub use plane::Plane;
 pub use point::Point;
 pub use rows::Rows;
