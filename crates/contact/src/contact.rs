@@ -4,7 +4,7 @@ use carom_elements::MAX_FACE_NODES;
 use carom_mesh::{Face, Projection};
 
 use crate::sight::View;
-use crate::{Distance, Law, Obstacle, Point, Rows, Search, Sight};
+use crate::{Basis, Distance, Law, Mortar, Obstacle, Point, Rows, Search, Sight};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +36,11 @@ pub enum Integration {
         /// r of the augmented pressure p - r q, in Pa/m for a law in the gap, in Pa s/m for one in the rate.
         r: f64,
     },
+    /// At the corners of the faces in the mean: the weak gap of each multiplier, segment to segment.
+    Mortar {
+        /// Shape functions of the multipliers.
+        basis: Basis,
+    },
 }
 
 /// A frictionless contact.
@@ -51,6 +56,8 @@ pub struct Contact {
     pub integration: Integration,
     /// Secondary points: nodes, or Gauss points.
     pub points: Vec<Point>,
+    /// Faces of the secondary surface, where integration is by mortar; the points are then its own.
+    pub mortar: Option<Mortar>,
     /// What they face.
     pub target: Target,
     /// What they see of it; `None` for everything: each point then faces the closest face.
@@ -188,6 +195,7 @@ mod tests {
             sliding: Sliding::Finite,
             integration: Integration::Node,
             points: vec![Point::at_node(25, 1.0, 1.0)],
+            mortar: None,
             target: Target::Surface(faces),
             sight: None,
             offsets: Vec::new(),

@@ -72,6 +72,7 @@ mod tests {
             sliding: Sliding::Finite,
             integration: Integration::Node,
             points: (0..3).map(|k| Point::at_node(k, 1.0, 1.0 / 3.0)).collect(),
+            mortar: None,
             target: Target::Rigid(floor.into()),
             sight: None,
             offsets: Vec::new(),

@@ -97,6 +97,11 @@ impl Rows {
         self.offsets.push(self.dofs.len() as u32);
     }
 
+    /// Adds an offset in m to the gap of a point.
+    pub(crate) fn shift(&mut self, point: usize, offset: f64) {
+        self.gaps[point] += offset;
+    }
+
     /// Gives the point pushed last the rate of its gap by the obstacle's motion, m/s.
     pub(crate) fn set_rate(&mut self, rate: f64) {
         if let Some(last) = self.rates.last_mut() {

@@ -133,19 +133,31 @@ impl Search {
         self.boxes.clear();
         self.taken.clear();
         for face in faces {
-            let x = positions(places, face);
-            let x = &x[..face.corners().len()];
-            self.boxes.push(Bounds::of(x));
-            self.taken.extend_from_slice(x);
+            self.boxes.push(hull(places, face));
+            let nodes = face.corners().iter();
+            self.taken.extend(nodes.map(|&node| places.of(node)));
         }
         let diagonals = self.boxes.iter().map(|b| squared(&b.min, &b.max).sqrt());
         self.skin = 0.5 * diagonals.sum::<f64>() / self.boxes.len().max(1) as f64;
     }
 
-    /// The closest point of a surface, if the point faces it: the closest of what is in its view, the first of equals.
+    /// The closest point of a surface, if the point faces it.
+    pub(crate) fn facing<'a>(
+        &mut self,
+        places: &Places,
+        faces: &'a [Face],
+        view: Option<View>,
+        x: &[f64; 3],
+    ) -> Option<(Projection, &'a Face)> {
+        self.closest(places, faces, view, x)
+            .filter(|(foot, face)| faces_point(foot, face))
+    }
+
+    /// The closest point of a surface, on the first of the faces that are closest; with a view, on the first of those that
+    /// are in view and that the point faces.
     ///
     /// Queries keep their memory by their order after a renewal.
-    pub(crate) fn facing<'a>(
+    pub(crate) fn closest<'a>(
         &mut self,
         places: &Places,
         faces: &'a [Face],
@@ -196,8 +208,30 @@ impl Search {
         self.kept[slot] = kept;
         self.projections += count;
         let (item, _) = found?;
-        let (foot, face) = (foot(item), &faces[item as usize]);
-        faces_point(&foot, face).then_some((foot, face))
+        Some((foot(item), &faces[item as usize]))
+    }
+
+    /// Whether a face is in a view.
+    pub(crate) fn shows(&self, view: Option<View>, item: u32, foot: &Projection) -> bool {
+        view.is_none_or(|view| view.shows(item, foot, &self.normals))
+    }
+
+    /// Faces whose boxes have a point in common with a box, sorted, into `found`, which is cleared first.
+    pub(crate) fn overlapping(
+        &self,
+        (places, faces): (&Places, &[Face]),
+        bounds: &Bounds,
+        found: &mut Vec<u32>,
+    ) {
+        found.clear();
+        let Some(tree) = &self.tree else {
+            return;
+        };
+        tree.overlapping(&bounds.widened(self.moved), found);
+        // widened, the box may meet faces that it does not meet where they are now
+        if self.moved > 0.0 {
+            found.retain(|&item| hull(places, &faces[item as usize]).overlaps(bounds));
+        }
     }
 }
 
@@ -275,6 +309,11 @@ pub(crate) fn positions(places: &Places, face: &Face) -> [[f64; 3]; MAX_FACE_NOD
         *position = places.of(node);
     }
     positions
+}
+
+/// A box that holds a face.
+fn hull(places: &Places, face: &Face) -> Bounds {
+    face.bounds(&positions(places, face)[..face.corners().len()])
 }
 
 /// Whether a point faces the face on which its closest point lies: whether the way to it runs sideways by no more than

@@ -6,6 +6,7 @@
 
 mod free;
 pub mod generate;
+mod hull;
 pub mod mesh;
 pub mod project;
 pub mod read;

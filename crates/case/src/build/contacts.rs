@@ -2,7 +2,7 @@
 
 use carom_contact::law::Level;
 use carom_contact::law::{Displacement, Reading, Restitution, Velocity};
-use carom_contact::{Initial, Integration, Law, Plane, Side, Sliding, Sphere};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding, Sphere};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{ElementId, Mesh, Surface};
 
@@ -41,7 +41,7 @@ impl Builder<'_> {
                     Some(ModelTarget::rigid(Sphere {
                         centre: self.vector(mesh, &path, &sphere.centre),
                         radius: sphere.radius.0,
-                        side: Side::Outside,
+                        side: carom_contact::Side::Outside,
                     }))
                 }
                 (None, None) => None,

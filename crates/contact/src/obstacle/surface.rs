@@ -34,7 +34,7 @@ impl RigidSurface {
         let x: Vec<[f64; 3]> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
         let boxes: Vec<Bounds> = faces
             .iter()
-            .map(|face| bounds(face, &places(&x, face)))
+            .map(|face| face.bounds(&places(&x, face)[..face.corners().len()]))
             .collect();
         RigidSurface {
             tree: BoxTree::new(&boxes),
@@ -109,10 +109,6 @@ fn places(x: &[[f64; 3]], face: &Face) -> [[f64; 3]; MAX_FACE_NODES] {
         *place = x[node as usize];
     }
     places
-}
-
-fn bounds(face: &Face, places: &[[f64; 3]; MAX_FACE_NODES]) -> Bounds {
-    Bounds::of(&places[..face.corners().len()])
 }
 
 /// ∂y/∂ξ_α.

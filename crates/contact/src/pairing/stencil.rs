@@ -26,6 +26,7 @@ use carom_algebra::tensor::Vec3;
 use carom_elements::{Element, MAX_FACE_NODES as NODES, map};
 use carom_mesh::{Face, Projection};
 
+use crate::sight::View;
 use crate::{Contact, Places, Point, Rows, Search, Target};
 
 /// The largest number of unknowns of a stencil.
@@ -36,8 +37,6 @@ const UNKNOWNS: usize = 6 * NODES;
 pub(crate) struct Stencil {
     point: Point,
     gap: f64,
-    /// What is added to the gap, m ([`Contact::offsets`]).
-    offset: f64,
     normal: [f64; 3],
     foot: Foot,
 }
@@ -72,42 +71,37 @@ struct Foothold {
 }
 
 impl Stencil {
-    /// The stencil of a point of a contact, `None` where it faces nothing. `search` is that of these places; `viewer`: the
-    /// contact point whose view and offset hold.
+    /// The stencil of a point of a contact, `None` where it faces nothing. `search` is that of these places; `view`:
+    /// what it sees of a surface.
     pub fn new(
         contact: &Contact,
         places: &Places,
         search: &mut Search,
-        (point, viewer): (&Point, usize),
+        (point, view): (&Point, Option<View>),
     ) -> Option<Stencil> {
         let x = point.place(places);
-        let stencil = match &contact.target {
+        match &contact.target {
             Target::Rigid(obstacle) => {
                 let placed = obstacle.at(places.time);
                 let found = placed.distance(&x);
                 if found.gap == f64::INFINITY {
                     return None;
                 }
-                Stencil {
+                Some(Stencil {
                     point: *point,
                     gap: found.gap,
-                    offset: 0.0,
                     normal: found.normal,
                     foot: Foot::Obstacle {
                         hessian: found.hessian,
                         velocity: placed.velocity(&x),
                     },
-                }
+                })
             }
             Target::Surface(faces) => {
-                let (foot, face) = search.facing(places, faces, contact.view(viewer), &x)?;
-                Stencil::on_face(places, point, &x, &foot, face)
+                let (foot, face) = search.facing(places, faces, view, &x)?;
+                Some(Stencil::on_face(places, point, &x, &foot, face))
             }
-        };
-        Some(Stencil {
-            offset: contact.offset(viewer),
-            ..stencil
-        })
+        }
     }
 
     /// The stencil of a point at `x` whose closest point on a face is known.
@@ -125,7 +119,6 @@ impl Stencil {
         Stencil {
             point: *point,
             gap: foot.gap,
-            offset: 0.0,
             normal: foot.normal,
             foot: Foot::Face(Foothold {
                 face: *face,
@@ -139,7 +132,7 @@ impl Stencil {
 
     /// Appends gap and rows.
     pub fn push(&self, dim: usize, rows: &mut Rows, tangents: &mut [Rows; 2]) {
-        rows.push(self.gap + self.offset, self.normal);
+        rows.push(self.gap, self.normal);
         rows.set_rate(self.rate(&self.normal));
         self.each_normal(|node, direction| rows.add_node(dim, node, &direction));
         let frame = tangent_vectors(&self.normal, dim);
@@ -151,7 +144,7 @@ impl Stencil {
     }
 
     /// Rate at which the obstacle's motion carries the point off along a direction, m/s.
-    fn rate(&self, direction: &[f64; 3]) -> f64 {
+    pub fn rate(&self, direction: &[f64; 3]) -> f64 {
         match &self.foot {
             Foot::Face(_) => 0.0,
             Foot::Obstacle { velocity, .. } => {
@@ -162,7 +155,7 @@ impl Stencil {
 
     /// The gap in m and the unit normal.
     pub fn gap(&self) -> (f64, [f64; 3]) {
-        (self.gap + self.offset, self.normal)
+        (self.gap, self.normal)
     }
 
     /// The blocks of the row N: nodes and derivatives of the gap by their places.

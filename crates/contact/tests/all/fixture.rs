@@ -23,6 +23,7 @@ pub fn contact(points: Vec<Point>, target: Target) -> Contact {
         sliding: Sliding::Finite,
         integration: Integration::Node,
         points,
+        mortar: None,
         target,
         sight: None,
         offsets: Vec::new(),

@@ -5,3 +5,7 @@
 
 mod derivatives;
 mod fixture;
+mod mortar;
+
+#[global_allocator]
+static COUNTER: carom_testing::Counter = carom_testing::Counter;
