@@ -251,28 +251,33 @@ impl Query<'_> {
         count: usize,
         mut measure: impl FnMut(u32) -> f64,
     ) -> Option<(u32, f64)> {
-        if let Some(answer) = self.among_kept(kept, &mut measure) {
-            return answer;
-        }
-        kept.reach = None;
         // what was closest last bounds the distance of what is closest now
         let last = kept.face.filter(|&item| (item as usize) < count);
         let bound = last.map_or(f64::INFINITY, &mut measure);
-        self.tree
-            .closest(self.x, self.within.min(bound), self.moved, measure)
+        let mut measure = |item: u32| match Some(item) == last {
+            true => bound,
+            false => measure(item),
+        };
+        let within = self.within.min(bound);
+        if let Some(answer) = self.among_kept(kept, within, &mut measure) {
+            return answer;
+        }
+        kept.reach = None;
+        self.tree.closest(self.x, within, self.moved, measure)
     }
 
     /// The answer from the kept faces; `None` if another face may be closer than they are.
     fn among_kept(
         &self,
         kept: &Kept,
+        within: f64,
         mut measure: impl FnMut(u32) -> f64,
     ) -> Option<Option<(u32, f64)>> {
         let gone = squared(self.x, &kept.x).sqrt();
         let slack = self.moved + gone + self.tree.rounding(self.x);
         let sure = kept.reach? - slack;
         let mut best: Option<(u32, f64)> = None;
-        let mut limit = self.within;
+        let mut limit = within;
         for &(item, lower) in &kept.faces {
             if lower - slack > limit {
                 continue;

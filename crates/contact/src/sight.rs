@@ -92,9 +92,9 @@ impl Sight {
 
     /// The views of the points of a secondary surface on a target.
     ///
-    /// `x`: reference coordinates by system number, m. `depth`: largest penetration that is a contact, m; by default the
-    /// smallest diagonal of the faces around a point. On a surface that faces itself it is half the thickness of the body
-    /// at the point if that is less, the thickness being the way back to the closest face in view in the reference
+    /// `x`: reference coordinates by system number, m. `depth`: largest penetration that is a contact, m; by default half
+    /// the smallest diagonal of the faces around a point. On a surface that faces itself it is half the thickness of the body
+    /// at the point if that is less, the thickness being the way back to the closest face turned against it in the reference
     /// configuration, which has to be free of penetration; gaps beyond four times the largest diagonal are then not looked
     /// for: in a step parts must come closer by less than that.
     pub fn new(
@@ -131,7 +131,7 @@ impl Sight {
         let largest = largest.fold(0.0, f64::max);
         let mut sight = Sight {
             depth: (0..points.len())
-                .map(|k| depth.unwrap_or_else(|| size(k)))
+                .map(|k| depth.unwrap_or_else(|| 0.5 * size(k)))
                 .collect(),
             faces: secondary.to_vec(),
             around,
@@ -155,7 +155,7 @@ impl Sight {
         View { sight: self, point }
     }
 
-    /// Takes half the way back to the closest face in view as depth where that is less.
+    /// Takes half the way back to the closest face turned against a point as depth where that is less.
     fn limit_to_thickness(&mut self, points: &[Point], target: &[Face], x: &[[f64; 3]]) {
         let rest = vec![0.0; 3 * x.len()];
         let places = Places {
@@ -175,9 +175,8 @@ impl Sight {
                 let face = &target[item as usize];
                 let x = positions(&places, face);
                 let foot = carom_mesh::project(face, &x[..face.corners().len()], &place);
-                let back = foot.gap < 0.0
-                    && view.may_touch(item, &foot, &normals)
-                    && faces_point(&foot, face);
+                let back =
+                    foot.gap < 0.0 && view.opposes(&foot, &normals) && faces_point(&foot, face);
                 if back { foot.distance } else { f64::INFINITY }
             };
             if let Some((_, thickness)) = tree.closest(&place, 2.0 * *depth, 0.0, behind) {
@@ -197,21 +196,22 @@ impl View<'_> {
     /// Whether a face of the target is in view, its foot being the closest point to the viewer. `normals`: of the
     /// secondary faces, at this configuration.
     pub(crate) fn shows(&self, item: u32, foot: &Projection, normals: &[[f64; 3]]) -> bool {
-        foot.gap >= -self.sight.depth[self.point] && self.may_touch(item, foot, normals)
-    }
-
-    fn may_touch(&self, item: u32, foot: &Projection, normals: &[[f64; 3]]) -> bool {
-        let opposed = |&k: &u32| {
-            let n = &normals[k as usize];
-            (0..3).map(|i| n[i] * foot.normal[i]).sum::<f64>() < OPPOSED
-        };
-        self.sight.around.of(self.point).iter().any(opposed)
+        foot.gap >= -self.sight.depth[self.point]
+            && self.opposes(foot, normals)
             && self
                 .sight
                 .beside
                 .of(self.point)
                 .binary_search(&item)
                 .is_err()
+    }
+
+    fn opposes(&self, foot: &Projection, normals: &[[f64; 3]]) -> bool {
+        let opposed = |&k: &u32| {
+            let n = &normals[k as usize];
+            (0..3).map(|i| n[i] * foot.normal[i]).sum::<f64>() < OPPOSED
+        };
+        self.sight.around.of(self.point).iter().any(opposed)
     }
 }
 
