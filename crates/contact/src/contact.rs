@@ -3,7 +3,7 @@
 use carom_elements::{Kind, MAX_FACE_NODES};
 use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
 
-use crate::{Basis, Law, Mortar, Plane, Point, Rows, Sphere};
+use crate::{Basis, Law, Mortar, Pairing, Plane, Point, Rows, Sphere};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +92,8 @@ pub struct Search {
     boxes: Vec<Bounds>,
     tree: Option<BoxTree>,
     found: Vec<u32>,
+    /// Scratch of [`Contact::pair`] for the mortar method.
+    pairing: Pairing,
 }
 
 impl Contact {
@@ -99,8 +101,17 @@ impl Contact {
     ///
     /// Against a surface each point is projected on the closest face (the first of equals). It faces nothing, and gets
     /// an infinite gap, where the foot lies beyond the rim: where the way from the foot to the point runs sideways by
-    /// more than it runs along the normal. What `search` holds from before does not matter to the result.
+    /// more than it runs along the normal. What `search` holds from before does not matter to the result. Integration by
+    /// mortar has the rows of [`Contact::pair_fully`].
     pub fn pair(&self, places: &Places, search: &mut Search, rows: &mut Rows) {
+        if self.mortar.is_some() {
+            let mut pairing = std::mem::take(&mut search.pairing);
+            pairing.clear();
+            self.pair_fully(places, search, &mut pairing);
+            rows.append(&pairing.rows);
+            search.pairing = pairing;
+            return;
+        }
         self.renew(places, search);
         for point in &self.points {
             let x = point.place(places);

@@ -43,7 +43,7 @@ pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Project
         Kind::Bar2 => on_segment(positions, point),
         Kind::Tri3 => on_triangle(positions, point),
         Kind::Quad4 => on_patch(element, positions, point),
-        Kind::Tet4 | Kind::Hex8 => unreachable!("a face has two dimensions at most"),
+        _ => unreachable!("a face has two dimensions at most"),
     };
     let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);
     (element.shape)(&xi, &mut n[..element.nodes]);
