@@ -12,6 +12,7 @@ use carom_mesh::{Face, Mesh, Surface};
 
 use crate::contacts::{numbered, renumbered, sides};
 use crate::massless::redistribute;
+use crate::nonlinear::{Nonlinear, NumberedNonlinear};
 use crate::{Adaptive, Error, Scheme};
 
 /// Everything from which a system is built; names are those of the case file.
@@ -33,6 +34,8 @@ pub struct Model {
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
     pub adaptive: Option<Adaptive>,
+    /// Loads and motions in time, damping, a static stage, and how nonlinear steps are solved.
+    pub nonlinear: Nonlinear,
 }
 
 /// A body and its initial state.
@@ -74,6 +77,8 @@ pub struct ModelContact {
     pub integration: Integration,
     /// Whether the nodes of both surfaces give their mass to the other nodes of their bodies.
     pub massless: bool,
+    /// Coefficient of Coulomb's friction; zero for none.
+    pub friction: f64,
 }
 
 /// What a secondary surface faces.
@@ -154,6 +159,10 @@ pub struct System {
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
     pub adaptive: Option<Adaptive>,
+    /// What only the nonlinear solver takes.
+    pub(crate) nonlinear: NumberedNonlinear,
+    /// Coefficient of friction by contact.
+    pub friction: Vec<f64>,
     /// Initial displacement, m.
     pub initial_displacement: Vec<f64>,
     /// Initial velocity, m/s; zero where an unknown is held.
@@ -180,6 +189,7 @@ impl System {
         }
         let (system, bodies, contacts) = System::assemble(model)?;
         system.check_scheme(&bodies)?;
+        system.check_nonlinear()?;
         system.check_massless(&contacts)?;
         system.check_integration()?;
         Ok(Arc::new(system))
@@ -233,7 +243,7 @@ impl System {
                 load[dim * node as usize + i] += m * model.gravity[i];
             }
         }
-        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
+        let nonlinear = NumberedNonlinear::new(&model, (&number, &x), &bodies, &fixed)?;
         let contacts: Vec<Contact> = model
             .contacts
             .iter()
@@ -253,6 +263,10 @@ impl System {
             faces.map(|face| renumbered(face, &number)).collect()
         };
         let secondary_faces = model.contacts.iter().map(faces_of).collect();
+        for follows in &nonlinear.follows {
+            fixed[follows.unknown as usize] = true;
+        }
+        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
         let system = System {
             tolerance: 1e-12 * model.mesh.size(),
             axisymmetric: model
@@ -280,6 +294,8 @@ impl System {
             scheme: model.scheme,
             dt: model.dt,
             adaptive: model.adaptive,
+            nonlinear,
+            friction: model.contacts.iter().map(|c| c.friction).collect(),
             initial_displacement,
             initial_velocity,
             mesh: model.mesh,

@@ -243,6 +243,7 @@ impl Run {
         Ok(Model {
             contacts: vec![ModelContact {
                 massless: self.massless,
+                friction: 0.0,
                 ..contact(secondary, primary, self.law)
             }],
             bodies,
@@ -251,6 +252,7 @@ impl Run {
             scheme: self.scheme,
             dt: self.dt(),
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
             mesh,
         })
     }

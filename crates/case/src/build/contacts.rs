@@ -65,6 +65,7 @@ impl Builder<'_> {
                 sliding,
                 integration: integration(contact.integration, &law, &sides),
                 massless: contact.nodes == schema::Nodes::Massless,
+                friction: 0.0,
             });
         }
         contacts

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use carom_arlequin::Row;
 use serde::{Deserialize, Serialize};
 
+use crate::nonlinear::Nonlinear;
 use crate::contacts::sides;
 use crate::error::Error;
 use crate::scheme::Scheme;
@@ -123,6 +124,7 @@ impl Zoned {
             scheme: part.scheme,
             dt: whole.dt / f64::from(part.substeps),
             adaptive: None,
+            nonlinear: Nonlinear::default(),
         }
     }
 
