@@ -128,7 +128,7 @@ impl Search {
         self.boxes.clear();
         self.boxes.extend(faces.iter().map(|face| {
             let (positions, n) = positions(places, face);
-            Bounds::of(&positions[..n])
+            Bounds::of_face(face.kind, &positions[..n])
         }));
         match &mut self.tree {
             Some(tree) if tree.len() == faces.len() => tree.refit(&self.boxes),

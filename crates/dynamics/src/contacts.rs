@@ -98,7 +98,7 @@ fn nodes(
     number: &[u32],
     factor: impl Fn(&[f64; 3]) -> f64,
 ) -> Vec<Point> {
-    let areas = surface.node_areas(mesh);
+    let areas = surface.tributary_areas(mesh);
     let area = |(&node, area): (&u32, f64)| {
         (
             number[node as usize],

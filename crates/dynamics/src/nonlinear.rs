@@ -50,6 +50,11 @@ impl Amplitude {
         }
     }
 
+    /// Whether it is the same at all times.
+    pub fn is_constant(&self) -> bool {
+        self.0.iter().all(|point| point[1] == self.0[0][1])
+    }
+
     /// Largest absolute value.
     pub fn largest(&self) -> f64 {
         self.0.iter().fold(0.0, |m, point| m.max(point[1].abs()))
@@ -244,6 +249,11 @@ impl NumberedNonlinear {
             || model.scheme.get().is_between()
             || model.contacts.iter().any(|contact| contact.friction > 0.0);
         Ok(numbered)
+    }
+
+    /// Whether any load turns with the body.
+    pub(crate) fn has_followers(&self) -> bool {
+        self.loads.iter().any(|load| matches!(load.force, NumberedForce::Follower(..)))
     }
 
     /// Displacement of the unknowns that follow a function of time, m.

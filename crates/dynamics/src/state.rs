@@ -19,6 +19,9 @@ pub struct State {
     pub motion: Motion,
     /// Contact forces and statuses.
     pub interface: InterfaceState,
+    /// Nodal forces of the last step as the nonlinear solver balances them, N: loads, contacts, supports, inertia, internal,
+    /// damping; empty where the next step does not need them.
+    pub forces: Vec<Vec<f64>>,
     /// Step control.
     pub control: Control,
     /// Energy and momentum balance since the start.
@@ -147,6 +150,7 @@ pub(crate) fn empty_state(system: &System) -> State {
             watched: vec![false; points],
             crush: vec![0.0; points],
         },
+        forces: Vec::new(),
         control: Control::start(system.dt),
         ledger: Ledger::default(),
         records: Records::default(),

@@ -141,10 +141,12 @@ impl FrictionProblem {
 const TOLERANCE: f64 = 1e-12;
 /// Newton passes without progress before sweeps.
 const PATIENCE: usize = 10;
+/// Halvings of a pass in a round of damped passes.
+const HALVINGS: i32 = 8;
 /// Sweeps of the first round; each further round makes twice as many.
 const SWEEPS: usize = 16;
 /// Rounds of passes and sweeps.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 9;
 
 /// Solver with its memory.
 #[derive(Default)]
@@ -159,6 +161,7 @@ pub(crate) struct Coulomb {
     pub(crate) sweeps: usize,
     trial: Trial,
     best: Trial,
+    start: Trial,
     change: Vec<f64>,
     reversals: Vec<u32>,
 }
@@ -175,7 +178,8 @@ impl Coulomb {
         self.best = self.trial.clone();
         self.best.merit = f64::INFINITY;
         for round in 0..ROUNDS {
-            if self.newton(problem) {
+            let damped = round % 2 == 1;
+            if self.newton(problem, damped) {
                 self.finish(problem);
                 return Ok(());
             }
@@ -187,6 +191,10 @@ impl Coulomb {
             self.trial.measure(problem, &self.reversals);
             self.best = self.trial.clone();
         }
+        if self.best.worst.0 <= TOLERANCE {
+            self.finish(problem);
+            return Ok(());
+        }
         let (defect, candidate) = self.best.worst;
         Err(FrictionFailure {
             candidate,
@@ -197,7 +205,7 @@ impl Coulomb {
     }
 
     /// Newton passes while they bring the trial nearer; whether it is a solution then. `best` is the nearest trial.
-    fn newton(&mut self, problem: &Posed) -> bool {
+    fn newton(&mut self, problem: &Posed, damped: bool) -> bool {
         let mut patience = PATIENCE;
         while patience > 0 {
             if self.best.merit.is_finite() && self.trial.worst.0 <= TOLERANCE {
@@ -207,28 +215,36 @@ impl Coulomb {
             if newton::step(problem, &self.trial, &mut self.change).is_err() {
                 return false;
             }
-            for (p, change) in self.trial.p.iter_mut().zip(&self.change) {
-                *p += change;
-            }
-            let before = self.trial.statuses.clone();
-            self.trial.measure(problem, &self.reversals);
-            for ((now, before), reversals) in self
-                .trial
-                .statuses
-                .iter()
-                .zip(before)
-                .zip(&mut self.reversals)
-            {
-                *reversals += u32::from(*now != before);
-            }
+            self.advance(problem, if damped { HALVINGS } else { 0 });
             if self.trial.merit < 0.999 * self.best.merit {
-                self.best = self.trial.clone();
+                self.best.clone_from(&self.trial);
                 patience = PATIENCE;
             } else {
                 patience -= 1;
             }
         }
         false
+    }
+
+    /// Goes along the change, all the way or, within some halvings, as far as the defects fall; all the way if they
+    /// never do.
+    fn advance(&mut self, problem: &Posed, halvings: i32) {
+        self.start.clone_from(&self.trial);
+        for halving in (0..=halvings).chain([0]) {
+            let share = 0.5_f64.powi(halving);
+            self.trial.clone_from(&self.start);
+            for (p, change) in self.trial.p.iter_mut().zip(&self.change) {
+                *p += share * change;
+            }
+            self.trial.measure(problem, &self.reversals);
+            if self.trial.merit < (1.0 - 0.01 * share) * self.start.merit {
+                break;
+            }
+        }
+        let statuses = self.trial.statuses.iter().zip(&self.start.statuses);
+        for ((now, before), reversals) in statuses.zip(&mut self.reversals) {
+            *reversals += u32::from(now != before);
+        }
     }
 
     /// Takes the forces of the trial over, tension cut off where the law wants it.

@@ -17,7 +17,7 @@ mod solve;
 mod start;
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use carom_bodies::{Placement, Scratch, Stored};
 use carom_contact::{Pairing, Search};
@@ -54,6 +54,10 @@ pub struct Newton {
     next: State,
     report: StepReport,
     vectors: Vectors,
+    /// Energies of the iteration.
+    stored: Stored,
+    /// Internal forces in the balance of the step, N.
+    balanced: Vec<f64>,
     phases: Phases,
 }
 
@@ -124,6 +128,8 @@ impl Newton {
             },
             next: state.clone(),
             state,
+            stored: Stored::default(),
+            balanced: zeros(),
             phases: Phases::default(),
             system,
         };

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use carom_arlequin::Row;
 use serde::{Deserialize, Serialize};
 
+use crate::nonlinear::Nonlinear;
 use crate::contacts::sides;
 use crate::error::Error;
 use crate::scheme::Scheme;
