@@ -140,6 +140,7 @@ mod tests {
         let points = Point::of_faces(&[face(Kind::Quad4, &[0, 1, 2, 3])], &x, |_| 0.5);
         let places = Places {
             dim: 3,
+            time: 0.0,
             x: &x,
             u: &[0.0; 12],
         };

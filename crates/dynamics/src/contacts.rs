@@ -1,6 +1,6 @@
 //! Contacts in the numbers of a system: bodies of each side, points, and which law may hold where.
 
-use carom_contact::{Contact, Integration, Mortar, Point, Target};
+use carom_contact::{Contact, Integration, Mortar, Point, Sight, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
 
 use crate::Error;
@@ -50,7 +50,7 @@ pub(crate) fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usi
     };
     let primary = match &contact.primary {
         ModelTarget::Surface(surface) => body(surface),
-        ModelTarget::Plane(_) | ModelTarget::Sphere(_) => None,
+        ModelTarget::Rigid(_) => None,
     };
     (body(&contact.secondary).unwrap_or(0), primary)
 }
@@ -84,9 +84,16 @@ pub(crate) fn numbered(
         }
     };
     let target = match &contact.primary {
-        ModelTarget::Plane(plane) => Target::Plane(*plane),
-        ModelTarget::Sphere(sphere) => Target::Sphere(*sphere),
+        ModelTarget::Rigid(obstacle) => Target::Rigid(obstacle.clone()),
         ModelTarget::Surface(surface) => Target::Surface(faces(surface)),
+    };
+    let sight = match &target {
+        Target::Surface(primary) => {
+            let secondary = faces(surface);
+            let needed = contact.depth.is_some() || Sight::is_needed(&secondary, primary);
+            needed.then(|| Sight::new((&points, &secondary), primary, x, contact.depth))
+        }
+        Target::Rigid(_) => None,
     };
     Contact {
         name: contact.name.clone(),
@@ -96,6 +103,8 @@ pub(crate) fn numbered(
         points,
         mortar,
         target,
+        sight,
+        offsets: Vec::new(),
     }
 }
 

@@ -107,7 +107,9 @@ impl FollowerPressure {
             let n = dim * face.nodes.len();
             block.clear();
             block.resize(n * n, 0.0);
-            self.each_point(face, u, &mut |point| self.add_point(p * factor, point, &mut block));
+            self.each_point(face, u, &mut |point| {
+                self.add_point(p * factor, point, &mut block)
+            });
             for row in 0..n {
                 for column in 0..row {
                     let mean = 0.5 * (block[row * n + column] + block[column * n + row]);

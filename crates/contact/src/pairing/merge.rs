@@ -10,6 +10,8 @@ use crate::Rows;
 pub struct Merge {
     gap: f64,
     normal: Vec3,
+    /// Rates by the motion of an obstacle, of the gap and along the tangents, m/s.
+    rates: [f64; 3],
     blocks: Vec<(u32, [Vec3; 3])>,
     /// Place of each node in `blocks`.
     places: Vec<u32>,
@@ -23,6 +25,7 @@ impl Merge {
         }
         self.gap = 0.0;
         self.normal = Vec3::zeros();
+        self.rates = [0.0; 3];
     }
 
     /// Adds a stencil times a weight.
@@ -31,6 +34,9 @@ impl Merge {
         self.gap += weight * gap;
         self.normal += Vec3::from(normal) * weight;
         let frame = tangent_vectors(&normal, dim);
+        for (rate, vector) in self.rates.iter_mut().zip([normal, frame[0], frame[1]]) {
+            *rate += weight * stencil.rate(&vector);
+        }
         let vectors = [normal, frame[0], frame[1]].map(|v| Vec3::from(v) * weight);
         let turning = stencil.turning();
         for (i, (node, c)) in stencil.relative().enumerate() {
@@ -64,9 +70,11 @@ impl Merge {
             false => [0.0; 3],
         };
         rows.push(self.gap, normal);
+        rows.set_rate(self.rates[0]);
         let frame = tangent_vectors(&normal, dim);
-        for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
-            rows.push(0.0, *t);
+        for (k, rows) in tangents[..dim - 1].iter_mut().enumerate() {
+            rows.push(0.0, frame[k]);
+            rows.set_rate(self.rates[k + 1]);
         }
         for (node, blocks) in &self.blocks {
             rows.add_node(dim, *node, &blocks[0].into());

@@ -35,7 +35,8 @@ pub struct Pairing {
     pub rows: Rows,
     /// Rows T of the two tangents at a point: `T v` is the velocity in m/s at which the secondary slides over the primary
     /// along [`Rows::normal`] of that row; the gaps of these pools are zero. Unit vectors, square to each other and to the
-    /// contact normal, that vary smoothly with it. The second is empty in the plane, both are on a line.
+    /// contact normal, that vary smoothly with it. [`Rows::rate`] of these rows is what the motion of an
+    /// obstacle adds. The second is empty in the plane, both are on a line.
     pub tangents: [Rows; 2],
     /// Reference area that each point stands for, m²: [`Point::area`](crate::Point::area), for a multiplier of the mortar
     /// method ∫ φ_A dΓ over what faces the primary surface now, if any does.
@@ -212,13 +213,21 @@ impl Contact {
     pub fn pair_fully(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
         pairing.dim = places.dim;
         self.renew(places, search);
+        let first = pairing.len();
+        self.pair_points(places, search, pairing);
+        for k in 0..self.points.len() {
+            pairing.rows.shift(first + k, self.offset(k));
+        }
+    }
+
+    fn pair_points(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
         if let (Integration::Mortar { basis }, Some(mortar)) = (self.integration, &self.mortar) {
             if !mortar.is_ends() {
                 return mortar.pair(self, basis, places, search, pairing);
             }
         }
-        for point in &self.points {
-            let stencil = Stencil::new(self, places, search, point);
+        for (k, point) in self.points.iter().enumerate() {
+            let stencil = Stencil::new(self, places, search, (point, self.view(k)));
             pairing.push(point.area, stencil);
         }
     }

@@ -6,6 +6,7 @@ use carom_mesh::{Face, Projection};
 
 use super::block::Block;
 use super::curvature::{Form, Shape};
+use crate::sight::View;
 use crate::{Contact, Places, Point, Rows, Search, Target};
 
 /// The largest number of unknowns of a stencil.
@@ -26,8 +27,13 @@ pub(crate) struct Stencil {
 enum Foot {
     /// On a face that moves.
     Face(Foothold),
-    /// On an obstacle; the second derivative of the gap by the place of the point, 1/m.
-    Obstacle([[f64; 3]; 3]),
+    /// On an obstacle.
+    Obstacle {
+        /// Second derivative of the gap by the place of the point, 1/m.
+        hessian: [[f64; 3]; 3],
+        /// Velocity of the obstacle's particle there, m/s.
+        velocity: [f64; 3],
+    },
 }
 
 /// A foot on a face.
@@ -47,25 +53,34 @@ pub(super) struct Foothold {
 }
 
 impl Stencil {
-    /// The stencil of a point of a contact, `None` where it faces nothing. `search` is that of these places.
+    /// The stencil of a point of a contact, `None` where it faces nothing. `search` is that of these places; `view`:
+    /// what it sees of a surface.
     pub fn new(
         contact: &Contact,
         places: &Places,
         search: &mut Search,
-        point: &Point,
+        (point, view): (&Point, Option<View>),
     ) -> Option<Stencil> {
         let x = point.place(places);
-        let obstacle = |(gap, normal), hessian| Stencil {
-            point: *point,
-            gap,
-            normal,
-            foot: Foot::Obstacle(hessian),
-        };
         match &contact.target {
-            Target::Plane(plane) => Some(obstacle((plane.gap(&x), plane.normal), [[0.0; 3]; 3])),
-            Target::Sphere(sphere) => Some(obstacle(sphere.gap(&x), sphere.hessian(&x))),
+            Target::Rigid(obstacle) => {
+                let placed = obstacle.at(places.time);
+                let found = placed.distance(&x);
+                if found.gap == f64::INFINITY {
+                    return None;
+                }
+                Some(Stencil {
+                    point: *point,
+                    gap: found.gap,
+                    normal: found.normal,
+                    foot: Foot::Obstacle {
+                        hessian: found.hessian,
+                        velocity: placed.velocity(&x),
+                    },
+                })
+            }
             Target::Surface(faces) => {
-                let (foot, face) = search.facing(places, faces, &x)?;
+                let (foot, face) = search.facing(places, faces, view, &x)?;
                 Some(Stencil::on_face(places, point, &x, &foot, face))
             }
         }
@@ -102,9 +117,11 @@ impl Stencil {
     /// Appends gap and rows.
     pub fn push(&self, dim: usize, rows: &mut Rows, tangents: &mut [Rows; 2]) {
         rows.push(self.gap, self.normal);
+        rows.set_rate(self.rate(&self.normal));
         let frame = tangent_vectors(&self.normal, dim);
         for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
             rows.push(0.0, *t);
+            rows.set_rate(self.rate(t));
         }
         let turning = self.turning();
         for (i, (node, c)) in self.relative().enumerate() {
@@ -119,6 +136,16 @@ impl Stencil {
         }
     }
 
+    /// Rate at which the obstacle's motion carries the point off along a direction, m/s.
+    pub fn rate(&self, direction: &[f64; 3]) -> f64 {
+        match &self.foot {
+            Foot::Face(_) => 0.0,
+            Foot::Obstacle { velocity, .. } => {
+                -(0..3).map(|i| direction[i] * velocity[i]).sum::<f64>()
+            }
+        }
+    }
+
     /// The gap in m and the unit normal.
     pub fn gap(&self) -> (f64, [f64; 3]) {
         (self.gap, self.normal)
@@ -128,7 +155,7 @@ impl Stencil {
     pub fn relative(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let (nodes, shape) = match &self.foot {
             Foot::Face(foot) => (foot.face.corners(), foot.shape.as_slice()),
-            Foot::Obstacle(_) => (&[][..], &[][..]),
+            Foot::Obstacle { .. } => (&[][..], &[][..]),
         };
         let primary = nodes.iter().zip(shape).map(|(&node, n)| (node, -n));
         self.point.carriers().chain(primary)
@@ -166,7 +193,7 @@ impl Stencil {
         match &self.foot {
             Foot::Face(foot) if foot.dim() == 0 => (),
             Foot::Face(foot) => self.shape(foot).curvature(factor, block),
-            Foot::Obstacle(hessian) => self.obstacle_curvature(factor, hessian, block),
+            Foot::Obstacle { hessian, .. } => self.obstacle_curvature(factor, hessian, block),
         }
     }
 

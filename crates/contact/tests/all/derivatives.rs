@@ -1,6 +1,6 @@
 //! Rows and curvature of a point against one face or an obstacle.
 
-use carom_contact::{Contact, Places, Plane, Point, Rows, Search, Sphere, Target};
+use carom_contact::{Contact, Places, Plane, Point, Rows, Search, Side, Sphere, Target};
 use carom_elements::Kind;
 use carom_testing::Random;
 
@@ -76,7 +76,12 @@ fn rows_and_curvature_are_derivatives_inside_faces_on_edges_and_in_corners() {
                 .iter()
                 .map(|u| 0.02 * u)
                 .collect();
-            let places = Places { dim, x: &x, u: &u };
+            let places = Places {
+                dim,
+                time: 0.0,
+                x: &x,
+                u: &u,
+            };
             let contact = over_a_face(kind, &x, case % 3 == 0);
             let pairing = paired(&contact, &places);
             if (0..pairing.len()).any(|i| pairing.rows.gap(i).is_infinite()) {
@@ -106,12 +111,13 @@ fn gaps_to_obstacles_have_their_curvature() {
     let sphere = Sphere {
         centre: [0.1, -0.2, 0.0],
         radius: 0.7,
+        side: Side::Outside,
     };
     let plane = Plane {
         point: [0.0; 3],
         normal: [0.6, 0.0, 0.8],
     };
-    for target in [Target::Sphere(sphere), Target::Plane(plane)] {
+    for target in [Target::Rigid(sphere.into()), Target::Rigid(plane.into())] {
         for dim in [2, 3] {
             let kind = if dim == 3 { Kind::Tri3 } else { Kind::Bar2 };
             let flat = x.map(|x| if dim == 3 { x } else { [x[0], x[1], 0.0] });
@@ -121,6 +127,7 @@ fn gaps_to_obstacles_have_their_curvature() {
             let u = vec![0.01; 3 * dim];
             let places = Places {
                 dim,
+                time: 0.0,
                 x: &flat,
                 u: &u,
             };
@@ -136,7 +143,12 @@ fn tangents_are_square_to_the_normal_and_measure_sliding() {
         let x = places(kind, &mut random, 0.3);
         let dim = kind.table().dim + 1;
         let u = vec![0.0; dim * x.len()];
-        let places = Places { dim, x: &x, u: &u };
+        let places = Places {
+            dim,
+            time: 0.0,
+            x: &x,
+            u: &u,
+        };
         let contact = over_a_face(kind, &x, true);
         let pairing = paired(&contact, &places);
         let n = pairing.rows.normal(0);
@@ -174,13 +186,17 @@ fn tangents_turn_little_with_the_normal_about_every_axis() {
             let frame = |noise: f64| {
                 let mut normal = [noise; 3];
                 normal[axis] = sign * (1.0 - 2.0 * noise * noise).sqrt();
-                let target = Target::Plane(Plane {
-                    point: [0.0; 3],
-                    normal,
-                });
+                let target = Target::Rigid(
+                    Plane {
+                        point: [0.0; 3],
+                        normal,
+                    }
+                    .into(),
+                );
                 let contact = contact(vec![Point::at_node(0, 1.0, 1.0)], target);
                 let places = Places {
                     dim: 3,
+                    time: 0.0,
                     x: &[[0.0; 3]],
                     u: &[0.0; 3],
                 };

@@ -25,6 +25,8 @@ pub fn contact(points: Vec<Point>, target: Target) -> Contact {
         points,
         mortar: None,
         target,
+        sight: None,
+        offsets: Vec::new(),
     }
 }
 

@@ -6,6 +6,8 @@
 mod derivatives;
 mod fixture;
 mod mortar;
+mod search;
+mod sight;
 
 #[global_allocator]
 static COUNTER: carom_testing::Counter = carom_testing::Counter;
