@@ -13,7 +13,7 @@ use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
 
 use crate::Pairing;
 use crate::sight::View;
-use crate::{Places, Sight};
+use crate::{Pairing, Places, Sight};
 
 /// Renewals of an unmoved tree from which on points keep their faces.
 const SLOW: u32 = 3;
@@ -47,6 +47,8 @@ pub struct Search {
     pub(crate) pairing: Pairing,
     /// Projections made since the last renewal.
     projections: usize,
+    /// Scratch of [`Contact::pair`](crate::Contact::pair) for the mortar method.
+    pub(crate) pairing: Pairing,
 }
 
 /// What one query remembers.

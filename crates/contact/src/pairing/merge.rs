@@ -34,6 +34,9 @@ impl Merge {
         self.gap += weight * gap;
         self.normal += Vec3::from(normal) * weight;
         let frame = tangent_vectors(&normal, dim);
+        for (rate, vector) in self.rates.iter_mut().zip([normal, frame[0], frame[1]]) {
+            *rate += weight * stencil.rate(&vector);
+        }
         let vectors = [normal, frame[0], frame[1]].map(|v| Vec3::from(v) * weight);
         self.rates[0] += weight * stencil.rate(&normal);
         for (k, t) in frame[..dim - 1].iter().enumerate() {

@@ -403,66 +403,35 @@ fn shadows_of_a_bent_surface_cover_another_once() {
         for basis in BASES {
             let pairing = pair.pairing(basis);
             let covered: f64 = pairing.areas.iter().sum();
-            println!("{} {covered} {whole} {}", pair.dim, pairing.stencils());
             assert!((covered - whole).abs() < 1e-13, "{covered} {whole}");
         }
     }
 }
 
 #[test]
-fn tmp_distorted() {
-    for n in [1u32, 2, 4, 8, 16] {
-        let mut pair = grids(
-            [Kind::Quad4, Kind::Quad4],
-            [[3 * n, 2 * n], [2 * n, 5 * n]],
-            [[0.0, 1.0]; 2],
-            0.1,
-        );
-        let mut random = Random(8);
-        for x in &mut pair.x {
-            for k in 0..2 {
-                if x[k] > 1e-9 && x[k] < 1.0 - 1e-9 {
-                    x[k] += 0.06 / f64::from(n) * random.next();
-                }
-            }
+fn on_distorted_quadrilaterals_forces_are_consistent_to_a_hundred_thousandth() {
+    let cells = [[6, 4], [4, 10]];
+    let mut pair = grids([Kind::Quad4; 2], cells, [[0.0, 1.0]; 2], 0.1);
+    let mut random = Random(8);
+    for x in &mut pair.x {
+        let inside = |x: f64| x > 1e-9 && x < 1.0 - 1e-9;
+        for x in x[..2].iter_mut().filter(|x| inside(**x)) {
+            *x += 0.03 * random.next();
         }
-        let contact = pair.contact(Basis::Standard, 1.0);
-        let u = vec![0.0; 3 * pair.x.len()];
-        let (mut search, mut pairing) = (Search::default(), Pairing::default());
-        pairing.clear();
-        contact.pair_fully(&pair.places(&u), &mut search, &mut pairing);
-        let start = std::time::Instant::now();
-        pairing.clear();
-        contact.pair_fully(&pair.places(&u), &mut search, &mut pairing);
-        let time = start.elapsed();
-        let mut m = matrix(&pairing, u.len());
-        let forces0 = vec![1.0; pairing.len()];
-        let start = std::time::Instant::now();
-        pairing.add_curvatures(&forces0, 1.0, &mut m);
-        let time_c = start.elapsed();
-        let mut forces = u.clone();
-        for point in 0..pairing.len() {
-            pairing
-                .rows
-                .add_force(point, pairing.areas[point], &mut forces);
-        }
-        let (one, other) = (
-            pair.consistent(&pair.secondary),
-            pair.consistent(&pair.primary),
-        );
-        let mut error = [0.0_f64; 2];
-        let mut size = 0.0_f64;
-        for node in 0..pair.x.len() {
-            let e = (forces[3 * node + 2] - one[node] + other[node]).abs();
-            let k = usize::from(other[node] > 0.0);
-            error[k] = error[k].max(e);
-            size = size.max(other[node]);
-        }
-        println!(
-            "n {n} faces {} stencils {} time {time:?} curvature {time_c:?} error {error:?} size {size}",
-            pair.secondary.len(),
-            pairing.stencils()
-        );
+    }
+    let pairing = pair.pairing(Basis::Standard);
+    let mut forces = vec![0.0; 3 * pair.x.len()];
+    for point in 0..pairing.len() {
+        pairing
+            .rows
+            .add_force(point, pairing.areas[point], &mut forces);
+    }
+    let sides = [&pair.secondary, &pair.primary].map(|faces| pair.consistent(faces));
+    for node in 0..pair.x.len() {
+        let expected = sides[0][node] - sides[1][node];
+        let error = (forces[3 * node + 2] - expected).abs();
+        // shape functions are quotients of polynomials on such faces: a rule of degree 5 leaves the sixth derivatives
+        assert!(error < 3e-5 * expected.abs(), "{node} {error} {expected}");
     }
 }
 
