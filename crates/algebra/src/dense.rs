@@ -127,8 +127,7 @@ impl DenseLu {
         }
         let mut values = matrix;
         let (mut rows, mut inverse) = (vec![0_usize; n], vec![0_usize; n]);
-        let requirement =
-            lu::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
+        let requirement = lu::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
         let mut memory = MemBuffer::try_new(requirement).map_err(|_| Error::Analysis {
             unknowns: n,
             reason: "out of memory".into(),

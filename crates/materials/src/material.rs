@@ -42,7 +42,9 @@ pub enum Failure {
         determinant: f64,
     },
     /// The local equations of a law were not solved.
-    #[error("the return to the yield surface did not converge in {passes} passes (residual {residual:e})")]
+    #[error(
+        "the return to the yield surface did not converge in {passes} passes (residual {residual:e})"
+    )]
     NoReturn {
         /// Passes made.
         passes: usize,

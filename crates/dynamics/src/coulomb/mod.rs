@@ -178,8 +178,13 @@ impl Coulomb {
         self.best = self.trial.clone();
         self.best.merit = f64::INFINITY;
         for round in 0..ROUNDS {
-            let damped = round % 2 == 1;
-            if self.newton(problem, damped) {
+            let (damped, shift) = [
+                (false, newton::SHIFT),
+                (true, 1e-3),
+                (true, newton::SHIFT),
+                (true, 1e-2),
+            ][round % 4];
+            if self.newton(problem, damped, shift) {
                 self.finish(problem);
                 return Ok(());
             }
@@ -205,14 +210,14 @@ impl Coulomb {
     }
 
     /// Newton passes while they bring the trial nearer; whether it is a solution then. `best` is the nearest trial.
-    fn newton(&mut self, problem: &Posed, damped: bool) -> bool {
+    fn newton(&mut self, problem: &Posed, damped: bool, shift: f64) -> bool {
         let mut patience = PATIENCE;
         while patience > 0 {
             if self.best.merit.is_finite() && self.trial.worst.0 <= TOLERANCE {
                 return true;
             }
             self.passes += 1;
-            if newton::step(problem, &self.trial, &mut self.change).is_err() {
+            if newton::step(problem, &self.trial, shift, &mut self.change).is_err() {
                 return false;
             }
             self.advance(problem, if damped { HALVINGS } else { 0 });
@@ -256,7 +261,11 @@ impl Coulomb {
             let row = problem.normal(i);
             let cut = p(row) < 0.0 && candidate.law.get().clips();
             self.forces.push(if cut { 0.0 } else { p(row) });
-            let second = if problem.tangents == 2 { p(row + 2) } else { 0.0 };
+            let second = if problem.tangents == 2 {
+                p(row + 2)
+            } else {
+                0.0
+            };
             self.tangential.push([p(row + 1), second]);
         }
     }
