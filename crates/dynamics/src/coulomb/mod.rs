@@ -141,8 +141,12 @@ impl FrictionProblem {
 const TOLERANCE: f64 = 1e-12;
 /// Newton passes without progress before sweeps.
 const PATIENCE: usize = 10;
-/// Halvings of a pass in a round of damped passes.
-const HALVINGS: i32 = 8;
+/// Newton passes of a round.
+const PASSES: usize = 200;
+/// Shift of the linear systems, and halvings of a pass whose whole length does not reduce the defects, in each round in
+/// turn. The large shift makes proximal steps: where D is singular or the contacts jam, it keeps forces that little
+/// decides from running away.
+const MEANS: [(f64, i32); 3] = [(newton::SHIFT, 0), (newton::SHIFT, 8), (1e-3, 8)];
 /// Sweeps of the first round; each further round makes twice as many.
 const SWEEPS: usize = 16;
 /// Rounds of passes and sweeps.
@@ -178,13 +182,7 @@ impl Coulomb {
         self.best = self.trial.clone();
         self.best.merit = f64::INFINITY;
         for round in 0..ROUNDS {
-            let (damped, shift) = [
-                (false, newton::SHIFT),
-                (true, 1e-3),
-                (true, newton::SHIFT),
-                (true, 1e-2),
-            ][round % 4];
-            if self.newton(problem, damped, shift) {
+            if self.newton(problem, MEANS[round % MEANS.len()]) {
                 self.finish(problem);
                 return Ok(());
             }
@@ -210,17 +208,21 @@ impl Coulomb {
     }
 
     /// Newton passes while they bring the trial nearer; whether it is a solution then. `best` is the nearest trial.
-    fn newton(&mut self, problem: &Posed, damped: bool, shift: f64) -> bool {
+    /// `means`: shift and halvings.
+    fn newton(&mut self, problem: &Posed, means: (f64, i32)) -> bool {
         let mut patience = PATIENCE;
-        while patience > 0 {
+        for _ in 0..PASSES {
+            if patience == 0 {
+                break;
+            }
             if self.best.merit.is_finite() && self.trial.worst.0 <= TOLERANCE {
                 return true;
             }
             self.passes += 1;
-            if newton::step(problem, &self.trial, shift, &mut self.change).is_err() {
+            if newton::step(problem, &self.trial, means.0, &mut self.change).is_err() {
                 return false;
             }
-            self.advance(problem, if damped { HALVINGS } else { 0 });
+            self.advance(problem, means.1);
             if self.trial.merit < 0.999 * self.best.merit {
                 self.best.clone_from(&self.trial);
                 patience = PATIENCE;
