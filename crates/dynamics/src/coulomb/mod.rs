@@ -10,9 +10,13 @@
 //!
 //! Method: the semi-smooth Newton method on the equations of Alart and Curnier (1991), [`trial`] and [`newton`]; in the
 //! plane it moves from one set of statuses to the next. Where its passes bring nothing, sweeps of nonsmooth Gauss-Seidel
-//! (Jean and Moreau 1992), [`sweep`], give it a better start; their number doubles each time. Solutions exist for
-//! positive definite D, but for large μ there may be several; with an unsymmetric influence of the bound no method is
-//! known that always ends, so the error of the problem that was not solved names the worst candidate.
+//! (Jean and Moreau 1992), [`sweep`], give it a better start, and the next passes are damped, then proximal; the number
+//! of sweeps doubles each time. The methods are known, the texts of both papers were not at hand; the equations are
+//! derived in [`trial`].
+//!
+//! Solutions exist for positive definite D, but for large μ there may be several. Nearly all such problems are solved in
+//! about ten passes; where many contacts jam a body of few freedoms (D of low rank, μ of one and more) some are not, and
+//! the error names the worst candidate.
 //! [`FrictionProblem::defect`] measures a solution by code that knows no solver.
 
 mod defect;
@@ -119,8 +123,8 @@ impl FrictionProblem {
         Ok(FrictionSolution {
             forces: coulomb.forces,
             tangential: coulomb.tangential,
-            statuses: coulomb.trial.statuses,
-            slips: coulomb.trial.slips,
+            statuses: coulomb.statuses,
+            slips: coulomb.slips,
             passes: coulomb.passes,
             sweeps: coulomb.sweeps,
         })
@@ -159,6 +163,10 @@ pub(crate) struct Coulomb {
     pub(crate) forces: Vec<f64>,
     /// Tangential force of each candidate, N.
     pub(crate) tangential: Vec<[f64; 2]>,
+    /// Normal status of each candidate.
+    pub(crate) statuses: Vec<Status>,
+    /// Tangential status of each candidate.
+    pub(crate) slips: Vec<Slip>,
     /// Newton passes of the last solve.
     pub(crate) passes: usize,
     /// Sweeps of the last solve.
@@ -257,6 +265,8 @@ impl Coulomb {
     /// Takes the forces of the trial over, tension cut off where the law wants it.
     fn finish(&mut self, problem: &Posed) {
         let p = |row: usize| self.trial.p[row];
+        self.statuses.clone_from(&self.trial.statuses);
+        self.slips.clone_from(&self.trial.slips);
         self.forces.clear();
         self.tangential.clear();
         for (i, candidate) in problem.candidates.iter().enumerate() {
@@ -270,15 +280,5 @@ impl Coulomb {
             };
             self.tangential.push([p(row + 1), second]);
         }
-    }
-
-    /// Normal status of each candidate.
-    pub(crate) fn statuses(&self) -> &[Status] {
-        &self.trial.statuses
-    }
-
-    /// Tangential status of each candidate.
-    pub(crate) fn slips(&self) -> &[Slip] {
-        &self.trial.slips
     }
 }
