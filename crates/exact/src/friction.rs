@@ -117,7 +117,7 @@ impl RoughFloor {
 
     /// Turning point n, at the time n π/ω, m, before the mass sticks: `(-1)^n (x0 - 2 n δ sign x0)`.
     pub fn turning_point(&self, n: u64) -> f64 {
-        let alternate = if n % 2 == 0 { 1.0 } else { -1.0 };
+        let alternate = if n.is_multiple_of(2) { 1.0 } else { -1.0 };
         alternate * (self.start - 2.0 * n as f64 * self.shift() * self.start.signum())
     }
 
