@@ -1,5 +1,6 @@
 //! The cells of one model, with point location.
 
+use carom_elements::MAX_FACE_NODES;
 use carom_mesh::{Bounds, BoxTree, ElementId, Mesh};
 
 use crate::cell::Cell;
@@ -79,7 +80,7 @@ impl<'a> Cells<'a> {
         for i in 0..self.len() {
             let (nodes, table) = (self.nodes(i), self.mesh.kind(self.ids[i]).table());
             for (f, face) in table.faces.iter().enumerate() {
-                let mut key = [u32::MAX; 4];
+                let mut key = [u32::MAX; MAX_FACE_NODES];
                 for (k, &a) in key.iter_mut().zip(face.nodes) {
                     *k = nodes[a];
                 }

@@ -1,6 +1,6 @@
 //! The points at which a contact is looked at: nodes of the secondary surface, or Gauss points of its faces.
 
-use carom_elements::map;
+use carom_elements::{MAX_FACE_NODES, map};
 use carom_mesh::Face;
 
 use crate::Places;
@@ -9,9 +9,9 @@ use crate::Places;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Nodes of its face, by system number; the first `count` are used. For a node, itself.
-    nodes: [u32; 4],
+    nodes: [u32; MAX_FACE_NODES],
     /// Values of their shape functions in the point.
-    shape: [f64; 4],
+    shape: [f64; MAX_FACE_NODES],
     count: usize,
     /// Surface that it stands for, in m²: ∫ N_a dΓ of a node, the weight w of a Gauss point.
     pub area: f64,
@@ -22,13 +22,15 @@ pub struct Point {
 impl Point {
     /// A node (`integration = "node"`). `area` in m².
     pub fn at_node(node: u32, area: f64, share: f64) -> Point {
-        Point {
-            nodes: [node, 0, 0, 0],
-            shape: [1.0, 0.0, 0.0, 0.0],
+        let mut point = Point {
+            nodes: [0; MAX_FACE_NODES],
+            shape: [0.0; MAX_FACE_NODES],
             count: 1,
             area,
             share,
-        }
+        };
+        (point.nodes[0], point.shape[0]) = (node, 1.0);
+        point
     }
 
     /// The Gauss points of faces, face after face: those of the rule that is exact for N_a N_b on an affine face, as
@@ -44,22 +46,14 @@ impl Point {
         let mut points = Vec::new();
         for face in faces {
             let (table, corners) = (face.kind.table(), face.corners());
-            let mut places = [[0.0; 3]; 4];
+            let mut places = [[0.0; 3]; MAX_FACE_NODES];
             for (place, &node) in places.iter_mut().zip(corners) {
                 *place = x[node as usize];
             }
             let rule = table.mass_rule;
             for (xi, weight) in rule.points.iter().zip(rule.weights) {
-                let mut point = Point {
-                    nodes: [0; 4],
-                    shape: [0.0; 4],
-                    count: corners.len(),
-                    area: 0.0,
-                    share: 0.0,
-                };
-                point.nodes[..corners.len()].copy_from_slice(corners);
-                (table.shape)(xi, &mut point.shape[..corners.len()]);
-                let mut gradients = [[0.0; 3]; 4];
+                let mut point = Point::on_face(face, xi);
+                let mut gradients = [[0.0; 3]; MAX_FACE_NODES];
                 (table.gradient)(xi, &mut gradients[..corners.len()]);
                 let places = &places[..corners.len()];
                 let (measure, _) = map::measure(places, &gradients[..corners.len()], table.dim);
@@ -73,6 +67,21 @@ impl Point {
             point.share = point.area / total;
         }
         points
+    }
+
+    /// A place of a face, by its reference coordinates; it stands for no area.
+    pub(crate) fn on_face(face: &Face, xi: &[f64; 3]) -> Point {
+        let nodes = face.corners();
+        let mut point = Point {
+            nodes: [0; MAX_FACE_NODES],
+            shape: [0.0; MAX_FACE_NODES],
+            count: nodes.len(),
+            area: 0.0,
+            share: 0.0,
+        };
+        point.nodes[..nodes.len()].copy_from_slice(nodes);
+        (face.kind.table().shape)(xi, &mut point.shape[..nodes.len()]);
+        point
     }
 
     /// Nodes that carry the point, by system number, and the values of their shape functions in it.
@@ -106,14 +115,14 @@ impl Point {
 #[cfg(test)]
 mod tests {
     use carom_elements::Kind;
-    use carom_mesh::ElementId;
+    use carom_mesh::{ElementId, face_nodes};
 
     use super::*;
 
-    fn face(kind: Kind, nodes: [u32; 4]) -> Face {
+    fn face(kind: Kind, nodes: &[u32]) -> Face {
         Face {
             kind,
-            nodes,
+            nodes: face_nodes(nodes),
             parent: ElementId { block: 0, index: 0 },
             axis: [1.0, 0.0, 0.0],
         }
@@ -128,9 +137,10 @@ mod tests {
             [2.0, 2.0, 1.0],
             [0.0, 2.0, 1.0],
         ];
-        let points = Point::of_faces(&[face(Kind::Quad4, [0, 1, 2, 3])], &x, |_| 0.5);
+        let points = Point::of_faces(&[face(Kind::Quad4, &[0, 1, 2, 3])], &x, |_| 0.5);
         let places = Places {
             dim: 3,
+            time: 0.0,
             x: &x,
             u: &[0.0; 12],
         };
@@ -152,7 +162,7 @@ mod tests {
     #[test]
     fn the_end_of_a_bar_is_one_point_and_the_node_itself() {
         let x = [[0.0; 3], [2.0, 0.0, 0.0]];
-        let points = Point::of_faces(&[face(Kind::Point1, [1, 0, 0, 0])], &x, |_| 3.0);
+        let points = Point::of_faces(&[face(Kind::Point1, &[1])], &x, |_| 3.0);
         assert_eq!(points, [Point::at_node(1, 3.0, 1.0)]);
     }
 }

@@ -141,7 +141,7 @@ impl Weak {
 #[cfg(test)]
 mod tests {
     use carom_elements::Kind;
-    use carom_mesh::{ElementId, Face};
+    use carom_mesh::{ElementId, Face, face_nodes};
 
     use super::*;
 
@@ -155,16 +155,16 @@ mod tests {
             [2.5, 0.0, 0.0],
             [2.0, 1.2, 0.0],
         ];
-        let face = |kind, nodes| Face {
+        let face = |kind, nodes: &[u32]| Face {
             kind,
-            nodes,
+            nodes: face_nodes(nodes),
             parent: ElementId { block: 0, index: 0 },
             axis: [0.0; 3],
         };
         let faces = [
-            face(Kind::Tri3, [0, 1, 2, u32::MAX]),
-            face(Kind::Tri3, [0, 2, 3, u32::MAX]),
-            face(Kind::Quad4, [1, 4, 5, 2]),
+            face(Kind::Tri3, &[0, 1, 2]),
+            face(Kind::Tri3, &[0, 2, 3]),
+            face(Kind::Quad4, &[1, 4, 5, 2]),
         ];
         Point::of_faces(&faces, &x, |_| 1.0)
     }

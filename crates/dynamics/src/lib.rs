@@ -10,10 +10,13 @@ mod control;
 mod coulomb;
 mod driver;
 mod error;
+mod initial;
 mod interface;
 mod ledger;
 mod march;
 mod massless;
+mod newton;
+mod nonlinear;
 mod operator;
 mod records;
 pub mod scheme;
@@ -30,6 +33,10 @@ pub use error::Error;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Resultant};
 pub use march::{Observer, Outcome, Stepper, march, step_count};
+pub use newton::Newton;
+pub use nonlinear::{
+    Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed,
+};
 pub use records::{ContactRecord, Impact, Records};
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, StepReport};

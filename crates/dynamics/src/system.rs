@@ -7,11 +7,13 @@ use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_bodies::{Body, BodySpec, Kinematics, MassKind};
 use carom_contact::law::Level;
-use carom_contact::{Contact, Integration, Law, Plane, Sliding, Sphere};
+use carom_contact::{Contact, Initial, Integration, Law, Obstacle, Places, Sliding};
 use carom_mesh::{Face, Mesh, Surface};
 
 use crate::contacts::{numbered, renumbered, sides};
+use crate::initial::settle;
 use crate::massless::redistribute;
+use crate::nonlinear::{Nonlinear, NumberedNonlinear};
 use crate::{Adaptive, Error, Scheme};
 
 /// Everything from which a system is built; names are those of the case file.
@@ -33,6 +35,8 @@ pub struct Model {
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
     pub adaptive: Option<Adaptive>,
+    /// Loads and motions in time, damping, a static stage, and how nonlinear steps are solved.
+    pub nonlinear: Nonlinear,
 }
 
 /// A body and its initial state.
@@ -74,6 +78,13 @@ pub struct ModelContact {
     pub integration: Integration,
     /// Whether the nodes of both surfaces give their mass to the other nodes of their bodies.
     pub massless: bool,
+    /// Coefficient of Coulomb's friction; zero for none.
+    pub friction: f64,
+    /// What is done about penetrations at the start.
+    pub initial: Initial,
+    /// Largest penetration that is a contact, m: points see only faces turned against them and not further away inside than
+    /// this ([`Sight`](carom_contact::Sight)). `None`: they see everything, unless the surface faces itself.
+    pub depth: Option<f64>,
 }
 
 /// What a secondary surface faces.
@@ -81,10 +92,15 @@ pub struct ModelContact {
 pub enum ModelTarget {
     /// A surface of deformable bodies.
     Surface(Surface),
-    /// A rigid plane.
-    Plane(Plane),
-    /// A rigid sphere.
-    Sphere(Sphere),
+    /// A rigid obstacle.
+    Rigid(Obstacle),
+}
+
+impl ModelTarget {
+    /// A rigid obstacle, at rest if it is given by its shape.
+    pub fn rigid(obstacle: impl Into<Obstacle>) -> ModelTarget {
+        ModelTarget::Rigid(obstacle.into())
+    }
 }
 
 /// Mass of the system: a diagonal, and the consistent part where there is one.
@@ -154,6 +170,10 @@ pub struct System {
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
     pub adaptive: Option<Adaptive>,
+    /// What only the nonlinear solver takes.
+    pub(crate) nonlinear: NumberedNonlinear,
+    /// Coefficient of friction by contact.
+    pub friction: Vec<f64>,
     /// Initial displacement, m.
     pub initial_displacement: Vec<f64>,
     /// Initial velocity, m/s; zero where an unknown is held.
@@ -180,6 +200,7 @@ impl System {
         }
         let (system, bodies, contacts) = System::assemble(model)?;
         system.check_scheme(&bodies)?;
+        system.check_nonlinear()?;
         system.check_massless(&contacts)?;
         system.check_integration()?;
         Ok(Arc::new(system))
@@ -195,7 +216,8 @@ impl System {
         Ok(Arc::new(system))
     }
 
-    fn assemble(model: Model) -> Result<(System, Vec<ModelBody>, Vec<ModelContact>), Error> {
+    fn assemble(mut model: Model) -> Result<(System, Vec<ModelBody>, Vec<ModelContact>), Error> {
+        model.remove_penetrations()?;
         let dim = model.mesh.dim;
         let (number, mesh_node, parts) = numbering(&model);
         let x: Vec<[f64; 3]> = mesh_node
@@ -233,12 +255,25 @@ impl System {
                 load[dim * node as usize + i] += m * model.gravity[i];
             }
         }
-        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
-        let contacts: Vec<Contact> = model
+        let nonlinear = NumberedNonlinear::new(&model, (&number, &x), &bodies, &fixed)?;
+        let mut contacts: Vec<Contact> = model
             .contacts
             .iter()
             .map(|contact| numbered(contact, &model, &number, &x))
             .collect();
+        let ways = model.contacts.iter().map(|contact| contact.initial);
+        let places = Places {
+            dim,
+            time: 0.0,
+            x: &x,
+            u: &initial_displacement,
+        };
+        settle(
+            &mut contacts,
+            ways,
+            &places,
+            (&mesh_node, model.mesh.size()),
+        )?;
         let mut first_point = vec![0];
         for contact in &contacts {
             first_point.push(first_point[first_point.len() - 1] + contact.points.len());
@@ -253,6 +288,10 @@ impl System {
             faces.map(|face| renumbered(face, &number)).collect()
         };
         let secondary_faces = model.contacts.iter().map(faces_of).collect();
+        for follows in &nonlinear.follows {
+            fixed[follows.unknown as usize] = true;
+        }
+        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
         let system = System {
             tolerance: 1e-12 * model.mesh.size(),
             axisymmetric: model
@@ -280,6 +319,8 @@ impl System {
             scheme: model.scheme,
             dt: model.dt,
             adaptive: model.adaptive,
+            nonlinear,
+            friction: model.contacts.iter().map(|c| c.friction).collect(),
             initial_displacement,
             initial_velocity,
             mesh: model.mesh,

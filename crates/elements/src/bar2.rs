@@ -1,17 +1,20 @@
 //! Two-node line on [-1, 1]: N = (1 ∓ ξ)/2.
 
-use crate::{Element, Face, Kind, quadrature};
+use crate::{Element, Face, Kind, natural, quadrature};
 
 pub static ELEMENT: Element = Element {
     kind: Kind::Bar2,
     name: "bar2",
+    linear: Kind::Bar2,
     dim: 1,
     nodes: 2,
     reference: &[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
     // The outward axis runs from node 1 to node 0 at the first face, from node 0 to node 1 at the second.
     faces: &[face(&[0]), face(&[1])],
     gmsh: 1,
+    gmsh_order: natural(2),
     vtk: 3,
+    vtk_order: natural(2),
     shape,
     gradient,
     stiffness_rule: &quadrature::LINE_1,

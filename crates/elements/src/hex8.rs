@@ -1,10 +1,11 @@
 //! Eight-node hexahedron on [-1, 1]³: N_a = (1 + ξ_a ξ)(1 + η_a η)(1 + ζ_a ζ)/8.
 
-use crate::{Element, Face, Kind, quadrature};
+use crate::{Element, Face, Kind, natural, quadrature};
 
 pub static ELEMENT: Element = Element {
     kind: Kind::Hex8,
     name: "hex8",
+    linear: Kind::Hex8,
     dim: 3,
     nodes: 8,
     reference: &NODES,
@@ -17,7 +18,9 @@ pub static ELEMENT: Element = Element {
         face(&[3, 0, 4, 7]),
     ],
     gmsh: 5,
+    gmsh_order: natural(8),
     vtk: 12,
+    vtk_order: natural(8),
     shape,
     gradient,
     stiffness_rule: &quadrature::CUBE_8,

@@ -1,16 +1,19 @@
 //! Four-node quadrilateral on [-1, 1]²: N_a = (1 + ξ_a ξ)(1 + η_a η)/4.
 
-use crate::{Element, Face, Kind, quadrature};
+use crate::{Element, Face, Kind, natural, quadrature};
 
 pub static ELEMENT: Element = Element {
     kind: Kind::Quad4,
     name: "quad4",
+    linear: Kind::Quad4,
     dim: 2,
     nodes: 4,
     reference: &NODES,
     faces: &[face(&[0, 1]), face(&[1, 2]), face(&[2, 3]), face(&[3, 0])],
     gmsh: 3,
+    gmsh_order: natural(4),
     vtk: 9,
+    vtk_order: natural(4),
     shape,
     gradient,
     stiffness_rule: &quadrature::SQUARE_4,

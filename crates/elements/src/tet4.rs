@@ -1,10 +1,11 @@
 //! Four-node tetrahedron on the unit simplex: N = (1 - ξ - η - ζ, ξ, η, ζ).
 
-use crate::{Element, Face, Kind, quadrature};
+use crate::{Element, Face, Kind, natural, quadrature};
 
 pub static ELEMENT: Element = Element {
     kind: Kind::Tet4,
     name: "tet4",
+    linear: Kind::Tet4,
     dim: 3,
     nodes: 4,
     reference: &[
@@ -20,7 +21,9 @@ pub static ELEMENT: Element = Element {
         face(&[0, 3, 2]),
     ],
     gmsh: 4,
+    gmsh_order: natural(4),
     vtk: 10,
+    vtk_order: natural(4),
     shape,
     gradient,
     stiffness_rule: &quadrature::TETRAHEDRON_1,

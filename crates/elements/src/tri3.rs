@@ -1,16 +1,19 @@
 //! Three-node triangle on the unit simplex: N = (1 - ξ - η, ξ, η).
 
-use crate::{Element, Face, Kind, quadrature};
+use crate::{Element, Face, Kind, natural, quadrature};
 
 pub static ELEMENT: Element = Element {
     kind: Kind::Tri3,
     name: "tri3",
+    linear: Kind::Tri3,
     dim: 2,
     nodes: 3,
     reference: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
     faces: &[face(&[0, 1]), face(&[1, 2]), face(&[2, 0])],
     gmsh: 2,
+    gmsh_order: natural(3),
     vtk: 5,
+    vtk_order: natural(3),
     shape,
     gradient,
     stiffness_rule: &quadrature::TRIANGLE_1,

@@ -1,7 +1,7 @@
 //! Bars in impact, made of elements of one, two or three dimensions. The numbers are in [`crate::figures`].
 
 use carom_bodies::{Kinematics, MassKind};
-use carom_contact::Law;
+use carom_contact::{Initial, Law};
 use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme};
 use carom_exact::{Bar, Impact, Solution};
 use carom_materials::Elastic;
@@ -243,6 +243,9 @@ impl Run {
         Ok(Model {
             contacts: vec![ModelContact {
                 massless: self.massless,
+                friction: 0.0,
+                initial: Initial::Keep,
+                depth: None,
                 ..contact(secondary, primary, self.law)
             }],
             bodies,
@@ -251,6 +254,7 @@ impl Run {
             scheme: self.scheme,
             dt: self.dt(),
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
             mesh,
         })
     }

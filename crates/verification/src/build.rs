@@ -1,8 +1,8 @@
 //! Parts of models, in few words.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Adhesion, Capture, Compliance, Damped, Displacement, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Scheme, Support};
 use carom_materials::Elastic;
@@ -84,7 +84,8 @@ pub(crate) fn body(
             name: name.to_string(),
             cells: group(mesh, name)?.elements.clone(),
             kinematics,
-            material,
+            material: material.into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -108,6 +109,9 @@ pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> Mod
         sliding: Sliding::Finite,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     }
 }
 
@@ -115,7 +119,7 @@ pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> Mod
 pub(crate) fn plane(axis: usize, sign: f64) -> ModelTarget {
     let mut normal = [0.0; 3];
     normal[axis] = sign;
-    ModelTarget::Plane(Plane {
+    ModelTarget::rigid(Plane {
         point: [0.0; 3],
         normal,
     })

@@ -7,9 +7,9 @@
 //! and Chawla and of Laursen and Love keep it. Bounds: a gain of 1e-9 of the energy, for the rounding of some 1e5 steps; the last contact
 //! within a fifth of a period, a thousandth of a period for each bounce.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::Capture;
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::{
     Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, march,
 };
@@ -107,7 +107,9 @@ pub fn bounces(
                     density: 1.0,
                     young: 1.0,
                     poisson: 0.0,
-                },
+                }
+                .into(),
+                formulation: Formulation::Full,
                 weights: None,
             },
             mass: MassKind::Lumped,
@@ -122,7 +124,7 @@ pub fn bounces(
         contacts: vec![ModelContact {
             name: "wall".to_string(),
             secondary: Surface::new(&mesh, group(&mesh, "bar.left")?, &cells)?,
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal: [1.0, 0.0, 0.0],
             }),
@@ -130,10 +132,14 @@ pub fn bounces(
             sliding: Sliding::Small,
             integration: Integration::Node,
             massless: false,
+            friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
         }],
         scheme,
         dt: 0.5 / elements as f64,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     let Ok(system) = System::new(model) else {

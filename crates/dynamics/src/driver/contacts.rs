@@ -17,6 +17,7 @@ impl Driver {
         let system = Arc::clone(&self.system);
         let places = Places {
             dim: system.dim,
+            time: 0.0,
             x: &system.x,
             u: &self.vectors.work,
         };
@@ -64,6 +65,7 @@ impl Driver {
                 None => {
                     let places = Places {
                         dim: system.dim,
+                        time: 0.0,
                         x: &system.x,
                         u,
                     };
@@ -317,7 +319,7 @@ pub(super) fn sums_compliances(system: &System, map: &StepMap) -> bool {
 }
 
 /// N applied to a row of the step, for one point.
-pub(super) fn on_row(
+pub(crate) fn on_row(
     rows: &Rows,
     point: usize,
     row: &Row,

@@ -1,8 +1,8 @@
 //! A step allocates nothing once contact has been met and the buffers have grown.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{
     Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Stepper, System, Zones,
@@ -27,7 +27,9 @@ fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
                     density: 1000.0,
                     young: 1e9,
                     poisson: 0.3,
-                },
+                }
+                .into(),
+                formulation: Formulation::Full,
                 weights: None,
             },
             mass: MassKind::Lumped,
@@ -39,7 +41,7 @@ fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
         contacts: vec![ModelContact {
             name: "ground".into(),
             secondary: Surface::new(&mesh, &mesh.groups["cube.bottom"], &cells).unwrap(),
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal: [0.0, 0.0, 1.0],
             }),
@@ -47,10 +49,14 @@ fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
             sliding: Sliding::Finite,
             integration,
             massless: false,
+            friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
         }],
         scheme,
         dt: 5e-5,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     Driver::new(System::new(model).unwrap()).unwrap()

@@ -1,8 +1,8 @@
 //! A contact problem that cannot be solved leaves itself behind.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::Displacement;
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{
     Driver, Error, InterfaceProblem, Model, ModelBody, ModelContact, ModelTarget, Scheme, System,
@@ -17,7 +17,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
     let wall = |name: &str| ModelContact {
         name: name.into(),
         secondary: Surface::new(&mesh, &mesh.groups["bar.left"], &cells).unwrap(),
-        primary: ModelTarget::Plane(Plane {
+        primary: ModelTarget::rigid(Plane {
             point: [0.0; 3],
             normal: [1.0, 0.0, 0.0],
         }),
@@ -25,6 +25,9 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     };
     let model = Model {
         bodies: vec![ModelBody {
@@ -36,7 +39,9 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
                     density: 1.0,
                     young: 1.0,
                     poisson: 0.0,
-                },
+                }
+                .into(),
+                formulation: Formulation::Full,
                 weights: None,
             },
             mass: MassKind::Lumped,
@@ -49,6 +54,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         scheme: Scheme::Theta(Theta { theta: 1.0 }),
         dt: 0.1,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh: mesh.clone(),
     };
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();

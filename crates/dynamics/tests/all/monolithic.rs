@@ -4,9 +4,9 @@
 //! bar free or against a rigid wall that it presses on. Matrices, equations and elimination are all written here.
 
 use carom_arlequin::{Row, Term};
-use carom_bodies::{BodySpec, CellWeights, Kinematics, MassKind};
+use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Zoned,
@@ -141,7 +141,8 @@ impl Problem {
                 name: name.into(),
                 cells: mesh.groups[name].elements.clone(),
                 kinematics: Kinematics::Bar { area: AREA },
-                material: bar.material,
+                material: bar.material.into(),
+                formulation: Formulation::Full,
                 weights: Some(bar.weights.clone()),
             },
             mass: MassKind::Lumped,
@@ -153,7 +154,7 @@ impl Problem {
         let wall = ModelContact {
             name: "wall".into(),
             secondary: end,
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal: [1.0, 0.0, 0.0],
             }),
@@ -164,6 +165,9 @@ impl Problem {
             sliding: Sliding::Finite,
             integration: Integration::Node,
             massless: false,
+            friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
         };
         let terms = |c: &[f64], first: usize| {
             let term = |(i, c): (usize, &f64)| Term {
@@ -220,6 +224,7 @@ impl Problem {
                 scheme: theta,
                 dt: self.dt,
                 adaptive: None,
+                nonlinear: carom_dynamics::Nonlinear::default(),
             },
         })
         .unwrap()

@@ -1,10 +1,10 @@
 //! The weak form with a sign at each Gauss point.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{
     Adhesion, Capture, Damped, Displacement, Level, Penalty, Reading, Velocity,
 };
-use carom_contact::{Integration, Law, Plane, Sliding, Weak};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding, Weak};
 use carom_dynamics::{
     Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, scheme,
 };
@@ -45,7 +45,8 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
                 name: "a".into(),
                 cells: cells.clone(),
                 kinematics,
-                material: SOFT,
+                material: SOFT.into(),
+                formulation: Formulation::Full,
                 weights: None,
             },
             mass: MassKind::Lumped,
@@ -57,7 +58,7 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
         contacts: vec![ModelContact {
             name: "ground".into(),
             secondary: Surface::new(&mesh, &mesh.groups[side], &cells).unwrap(),
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal,
             }),
@@ -65,11 +66,15 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
             sliding: Sliding::Small,
             integration: Integration::Node,
             massless: false,
+            friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
         }],
         scheme,
         // c = 2 m/s, h = 0.25 m: CFL 0.5 along the body
         dt: 0.0625,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     }
 }

@@ -1,8 +1,8 @@
 //! The critical step of central differences, with a compliant contact.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Adhesion, Damped};
-use carom_contact::{Integration, Law, Sliding};
+use carom_contact::{Initial, Integration, Law, Sliding};
 use carom_dynamics::scheme::CentralDifference;
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -22,7 +22,9 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
                 density: 1.0,
                 young: 1.0,
                 poisson: 0.0,
-            },
+            }
+            .into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -41,6 +43,9 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     }];
     let model = Model {
         bodies: bodies.clone(),
@@ -50,6 +55,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         scheme: Scheme::CentralDifference(CentralDifference),
         dt,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh: mesh.clone(),
     };
     Driver::new(System::new(model)?)

@@ -4,16 +4,16 @@ use carom_contact::law::{Displacement, Local, Status};
 use carom_contact::{Law, Point, Weak};
 use carom_dynamics::{Candidate, InterfaceProblem};
 use carom_elements::Kind;
-use carom_mesh::{ElementId, Face};
+use carom_mesh::{ElementId, Face, face_nodes};
 use carom_testing::Random;
 
 /// Gauss points of a surface, and the places of its nodes.
 type Patch = (Vec<Point>, Vec<[f64; 3]>);
 
-fn patch(kind: Kind, nodes: &[[u32; 4]], x: Vec<[f64; 3]>) -> Patch {
-    let face = |&nodes: &[u32; 4]| Face {
+fn patch<const N: usize>(kind: Kind, nodes: &[[u32; N]], x: Vec<[f64; 3]>) -> Patch {
+    let face = |nodes: &[u32; N]| Face {
         kind,
-        nodes,
+        nodes: face_nodes(nodes),
         parent: ElementId { block: 0, index: 0 },
         axis: [0.0; 3],
     };
@@ -25,9 +25,7 @@ fn patch(kind: Kind, nodes: &[[u32; 4]], x: Vec<[f64; 3]>) -> Patch {
 fn strip(n: usize, random: &mut Random) -> Patch {
     let x = (0..=n).map(|k| [(k as f64 + 0.3 * random.next()) / n as f64, 0.0, 0.0]);
     let x = x.collect();
-    let nodes: Vec<[u32; 4]> = (0..n as u32)
-        .map(|k| [k, k + 1, u32::MAX, u32::MAX])
-        .collect();
+    let nodes: Vec<[u32; 2]> = (0..n as u32).map(|k| [k, k + 1]).collect();
     patch(Kind::Bar2, &nodes, x)
 }
 

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Stepper,
@@ -33,7 +33,8 @@ pub fn bar() -> Zoned {
             name: name.into(),
             cells: mesh.groups[name].elements.clone(),
             kinematics: Kinematics::Bar { area: 1e-4 },
-            material: steel,
+            material: steel.into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -46,7 +47,7 @@ pub fn bar() -> Zoned {
     let contacts = vec![ModelContact {
         name: "wall".into(),
         secondary: Surface::new(&mesh, &mesh.groups["tip.right"], &bodies[1].spec.cells).unwrap(),
-        primary: ModelTarget::Plane(Plane {
+        primary: ModelTarget::rigid(Plane {
             point: [0.0; 3],
             normal: [-1.0, 0.0, 0.0],
         }),
@@ -57,6 +58,9 @@ pub fn bar() -> Zoned {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     }];
     let zone = |name: &str, body, scheme, substeps| ModelZone {
         name: name.into(),
@@ -84,6 +88,7 @@ pub fn bar() -> Zoned {
             scheme: Scheme::CentralDifference(CentralDifference),
             dt: 0.5 * 0.02 / (steel.young / steel.density).sqrt(),
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
             mesh,
         },
     }

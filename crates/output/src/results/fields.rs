@@ -342,6 +342,7 @@ impl SurfaceGrid {
         let reference = vec![0.0; system.unknowns()];
         let places = Places {
             dim: system.dim,
+            time: 0.0,
             x: &system.x,
             u: &reference,
         };
@@ -439,7 +440,7 @@ fn vectors(dim: usize, values: &[f64]) -> Vec<[f64; 3]> {
 
 /// Mean stress of each cell in VTK's order xx, yy, zz, xy, yz, xz, Pa.
 fn stresses(system: &System, u: &[f64]) -> Vec<[f64; 6]> {
-    let of_bodies = system.bodies.iter().flat_map(|body| body.stresses(u));
+    let of_bodies = system.bodies.iter().flat_map(|body| body.stresses(u, &[]));
     of_bodies
         .map(|(_, s)| {
             [

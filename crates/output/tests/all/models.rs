@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{Newmark, Theta};
 use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System};
 use carom_exact::{Bar, Impact};
@@ -50,7 +50,8 @@ pub fn two_bars(n: usize) -> Arc<System> {
             name: name.to_owned(),
             cells: mesh.groups[name].elements.clone(),
             kinematics: Kinematics::Bar { area: AREA },
-            material: STEEL,
+            material: STEEL.into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -69,6 +70,9 @@ pub fn two_bars(n: usize) -> Arc<System> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     }];
     let model = Model {
         bodies,
@@ -78,6 +82,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt: 0.5 * LENGTH / n as f64 / wave_speed(),
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     System::new(model).unwrap()
@@ -112,7 +117,9 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
                 density: 1000.0,
                 young: 1e9,
                 poisson: 0.3,
-            },
+            }
+            .into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -123,7 +130,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
     let ground = ModelContact {
         name: "ground".to_owned(),
         secondary: bottom,
-        primary: ModelTarget::Plane(Plane {
+        primary: ModelTarget::rigid(Plane {
             point: [0.0; 3],
             normal: [0.0, 0.0, 1.0],
         }),
@@ -131,6 +138,9 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     };
     let model = Model {
         bodies: vec![body],
@@ -143,6 +153,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         }),
         dt: 1e-4,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     System::new(model).unwrap()

@@ -6,8 +6,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
-use carom_bodies::{BodySpec, CellWeights, Kinematics, MassKind};
+use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, MassKind};
 use carom_contact::{Integration, Sliding};
+use carom_bodies::{BodySpec, CellWeights, Kinematics, MassKind};
+use carom_contact::{Initial, Integration, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Stepper,
@@ -63,7 +65,8 @@ fn two_bars() -> Zoned {
                     name: name.to_owned(),
                     cells: cells.to_vec(),
                     kinematics: Kinematics::Bar { area: AREA },
-                    material: STEEL,
+                    material: STEEL.into(),
+                    formulation: Formulation::Full,
                     weights: Some(CellWeights {
                         inertia: weights.inertia,
                         stiffness: weights.stiffness,
@@ -94,6 +97,9 @@ fn two_bars() -> Zoned {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     }];
     let zone = |name: &str, bodies, scheme, substeps| ModelZone {
         name: name.to_owned(),
@@ -123,6 +129,7 @@ fn two_bars() -> Zoned {
             scheme: rest,
             dt: 0.5 * h / models::wave_speed(),
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
             mesh,
         },
     }

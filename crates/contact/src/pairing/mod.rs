@@ -1,0 +1,190 @@
+//! From points and what they face to gaps, rows, tangential rows and curvature.
+//!
+//! Every contact point is a weighted sum of point stencils: one of weight 1 for a node or a Gauss point, the quadrature
+//! points of its support for a multiplier of the mortar method. A stencil is one point of the secondary surface and its
+//! closest point on the other side ([`stencil`]).
+
+mod clip;
+mod merge;
+mod mortar;
+mod overlap;
+mod stencil;
+
+use carom_algebra::csr::Csr;
+
+use self::merge::Merge;
+use self::mortar::Quadrature;
+pub use self::mortar::{Basis, Mortar};
+use self::stencil::Stencil;
+use crate::{Contact, Integration, Places, Rows, Search};
+
+/// Contact points of a list of contacts at one configuration, with the derivatives that Newton's method and friction
+/// ask for.
+///
+/// Cleared and filled again at each configuration; its memory is kept.
+#[derive(Clone, Debug, Default)]
+pub struct Pairing {
+    /// Gaps, normals and rows N = ∂g/∂u.
+    ///
+    /// N is the derivative of the gap, also where the foot is at the rim of its face and the normal does not pass through
+    /// the point (there [`Contact::pair`] leaves out the turning of the face). A force `Nᵀ P` has no resultant and no
+    /// moment.
+    pub rows: Rows,
+    /// Rows T of the two tangents at a point: `T v` is the velocity in m/s at which the secondary slides over the primary
+    /// along [`Rows::normal`] of that row; the gaps of these pools are zero. Unit vectors, square to each other and to the
+    /// contact normal, that vary smoothly with it. [`Rows::rate`] of these rows is what the motion of an
+    /// obstacle adds. The second is empty in the plane, both are on a line.
+    pub tangents: [Rows; 2],
+    /// Reference area that each point stands for, m²: [`Point::area`](crate::Point::area), for a multiplier of the mortar
+    /// method ∫ φ_A dΓ over what faces the primary surface now, if any does.
+    pub areas: Vec<f64>,
+    stencils: Vec<Stencil>,
+    /// Stencils of all points and their weights, point after point.
+    terms: Vec<(u32, f64)>,
+    /// Where the terms of a point end.
+    ends: Vec<u32>,
+    dim: usize,
+    work: Work,
+}
+
+/// A stencil's part in a multiplier: w_q φ_A.
+#[derive(Clone, Copy, Debug)]
+struct Share {
+    point: u32,
+    stencil: u32,
+    weight: f64,
+}
+
+/// Scratch of the mortar method.
+#[derive(Clone, Debug, Default)]
+struct Work {
+    found: Vec<u32>,
+    quadrature: Vec<Quadrature>,
+    shares: Vec<Share>,
+    merge: Merge,
+}
+
+impl Pairing {
+    /// Empties the pools and keeps their memory. To be called before the first contact is paired.
+    pub fn clear(&mut self) {
+        self.rows.clear();
+        self.tangents.iter_mut().for_each(Rows::clear);
+        self.areas.clear();
+        self.stencils.clear();
+        self.terms.clear();
+        self.ends.clear();
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there is no point.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Number of point stencils behind the points: what a pairing costs.
+    pub fn stencils(&self) -> usize {
+        self.stencils.len()
+    }
+
+    /// Adds factor · force · ∂²g/∂u² of a point to a matrix over all unknowns.
+    ///
+    /// `force` in N, positive in compression. The second derivative is that of the gap in [`Pairing::rows`], exact for
+    /// every kind of face, foot inside, on an edge or in a corner; for the mortar method with the quadrature points and
+    /// their weights held. Panics if the pattern of the matrix lacks the pairs of [`Pairing::cliques`].
+    pub fn add_curvature(&self, point: usize, force: f64, factor: f64, matrix: &mut Csr) {
+        for &(stencil, weight) in self.terms(point) {
+            let stencil = &self.stencils[stencil as usize];
+            stencil.add_curvature(self.dim, weight * factor * force, matrix);
+        }
+    }
+
+    /// The unknowns of each stencil of a point: the pairs of unknowns that [`Pairing::add_curvature`] fills. Also a list
+    /// that holds those of the point's row where there is one stencil.
+    pub fn cliques(&self, point: usize, mut each: impl FnMut(&[u32])) {
+        for &(stencil, _) in self.terms(point) {
+            let (unknowns, n) = self.stencils[stencil as usize].unknowns(self.dim);
+            each(&unknowns[..n]);
+        }
+    }
+
+    fn terms(&self, point: usize) -> &[(u32, f64)] {
+        let begin = match point {
+            0 => 0,
+            _ => self.ends[point - 1] as usize,
+        };
+        &self.terms[begin..self.ends[point] as usize]
+    }
+
+    /// Appends a point that stands for `area` and is what one stencil is; without one it faces nothing.
+    fn push(&mut self, area: f64, stencil: Option<Stencil>) {
+        self.areas.push(area);
+        match stencil {
+            Some(stencil) => {
+                stencil.push(self.dim, &mut self.rows, &mut self.tangents);
+                self.terms.push((self.stencils.len() as u32, 1.0));
+                self.stencils.push(stencil);
+            }
+            None => self.push_open(),
+        }
+        self.ends.push(self.terms.len() as u32);
+    }
+
+    /// Appends a point that is the mean of stencils with the given weights, and stands for their sum. Where that is not
+    /// above `least` the point faces nothing, and stands for `area`.
+    fn push_sum(&mut self, area: f64, least: f64, shares: &[Share], merge: &mut Merge) {
+        let total: f64 = shares.iter().map(|share| share.weight).sum();
+        if total > least {
+            self.areas.push(total);
+            merge.clear();
+            for share in shares {
+                let weight = share.weight / total;
+                merge.add(&self.stencils[share.stencil as usize], weight, self.dim);
+                self.terms.push((share.stencil, weight));
+            }
+            merge.push(self.dim, &mut self.rows, &mut self.tangents);
+        } else {
+            self.areas.push(area);
+            self.push_open();
+        }
+        self.ends.push(self.terms.len() as u32);
+    }
+
+    fn push_open(&mut self) {
+        self.rows.push(f64::INFINITY, [0.0; 3]);
+        for tangent in &mut self.tangents[..self.dim - 1] {
+            tangent.push(0.0, [0.0; 3]);
+        }
+    }
+}
+
+impl Contact {
+    /// Appends all points of the contact at the given configuration, with tangents and curvature.
+    ///
+    /// Which points face what is decided as in [`Contact::pair`]; the gaps are the same, and so are the rows of points
+    /// whose foot is not at a rim.
+    pub fn pair_fully(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
+        pairing.dim = places.dim;
+        self.renew(places, search);
+        let first = pairing.len();
+        self.pair_points(places, search, pairing);
+        for k in 0..self.points.len() {
+            pairing.rows.shift(first + k, self.offset(k));
+        }
+    }
+
+    fn pair_points(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
+        if let (Integration::Mortar { basis }, Some(mortar)) = (self.integration, &self.mortar) {
+            if !mortar.is_ends() {
+                return mortar.pair(self, basis, places, search, pairing);
+            }
+        }
+        for (k, point) in self.points.iter().enumerate() {
+            let stencil = Stencil::new(self, places, search, (point, self.view(k)));
+            pairing.push(point.area, stencil);
+        }
+    }
+}
