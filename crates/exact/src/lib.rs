@@ -3,22 +3,16 @@
 //! * [`solve`] gives the exact motion of elastic bars that hit a rigid wall or each other: piecewise-linear
 //!   velocity waves, no time step, any number of bounces.
 //! * [`closed_forms`] holds the formulas of the discrete schemes that are known in closed form.
-<<<<<<< HEAD
 //! * [`friction`] holds motions under Coulomb friction that slide and stick.
-=======
 //! * [`hertz`] is the contact of spheres and cylinders, at rest and in impact.
->>>>>>> main
 //!
 //! Nothing here is shared with the code that is judged: this crate depends on no other.
 
 mod bar;
 pub mod closed_forms;
 mod error;
-<<<<<<< HEAD
 pub mod friction;
-=======
 pub mod hertz;
->>>>>>> main
 mod impact;
 mod motion;
 mod wave;

@@ -43,20 +43,11 @@ fn compliance(rows: usize, columns: usize, diagonal: f64, random: &mut Random) -
     d
 }
 
-<<<<<<< HEAD
 fn problem(n: usize, tangents: usize, d: Vec<f64>, random: &mut Random) -> FrictionProblem {
     let second = |random: &mut Random| match tangents {
         2 => random.next(),
         _ => 0.0,
     };
-=======
-fn problem(
-    n: usize,
-    tangents: usize,
-    compliance: Vec<f64>,
-    random: &mut Random,
-) -> FrictionProblem {
->>>>>>> main
     FrictionProblem {
         step: 0,
         names: Vec::new(),
@@ -66,14 +57,7 @@ fn problem(
         friction: (0..n)
             .map(|_| Tangential {
                 mu: random.between(0.1, 1.0),
-<<<<<<< HEAD
                 free: [random.next(), second(random)],
-=======
-                free: [
-                    random.next(),
-                    if tangents == 2 { random.next() } else { 0.0 },
-                ],
->>>>>>> main
                 ..Tangential::default()
             })
             .collect(),
@@ -136,7 +120,6 @@ fn sliding(problem: &FrictionProblem, solution: &FrictionSolution) -> Vec<[f64; 
 #[test]
 fn random_problems_are_solved_and_slip_opposes_sliding() {
     let mut random = Random(5);
-<<<<<<< HEAD
     let (mut counts, mut passes, trials) = ([0; 3], 0, 300);
     for trial in 0..trials {
         let problem = random_problem(1 + trial % 40, 1 + trial % 2, &mut random);
@@ -287,144 +270,6 @@ fn the_cone_is_round_forces_do_not_depend_on_the_tangential_basis() {
             assert!((one.forces[i] - other.forces[i]).abs() < 1e-11);
             for k in 0..2 {
                 assert!((other.tangential[i][k] - expected[k]).abs() < 1e-11);
-=======
-    for tangents in [1, 2] {
-        for diagonal in [1e-3, 0.1, 1.0] {
-            let (mut failed, mut swept, mut passes, mut most, mut worst, mut sweeps) =
-                (0, 0, 0, 0, 0.0_f64, 0);
-            let mut counts = [0; 3];
-            let now = std::time::Instant::now();
-            for trial in 0..400 {
-                let n = 1 + trial % 40;
-                let rows = n * (1 + tangents);
-                let d = compliance(rows, rows, diagonal, &mut random);
-                let p = problem(n, tangents, d, &mut random);
-                match p.solve() {
-                    Ok(s) => {
-                        passes += s.passes;
-                        most = most.max(s.passes);
-                        sweeps = sweeps.max(s.sweeps);
-                        swept += usize::from(s.sweeps > 0);
-                        worst = worst.max(p.defect(&s));
-                        for s in &s.slips {
-                            counts[*s as usize] += 1;
-                        }
-                    }
-                    Err(e) => {
-                        failed += 1;
-                        if failed < 4 {
-                            println!("n {n}: {e}");
-                        }
-                    }
-                }
-            }
-            println!(
-                "tangents {tangents} diag {diagonal}: failed {failed} swept {swept} (most {sweeps}) mean passes {} most {most} worst {worst:e} {counts:?} {:?}",
-                passes as f64 / 400.0,
-                now.elapsed()
-            );
-        }
-    }
-}
-
-fn multi(h: &[f64], rows: usize, dofs: usize, m: &[f64]) -> Vec<f64> {
-    let mut d = vec![0.0; rows * rows];
-    for i in 0..rows {
-        for j in 0..rows {
-            d[i * rows + j] = (0..dofs)
-                .map(|k| h[i * dofs + k] * h[j * dofs + k] / m[k])
-                .sum();
-        }
-    }
-    d
-}
-
-fn report(name: &str, problems: impl Iterator<Item = FrictionProblem>) {
-    let (mut failed, mut swept, mut passes, mut most, mut worst, mut sweeps, mut total) =
-        (0, 0, 0, 0, 0.0_f64, 0, 0);
-    let mut counts = [0; 3];
-    let mut time = std::time::Duration::ZERO;
-    for p in problems {
-        total += 1;
-        let now = std::time::Instant::now();
-        let r = p.solve();
-        time += now.elapsed();
-        match r {
-            Ok(s) => {
-                passes += s.passes;
-                most = most.max(s.passes);
-                sweeps = sweeps.max(s.sweeps);
-                swept += usize::from(s.sweeps > 0);
-                worst = worst.max(p.defect(&s));
-                for s in &s.slips {
-                    counts[*s as usize] += 1;
-                }
-            }
-            Err(e) => {
-                failed += 1;
-                if failed < 4 {
-                    println!("n {}: {e}", p.candidates.len());
-                }
-            }
-        }
-    }
-    println!(
-        "{name}: of {total} failed {failed} swept {swept} (most {sweeps}) mean passes {} most {most} worst {worst:e} {counts:?} {time:?}",
-        passes as f64 / total as f64
-    );
-}
-
-#[test]
-fn statistics_hard() {
-    let mut random = Random(9);
-    for tangents in [1, 2] {
-        for mu in [0.3, 1.0, 2.0] {
-            for kind in 0..3 {
-                let mut r = random;
-                let ps = (0..50).map(|trial| {
-                    let n = 1 + 3 * trial % 40;
-                    let rows = n * (1 + tangents);
-                    let dofs = match kind {
-                        0 => rows / 2 + 1,
-                        1 => 6,
-                        2 => rows,
-                        _ => rows * 2,
-                    };
-                    let mut h = r.vector(rows * dofs);
-                    if kind == 3 {
-                        // sparse: neighbours
-                        for i in 0..rows {
-                            for k in 0..dofs {
-                                if (2 * i).abs_diff(k) > 6 {
-                                    h[i * dofs + k] = 0.0;
-                                }
-                            }
-                        }
-                    }
-                    let m: Vec<f64> = (0..dofs).map(|_| (10.0_f64).powf(2.0 * r.next())).collect();
-                    let u = r.vector(dofs);
-                    let d = multi(&h, rows, dofs, &m);
-                    let mut p = problem(n, tangents, d, &mut r);
-                    for i in 0..n {
-                        let q = |k: usize| {
-                            (0..dofs)
-                                .map(|j| h[(i * (1 + tangents) + k) * dofs + j] * u[j])
-                                .sum::<f64>()
-                        };
-                        p.candidates[i].local.gap_free = q(0)
-                            + if trial % 2 == 0 {
-                                0.0
-                            } else {
-                                r.between(0.0, 0.5)
-                            };
-                        p.friction[i].free = [q(1), if tangents == 2 { q(2) } else { 0.0 }];
-                        p.friction[i].mu = mu * r.between(0.5, 1.0);
-                    }
-                    p
-                });
-                report(&format!("tangents {tangents} mu {mu} kind {kind}"), ps);
-                random.next();
->>>>>>> main
             }
         }
     }

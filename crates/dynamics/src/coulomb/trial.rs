@@ -105,12 +105,7 @@ impl Trial {
                 } else {
                     defect.abs() / size
                 };
-<<<<<<< HEAD
                 if relative.is_nan() || relative > self.worst.0 {
-=======
-                // a comparison that a NaN does not pass
-                if !(relative <= self.worst.0) {
->>>>>>> main
                     self.worst = (relative, i);
                 }
             }
