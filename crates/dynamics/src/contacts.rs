@@ -1,6 +1,6 @@
 //! Contacts in the numbers of a system: bodies of each side, points, and which law may hold where.
 
-use carom_contact::{Contact, Integration, Point, Target};
+use carom_contact::{Contact, Integration, Mortar, Point, Sight, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
 
 use crate::Error;
@@ -17,7 +17,10 @@ impl System {
             }
             Integration::Weak { .. } if !contact.law.has_weak_form() => Some(WHICH_LAWS),
             Integration::Points if !contact.law.is_function() => Some(WHICH_LAWS),
-            Integration::Weak { .. } | Integration::Points | Integration::Node => None,
+            Integration::Weak { .. }
+            | Integration::Points
+            | Integration::Node
+            | Integration::Mortar { .. } => None,
         };
         let mut contacts = self.contacts.iter();
         match contacts.find_map(|contact| Some((contact, cause(contact)?))) {
@@ -47,7 +50,7 @@ pub(crate) fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usi
     };
     let primary = match &contact.primary {
         ModelTarget::Surface(surface) => body(surface),
-        ModelTarget::Plane(_) | ModelTarget::Sphere(_) => None,
+        ModelTarget::Rigid(_) => None,
     };
     (body(&contact.secondary).unwrap_or(0), primary)
 }
@@ -70,16 +73,27 @@ pub(crate) fn numbered(
         let faces = surface.faces.iter();
         faces.map(|face| renumbered(face, number)).collect()
     };
-    let points = match contact.integration {
-        Integration::Node => nodes(surface, &model.mesh, number, factor),
+    let (points, mortar) = match contact.integration {
+        Integration::Node => (nodes(surface, &model.mesh, number, factor), None),
         Integration::Points | Integration::Weak { .. } => {
-            Point::of_faces(&faces(surface), x, factor)
+            (Point::of_faces(&faces(surface), x, factor), None)
+        }
+        Integration::Mortar { .. } => {
+            let (mortar, points) = Mortar::new(faces(surface), x, factor);
+            (points, Some(mortar))
         }
     };
     let target = match &contact.primary {
-        ModelTarget::Plane(plane) => Target::Plane(*plane),
-        ModelTarget::Sphere(sphere) => Target::Sphere(*sphere),
+        ModelTarget::Rigid(obstacle) => Target::Rigid(obstacle.clone()),
         ModelTarget::Surface(surface) => Target::Surface(faces(surface)),
+    };
+    let sight = match &target {
+        Target::Surface(primary) => {
+            let secondary = faces(surface);
+            let needed = contact.depth.is_some() || Sight::is_needed(&secondary, primary);
+            needed.then(|| Sight::new((&points, &secondary), primary, x, contact.depth))
+        }
+        Target::Rigid(_) => None,
     };
     Contact {
         name: contact.name.clone(),
@@ -87,7 +101,10 @@ pub(crate) fn numbered(
         sliding: contact.sliding,
         integration: contact.integration,
         points,
+        mortar,
         target,
+        sight,
+        offsets: Vec::new(),
     }
 }
 

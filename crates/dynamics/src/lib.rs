@@ -10,6 +10,7 @@ mod control;
 mod coulomb;
 mod driver;
 mod error;
+mod initial;
 mod interface;
 mod ledger;
 mod march;

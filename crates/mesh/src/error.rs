@@ -33,6 +33,16 @@ pub enum Error {
         /// The first such cell.
         cell: ElementId,
     },
+    /// Two facets of a surface without cells run along their common edge in the same sense.
+    #[error(
+        "two facets that share node {node} have normals to different sides: the order of their nodes disagrees"
+    )]
+    FacetsDisagree {
+        /// The facets.
+        facets: [ElementId; 2],
+        /// A node that both have.
+        node: u32,
+    },
     /// A facet is a face of none of the cells.
     #[error("the facet at {centre:?} is not a face of any cell of the body")]
     FacetOnNoCell {

@@ -5,7 +5,9 @@
 //! point over one face, [`BoxTree`] the faces worth asking.
 
 mod curved;
+mod free;
 pub mod generate;
+mod hull;
 pub mod mesh;
 pub mod project;
 pub mod raise;
