@@ -220,6 +220,7 @@ impl Builder<'_> {
                     | carom_bodies::Error::NegativeRadius { body, .. }
                     | carom_bodies::Error::WeightCount { body, .. }
                     | carom_bodies::Error::NegativeMass { body, .. }
+                    | carom_bodies::Error::QuadraticBar { body }
                     | carom_bodies::Error::NegativeStiffness { body, .. } => body,
                 };
                 Problem::new(format!("body.{name}.region"), cause.to_string())
