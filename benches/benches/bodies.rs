@@ -7,7 +7,7 @@
 
 use std::time::{Duration, Instant};
 
-use carom_bodies::{Body, BodySpec, Kinematics, Scratch};
+use carom_bodies::{Body, BodySpec, Formulation, Kinematics, Scratch};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
 use criterion::{Criterion, Throughput};
@@ -74,7 +74,8 @@ fn sweep(criterion: &mut Criterion, name: &str, mesh: &Mesh, kinematics: Kinemat
         name: name.to_owned(),
         cells,
         kinematics,
-        material: MATERIAL,
+        material: MATERIAL.into(),
+        formulation: Formulation::Full,
         weights: None,
     };
     let body = match Body::new(mesh, spec, &number) {

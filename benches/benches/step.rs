@@ -12,7 +12,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use carom_algebra::reduce;
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Initial, Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
@@ -93,7 +93,8 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
             name: "block".to_owned(),
             cells,
             kinematics: Kinematics::Solid,
-            material: RUBBER,
+            material: RUBBER.into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -115,6 +116,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
         massless: false,
         initial: Initial::Keep,
         depth: None,
+        friction: 0.0,
         integration: carom_contact::Integration::Node,
     };
     Ok(Model {
@@ -126,6 +128,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
     })
 }
 

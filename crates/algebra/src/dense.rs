@@ -1,13 +1,16 @@
-//! Dense Cholesky factorisation of small systems (up to a few thousand unknowns).
+//! Dense factorisations of small systems (up to a few thousand unknowns): Cholesky, and LU for unsymmetric matrices.
 //!
-//! The factor is one panel: faer computes it with one thread, the sweeps are those of the sparse factor. Its bits depend on the
-//! matrix and on the instruction set alone.
+//! faer computes them with one thread; the Cholesky factor is one panel, and its sweeps are those of the sparse factor. Their
+//! bits depend on the matrix and on the instruction set alone.
 
 use crate::{Error, solver};
 use faer::{
     MatMut, Par,
     dyn_stack::{MemBuffer, MemStack},
-    linalg::cholesky::llt::factor::{self, LltError, LltRegularization},
+    linalg::{
+        cholesky::llt::factor::{self, LltError, LltRegularization},
+        lu::partial_pivoting::factor as lu,
+    },
 };
 use pulp::{Arch, Simd, WithSimd};
 
@@ -88,5 +91,79 @@ impl WithSimd for Solve<'_> {
         let DenseCholesky { n, values } = self.0;
         solver::forward::<S>(values, *n, *n, self.1);
         solver::backward(simd, values, *n, *n, self.1);
+    }
+}
+
+/// Factors P A = L U of a dense matrix A, with the largest entry of a column as pivot.
+///
+/// A pivot of zero is no error here: a caller that cannot exclude it must look at the result, which then is not finite.
+#[derive(Clone, Debug)]
+pub struct DenseLu {
+    n: usize,
+    /// L without its unit diagonal, and U, column-major.
+    values: Vec<f64>,
+    /// Row of A that is row i of P A.
+    rows: Vec<usize>,
+}
+
+impl DenseLu {
+    /// Factorises `matrix`: `n` squared entries, column-major.
+    ///
+    /// Errors: the length is not n²; an entry is not finite.
+    pub fn new(n: usize, matrix: Vec<f64>) -> Result<Self, Error> {
+        if matrix.len() != n * n {
+            return Err(Error::WrongLength {
+                what: "dense matrix",
+                expected: n * n,
+                found: matrix.len(),
+            });
+        }
+        if let Some(k) = matrix.iter().position(|a| !a.is_finite()) {
+            return Err(Error::NotFinite {
+                row: k % n,
+                column: k / n,
+                value: matrix[k],
+            });
+        }
+        let mut values = matrix;
+        let (mut rows, mut inverse) = (vec![0_usize; n], vec![0_usize; n]);
+        let requirement = lu::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default());
+        let mut memory = MemBuffer::try_new(requirement).map_err(|_| Error::Analysis {
+            unknowns: n,
+            reason: "out of memory".into(),
+        })?;
+        lu::lu_in_place(
+            MatMut::from_column_major_slice_mut(&mut values, n, n),
+            &mut rows,
+            &mut inverse,
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        );
+        Ok(Self { n, values, rows })
+    }
+
+    /// A⁻¹ b.
+    pub fn solve(&self, b: &[f64]) -> Vec<f64> {
+        let n = self.n;
+        let mut x: Vec<f64> = self.rows.iter().map(|&row| b[row]).collect();
+        for j in 0..n {
+            let (above, below) = x.split_at_mut(j + 1);
+            subtract(above[j], &self.values[j * n + j + 1..(j + 1) * n], below);
+        }
+        for j in (0..n).rev() {
+            let column = &self.values[j * n..=j * n + j];
+            x[j] /= column[j];
+            let (above, below) = x.split_at_mut(j);
+            subtract(below[0], &column[..j], above);
+        }
+        x
+    }
+}
+
+/// y ← y - a x
+fn subtract(a: f64, x: &[f64], y: &mut [f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y -= a * x;
     }
 }

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::bar::Bar;
 use crate::continuum::{self, Law, Points};
+use crate::finite::Elements;
 use crate::force::{self, Cell, Kernel};
 use crate::lanes::Lanes;
 use crate::weights::{CellWeights, ChunkWeights, ElementWeights, Unweighted, WIDEST, Weight};
@@ -23,9 +24,20 @@ fn chunk_length(kind: Kind) -> usize {
     }
 }
 
-/// What is called for each element: system numbers of its nodes, stiffness (N/m, row-major over node-major unknowns;
-/// empty where it is not wanted) and scalar consistent mass (kg, row-major over nodes).
-pub(crate) type Visit<'a> = dyn FnMut(&[u32], &[f64], &[f64]) + 'a;
+/// Matrices of one element.
+pub(crate) struct Matrices<'a> {
+    /// System numbers of its nodes.
+    pub(crate) nodes: &'a [u32],
+    /// N/m, row-major over node-major unknowns; empty where it is not wanted.
+    pub(crate) stiffness: &'a [f64],
+    /// Scalar consistent mass in kg, row-major over nodes.
+    pub(crate) mass: &'a [f64],
+    /// Scalar lumped mass in kg.
+    pub(crate) lumped: &'a [f64],
+}
+
+/// What is called for each element.
+pub(crate) type Visit<'a> = dyn FnMut(&Matrices) + 'a;
 
 /// The physics of the elements of a block.
 #[derive(Clone, Copy, Debug)]
@@ -61,6 +73,10 @@ pub(crate) struct Chunk {
 pub struct Scratch {
     pub(crate) forces: Vec<Vec<[f64; 3]>>,
     pub(crate) energies: Vec<f64>,
+    /// A system vector.
+    pub(crate) middle: Vec<f64>,
+    /// At finite strain.
+    pub(crate) elements: Elements,
 }
 
 impl Block {
@@ -171,7 +187,7 @@ impl Block {
 
     fn visit<const N: usize>(&self, dim: usize, stiffness: bool, visit: &mut Visit) {
         let mut k = vec![0.0; if stiffness { (dim * N).pow(2) } else { 0 }];
-        let mut m = vec![0.0; N * N];
+        let (mut m, mut lumped) = (vec![0.0; N * N], [0.0; N]);
         let (mass_points, stiffness_points) = (&self.mass_points, &self.stiffness_points);
         let mut w = ElementWeights::<N>::ones(mass_points, stiffness_points);
         for chunk in &self.chunks {
@@ -193,12 +209,23 @@ impl Block {
                         continuum::stiffness(law, stiffness_points, &w.stiffness, &x, &mut k)
                     }
                 }
-                visit(
-                    &element_nodes::<N, _>(element, |node| chunk.nodes[node]),
-                    &k,
-                    &m,
-                );
+                self.lump(&m, &mut lumped);
+                visit(&Matrices {
+                    nodes: &element_nodes::<N, _>(element, |node| chunk.nodes[node]),
+                    stiffness: &k,
+                    mass: &m,
+                    lumped: &lumped,
+                });
             }
+        }
+    }
+
+    /// Lumped mass of an element from its consistent one: row sums of linear kinds, whose nodes are all corners, and the
+    /// scaled diagonal of others.
+    fn lump(&self, m: &[f64], lumped: &mut [f64]) {
+        let n = lumped.len();
+        for (lumped, row) in lumped.iter_mut().zip(m.chunks_exact(n)) {
+            *lumped = row.iter().sum();
         }
     }
 

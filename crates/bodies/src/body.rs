@@ -6,13 +6,14 @@ use std::ops::Range;
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Mat3;
 use carom_elements::Kind;
-use carom_materials::{Elastic, Plane};
+use carom_materials::{Law, Plane};
 use carom_mesh::{ElementId, Mesh};
 
 use crate::Error;
 use crate::bar::Bar;
 use crate::block::{Block, Physics, Scratch, Visit};
-use crate::continuum::Law;
+use crate::continuum;
+use crate::finite::{Cells, Finite, Formulation, Shape};
 use crate::together::Together;
 use crate::weights::CellWeights;
 use crate::{size, stability};
@@ -108,19 +109,23 @@ pub struct BodySpec {
     /// Kinematics and section.
     pub kinematics: Kinematics,
     /// Material.
-    pub material: Elastic,
+    pub material: Law,
+    /// How the elements integrate the internal work; anything but [`Formulation::Full`] needs a law at finite strain.
+    pub formulation: Formulation,
     /// Weights of inertia and internal work; none for a body that is alone in its volume.
     pub weights: Option<CellWeights>,
 }
 
-/// A discretised body at small strain, linear in the displacement.
+/// A discretised body, at small strain or total Lagrangian.
 #[derive(Debug)]
 pub struct Body {
     name: String,
     kinematics: Kinematics,
-    material: Elastic,
+    material: Law,
     cells: Vec<ElementId>,
     blocks: Vec<Block>,
+    /// The elements at finite strain; none at small strain. The blocks then give masses.
+    pub(crate) finite: Option<Finite>,
     dim: usize,
     smallest: f64,
 }
@@ -142,16 +147,23 @@ impl Body {
                 x[system as usize] = mesh.nodes[node];
             }
         }
+        let elastic = spec.material.initial();
         let physics = match spec.kinematics {
             Kinematics::Bar { area } => Physics::Bar(Bar {
-                young: spec.material.young,
+                young: elastic.young,
                 area,
-                density: spec.material.density,
+                density: elastic.density,
             }),
-            kinematics => Physics::Continuum(Law::new(kinematics, spec.material, mesh.dim)),
+            kinematics => Physics::Continuum(continuum::Law::new(kinematics, elastic, mesh.dim)),
         };
         let mut cells = Vec::with_capacity(spec.cells.len());
         let mut blocks = Vec::new();
+        let mut finite_cells = Vec::new();
+        let shape = Shape {
+            kinematics: spec.kinematics,
+            formulation: spec.formulation,
+            shear_modulus: elastic.shear_modulus(),
+        };
         for kind in Kind::ALL {
             let of_kind: Vec<ElementId> = spec
                 .cells
@@ -165,6 +177,9 @@ impl Body {
                 let of_kind = |all: &CellWeights| all.of_kind(mesh, &spec.cells, kind);
                 let weights = spec.weights.as_ref().map(of_kind);
                 blocks.push(Block::new(kind, physics, &elements, &x, weights.as_ref()));
+                if spec.material.finite().is_some() {
+                    finite_cells.push(Cells::new(kind, &shape, elements, &x, weights.as_ref()));
+                }
             }
             cells.extend(of_kind);
         }
@@ -178,6 +193,8 @@ impl Body {
                 .fold(f64::INFINITY, f64::min),
             cells,
             blocks,
+            finite: (spec.material.finite().is_some())
+                .then(|| Finite::new(spec.material, finite_cells)),
             dim: mesh.dim,
         };
         if spec.weights.is_some() {
@@ -189,9 +206,8 @@ impl Body {
 
     fn check_mass(&self, mesh: &Mesh) -> Result<(), Error> {
         let (mut place, mut negative) = (0, None);
-        self.each_matrix(false, &mut |nodes, _, m| {
-            for (a, row) in m.chunks_exact(nodes.len()).enumerate() {
-                let mass: f64 = row.iter().sum();
+        self.each_matrix(false, &mut |element| {
+            for (a, &mass) in element.lumped.iter().enumerate() {
                 if mass.is_nan() || mass < 0.0 {
                     negative.get_or_insert((place, a, mass));
                 }
@@ -235,13 +251,18 @@ impl Body {
     }
 
     /// Material.
-    pub fn material(&self) -> &Elastic {
+    pub fn material(&self) -> &Law {
         &self.material
     }
 
     /// Cells of the mesh, in the order of [`Body::stresses`].
     pub fn cells(&self) -> &[ElementId] {
         &self.cells
+    }
+
+    /// Unknowns of a node.
+    pub(crate) fn dim(&self) -> usize {
+        self.dim
     }
 
     /// Speed of compression waves in m/s.
@@ -254,11 +275,13 @@ impl Body {
         self.smallest
     }
 
-    /// Adds the internal forces f(u) (N) of this body to `f` and returns its strain energy U(u) (J).
+    /// Adds the internal forces f(u) (N) of this body at small strain to `f` and returns its strain energy U(u) (J);
+    /// [`Body::finite_force`] serves all bodies.
     ///
     /// `u`, `f`: system vectors, m and N. `scratch`: this body's own, empty before the first call; later calls allocate
     /// nothing. The sums run in a fixed order whatever the number of threads.
     pub fn internal_force(&self, u: &[f64], scratch: &mut Scratch, f: &mut [f64]) -> f64 {
+        debug_assert!(self.is_linear());
         let chunks = || self.blocks.iter().flat_map(|block| &block.chunks);
         if scratch.forces.is_empty() {
             let lists = chunks().map(|chunk| vec![[0.0; 3]; chunk.nodes.len()]);
@@ -284,14 +307,15 @@ impl Body {
         scratch.energies.iter().sum()
     }
 
-    /// Adds the row sums ∫ ρ N_a dV of the mass (kg) to the entries of a system vector.
+    /// Adds the lumped mass (kg) to the entries of a system vector: the row sums ∫ ρ N_a dV of linear elements, and of
+    /// quadratic ones, where these are zero or negative at corners, the diagonal of the consistent mass scaled to the
+    /// mass of the element. Hinton, Rock and Zienkiewicz (1976).
     pub fn add_lumped_mass(&self, mass: &mut [f64]) {
         let dim = self.dim;
-        self.each_matrix(false, &mut |nodes, _, m| {
-            for (a, &node) in nodes.iter().enumerate() {
-                let row: f64 = m[a * nodes.len()..(a + 1) * nodes.len()].iter().sum();
+        self.each_matrix(false, &mut |element| {
+            for (&node, lumped) in element.nodes.iter().zip(element.lumped) {
                 for i in 0..dim {
-                    mass[dim * node as usize + i] += row;
+                    mass[dim * node as usize + i] += lumped;
                 }
             }
         });
@@ -299,7 +323,7 @@ impl Body {
 
     /// Adds `stiffness_factor` K + `mass_factor` M (consistent) to the rows of one connected part.
     ///
-    /// `part`: system numbers of the unknowns that `matrix` holds; elements outside are left out.
+    /// At finite strain K is that of the undeformed body, fully integrated. `part`: system numbers of the unknowns that `matrix` holds; elements outside are left out.
     pub fn assemble(
         &self,
         stiffness_factor: f64,
@@ -308,7 +332,8 @@ impl Body {
         matrix: &mut Csr,
     ) {
         let dim = self.dim;
-        self.each_matrix(true, &mut |nodes, k, m| {
+        self.each_matrix(true, &mut |element| {
+            let (nodes, k, m) = (element.nodes, element.stiffness, element.mass);
             let n = nodes.len();
             if !part.contains(&(dim * nodes[0] as usize)) {
                 return;
@@ -337,7 +362,13 @@ impl Body {
     }
 
     /// Volume (m³) and mean stress (Pa) of each element, in the order of [`Body::cells`].
-    pub fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
+    ///
+    /// At finite strain the current volume and the Cauchy stress of `history`, that of this body at `u`; not numbers in an
+    /// element whose law gives none.
+    pub fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
+        if let Some(finite) = &self.finite {
+            return finite.stresses(u, history);
+        }
         let mut out = Vec::with_capacity(self.cells.len());
         for block in &self.blocks {
             block.stresses(self.dim, u, &mut out);
@@ -352,14 +383,15 @@ impl Body {
     /// around them, with a bound of its own (Collatz, Wielandt: B = M⁻¹ |K| has no negative entry, so that its spectral
     /// radius, not below λ, is at most max_i (B x)_i / x_i for any x > 0). With linear weights on straight bars the step
     /// keeps 0.983, where the elements alone give 0.943. Elements whose weights are all zero do not count; a node with
-    /// stiffness and no mass in its part makes the bound infinite.
+    /// stiffness and no mass in its part makes the bound infinite. At finite strain it is that of the undeformed body, fully
+    /// integrated, which no other formulation exceeds as long as its hourglass factor is not above 1.
     pub fn frequency_bound(&self) -> f64 {
         let varying: Vec<bool> = self.blocks.iter().flat_map(Block::varying).collect();
         let (mut place, mut even, mut uneven) = (0, 0.0, 0.0);
         let dim = self.dim;
         let mut scaled = Vec::new();
-        self.each_matrix(true, &mut |nodes, k, m| {
-            stability::scale(dim, nodes.len(), k, m, &mut scaled);
+        self.each_matrix(true, &mut |element| {
+            stability::scale(dim, element.stiffness, element.lumped, &mut scaled);
             let value = stability::largest_eigenvalue(&mut scaled);
             let largest = if varying[place] {
                 &mut uneven
@@ -392,16 +424,16 @@ impl Body {
         elements.retain(|_| kept.next() == Some(&true));
         let mut together = Together::new(self.dim, &elements);
         let mut place = 0;
-        self.each_matrix(true, &mut |nodes, k, m| {
+        self.each_matrix(true, &mut |element| {
             if marked[place] {
-                together.add(nodes, k, m);
+                together.add(element.nodes, element.stiffness, element.lumped);
             }
             place += 1;
         });
         together.largest_eigenvalue()
     }
 
-    fn each_matrix(&self, stiffness: bool, visit: &mut Visit) {
+    pub(crate) fn each_matrix(&self, stiffness: bool, visit: &mut Visit) {
         for block in &self.blocks {
             block.matrices(self.dim, stiffness, visit);
         }
@@ -412,6 +444,7 @@ fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
     if let Some(weights) = &spec.weights {
         weights.check(&spec.name, mesh, &spec.cells)?;
     }
+    check_formulation(mesh, spec)?;
     let dim = spec.kinematics.dim();
     for &cell in &spec.cells {
         let element = mesh.kind(cell).table();
@@ -433,6 +466,35 @@ fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
                         radius,
                     });
                 }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_formulation(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
+    let body = || spec.name.clone();
+    if spec.material.finite().is_none() {
+        return match spec.formulation {
+            Formulation::Full => Ok(()),
+            _ => Err(Error::LinearFormulation { body: body() }),
+        };
+    }
+    if spec.kinematics.plane() != Plane::Full {
+        return Err(Error::FiniteKinematics {
+            body: body(),
+            kinematics: spec.kinematics.name(),
+        });
+    }
+    if let Formulation::Reduced { .. } = spec.formulation {
+        for &cell in &spec.cells {
+            let kind = mesh.kind(cell);
+            let single = kind.table().stiffness_rule.points.len() == 1;
+            if !single && kind != Kind::Quad4 && kind != Kind::Hex8 {
+                return Err(Error::NotReduced {
+                    body: body(),
+                    found: kind.table().name,
+                });
             }
         }
     }

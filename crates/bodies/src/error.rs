@@ -1,9 +1,10 @@
-//! What a body can refuse.
+//! What a body can refuse, and how it fails.
 
+use carom_materials::Failure;
 use carom_mesh::ElementId;
 use thiserror::Error as ThisError;
 
-/// Why a body could not be built.
+/// Why a body could not be built, or has no force.
 #[derive(Debug, ThisError)]
 pub enum Error {
     /// The body has no element.
@@ -75,5 +76,51 @@ pub enum Error {
         cell: ElementId,
         /// δ at the point.
         weight: f64,
+    },
+    /// Finite strain where a stress outside the model's dimensions would have to vanish.
+    #[error(
+        "body '{body}': a law at finite strain cannot be {kinematics}; take plane-strain, axisymmetric or solid"
+    )]
+    FiniteKinematics {
+        /// Name of the body.
+        body: String,
+        /// Name of the kinematics.
+        kinematics: &'static str,
+    },
+    /// A formulation that asks for a law at finite strain.
+    #[error(
+        "body '{body}': at small strain elements are fully integrated; mean dilatation and reduced integration need a law at finite strain"
+    )]
+    LinearFormulation {
+        /// Name of the body.
+        body: String,
+    },
+    /// Reduced integration of elements whose hourglass modes are not controlled.
+    #[error("body '{body}': {found} elements have no reduced integration; quad4 and hex8 have")]
+    NotReduced {
+        /// Name of the body.
+        body: String,
+        /// Name of the element kind found.
+        found: &'static str,
+    },
+    /// A law that gives no stress at an integration point.
+    #[error("body '{body}': cell {} of block {}, integration point {point}: {failure}", cell.index, cell.block)]
+    NoStress {
+        /// Name of the body.
+        body: String,
+        /// The cell.
+        cell: ElementId,
+        /// Number of the point in the rule of the cell, from 0.
+        point: usize,
+        /// Why.
+        failure: Failure,
+    },
+    /// An algorithmic stress between two displacements where there is none.
+    #[error(
+        "body '{body}': there is no stress between two displacements that conserves energy for this law and formulation; it needs a hyperelastic law, fully or reduced integrated"
+    )]
+    NoBetween {
+        /// Name of the body.
+        body: String,
     },
 }

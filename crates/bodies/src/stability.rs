@@ -3,12 +3,12 @@
 use carom_elements::MAX_NODES;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Writes M^-1/2 K M^-1/2 with the row-sum mass into `out`, row-major (1/s²); 0 where K is 0, even without mass.
-pub(crate) fn scale(dim: usize, nodes: usize, k: &[f64], m: &[f64], out: &mut Vec<f64>) {
-    let n = dim * nodes;
+/// Writes M^-1/2 K M^-1/2 with the lumped mass `m` of the nodes (kg) into `out`, row-major (1/s²); 0 where K is 0, even without mass.
+pub(crate) fn scale(dim: usize, k: &[f64], m: &[f64], out: &mut Vec<f64>) {
+    let n = dim * m.len();
     let mut root = [0.0; MAX_NODES];
-    for (root, row) in root.iter_mut().zip(m.chunks_exact(nodes)) {
-        *root = row.iter().sum::<f64>().sqrt();
+    for (root, m) in root.iter_mut().zip(m) {
+        *root = m.sqrt();
     }
     out.clear();
     out.extend((0..n * n).map(|entry| match k[entry] {
@@ -53,6 +53,24 @@ pub(crate) fn largest_eigenvalue(b: &mut Vec<f64>) -> f64 {
     (logarithm + trace(b).ln() / power).exp()
 }
 
+/// Upper bound, within a thousandth, of the largest magnitude of an eigenvalue of a symmetric matrix (row-major,
+/// overwritten), from its square.
+pub(crate) fn largest_magnitude(b: &mut Vec<f64>) -> f64 {
+    // entries of order one, so that no square overflows
+    let size = b.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
+    if size == 0.0 || !size.is_finite() {
+        return size;
+    }
+    b.iter_mut().for_each(|b| *b /= size);
+    let mut square = vec![0.0; b.len()];
+    Arch::new().dispatch(Square {
+        b,
+        square: &mut square,
+    });
+    std::mem::swap(b, &mut square);
+    size * largest_eigenvalue(b).sqrt()
+}
+
 /// The square of a row-major matrix.
 struct Square<'a> {
     b: &'a [f64],
@@ -92,13 +110,7 @@ mod tests {
     fn eigenvalue_of_a_bar_element_is_four_c_squared_over_h_squared() {
         let mut scaled = Vec::new();
         let (ea, half_mass) = (3.0, 0.5);
-        let m = [
-            2.0 * half_mass / 3.0,
-            half_mass / 3.0,
-            half_mass / 3.0,
-            2.0 * half_mass / 3.0,
-        ];
-        scale(1, 2, &[ea, -ea, -ea, ea], &m, &mut scaled);
+        scale(1, &[ea, -ea, -ea, ea], &[half_mass; 2], &mut scaled);
         let value = largest_eigenvalue(&mut scaled);
         let exact = 2.0 * ea / half_mass;
         assert!(
@@ -113,5 +125,13 @@ mod tests {
         (b[0], b[4], b[8]) = (1.0, 7.0, 7.0);
         let value = largest_eigenvalue(&mut b);
         assert!((7.0 * (1.0 - 1e-12)..7.01).contains(&value), "{value}");
+    }
+
+    #[test]
+    fn magnitude_is_that_of_a_negative_eigenvalue_too() {
+        // eigenvalues 1 and -3
+        let mut b = vec![-1.0, 2.0, 2.0, -1.0];
+        let value = largest_magnitude(&mut b);
+        assert!((3.0 * (1.0 - 1e-12)..3.003).contains(&value), "{value}");
     }
 }

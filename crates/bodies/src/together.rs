@@ -18,7 +18,7 @@ pub(crate) struct Together {
     nodes: Vec<u32>,
     /// Σ |K_e|, N/m.
     stiffness: Csr,
-    /// Row sums of the mass, kg.
+    /// Lumped, kg.
     mass: Vec<f64>,
 }
 
@@ -41,14 +41,13 @@ impl Together {
         }
     }
 
-    /// Adds an element: stiffness (N/m, row-major over node-major unknowns), consistent mass (kg, row-major over nodes).
+    /// Adds an element: stiffness (N/m, row-major over node-major unknowns), lumped mass of the nodes (kg).
     pub(crate) fn add(&mut self, element: &[u32], k: &[f64], m: &[f64]) {
         let unknowns = unknowns(self.dim, &self.nodes, element);
         let absolute: Vec<f64> = k.iter().map(|k| k.abs()).collect();
         self.stiffness.add_block(&unknowns, &absolute);
         for (i, &unknown) in unknowns.iter().enumerate() {
-            let row = m.chunks_exact(element.len()).nth(i / self.dim);
-            self.mass[unknown as usize] += row.map_or(0.0, |row| row.iter().sum());
+            self.mass[unknown as usize] += m[i / self.dim];
         }
     }
 

@@ -39,6 +39,14 @@ impl Compliance {
         }
     }
 
+    /// Drops all columns: the operators have changed.
+    pub(crate) fn forget(&mut self) {
+        self.kept.fill_with(|| None);
+        self.candidates.clear();
+        self.matrix.clear();
+        self.version += 1;
+    }
+
     /// Brings the columns and D up to date for these candidates (ascending). `fixed`: held unknowns, which no force
     /// moves.
     pub(crate) fn update(

@@ -247,6 +247,50 @@ pub enum Error {
         /// Largest defect of a row per sum of its coefficients, m/s.
         defect: f64,
     },
+    /// A function of time that is none.
+    #[error("a function of time needs points whose times ascend, all numbers finite")]
+    Amplitude,
+    /// Something that the nonlinear solver, which the model needs, does not take.
+    #[error("{what}: {why}")]
+    Nonlinear {
+        /// What is refused.
+        what: String,
+        /// Why, and what would do.
+        why: &'static str,
+    },
+    /// The equations of a step were not solved.
+    #[error(
+        "step {step}, t = {time:e} s: no equilibrium in {passes} iterations with a step of {dt:e} s; \
+         the residual is largest at node {node} of the mesh, in body '{body}'{contact}; residuals relative to the forces: {history}"
+    )]
+    Equilibrium {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start, s.
+        time: f64,
+        /// Size of the last attempt, s.
+        dt: f64,
+        /// Iterations of the last attempt.
+        passes: usize,
+        /// Node of the mesh with the largest residual.
+        node: u32,
+        /// Its body.
+        body: String,
+        /// The contact point that agrees least, as a text; empty without contact.
+        contact: String,
+        /// Residuals of the last iterations.
+        history: String,
+    },
+    /// A part of the model that can move without any force.
+    #[error(
+        "the static stage: body '{body}' can {motion} without any force; hold it by supports, or leave the stage out"
+    )]
+    FreeMotion {
+        /// Name of the body.
+        body: String,
+        /// The motion.
+        motion: String,
+    },
     /// A saved state that does not belong to this system.
     #[error("the saved state cannot be read: {cause}")]
     State {

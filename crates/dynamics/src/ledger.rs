@@ -64,6 +64,36 @@ impl Resultant {
         sum
     }
 
+    /// Resultant of nodal forces, with moments about the origin of the nodes at the mean of these displacements.
+    pub(crate) fn at(system: &System, displacements: &[&[f64]], f: &[f64]) -> Resultant {
+        let mut sum = Resultant::default();
+        let (dim, share) = (system.dim, 1.0 / displacements.len() as f64);
+        for (node, f) in f.chunks_exact(dim).enumerate() {
+            let (mut force, mut x) = ([0.0; 3], system.x[node]);
+            force[..dim].copy_from_slice(f);
+            for u in displacements {
+                for i in 0..dim {
+                    x[i] += share * u[dim * node + i];
+                }
+            }
+            for i in 0..3 {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                sum.linear[i] += force[i];
+                sum.angular[i] += x[j] * force[k] - x[k] * force[j];
+            }
+        }
+        if system.axisymmetric {
+            sum.linear[0] = 0.0;
+            sum.angular = [0.0; 3];
+        }
+        sum
+    }
+
+    /// The opposite.
+    pub(crate) fn reversed(&self) -> Resultant {
+        self.combine(-1.0, &Resultant::default(), 0.0)
+    }
+
     fn combine(&self, factor: f64, other: &Resultant, other_factor: f64) -> Resultant {
         let mix = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| factor * a[i] + other_factor * b[i]);
         Resultant {
@@ -93,8 +123,18 @@ pub struct Balance {
     pub work_contact: f64,
     /// Work of the links to other zones.
     pub work_links: f64,
+    /// Work of the supports that move.
+    pub work_supports: f64,
     /// Dissipation of the scheme.
     pub dissipation_scheme: f64,
+    /// Dissipation of the materials: plastic, viscous.
+    pub dissipation_material: f64,
+    /// Dissipation of the damping.
+    pub dissipation_damping: f64,
+    /// Dissipation of friction.
+    pub dissipation_friction: f64,
+    /// Energy that hardening stores.
+    pub hardening: f64,
     /// What the terms leave over: change of the three energies - works + dissipation.
     pub energy_residual: f64,
     /// Momentum, N s and N m s.
@@ -122,7 +162,12 @@ impl Balance {
             work_loads: self.work_loads + other.work_loads,
             work_contact: self.work_contact + other.work_contact,
             work_links: self.work_links + other.work_links,
+            work_supports: self.work_supports + other.work_supports,
             dissipation_scheme: self.dissipation_scheme + other.dissipation_scheme,
+            dissipation_material: self.dissipation_material + other.dissipation_material,
+            dissipation_damping: self.dissipation_damping + other.dissipation_damping,
+            dissipation_friction: self.dissipation_friction + other.dissipation_friction,
+            hardening: self.hardening + other.hardening,
             energy_residual: self.energy_residual + other.energy_residual,
             momentum: sum(&self.momentum, &other.momentum),
             impulse_loads: sum(&self.impulse_loads, &other.impulse_loads),
@@ -158,8 +203,26 @@ pub struct Ledger {
     work_contact: Sum,
     work_links: Sum,
     dissipation: Sum,
+    /// Works and dissipations of [`Beyond`], in its order.
+    beyond: [Sum; 4],
+    hardening: f64,
     impulses: [[Sum; 6]; 5],
     forces: Forces,
+}
+
+/// What a step that is not linear adds to the balance, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Beyond {
+    /// Work of supports that move.
+    pub(crate) work_supports: f64,
+    /// Dissipation of the materials.
+    pub(crate) dissipation_material: f64,
+    /// Dissipation of the damping.
+    pub(crate) dissipation_damping: f64,
+    /// Dissipation of friction.
+    pub(crate) dissipation_friction: f64,
+    /// Energy that hardening stores at the end of the step.
+    pub(crate) hardening: f64,
 }
 
 /// Resultants of the forces of a step: loads, contacts, supports, supports against contact forces where these have an
@@ -242,6 +305,26 @@ impl Ledger {
             forces,
             ..Ledger::default()
         }
+    }
+
+    /// Sets the energy that hardening stores at the start, J.
+    pub(crate) fn store(&mut self, hardening: f64) {
+        self.hardening = hardening;
+        (self.initial.hardening, self.balance.hardening) = (hardening, hardening);
+    }
+
+    /// Adds to the step that [`Ledger::add`] then closes what only a nonlinear one has.
+    pub(crate) fn go_beyond(&mut self, beyond: &Beyond) {
+        let terms = [
+            beyond.work_supports,
+            beyond.dissipation_material,
+            beyond.dissipation_damping,
+            beyond.dissipation_friction,
+        ];
+        for (sum, term) in self.beyond.iter_mut().zip(terms) {
+            sum.add(term);
+        }
+        self.hardening = beyond.hardening;
     }
 
     /// Adds a step of length `dt`: works on Δu of loads, contacts and links, squares of the scheme's dissipation, resultants of the forces.
@@ -343,7 +426,17 @@ impl Ledger {
         let start = &self.initial;
         let change = (energies.kinetic - start.kinetic)
             + (energies.strain - start.strain)
-            + (scheme_energy - start.scheme_energy);
+            + (scheme_energy - start.scheme_energy)
+            + (self.hardening - start.hardening);
+        let [
+            work_supports,
+            dissipation_material,
+            dissipation_damping,
+            dissipation_friction,
+        ] = self.beyond.map(|sum| sum.get());
+        let works = work_loads + work_contact + work_links + work_supports;
+        let dissipations =
+            dissipation_scheme + dissipation_material + dissipation_damping + dissipation_friction;
         let [impulse_loads, impulse_contact] = [impulse(0), impulse(1)];
         let impulse_supports = impulse(2).combine(1.0, &impulse(3), 1.0);
         let impulse_links = impulse(4);
@@ -361,7 +454,12 @@ impl Ledger {
             dissipation_scheme,
             work_links,
             impulse_links,
-            energy_residual: change - work_loads - work_contact - work_links + dissipation_scheme,
+            work_supports,
+            dissipation_material,
+            dissipation_damping,
+            dissipation_friction,
+            hardening: self.hardening,
+            energy_residual: change - works + dissipations,
             momentum: energies.momentum,
             impulse_loads,
             impulse_contact,

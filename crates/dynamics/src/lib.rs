@@ -7,6 +7,7 @@
 mod compliance;
 mod contacts;
 mod control;
+mod coulomb;
 mod driver;
 mod error;
 mod initial;
@@ -14,6 +15,8 @@ mod interface;
 mod ledger;
 mod march;
 mod massless;
+mod newton;
+mod nonlinear;
 mod operator;
 mod records;
 pub mod scheme;
@@ -24,11 +27,16 @@ mod system;
 mod zones;
 
 pub use control::{Adaptive, Closing, Control};
+pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};
 pub use driver::{Costs, Driver, Phases, Work};
 pub use error::Error;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Resultant};
 pub use march::{Observer, Outcome, Stepper, march, step_count};
+pub use newton::Newton;
+pub use nonlinear::{
+    Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed,
+};
 pub use records::{ContactRecord, Impact, Records};
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, StepReport};

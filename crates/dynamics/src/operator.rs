@@ -211,6 +211,14 @@ impl Operators {
         })
     }
 
+    /// One operator for the whole system.
+    pub(crate) fn whole(operator: Operator, unknowns: usize) -> Operators {
+        Operators {
+            parts: vec![0..unknowns],
+            operators: vec![operator],
+        }
+    }
+
     /// `begin` on every part; vectors of the whole system.
     pub(crate) fn begin(&mut self, r: &[f64], y: &mut [f64]) {
         for (part, operator) in self.parts.iter().zip(&mut self.operators) {

@@ -19,6 +19,9 @@ pub struct State {
     pub motion: Motion,
     /// Contact forces and statuses.
     pub interface: InterfaceState,
+    /// Nodal forces of the last step as the nonlinear solver balances them, N: loads, contacts, supports, inertia, internal,
+    /// damping; empty where the next step does not need them.
+    pub forces: Vec<Vec<f64>>,
     /// Step control.
     pub control: Control,
     /// Energy and momentum balance since the start.
@@ -44,6 +47,8 @@ pub struct Motion {
     pub contact_force: Vec<f64>,
     /// Force of the links to other zones in the last step, N; empty without links.
     pub link_force: Vec<f64>,
+    /// Histories of the materials at the integration points, body after body; empty where no material has one.
+    pub history: Vec<f64>,
 }
 
 /// Arrays over all contact points.
@@ -51,6 +56,8 @@ pub struct Motion {
 pub struct InterfaceState {
     /// Contact force P of the last step, N, compressive positive.
     pub force: Vec<f64>,
+    /// Friction force along the two tangents, N; empty without friction.
+    pub friction: Vec<[f64; 2]>,
     /// Contact force that stands at the beginning of the next step, N: that of the last step, or after a projection the
     /// one in balance with the acceleration.
     pub carried: Vec<f64>,
@@ -131,9 +138,11 @@ pub(crate) fn empty_state(system: &System) -> State {
             internal_force: zeros.clone(),
             contact_force: zeros,
             link_force: Vec::new(),
+            history: system.start_histories(),
         },
         interface: InterfaceState {
             force: vec![0.0; points],
+            friction: Vec::new(),
             carried: vec![0.0; points],
             gap: vec![0.0; points],
             rate: vec![0.0; points],
@@ -141,6 +150,7 @@ pub(crate) fn empty_state(system: &System) -> State {
             watched: vec![false; points],
             crush: vec![0.0; points],
         },
+        forces: Vec::new(),
         control: Control::start(system.dt),
         ledger: Ledger::default(),
         records: Records::default(),

@@ -130,6 +130,33 @@ pub struct StepMap {
 }
 
 impl StepMap {
+    /// The map of a static step: the unknown is the way, internal forces are those of its end, and there is no inertia.
+    pub fn equilibrium() -> StepMap {
+        let (none, now) = (
+            Row::default(),
+            Row {
+                u: 1.0,
+                ..Row::default()
+            },
+        );
+        let end = Row { x: 1.0, ..now };
+        StepMap {
+            inertia: none,
+            force: end,
+            force_fraction: Some(1.0),
+            displacement: end,
+            velocity: none,
+            acceleration: none,
+            placed: now,
+            gap: end,
+            rate: none,
+            memory: none,
+            contact: 1.0,
+            impulse: Impulse::weights(0.0, 1.0),
+            contact_impulse: Impulse::weights(0.0, 1.0),
+        }
+    }
+
     /// Whether the momentum balance holds between acceleration and forces of the end of the step, whose weights in the
     /// impulse are those of the forces themselves.
     pub fn balances_at_the_end(&self) -> bool {

@@ -13,6 +13,7 @@ use carom_mesh::{Face, Mesh, Surface};
 use crate::contacts::{numbered, renumbered, sides};
 use crate::initial::settle;
 use crate::massless::redistribute;
+use crate::nonlinear::{Nonlinear, NumberedNonlinear};
 use crate::{Adaptive, Error, Scheme};
 
 /// Everything from which a system is built; names are those of the case file.
@@ -34,6 +35,8 @@ pub struct Model {
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
     pub adaptive: Option<Adaptive>,
+    /// Loads and motions in time, damping, a static stage, and how nonlinear steps are solved.
+    pub nonlinear: Nonlinear,
 }
 
 /// A body and its initial state.
@@ -80,6 +83,8 @@ pub struct ModelContact {
     /// Largest penetration that is a contact, m: points see only faces turned against them and not further away inside than
     /// this ([`Sight`](carom_contact::Sight)). `None`: they see everything, unless the surface faces itself.
     pub depth: Option<f64>,
+    /// Coefficient of Coulomb's friction; zero for none.
+    pub friction: f64,
 }
 
 /// What a secondary surface faces.
@@ -165,6 +170,10 @@ pub struct System {
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
     pub adaptive: Option<Adaptive>,
+    /// What only the nonlinear solver takes.
+    pub(crate) nonlinear: NumberedNonlinear,
+    /// Coefficient of friction by contact.
+    pub friction: Vec<f64>,
     /// Initial displacement, m.
     pub initial_displacement: Vec<f64>,
     /// Initial velocity, m/s; zero where an unknown is held.
@@ -191,6 +200,7 @@ impl System {
         }
         let (system, bodies, contacts) = System::assemble(model)?;
         system.check_scheme(&bodies)?;
+        system.check_nonlinear()?;
         system.check_massless(&contacts)?;
         system.check_integration()?;
         Ok(Arc::new(system))
@@ -246,6 +256,7 @@ impl System {
             }
         }
         let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
+        let nonlinear = NumberedNonlinear::new(&model, (&number, &x), &bodies, &fixed)?;
         let mut contacts: Vec<Contact> = model
             .contacts
             .iter()
@@ -278,6 +289,10 @@ impl System {
             faces.map(|face| renumbered(face, &number)).collect()
         };
         let secondary_faces = model.contacts.iter().map(faces_of).collect();
+        for follows in &nonlinear.follows {
+            fixed[follows.unknown as usize] = true;
+        }
+        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
         let system = System {
             tolerance: 1e-12 * model.mesh.size(),
             axisymmetric: model
@@ -305,6 +320,8 @@ impl System {
             scheme: model.scheme,
             dt: model.dt,
             adaptive: model.adaptive,
+            nonlinear,
+            friction: model.contacts.iter().map(|c| c.friction).collect(),
             initial_displacement,
             initial_velocity,
             mesh: model.mesh,

@@ -478,6 +478,29 @@ fn the_gradient_in_space_of_a_linear_field_is_its_slope() {
 }
 
 #[test]
+fn second_gradients_equal_differences_of_gradients() {
+    let h = 1e-4;
+    for element in tables().filter(|element| matches!(element.dim, 1 | 2)) {
+        for xi in probes(element) {
+            let mut second = vec![[f64::NAN; 3]; element.nodes];
+            map::second_gradient(element, &xi, &mut second);
+            for (component, [i, j]) in [[0, 0], [1, 1], [0, 1], [1, 0]].into_iter().enumerate() {
+                let at = |side: f64| {
+                    let mut xi = xi;
+                    xi[j] += side * h;
+                    gradient(element, &xi)
+                };
+                for (a, (up, down)) in at(1.0).into_iter().zip(at(-1.0)).enumerate() {
+                    let difference = (up[i] - down[i]) / (2.0 * h);
+                    let found = second[a][component.min(2)];
+                    assert!((found - difference).abs() < 1e-11, "{}", element.name);
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn the_jacobian_is_the_derivative_of_the_map() {
     let h = 1e-3;
     for element in tables() {

@@ -3,6 +3,8 @@
 //! Cells that fill their space (lines on the first axis, plane cells in the first two, solids) have a square
 //! Jacobian; faces and embedded lines have a measure and a normal instead.
 
+use crate::{Element, MAX_NODES};
+
 /// Point of the cell, x = Σ_a N_a x_a, in the unit of the node coordinates `x`.
 #[inline]
 pub fn point(x: &[[f64; 3]], n: &[f64]) -> [f64; 3] {
@@ -48,6 +50,27 @@ pub fn physical_gradient(
     let cofactor = [cross(b, c), cross(c, a), cross(a, b)];
     for (out, dn) in out.iter_mut().zip(dn) {
         *out = [0, 1, 2].map(|i| dot(&cofactor[i], dn) / det);
+    }
+}
+
+/// Second derivatives of the shape functions of a line or a face, (∂²N_a/∂ξ², ∂²N_a/∂η², ∂²N_a/∂ξ∂η).
+///
+/// `out` has the length of the nodes. By central differences of the gradients, which are of degree two at most in each
+/// variable: exact but for round-off. Not for the pyramid, whose gradients are rational.
+pub fn second_gradient(element: &Element, xi: &[f64; 3], out: &mut [[f64; 3]]) {
+    let (mut up, mut down) = ([[0.0; 3]; MAX_NODES], [[0.0; 3]; MAX_NODES]);
+    for axis in 0..2 {
+        let at = |side: f64| {
+            let mut xi = *xi;
+            xi[axis] += side;
+            xi
+        };
+        (element.gradient)(&at(1.0), &mut up[..element.nodes]);
+        (element.gradient)(&at(-1.0), &mut down[..element.nodes]);
+        for (out, (up, down)) in out.iter_mut().zip(up.iter().zip(&down)) {
+            out[axis] = 0.5 * (up[axis] - down[axis]);
+            out[2] = 0.5 * (up[1 - axis] - down[1 - axis]);
+        }
     }
 }
 

@@ -3,12 +3,14 @@
 //! * [`solve`] gives the exact motion of elastic bars that hit a rigid wall or each other: piecewise-linear
 //!   velocity waves, no time step, any number of bounces.
 //! * [`closed_forms`] holds the formulas of the discrete schemes that are known in closed form.
+//! * [`hertz`] is the contact of spheres and cylinders, at rest and in impact.
 //!
 //! Nothing here is shared with the code that is judged: this crate depends on no other.
 
 mod bar;
 pub mod closed_forms;
 mod error;
+pub mod hertz;
 mod impact;
 mod motion;
 mod wave;

@@ -2,6 +2,8 @@
 
 use carom_algebra::tensor::Mat3;
 
+use crate::range::{OutOfRange, require};
+
 /// How the directions outside the plane (or beside the axis) of a model behave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plane {
@@ -25,6 +27,22 @@ pub struct Elastic {
 }
 
 impl Elastic {
+    /// Names a parameter outside its range.
+    ///
+    /// # Errors
+    /// The first such parameter.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        let nu = self.poisson;
+        require("density", self.density, self.density > 0.0, "positive")?;
+        require("young", self.young, self.young > 0.0, "positive")?;
+        require(
+            "poisson",
+            nu,
+            -1.0 < nu && nu < 0.5,
+            "greater than -1 and less than 0.5",
+        )
+    }
+
     /// Shear modulus μ = E / (2 (1 + ν)), in Pa.
     pub fn shear_modulus(&self) -> f64 {
         self.young / (2.0 * (1.0 + self.poisson))

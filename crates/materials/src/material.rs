@@ -3,7 +3,9 @@
 use carom_algebra::tensor::Mat3;
 use thiserror::Error as ThisError;
 
-use crate::{Elastic, Plane};
+use crate::{
+    Elastic, J2Plasticity, Maxwell, MooneyRivlin, NeoHooke, OutOfRange, Plane, StVenantKirchhoff,
+};
 
 /// Derivative ∂P/∂F of the first Piola-Kirchhoff stress, in Pa: entry `[3 i + j][3 k + l]` is ∂P_ij/∂F_kl.
 pub type Tangent = [[f64; 9]; 9];
@@ -41,16 +43,6 @@ pub enum Failure {
         /// det F.
         determinant: f64,
     },
-    /// The local equations of a law were not solved.
-    #[error(
-        "the return to the yield surface did not converge in {passes} passes (residual {residual:e})"
-    )]
-    NoReturn {
-        /// Passes made.
-        passes: usize,
-        /// What is left, relative.
-        residual: f64,
-    },
 }
 
 /// A law at finite strain, at one point.
@@ -65,7 +57,7 @@ pub trait Material {
     /// `new`.
     ///
     /// # Errors
-    /// det F not positive; local equations without solution.
+    /// det F not positive.
     fn update(
         &self,
         f: &Mat3,
@@ -89,6 +81,22 @@ pub trait Material {
 pub enum Law {
     /// Linear elasticity at small strain: no law at finite strain.
     Elastic(Elastic),
+    /// St Venant-Kirchhoff elasticity.
+    StVenantKirchhoff(StVenantKirchhoff),
+    /// Compressible neo-Hookean elasticity.
+    NeoHooke(NeoHooke),
+    /// Compressible Mooney-Rivlin elasticity.
+    MooneyRivlin(MooneyRivlin),
+    /// J2 plasticity with linear isotropic hardening.
+    J2Plasticity(J2Plasticity),
+    /// Generalised Maxwell viscoelasticity.
+    Maxwell(Maxwell),
+}
+
+impl From<Elastic> for Law {
+    fn from(elastic: Elastic) -> Law {
+        Law::Elastic(elastic)
+    }
 }
 
 impl Law {
@@ -96,6 +104,11 @@ impl Law {
     pub fn finite(&self) -> Option<&dyn Material> {
         match self {
             Law::Elastic(_) => None,
+            Law::StVenantKirchhoff(law) => Some(law),
+            Law::NeoHooke(law) => Some(law),
+            Law::MooneyRivlin(law) => Some(law),
+            Law::J2Plasticity(law) => Some(law),
+            Law::Maxwell(law) => Some(law),
         }
     }
 
@@ -103,6 +116,26 @@ impl Law {
     pub fn initial(&self) -> Elastic {
         match self {
             Law::Elastic(elastic) => *elastic,
+            Law::StVenantKirchhoff(law) => law.initial,
+            Law::NeoHooke(law) => law.initial,
+            Law::MooneyRivlin(law) => Material::initial(law),
+            Law::J2Plasticity(law) => law.initial,
+            Law::Maxwell(law) => law.initial,
+        }
+    }
+
+    /// Names a parameter outside its range.
+    ///
+    /// # Errors
+    /// The first such parameter.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        match self {
+            Law::Elastic(elastic) => elastic.check(),
+            Law::StVenantKirchhoff(law) => law.initial.check(),
+            Law::NeoHooke(law) => law.initial.check(),
+            Law::MooneyRivlin(law) => law.check(),
+            Law::J2Plasticity(law) => law.check(),
+            Law::Maxwell(law) => law.check(),
         }
     }
 

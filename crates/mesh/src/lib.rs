@@ -4,9 +4,9 @@
 //! one. A [`Surface`] is a group of facets, each matched to the cell that it bounds. [`project()`] finds the gap of a
 //! point over one face, [`BoxTree`] the faces worth asking.
 
+mod curved;
 mod free;
 pub mod generate;
-mod hull;
 pub mod mesh;
 pub mod project;
 pub mod read;

@@ -6,7 +6,7 @@
 
 use carom_elements::{Element, Kind, MAX_NODES, map};
 
-use crate::Face;
+use crate::{Face, curved};
 
 /// How far outside a face, in reference units, a projection still counts as inside: round-off at shared edges.
 const SLACK: f64 = 1e-9;
@@ -32,10 +32,11 @@ pub struct Projection {
 /// The closest point of a face to `point`.
 ///
 /// `positions`: those of the face's corners, in its order, reference or current, in m. min |x - y(ξ)| over the
-/// reference cell; exact for bars (in the plane of the first two axes) and triangles; for quadrilaterals by
-/// Newton's method with clamping, to round-off, from the centre of the face. A warped quadrilateral can have several
-/// points that are closest in their neighbourhood: the result is then one of them, and it is the closest of all if
-/// the point is nearer than the face's radius of curvature. For the end of a bar the normal is the face's axis.
+/// reference cell; exact for bars (in the plane of the first two axes), straight or quadratic, and for triangles of three
+/// nodes; for the other faces by Newton's method with clamping, to round-off, from the centre of the face or, if it is
+/// quadratic, from the nearest of its nodes. A warped or curved face can have several points that are closest in their
+/// neighbourhood: the result is then one of them, and it is the closest of all if the point is nearer than the face's
+/// radius of curvature. For the end of a bar the normal is the face's axis.
 pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Projection {
     let element = face.kind.table();
     let (xi, free) = match face.kind {
@@ -43,7 +44,16 @@ pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Project
         Kind::Bar2 => on_segment(positions, point),
         Kind::Tri3 => on_triangle(positions, point),
         Kind::Quad4 => on_patch(element, positions, point),
-        _ => unreachable!("a face has two dimensions at most"),
+        Kind::Bar3 => curved::on_curve(element, positions, point),
+        Kind::Tri6 | Kind::Quad8 | Kind::Quad9 => curved::on_patch(element, positions, point),
+        Kind::Tet4
+        | Kind::Tet10
+        | Kind::Hex8
+        | Kind::Hex20
+        | Kind::Hex27
+        | Kind::Wedge6
+        | Kind::Wedge15
+        | Kind::Pyramid5 => unreachable!("a face has two dimensions at most"),
     };
     let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);
     (element.shape)(&xi, &mut n[..element.nodes]);
@@ -178,11 +188,11 @@ impl Patch<'_> {
     }
 }
 
-fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+pub(crate) fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+pub(crate) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -195,11 +205,21 @@ mod tests {
     fn face(kind: Kind, axis: [f64; 3]) -> Face {
         Face {
             kind,
-            nodes: crate::face_nodes(&[0, 1, 2, 3]),
+            nodes: crate::face_nodes(&[0, 1, 2, 3, 4, 5, 6, 7, 8]),
             parent: ElementId { block: 0, index: 0 },
             axis,
         }
     }
+
+    const KINDS: [Kind; 7] = [
+        Kind::Bar2,
+        Kind::Bar3,
+        Kind::Tri3,
+        Kind::Tri6,
+        Kind::Quad4,
+        Kind::Quad8,
+        Kind::Quad9,
+    ];
 
     fn position(kind: Kind, x: &[[f64; 3]], xi: &[f64; 3]) -> [f64; 3] {
         let mut n = vec![0.0; x.len()];
@@ -227,7 +247,7 @@ mod tests {
                     let t = 2.0 * offset[i] as f64 / steps as f64 - 1.0;
                     xi[i] = (centre[i] + half * t).clamp(-1.0, 1.0);
                 }
-                if kind == Kind::Tri3 {
+                if kind.table().linear == Kind::Tri3 {
                     // Onto the simplex along a ray, so that its slanted edge is sampled too.
                     xi = xi.map(|c| c.max(0.0));
                     let sum = (xi[0] + xi[1]).max(1.0);
@@ -246,7 +266,7 @@ mod tests {
 
     /// A face of size about one: the reference cell moved by a random map near a rotation, corners shaken.
     fn random_face(kind: Kind, random: &mut Random) -> Vec<[f64; 3]> {
-        let plane = kind == Kind::Bar2;
+        let plane = kind.table().dim == 1;
         let (a, b, origin) = (random.point(1.0), random.point(1.0), random.point(1.0));
         let flat = |x: [f64; 3]| if plane { [x[0], x[1], 0.0] } else { x };
         // The second direction is made square to the first, so that the face is no needle.
@@ -266,12 +286,12 @@ mod tests {
     #[test]
     fn the_projection_is_the_closest_point_of_the_face() {
         let mut random = Random::new(2);
-        for kind in [Kind::Bar2, Kind::Tri3, Kind::Quad4] {
+        for kind in KINDS {
             let mut inside = 0;
             for _ in 0..200 {
                 let x = random_face(kind, &mut random);
                 let mut point = random.point(1.5);
-                if kind == Kind::Bar2 {
+                if kind.table().dim == 1 {
                     point[2] = 0.0;
                 }
                 let found = project(&face(kind, [0.0; 3]), &x, &point);
@@ -287,18 +307,18 @@ mod tests {
                     assert!((found.gap.abs() - found.distance).abs() < 1e-9);
                 }
             }
-            assert!((10..190).contains(&inside), "{kind:?} {inside}");
+            assert!((5..195).contains(&inside), "{kind:?} {inside}");
         }
     }
 
     #[test]
     fn a_point_lifted_off_the_face_along_the_normal_comes_back_with_its_gap() {
         let mut random = Random::new(3);
-        for kind in [Kind::Bar2, Kind::Tri3, Kind::Quad4] {
+        for kind in KINDS {
             for _ in 0..200 {
                 let x = random_face(kind, &mut random);
                 let mut xi = [0.8 * random.unit(), 0.8 * random.unit(), 0.0];
-                match kind {
+                match kind.table().linear {
                     Kind::Bar2 => xi[1] = 0.0,
                     Kind::Tri3 => xi[1] *= 1.0 - xi[0],
                     _ => (),

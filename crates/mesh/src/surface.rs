@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_elements::{Kind, MAX_FACE_NODES, MAX_NODES, map};
+use carom_elements::{Element, Kind, MAX_FACE_NODES, MAX_NODES, map};
 
 use crate::mesh::gather;
 use crate::{ElementId, Error, Group, Mesh};
@@ -101,26 +101,105 @@ impl Surface {
     ///
     /// In the reference position: a length in m in the plane, an area in m² in space; 1 for the end of a bar, whose
     /// section is not the mesh's business.
+    ///
+    /// Of a quadratic face these are the weights of a pressure's nodal forces, and no areas: zero at the corners of a
+    /// six-node triangle, negative at those of an eight-node quadrilateral. See [`Surface::tributary_areas`].
     pub fn node_areas(&self, mesh: &Mesh) -> Vec<f64> {
+        self.integrate(mesh, |kind| {
+            let places = (0..kind.table().nodes).collect();
+            vec![Piece { kind, places }]
+        })
+    }
+
+    /// Share of each node in the surface in the sense of an area, one value per entry of [`Surface::nodes`]: ∫ φ_a dΓ
+    /// with φ_a linear on each of the linear faces that join the nodes of a face ([`pieces`]), taken in the reference
+    /// cell. Always positive; the sum is the area. In the units of [`Surface::node_areas`], which it equals on linear
+    /// faces.
+    pub fn tributary_areas(&self, mesh: &Mesh) -> Vec<f64> {
+        self.integrate(mesh, pieces)
+    }
+
+    /// ∫ φ_a dΓ with φ_a the shape functions of the pieces into which each face is cut.
+    fn integrate(&self, mesh: &Mesh, cut: impl Fn(Kind) -> Vec<Piece>) -> Vec<f64> {
         let mut areas = vec![0.0; self.nodes.len()];
         let mut buffer = [[0.0; 3]; MAX_NODES];
         for face in &self.faces {
-            let table = face.kind.table();
             let x = gather(&mesh.nodes, face.corners(), &mut buffer);
-            let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);
-            let rule = table.mass_rule;
-            for (xi, weight) in rule.points.iter().zip(rule.weights) {
-                (table.shape)(xi, &mut n[..table.nodes]);
-                (table.gradient)(xi, &mut dn[..table.nodes]);
-                let (factor, _) = map::measure(x, &dn[..table.nodes], table.dim);
-                for (&node, n) in face.corners().iter().zip(n) {
-                    if let Some(a) = self.index_of(node) {
-                        areas[a] += n * factor * weight;
+            for piece in cut(face.kind) {
+                for (place, area) in piece.areas(face.kind.table(), x) {
+                    if let Some(a) = self.index_of(face.nodes[place]) {
+                        areas[a] += area;
                     }
                 }
             }
         }
         areas
+    }
+}
+
+/// A part of the reference cell of a face between some of its nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// Its shape.
+    pub kind: Kind,
+    /// Its corners, as places in the node list of the face.
+    pub places: Vec<usize>,
+}
+
+/// The linear faces that join the nodes of a face: itself if it is linear; two halves of a line; four triangles of a
+/// six-node triangle; a triangle at each corner of an eight-node quadrilateral and a quadrilateral between; the four
+/// quadrants of a nine-node one. Turned like the face.
+pub fn pieces(kind: Kind) -> Vec<Piece> {
+    const TRIANGLES: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
+    const CORNERS: [[usize; 3]; 4] = [[0, 4, 7], [1, 5, 4], [2, 6, 5], [3, 7, 6]];
+    const QUADRANTS: [[usize; 4]; 4] = [[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]];
+    let piece = |kind: Kind, places: &[usize]| Piece {
+        kind,
+        places: places.to_vec(),
+    };
+    match kind {
+        Kind::Bar3 => vec![piece(Kind::Bar2, &[0, 2]), piece(Kind::Bar2, &[2, 1])],
+        Kind::Tri6 => TRIANGLES.map(|t| piece(Kind::Tri3, &t)).to_vec(),
+        Kind::Quad8 => {
+            let middle = piece(Kind::Quad4, &[4, 5, 6, 7]);
+            let corners = CORNERS.iter().map(|t| piece(Kind::Tri3, t));
+            corners.chain([middle]).collect()
+        }
+        Kind::Quad9 => QUADRANTS.map(|q| piece(Kind::Quad4, &q)).to_vec(),
+        _ => vec![piece(kind, &(0..kind.table().nodes).collect::<Vec<_>>())],
+    }
+}
+
+impl Piece {
+    /// ∫ φ dΓ of each of its corners over its part of a face with these node positions.
+    fn areas(&self, face: &Element, x: &[[f64; 3]]) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let table = self.kind.table();
+        let mut corners = [[0.0; 3]; MAX_FACE_NODES];
+        for (corner, &place) in corners.iter_mut().zip(&self.places) {
+            *corner = face.reference[place];
+        }
+        let corners = &corners[..table.nodes];
+        let mut areas = [0.0; MAX_FACE_NODES];
+        let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);
+        let rule = table.mass_rule;
+        for (xi, weight) in rule.points.iter().zip(rule.weights) {
+            (table.shape)(xi, &mut n[..table.nodes]);
+            (table.gradient)(xi, &mut dn[..table.nodes]);
+            // the reference cell of a whole face is its own, to the last bit
+            let (part, place) = match self.kind == face.kind {
+                true => (1.0, *xi),
+                false => (
+                    map::measure(corners, &dn[..table.nodes], table.dim).0,
+                    map::point(corners, &n[..table.nodes]),
+                ),
+            };
+            (face.gradient)(&place, &mut dn[..face.nodes]);
+            let (factor, _) = map::measure(x, &dn[..face.nodes], face.dim);
+            for (area, n) in areas.iter_mut().zip(&n[..table.nodes]) {
+                *area += n * (part * factor) * weight;
+            }
+        }
+        self.places.iter().copied().zip(areas)
     }
 }
 
@@ -240,6 +319,98 @@ mod tests {
             let side = if mesh.dim == 3 { "a.right" } else { "a.top" };
             let areas = surface(&mesh, "a", side).unwrap().node_areas(&mesh);
             assert!((areas.iter().sum::<f64>() - expected).abs() < 1e-14);
+        }
+    }
+
+    /// A mesh of one face of this kind on a cell of which only that face matters, and the surface of it.
+    fn one_face(kind: Kind, bend: impl Fn(&[f64; 3]) -> [f64; 3]) -> (Mesh, Surface) {
+        let mut mesh = Mesh::new(3);
+        let count = kind.table().nodes as u32;
+        mesh.nodes = kind.table().reference.iter().map(bend).collect();
+        let nodes: Vec<u32> = (0..count).collect();
+        let face = Face {
+            kind,
+            nodes: face_nodes(&nodes),
+            parent: ElementId { block: 0, index: 0 },
+            axis: [0.0; 3],
+        };
+        let faces = vec![face];
+        (mesh, Surface { faces, nodes })
+    }
+
+    const QUADRATIC: [(Kind, f64); 4] = [
+        (Kind::Bar3, 2.0),
+        (Kind::Tri6, 0.5),
+        (Kind::Quad8, 4.0),
+        (Kind::Quad9, 4.0),
+    ];
+
+    #[test]
+    fn forces_of_a_pressure_on_flat_quadratic_faces_are_as_in_textbooks() {
+        // shares of ends or corners, of the middles of edges, of the centre
+        let shares: [[f64; 3]; 4] = [
+            [1.0 / 6.0, 0.0, 4.0 / 6.0],
+            [0.0, 1.0 / 3.0, 0.0],
+            [-1.0 / 12.0, 1.0 / 3.0, 0.0],
+            [1.0 / 36.0, 1.0 / 9.0, 4.0 / 9.0],
+        ];
+        for ((kind, area), shares) in QUADRATIC.into_iter().zip(shares) {
+            let (mesh, surface) = one_face(kind, |xi| *xi);
+            let corners = kind.table().linear.table().nodes;
+            for (a, found) in surface.node_areas(&mesh).into_iter().enumerate() {
+                let share = match a {
+                    a if a < corners => shares[0],
+                    a if a < 2 * corners && kind != Kind::Bar3 => shares[1],
+                    _ => shares[2],
+                };
+                assert!((found - share * area).abs() < 1e-14, "{kind:?} {a}");
+            }
+        }
+    }
+
+    #[test]
+    fn tributary_areas_are_positive_and_add_up_to_the_area() {
+        for (kind, area) in QUADRATIC {
+            let (mesh, surface) = one_face(kind, |xi| *xi);
+            let areas = surface.tributary_areas(&mesh);
+            assert!((areas.iter().sum::<f64>() - area).abs() < 1e-14);
+            assert!(areas.iter().all(|&a| a > 0.04 * area), "{kind:?}");
+            // Curved like a parabola: both sums approach the area, with rules of different points.
+            let bend = |x: &[f64; 3]| [x[0], x[1], 0.1 * (x[0] * x[0] + x[0] * x[1])];
+            let (mesh, surface) = one_face(kind, bend);
+            let areas = surface.tributary_areas(&mesh);
+            let sum: f64 = surface.node_areas(&mesh).iter().sum();
+            assert!(areas.iter().all(|&a| a > 0.0));
+            assert!(
+                (areas.iter().sum::<f64>() / sum - 1.0).abs() < 1e-4,
+                "{kind:?}"
+            );
+        }
+        let mesh = box_("a", [0.0; 3], [1.0, 2.0, 1.5], [3, 2, 2], true);
+        let side = surface(&mesh, "a", "a.right").unwrap();
+        assert_eq!(side.tributary_areas(&mesh), side.node_areas(&mesh));
+    }
+
+    #[test]
+    fn the_pieces_of_a_face_cover_it_once_and_keep_its_turn() {
+        for (kind, area) in QUADRATIC {
+            let mut sum = 0.0;
+            for piece in pieces(kind) {
+                let table = piece.kind.table();
+                let x: Vec<_> = piece
+                    .places
+                    .iter()
+                    .map(|&a| kind.table().reference[a])
+                    .collect();
+                let mut dn = vec![[0.0; 3]; table.nodes];
+                for (xi, weight) in table.mass_rule.points.iter().zip(table.mass_rule.weights) {
+                    (table.gradient)(xi, &mut dn);
+                    let (_, det) = map::jacobian(&x, &dn, table.dim);
+                    assert!(det > 0.0, "{kind:?}");
+                    sum += weight * det;
+                }
+            }
+            assert!((sum - area).abs() < 1e-14, "{kind:?}");
         }
     }
 

@@ -81,6 +81,7 @@ fn zoned(n: usize) -> Result<Zoned, Error> {
             scheme: theta(0.5),
             dt: 0.5 * h / RUBBER.wave_speed(Plane::Full),
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
         },
         links,
         kind: LinkKind::GravouilCombescure,

@@ -176,6 +176,7 @@ impl Strip {
                 scheme: theta(0.5),
                 dt: COURANT,
                 adaptive: None,
+                nonlinear: carom_dynamics::Nonlinear::default(),
             },
         })?)
     }

@@ -245,6 +245,7 @@ impl Run {
                 massless: self.massless,
                 initial: Initial::Keep,
                 depth: None,
+                friction: 0.0,
                 ..contact(secondary, primary, self.law)
             }],
             bodies,
@@ -253,6 +254,7 @@ impl Run {
             scheme: self.scheme,
             dt: self.dt(),
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
             mesh,
         })
     }

@@ -46,6 +46,7 @@ fn model(n: usize, scheme: Scheme, law: Law) -> Result<Model, Error> {
         scheme,
         dt: 0.5 * SIDE / n as f64 / RUBBER.wave_speed(Plane::Full),
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     })
 }

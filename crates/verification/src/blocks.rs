@@ -103,6 +103,7 @@ impl Blocks {
             scheme,
             dt: courant * shortest / RUBBER.wave_speed(Plane::Full),
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
             mesh,
         })
     }

@@ -1,6 +1,6 @@
 //! Parts of models, in few words.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Adhesion, Capture, Compliance, Damped, Displacement, Reading, Velocity};
 use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
@@ -84,7 +84,8 @@ pub(crate) fn body(
             name: name.to_string(),
             cells: group(mesh, name)?.elements.clone(),
             kinematics,
-            material,
+            material: material.into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -110,6 +111,7 @@ pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> Mod
         massless: false,
         initial: Initial::Keep,
         depth: None,
+        friction: 0.0,
     }
 }
 

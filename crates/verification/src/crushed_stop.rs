@@ -136,6 +136,7 @@ fn model(scheme: Scheme) -> Result<Model, Error> {
         scheme,
         dt: first.course().0[2] / STEPS,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     })
 }

@@ -219,6 +219,7 @@ pub(crate) fn model(
         scheme: theta(0.5),
         dt,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
     }
 }
 

@@ -132,6 +132,7 @@ impl GluedBar {
                 scheme: theta(0.5),
                 dt: self.courant,
                 adaptive: None,
+                nonlinear: carom_dynamics::Nonlinear::default(),
             },
         })
     }

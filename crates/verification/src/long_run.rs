@@ -7,7 +7,7 @@
 //! and Chawla and of Laursen and Love keep it. Bounds: a gain of 1e-9 of the energy, for the rounding of some 1e5 steps; the last contact
 //! within a fifth of a period, a thousandth of a period for each bounce.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::Capture;
 use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::{
@@ -107,7 +107,9 @@ pub fn bounces(
                     density: 1.0,
                     young: 1.0,
                     poisson: 0.0,
-                },
+                }
+                .into(),
+                formulation: Formulation::Full,
                 weights: None,
             },
             mass: MassKind::Lumped,
@@ -132,10 +134,12 @@ pub fn bounces(
             massless: false,
             initial: Initial::Keep,
             depth: None,
+            friction: 0.0,
         }],
         scheme,
         dt: 0.5 / elements as f64,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     let Ok(system) = System::new(model) else {

@@ -45,6 +45,7 @@ fn model(scheme: Scheme, dt: f64) -> Result<Model, Error> {
         scheme,
         dt,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     })
 }

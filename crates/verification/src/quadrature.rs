@@ -80,6 +80,7 @@ fn tilted(n: usize, choice: Choice, integration: Integration) -> Result<Model, E
         scheme: choice.scheme,
         dt: 0.5 / n as f64 / RUBBER.wave_speed(Plane::Full),
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     })
 }

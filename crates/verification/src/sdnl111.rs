@@ -68,6 +68,7 @@ fn model(mesh: Mesh, elements: usize) -> Result<Model, Error> {
         scheme: theta(0.5),
         dt: 0.5 / elements as f64 / STEEL.wave_speed(Plane::Full),
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     })
 }

@@ -62,6 +62,7 @@ fn model(elements: usize, young: f64) -> Result<Model, Error> {
         scheme: theta(0.5),
         dt: 0.5 * LENGTH / elements as f64 / (young / DENSITY).sqrt(),
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     })
 }

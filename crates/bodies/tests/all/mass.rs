@@ -47,7 +47,7 @@ fn total_mass_is_density_times_volume_lumped_and_consistent() {
         }
         let stressed: f64 = sample
             .body
-            .stresses(&vec![0.0; sample.n])
+            .stresses(&vec![0.0; sample.n], &[])
             .iter()
             .map(|(v, _)| v)
             .sum();

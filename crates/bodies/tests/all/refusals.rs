@@ -1,6 +1,6 @@
 //! What a body refuses.
 
-use carom_bodies::{Body, BodySpec, CellWeights, Error, Kinematics};
+use carom_bodies::{Body, BodySpec, CellWeights, Error, Formulation, Kinematics};
 use carom_mesh::{ElementId, Mesh, generate};
 
 use crate::sample::{MATERIAL, cells};
@@ -19,7 +19,8 @@ fn refusal_of(
         name: "arm".to_owned(),
         cells,
         kinematics,
-        material: MATERIAL,
+        material: MATERIAL.into(),
+        formulation: Formulation::Full,
         weights,
     };
     let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();

@@ -2,9 +2,9 @@
 
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
-use carom_bodies::{Body, BodySpec, CellWeights, Kinematics, Scratch};
+use carom_bodies::{Body, BodySpec, CellWeights, Formulation, Kinematics, Scratch};
 use carom_elements::Kind;
-use carom_materials::Elastic;
+use carom_materials::{Elastic, Law};
 use carom_mesh::{ElementId, Mesh, generate};
 use carom_testing::Random;
 
@@ -23,6 +23,7 @@ pub struct Sample {
     pub name: String,
     pub mesh: Mesh,
     pub body: Body,
+    pub formulation: Formulation,
     /// System number of each mesh node.
     pub number: Vec<u32>,
     /// Unknowns.
@@ -32,7 +33,17 @@ pub struct Sample {
 }
 
 impl Sample {
-    pub fn new(name: &str, mut mesh: Mesh, kinematics: Kinematics) -> Sample {
+    pub fn new(name: &str, mesh: Mesh, kinematics: Kinematics) -> Sample {
+        Sample::of(name, mesh, kinematics, MATERIAL.into(), Formulation::Full)
+    }
+
+    pub fn of(
+        name: &str,
+        mut mesh: Mesh,
+        kinematics: Kinematics,
+        material: Law,
+        formulation: Formulation,
+    ) -> Sample {
         let used = mesh.nodes.len();
         mesh.nodes.push([9.0, 0.0, 0.0]);
         let mut number: Vec<u32> = (0..used as u32).rev().collect();
@@ -42,7 +53,8 @@ impl Sample {
             name: name.to_owned(),
             cells,
             kinematics,
-            material: MATERIAL,
+            material,
+            formulation,
             weights: None,
         };
         Sample {
@@ -52,6 +64,7 @@ impl Sample {
             x: mesh.nodes[..used].iter().rev().copied().collect(),
             mesh,
             number,
+            formulation,
         }
     }
 
@@ -62,7 +75,8 @@ impl Sample {
             name: self.name.clone(),
             cells: cells(&self.mesh, kinematics.dim()),
             kinematics,
-            material: MATERIAL,
+            material: *self.body.material(),
+            formulation: self.formulation,
             weights: Some(weights),
         };
         let body = Body::new(&self.mesh, spec, &self.number).unwrap();
@@ -104,8 +118,8 @@ impl Sample {
         (f, energy)
     }
 
-    /// a K + b M, dense and row-major.
-    pub fn matrix(&self, a: f64, b: f64) -> Vec<f64> {
+    /// A matrix of the body, empty.
+    pub fn pattern(&self) -> Csr {
         let dim = self.dim();
         let mut cliques = Cliques::new();
         self.body.each_element(&mut |nodes| {
@@ -114,10 +128,14 @@ impl Sample {
                 .flat_map(|&node| (0..dim as u32).map(move |i| dim as u32 * node + i));
             cliques.push(&unknowns.collect::<Vec<_>>());
         });
-        let mut matrix = Csr::from_cliques(self.n, &cliques);
+        Csr::from_cliques(self.n, &cliques)
+    }
+
+    /// a K + b M, dense and row-major.
+    pub fn matrix(&self, a: f64, b: f64) -> Vec<f64> {
+        let mut matrix = self.pattern();
         self.body.assemble(a, b, &(0..self.n), &mut matrix);
-        let n = self.n;
-        (0..n * n).map(|k| matrix.get(k / n, k % n)).collect()
+        dense(&matrix, self.n)
     }
 
     pub fn lumped_mass(&self) -> Vec<f64> {
@@ -150,6 +168,11 @@ impl Sample {
         motions.extend(rotations.iter().map(|axis| self.field(|x| cross(axis, x))));
         motions
     }
+}
+
+/// Row-major.
+pub fn dense(matrix: &Csr, n: usize) -> Vec<f64> {
+    (0..n * n).map(|k| matrix.get(k / n, k % n)).collect()
 }
 
 /// All cells of a dimension.
@@ -204,6 +227,13 @@ pub fn bars() -> Vec<Sample> {
 
 /// Plane, axisymmetric and solid bodies; one with triangles and quadrilaterals.
 pub fn continua() -> Vec<Sample> {
+    let samples = shapes().into_iter();
+    let sample = |(name, mesh, kinematics)| Sample::new(name, mesh, kinematics);
+    samples.map(sample).collect()
+}
+
+/// The bodies of [`continua`] before they have a material.
+pub fn shapes() -> Vec<(&'static str, Mesh, Kinematics)> {
     let mut samples = Vec::new();
     for kinematics in [
         Kinematics::PlaneStrain {
@@ -219,12 +249,12 @@ pub fn continua() -> Vec<Sample> {
             ("quad4", distorted(rectangle(false))),
             ("tri3 and quad4", distorted(mixed())),
         ] {
-            samples.push(Sample::new(name, mesh, kinematics));
+            samples.push((name, mesh, kinematics));
         }
     }
     for (name, tets) in [("tet4", true), ("hex8", false)] {
         let mesh = generate::box_("b", [0.5, 0.0, 0.0], [1.0, 0.9, 1.2], [2, 2, 3], tets);
-        samples.push(Sample::new(name, distorted(mesh), Kinematics::Solid));
+        samples.push((name, distorted(mesh), Kinematics::Solid));
     }
     samples
 }

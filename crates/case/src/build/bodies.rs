@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_dynamics::ModelBody;
 use carom_materials::Elastic;
 use carom_mesh::{ElementId, Mesh};
@@ -54,7 +54,8 @@ impl Builder<'_> {
                     name: name.to_string(),
                     cells,
                     kinematics,
-                    material,
+                    material: material.into(),
+                    formulation: Formulation::Full,
                     weights: None,
                 },
                 mass: match body.mass {

@@ -68,6 +68,7 @@ impl Builder<'_> {
                 massless: contact.nodes == schema::Nodes::Massless,
                 initial: Initial::Keep,
                 depth: None,
+                friction: 0.0,
             });
         }
         contacts

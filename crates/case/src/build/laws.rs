@@ -219,7 +219,7 @@ fn side(mesh: &Mesh, bodies: &[ModelBody], surface: &Surface) -> Side {
             .find(|body| body.spec.cells.binary_search(&face.parent).is_ok())
     });
     if let Some(body) = owner {
-        let material = &body.spec.material;
+        let material = body.spec.material.initial();
         side.young = material.young;
         side.wave_speed = material.wave_speed(body.spec.kinematics.plane());
         side.impedance = material.density * side.wave_speed;

@@ -132,6 +132,7 @@ impl Builder<'_> {
             scheme: self.outer_scheme(),
             dt: f64::MIN_POSITIVE,
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
         };
         let mut zoned = None;
         if self.plan.zones.is_empty() {

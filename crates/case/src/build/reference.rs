@@ -178,7 +178,7 @@ fn bar(
         .for_each(|(s, _)| (near, far) = (near.min(s), far.max(s)));
     let length = far - near;
     let mass: f64 = indices.iter().map(|&index| system.body_mass(index)).sum();
-    let density = body.material().density;
+    let density = body.material().density();
     if (mass - density * area * length).abs() > 1e-6 * mass {
         return Err(format!(
             "body `{}` is not a bar of the section of its contact",
@@ -195,8 +195,8 @@ fn bar(
         ));
     }
     let modulus = match sides {
-        Sides::Free => body.material().young,
-        Sides::Blocked => body.material().wave_modulus(Plane::Full),
+        Sides::Free => body.material().initial().young,
+        Sides::Blocked => body.material().initial().wave_modulus(Plane::Full),
     };
     let mut bar = Bar::new(length, area, modulus, density);
     if places.clone().any(|(s, node)| at_far(s) && clamped(node)) {

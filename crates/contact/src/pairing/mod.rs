@@ -15,7 +15,7 @@ use carom_algebra::csr::Csr;
 use self::merge::Merge;
 use self::mortar::Quadrature;
 pub use self::mortar::{Basis, Mortar};
-use self::stencil::Stencil;
+use self::stencil::{Block, Stencil};
 use crate::{Contact, Integration, Places, Rows, Search};
 
 /// Contact points of a list of contacts at one configuration, with the derivatives that Newton's method and friction
@@ -55,9 +55,11 @@ struct Share {
     weight: f64,
 }
 
-/// Scratch of the mortar method.
+/// Scratch.
 #[derive(Clone, Debug, Default)]
 struct Work {
+    /// Force on each stencil.
+    loads: Vec<f64>,
     found: Vec<u32>,
     quadrature: Vec<Quadrature>,
     shares: Vec<Share>,
@@ -96,10 +98,30 @@ impl Pairing {
     /// every kind of face, foot inside, on an edge or in a corner; for the mortar method with the quadrature points and
     /// their weights held. Panics if the pattern of the matrix lacks the pairs of [`Pairing::cliques`].
     pub fn add_curvature(&self, point: usize, force: f64, factor: f64, matrix: &mut Csr) {
-        for &(stencil, weight) in self.terms(point) {
+        let terms = self.terms(point).iter();
+        let loads = terms.map(|&(stencil, weight)| {
             let stencil = &self.stencils[stencil as usize];
-            stencil.add_curvature(self.dim, weight * factor * force, matrix);
+            (stencil, weight * factor * force)
+        });
+        add_loads(loads, self.dim, matrix);
+    }
+
+    /// Adds factor · Σ force · ∂²g/∂u² of all points: the sum of [`Pairing::add_curvature`] over them, each stencil looked
+    /// at once however many multipliers share it. `forces`: one per point, in N.
+    pub fn add_curvatures(&mut self, forces: &[f64], factor: f64, matrix: &mut Csr) {
+        let mut loads = std::mem::take(&mut self.work.loads);
+        loads.clear();
+        loads.resize(self.stencils.len(), 0.0);
+        for (point, force) in forces.iter().enumerate() {
+            for &(stencil, weight) in self.terms(point) {
+                loads[stencil as usize] += weight * force;
+            }
         }
+        let loaded = self.stencils.iter().zip(&loads);
+        let loaded = loaded.filter(|(_, load)| **load != 0.0);
+        let loaded = loaded.map(|(stencil, load)| (stencil, factor * load));
+        add_loads(loaded, self.dim, matrix);
+        self.work.loads = loads;
     }
 
     /// The unknowns of each stencil of a point: the pairs of unknowns that [`Pairing::add_curvature`] fills. Also a list
@@ -158,6 +180,27 @@ impl Pairing {
         for tangent in &mut self.tangents[..self.dim - 1] {
             tangent.push(0.0, [0.0; 3]);
         }
+    }
+}
+
+/// Adds the curvature of stencils times their loads; those that follow each other on the same nodes make one block.
+fn add_loads<'a>(loads: impl Iterator<Item = (&'a Stencil, f64)>, dim: usize, matrix: &mut Csr) {
+    let mut open: Option<(&Stencil, Block)> = None;
+    for (stencil, load) in loads {
+        let block = match open.take() {
+            Some((first, block)) if first.is_like(stencil) => block,
+            other => {
+                if let Some((first, block)) = other {
+                    block.add_to(first, matrix);
+                }
+                Block::new(stencil, dim)
+            }
+        };
+        let (_, block) = open.insert((stencil, block));
+        stencil.add_curvature(load, block);
+    }
+    if let Some((first, block)) = open {
+        block.add_to(first, matrix);
     }
 }
 

@@ -64,6 +64,8 @@ struct Foothold {
     x: [[f64; 3]; NODES],
     /// Coordinates of the foot in the reference cell.
     xi: [f64; 3],
+    /// N_b there.
+    shape: [f64; NODES],
     /// From the foot to the point, m.
     r: [f64; 3],
     /// Whether r is normal to the face.
@@ -112,10 +114,11 @@ impl Stencil {
         foot: &Projection,
         face: &Face,
     ) -> Stencil {
-        let mut positions = [[0.0; 3]; NODES];
+        let (mut positions, mut shape) = ([[0.0; 3]; NODES], [0.0; NODES]);
         for (position, &node) in positions.iter_mut().zip(face.corners()) {
             *position = places.of(node);
         }
+        (face.kind.table().shape)(&foot.xi, &mut shape[..face.corners().len()]);
         Stencil {
             point: *point,
             gap: foot.gap,
@@ -124,6 +127,7 @@ impl Stencil {
                 face: *face,
                 x: positions,
                 xi: foot.xi,
+                shape,
                 r: [0, 1, 2].map(|i| x[i] - foot.point[i]),
                 inside: foot.inside,
             }),
@@ -134,12 +138,21 @@ impl Stencil {
     pub fn push(&self, dim: usize, rows: &mut Rows, tangents: &mut [Rows; 2]) {
         rows.push(self.gap, self.normal);
         rows.set_rate(self.rate(&self.normal));
-        self.each_normal(|node, direction| rows.add_node(dim, node, &direction));
         let frame = tangent_vectors(&self.normal, dim);
         for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
             rows.push(0.0, *t);
             rows.set_rate(self.rate(t));
-            self.each_along(t, |node, direction| rows.add_node(dim, node, &direction));
+        }
+        let turning = self.turning();
+        for (i, (node, c)) in self.relative().enumerate() {
+            let mut n = self.normal.map(|n| c * n);
+            if let Some(turning) = &turning {
+                n = (Vec3::from(n) + turning[i]).into();
+            }
+            rows.add_node(dim, node, &n);
+            for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
+                rows.add_node(dim, node, &t.map(|t| c * t));
+            }
         }
     }
 
@@ -158,49 +171,31 @@ impl Stencil {
         (self.gap, self.normal)
     }
 
-    /// The blocks of the row N: nodes and derivatives of the gap by their places.
-    pub fn each_normal(&self, mut each: impl FnMut(u32, [f64; 3])) {
+    /// Relative motion x₁ - y at a foot that keeps its coordinates: nodes and their coefficients s_a and -N_b.
+    pub fn relative(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        let (nodes, shape) = match &self.foot {
+            Foot::Face(foot) => (foot.face.corners(), foot.shape.as_slice()),
+            Foot::Obstacle { .. } => (&[][..], &[][..]),
+        };
+        let primary = nodes.iter().zip(shape).map(|(&node, n)| (node, -n));
+        self.point.carriers().chain(primary)
+    }
+
+    /// What the row N has beside n times the relative motion, for each node of [`Stencil::relative`]: -ρ^α S_α, at a foot
+    /// that is held at the rim.
+    pub fn turning(&self) -> Option<[Vec3; 2 * NODES]> {
         match &self.foot {
             Foot::Face(foot) if !foot.inside && foot.dim() > 0 => {
-                let shape = Shape::new(self, foot);
-                let row = shape.row();
-                for (node, block) in self.nodes().zip(row) {
-                    each(node, block.into());
-                }
+                Some(Shape::new(self, foot).turn())
             }
-            _ => self.each_along(&self.normal, each),
+            _ => None,
         }
-    }
-
-    /// The blocks of the relative motion along a fixed direction, at a foot that keeps its coordinates.
-    pub fn each_along(&self, direction: &[f64; 3], mut each: impl FnMut(u32, [f64; 3])) {
-        for (node, n) in self.point.carriers() {
-            each(node, direction.map(|m| n * m));
-        }
-        if let Foot::Face(foot) = &self.foot {
-            let nodes = foot.face.corners();
-            let mut shape = [0.0; NODES];
-            (foot.element().shape)(&foot.xi, &mut shape[..nodes.len()]);
-            for (&node, n) in nodes.iter().zip(shape) {
-                each(node, direction.map(|m| -n * m));
-            }
-        }
-    }
-
-    /// Nodes of the point, then those of the face.
-    fn nodes(&self) -> impl Iterator<Item = u32> + '_ {
-        let primary = match &self.foot {
-            Foot::Face(foot) => foot.face.corners(),
-            Foot::Obstacle { .. } => &[],
-        };
-        let secondary = self.point.carriers().map(|(node, _)| node);
-        secondary.chain(primary.iter().copied())
     }
 
     /// The unknowns of the stencil's nodes and how many they are.
     pub fn unknowns(&self, dim: usize) -> ([u32; UNKNOWNS], usize) {
         let (mut unknowns, mut n) = ([0; UNKNOWNS], 0);
-        for node in self.nodes() {
+        for (node, _) in self.relative() {
             for i in 0..dim {
                 unknowns[n] = (dim as u32) * node + i as u32;
                 n += 1;
@@ -209,30 +204,28 @@ impl Stencil {
         (unknowns, n)
     }
 
-    /// Adds factor · ∂²g/∂u².
-    pub fn add_curvature(&self, dim: usize, factor: f64, matrix: &mut Csr) {
-        let mut block = Block {
-            dim,
-            factor,
-            n: self.nodes().count() * dim,
-            entries: [0.0; UNKNOWNS * UNKNOWNS],
-        };
-        match &self.foot {
-            Foot::Face(foot) if foot.dim() == 0 => return,
-            Foot::Face(foot) => Shape::new(self, foot).curvature(&mut block),
-            Foot::Obstacle { hessian, .. } => self.obstacle_curvature(hessian, &mut block),
-        }
-        let (unknowns, n) = self.unknowns(dim);
-        matrix.add_block(&unknowns[..n], &block.entries[..n * n]);
+    /// Whether the nodes are the same, in the same order.
+    pub fn is_like(&self, other: &Stencil) -> bool {
+        let nodes = |stencil| Stencil::relative(stencil).map(|(node, _)| node);
+        nodes(self).eq(nodes(other))
     }
 
-    fn obstacle_curvature(&self, hessian: &[[f64; 3]; 3], block: &mut Block) {
+    /// Adds factor · ∂²g/∂u² to a block over [`Stencil::unknowns`].
+    pub fn add_curvature(&self, factor: f64, block: &mut Block) {
+        match &self.foot {
+            Foot::Face(foot) if foot.dim() == 0 => (),
+            Foot::Face(foot) => Shape::new(self, foot).curvature(factor, block),
+            Foot::Obstacle { hessian, .. } => self.obstacle_curvature(factor, hessian, block),
+        }
+    }
+
+    fn obstacle_curvature(&self, factor: f64, hessian: &[[f64; 3]; 3], block: &mut Block) {
         let (n, dim) = (block.n, block.dim);
         for (a, (_, s)) in self.point.carriers().enumerate() {
             for (b, (_, t)) in self.point.carriers().enumerate() {
                 for i in 0..dim {
                     for j in 0..dim {
-                        let entry = block.factor * s * t * hessian[i][j];
+                        let entry = factor * s * t * hessian[i][j];
                         block.entries[(dim * a + i) * n + dim * b + j] += entry;
                     }
                 }
@@ -256,25 +249,54 @@ impl Foothold {
 type Form = [Vec3; 2 * NODES];
 
 /// Small symmetric matrix over the unknowns of a stencil.
-struct Block {
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
     dim: usize,
-    factor: f64,
     /// Unknowns: rows of the matrix.
     n: usize,
     entries: [f64; UNKNOWNS * UNKNOWNS],
 }
 
 impl Block {
+    /// Zeros over the unknowns of a stencil.
+    pub fn new(stencil: &Stencil, dim: usize) -> Block {
+        Block {
+            dim,
+            n: dim * stencil.relative().count(),
+            entries: [0.0; UNKNOWNS * UNKNOWNS],
+        }
+    }
+
+    /// Adds the block to the matrix over all unknowns.
+    pub fn add_to(&self, stencil: &Stencil, matrix: &mut Csr) {
+        let (unknowns, n) = stencil.unknowns(self.dim);
+        matrix.add_block(&unknowns[..n], &self.entries[..n * n]);
+    }
+
     /// Adds value · (a bᵀ + b aᵀ).
     fn add(&mut self, value: f64, a: &Form, b: &Form) {
-        let component = |form: &Form, i: usize| form[i / self.dim][i % self.dim];
-        let value = self.factor * value;
-        for i in 0..self.n {
-            let (a_i, b_i) = (value * component(a, i), value * component(b, i));
-            for j in 0..self.n {
-                self.entries[i * self.n + j] += a_i * component(b, j) + b_i * component(a, j);
+        let (a, b) = (self.flat(a), self.flat(b));
+        let (a, b) = (&a[..self.n], &b[..self.n]);
+        for (i, row) in self
+            .entries
+            .chunks_exact_mut(self.n)
+            .take(self.n)
+            .enumerate()
+        {
+            let (a_i, b_i) = (value * a[i], value * b[i]);
+            for ((entry, a_j), b_j) in row.iter_mut().zip(a).zip(b) {
+                *entry += a_i * b_j + b_i * a_j;
             }
         }
+    }
+
+    /// The components that are unknowns.
+    fn flat(&self, form: &Form) -> [f64; UNKNOWNS] {
+        let mut flat = [0.0; UNKNOWNS];
+        for (flat, vector) in flat.chunks_exact_mut(self.dim).zip(form) {
+            flat.copy_from_slice(&vector.as_slice()[..self.dim]);
+        }
+        flat
     }
 }
 
@@ -287,8 +309,6 @@ struct Shape<'a> {
     gap: f64,
     n: Vec3,
     r: Vec3,
-    /// N_b.
-    shape: [f64; NODES],
     /// N_b,α.
     gradients: [[f64; NODES]; 2],
     /// Tangents τ_α and their reciprocals τ^α; zero beyond the dimension of the face.
@@ -307,8 +327,6 @@ struct Shape<'a> {
 
 impl<'a> Shape<'a> {
     fn new(stencil: &'a Stencil, foot: &'a Foothold) -> Shape<'a> {
-        let mut shape = [0.0; NODES];
-        (foot.element().shape)(&foot.xi, &mut shape[..foot.element().nodes]);
         let gradients = [0, 1].map(|axis| derivative(foot.element(), &foot.xi, axis));
         let tangents = gradients.map(|weights| combination(&foot.x, &weights));
         let n = Vec3::from(stencil.normal);
@@ -326,7 +344,6 @@ impl<'a> Shape<'a> {
             gap: stencil.gap,
             n,
             r,
-            shape,
             gradients,
             tangents,
             reciprocal,
@@ -369,60 +386,68 @@ impl<'a> Shape<'a> {
         }
     }
 
-    /// N: n·r̂ - ρ^α S_α.
-    fn row(&self) -> Form {
-        let mut row = self.relative(&self.n);
+    /// -ρ^α S_α.
+    fn turn(&self) -> Form {
+        let mut form = [Vec3::zeros(); 2 * NODES];
         for axis in 0..self.foot.dim() {
-            row = sum(&row, -self.overhang[axis], &self.turning(axis));
+            form = sum(&form, -self.overhang[axis], &self.turning(axis));
         }
-        row
+        form
     }
 
-    /// Adds g″ to a matrix.
-    fn curvature(&self, block: &mut Block) {
+    /// Adds factor · g″ to a block.
+    fn curvature(&self, factor: f64, block: &mut Block) {
         let dim = self.foot.dim();
         let turning = [0, 1].map(|axis| self.turning(axis));
         for axis in 0..dim {
-            block.add(-1.0, &turning[axis], &self.slide(axis));
-            for (other, form) in turning.iter().enumerate().take(dim) {
+            let mut form = self.slide(axis);
+            for (other, turning) in turning.iter().enumerate().take(dim) {
                 let metric = self.reciprocal[axis].dot(&self.reciprocal[other]);
-                block.add(-0.5 * self.gap * metric, &turning[axis], form);
+                form = sum(&form, 0.5 * self.gap * metric, turning);
             }
+            block.add(-factor, &turning[axis], &form);
         }
         for k in 0..self.free {
-            let mut weights = self.gradient(k);
-            for axis in 0..dim {
-                let second = self.second(axis, k);
-                for (w, second) in weights.iter_mut().zip(second) {
+            let mut form = self.primary(&self.carried(k), &self.n);
+            for l in 0..self.free {
+                let mut bend = self.bend(k, l);
+                if !self.foot.inside {
+                    for axis in 0..dim {
+                        bend += self.overhang[axis] * self.twist(axis, k, l);
+                    }
+                }
+                form = sum(&form, 0.5 * self.n.dot(&bend), &self.motion[l]);
+            }
+            block.add(-factor, &form, &self.motion[k]);
+        }
+        if !self.foot.inside && self.free == 1 {
+            self.foot_acceleration(factor, block);
+        }
+    }
+
+    /// N_b,k + ρ^α N_b,αk.
+    fn carried(&self, k: usize) -> [f64; NODES] {
+        let mut weights = self.gradient(k);
+        if !self.foot.inside {
+            for axis in 0..self.foot.dim() {
+                for (w, second) in weights.iter_mut().zip(self.second(axis, k)) {
                     *w += self.overhang[axis] * second;
                 }
             }
-            block.add(-1.0, &self.primary(&weights, &self.n), &self.motion[k]);
-            for l in 0..self.free {
-                let mut bend = self.bend(k, l);
-                for axis in 0..dim {
-                    bend += self.overhang[axis] * self.twist(axis, k, l);
-                }
-                let value = -0.5 * self.n.dot(&bend);
-                block.add(value, &self.motion[k], &self.motion[l]);
-            }
         }
-        self.foot_acceleration(block);
+        weights
     }
 
     /// Adds - ρ^α (n·y_αk) ξ″_k. The factor vanishes unless the foot is on an edge of a curved face; there f = τ_k·r = 0
     /// gives -f_ξ ξ″ = f_uu + f_uξ ⊙ ξ + f_ξξ ξ ξ.
-    fn foot_acceleration(&self, block: &mut Block) {
-        if self.free != 1 {
-            return;
-        }
+    fn foot_acceleration(&self, factor: f64, block: &mut Block) {
         let slope: f64 = (0..self.foot.dim())
             .map(|axis| {
                 let bend = combination(&self.foot.x, &self.second(axis, 0));
                 self.overhang[axis] * self.n.dot(&bend)
             })
             .sum();
-        let value = -slope * self.compliance[0][0];
+        let value = -factor * slope * self.compliance[0][0];
         let (along, bend, gradient) = (self.tangent(0), self.bend(0, 0), self.gradient(0));
         for axis in [Vec3::x(), Vec3::y(), Vec3::z()] {
             block.add(
@@ -471,7 +496,7 @@ impl<'a> Shape<'a> {
 
     /// direction·r̂.
     fn relative(&self, direction: &Vec3) -> Form {
-        let mut form = self.primary(&self.shape.map(|n| -n), direction);
+        let mut form = self.primary(&self.foot.shape.map(|n| -n), direction);
         for (form, (_, s)) in form.iter_mut().zip(self.point.carriers()) {
             *form = direction * s;
         }

@@ -7,7 +7,7 @@ use carom_elements::Kind;
 use carom_mesh::Face;
 use carom_testing::{Random, allocations};
 
-use crate::fixture::{assert_balanced, assert_derivatives, contact, face, full, paired};
+use crate::fixture::{assert_balanced, assert_derivatives, contact, face, full, matrix, paired};
 
 const BASES: [Basis; 2] = [Basis::Standard, Basis::Dual];
 
@@ -335,6 +335,112 @@ fn rows_and_curvature_of_multipliers_are_derivatives_where_pieces_keep() {
             let contact = pair.contact(basis, 0.7);
             assert_derivatives(&pair.places(&u), |places| paired(&contact, places));
         }
+    }
+}
+
+#[test]
+fn the_curvature_of_all_points_is_the_sum_of_theirs() {
+    let mut random = Random(4);
+    for pair in flat_pairs() {
+        let pair = bent(pair, &mut random, 0.01);
+        let mut pairing = pair.pairing(Basis::Standard);
+        let n = pair.dim * pair.x.len();
+        let forces = random.vector(pairing.len());
+        let (mut one, mut all) = (matrix(&pairing, n), matrix(&pairing, n));
+        for (point, &force) in forces.iter().enumerate() {
+            pairing.add_curvature(point, force, 3.0, &mut one);
+        }
+        pairing.add_curvatures(&forces, 3.0, &mut all);
+        let mut size = 0.0_f64;
+        for i in 0..n {
+            for (a, b) in one.row(i).1.iter().zip(all.row(i).1) {
+                // sums of a hundred numbers of the order of the curvature per stencil
+                assert!((a - b).abs() < 1e-12, "{a} {b}");
+                size = size.max(a.abs());
+            }
+        }
+        assert!(size > 1e-2);
+    }
+}
+
+#[test]
+fn shadows_of_a_bent_surface_cover_another_once() {
+    // the primary side is wider, so that shadows along any normal reach every rim
+    let line = lines(
+        &[0.0, 0.1, 0.5, 0.8, 1.0],
+        &[-0.5, 0.1, 0.3, 0.7, 0.9, 1.5],
+        0.05,
+    );
+    let wide = [[-0.5, 1.5]; 2];
+    let [tri, quad] = [Kind::Tri3, Kind::Quad4]
+        .map(|kind| grids([Kind::Tri3, kind], [[4, 3], [5, 6]], wide, 0.05));
+    let mut random = Random(8);
+    for pair in [line, tri, quad] {
+        let pair = bent(pair, &mut random, 0.02);
+        let whole: f64 = pair.consistent(&pair.secondary).iter().sum();
+        for basis in BASES {
+            let pairing = pair.pairing(basis);
+            let covered: f64 = pairing.areas.iter().sum();
+            println!("{} {covered} {whole} {}", pair.dim, pairing.stencils());
+            assert!((covered - whole).abs() < 1e-13, "{covered} {whole}");
+        }
+    }
+}
+
+#[test]
+fn tmp_distorted() {
+    for n in [1u32, 2, 4, 8, 16] {
+        let mut pair = grids(
+            [Kind::Quad4, Kind::Quad4],
+            [[3 * n, 2 * n], [2 * n, 5 * n]],
+            [[0.0, 1.0]; 2],
+            0.1,
+        );
+        let mut random = Random(8);
+        for x in &mut pair.x {
+            for k in 0..2 {
+                if x[k] > 1e-9 && x[k] < 1.0 - 1e-9 {
+                    x[k] += 0.06 / f64::from(n) * random.next();
+                }
+            }
+        }
+        let contact = pair.contact(Basis::Standard, 1.0);
+        let u = vec![0.0; 3 * pair.x.len()];
+        let (mut search, mut pairing) = (Search::default(), Pairing::default());
+        pairing.clear();
+        contact.pair_fully(&pair.places(&u), &mut search, &mut pairing);
+        let start = std::time::Instant::now();
+        pairing.clear();
+        contact.pair_fully(&pair.places(&u), &mut search, &mut pairing);
+        let time = start.elapsed();
+        let mut m = matrix(&pairing, u.len());
+        let forces0 = vec![1.0; pairing.len()];
+        let start = std::time::Instant::now();
+        pairing.add_curvatures(&forces0, 1.0, &mut m);
+        let time_c = start.elapsed();
+        let mut forces = u.clone();
+        for point in 0..pairing.len() {
+            pairing
+                .rows
+                .add_force(point, pairing.areas[point], &mut forces);
+        }
+        let (one, other) = (
+            pair.consistent(&pair.secondary),
+            pair.consistent(&pair.primary),
+        );
+        let mut error = [0.0_f64; 2];
+        let mut size = 0.0_f64;
+        for node in 0..pair.x.len() {
+            let e = (forces[3 * node + 2] - one[node] + other[node]).abs();
+            let k = usize::from(other[node] > 0.0);
+            error[k] = error[k].max(e);
+            size = size.max(other[node]);
+        }
+        println!(
+            "n {n} faces {} stencils {} time {time:?} curvature {time_c:?} error {error:?} size {size}",
+            pair.secondary.len(),
+            pairing.stencils()
+        );
     }
 }
 

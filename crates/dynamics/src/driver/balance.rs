@@ -352,7 +352,7 @@ fn difference(old: &[f64], new: &[f64], change: &mut [f64]) {
     }
 }
 
-fn contact_report(
+pub(crate) fn contact_report(
     system: &System,
     contact: usize,
     rows: &Rows,
@@ -416,7 +416,7 @@ fn contact_work(
 }
 
 /// Energy that the crush of one contact has taken so far, J: a function of the largest penetrations.
-fn crush_energy(system: &System, contact: usize, interface: &InterfaceState) -> f64 {
+pub(crate) fn crush_energy(system: &System, contact: usize, interface: &InterfaceState) -> f64 {
     let (first, contact) = (system.first_point[contact], &system.contacts[contact]);
     let of_point = |(k, point): (usize, &carom_contact::Point)| {
         point.share * contact.law.crush_energy(interface.crush[first + k])

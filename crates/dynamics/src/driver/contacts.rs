@@ -319,7 +319,7 @@ pub(super) fn sums_compliances(system: &System, map: &StepMap) -> bool {
 }
 
 /// N applied to a row of the step, for one point.
-pub(super) fn on_row(
+pub(crate) fn on_row(
     rows: &Rows,
     point: usize,
     row: &Row,

@@ -13,6 +13,9 @@ mod projection;
 mod restoring;
 mod weak;
 
+pub(crate) use balance::{contact_report, crush_energy};
+pub(crate) use contacts::on_row;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -34,7 +37,7 @@ use crate::step_map::{Row, StepMap};
 use crate::system::System;
 use attempt::Sized;
 use balance::{energies, lagged, remembered};
-use contacts::{on_row, sums_compliances};
+use contacts::sums_compliances;
 use impulse::Impulses;
 use linked::Linked;
 use predictor::Predictor;

@@ -4,6 +4,7 @@
 
 mod central_difference;
 mod contact_stabilised;
+mod energy_momentum;
 mod generalised_alpha;
 mod hht;
 mod kane;
@@ -23,6 +24,7 @@ use crate::step_map::StepMap;
 
 pub use central_difference::CentralDifference;
 pub use contact_stabilised::ContactStabilised;
+pub use energy_momentum::EnergyMomentum;
 pub use generalised_alpha::GeneralisedAlpha;
 pub use hht::Hht;
 pub use kane::Kane;
@@ -102,6 +104,11 @@ pub trait TimeScheme {
     fn restores_contact_work(&self) -> bool {
         false
     }
+    /// Whether internal forces belong to the way from the start to the end of the step (a discrete gradient), and contacts
+    /// to its middle. Only the nonlinear solver knows them.
+    fn is_between(&self) -> bool {
+        false
+    }
     /// Whether a contact law that constrains this quantity can hold.
     fn takes(&self, level: Level) -> bool {
         !(self.is_explicit() && level == Level::Gap)
@@ -137,6 +144,8 @@ pub enum Scheme {
     Kane(Kane),
     /// Trapezoid with a projected predictor, Deuflhard, Krause and Ertel.
     ContactStabilised(ContactStabilised),
+    /// Discrete gradient, for large transformations, Simo and Tarnow, Gonzalez.
+    EnergyMomentum(EnergyMomentum),
 }
 
 impl Scheme {
@@ -156,6 +165,7 @@ impl Scheme {
             Scheme::Krenk(scheme) => scheme,
             Scheme::Kane(scheme) => scheme,
             Scheme::ContactStabilised(scheme) => scheme,
+            Scheme::EnergyMomentum(scheme) => scheme,
         }
     }
 
@@ -169,7 +179,7 @@ impl Scheme {
         }
     }
 
-    /// One of each, with usual parameters: what the batteries run over.
+    /// One of each that the linear driver takes, with usual parameters: what the batteries run over.
     pub fn registered() -> Vec<Scheme> {
         vec![
             Scheme::Newmark(Newmark {

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contacts::sides;
 use crate::error::Error;
+use crate::nonlinear::Nonlinear;
 use crate::scheme::Scheme;
 use crate::system::{Model, System};
 
@@ -123,6 +124,7 @@ impl Zoned {
             scheme: part.scheme,
             dt: whole.dt / f64::from(part.substeps),
             adaptive: None,
+            nonlinear: Nonlinear::default(),
         }
     }
 

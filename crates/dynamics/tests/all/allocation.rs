@@ -1,6 +1,6 @@
 //! A step allocates nothing once contact has been met and the buffers have grown.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
@@ -27,7 +27,9 @@ fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
                     density: 1000.0,
                     young: 1e9,
                     poisson: 0.3,
-                },
+                }
+                .into(),
+                formulation: Formulation::Full,
                 weights: None,
             },
             mass: MassKind::Lumped,
@@ -49,10 +51,12 @@ fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
             massless: false,
             initial: Initial::Keep,
             depth: None,
+            friction: 0.0,
         }],
         scheme,
         dt: 5e-5,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     Driver::new(System::new(model).unwrap()).unwrap()

@@ -1,6 +1,6 @@
 //! A contact problem that cannot be solved leaves itself behind.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::Displacement;
 use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
@@ -27,6 +27,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         massless: false,
         initial: Initial::Keep,
         depth: None,
+        friction: 0.0,
     };
     let model = Model {
         bodies: vec![ModelBody {
@@ -38,7 +39,9 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
                     density: 1.0,
                     young: 1.0,
                     poisson: 0.0,
-                },
+                }
+                .into(),
+                formulation: Formulation::Full,
                 weights: None,
             },
             mass: MassKind::Lumped,
@@ -51,6 +54,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         scheme: Scheme::Theta(Theta { theta: 1.0 }),
         dt: 0.1,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh: mesh.clone(),
     };
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();

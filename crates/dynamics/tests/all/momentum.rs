@@ -1,6 +1,6 @@
 //! Momentum of bodies of revolution: only the axial one is a momentum.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
@@ -22,7 +22,9 @@ fn a_cylinder_that_bulges_as_it_strikes_keeps_its_axial_momentum_balance() {
                     density: 1000.0,
                     young: 1e9,
                     poisson: 0.3,
-                },
+                }
+                .into(),
+                formulation: Formulation::Full,
                 weights: None,
             },
             mass: MassKind::Lumped,
@@ -47,10 +49,12 @@ fn a_cylinder_that_bulges_as_it_strikes_keeps_its_axial_momentum_balance() {
             massless: false,
             initial: Initial::Keep,
             depth: None,
+            friction: 0.0,
         }],
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt: 5e-5,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();

@@ -4,7 +4,7 @@
 //! bar free or against a rigid wall that it presses on. Matrices, equations and elimination are all written here.
 
 use carom_arlequin::{Row, Term};
-use carom_bodies::{BodySpec, CellWeights, Kinematics, MassKind};
+use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
@@ -141,7 +141,8 @@ impl Problem {
                 name: name.into(),
                 cells: mesh.groups[name].elements.clone(),
                 kinematics: Kinematics::Bar { area: AREA },
-                material: bar.material,
+                material: bar.material.into(),
+                formulation: Formulation::Full,
                 weights: Some(bar.weights.clone()),
             },
             mass: MassKind::Lumped,
@@ -166,6 +167,7 @@ impl Problem {
             massless: false,
             initial: Initial::Keep,
             depth: None,
+            friction: 0.0,
         };
         let terms = |c: &[f64], first: usize| {
             let term = |(i, c): (usize, &f64)| Term {
@@ -222,6 +224,7 @@ impl Problem {
                 scheme: theta,
                 dt: self.dt,
                 adaptive: None,
+                nonlinear: carom_dynamics::Nonlinear::default(),
             },
         })
         .unwrap()

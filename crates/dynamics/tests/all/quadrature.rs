@@ -1,6 +1,6 @@
 //! The weak form with a sign at each Gauss point.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{
     Adhesion, Capture, Damped, Displacement, Level, Penalty, Reading, Velocity,
 };
@@ -45,7 +45,8 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
                 name: "a".into(),
                 cells: cells.clone(),
                 kinematics,
-                material: SOFT,
+                material: SOFT.into(),
+                formulation: Formulation::Full,
                 weights: None,
             },
             mass: MassKind::Lumped,
@@ -67,11 +68,13 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
             massless: false,
             initial: Initial::Keep,
             depth: None,
+            friction: 0.0,
         }],
         scheme,
         // c = 2 m/s, h = 0.25 m: CFL 0.5 along the body
         dt: 0.0625,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     }
 }

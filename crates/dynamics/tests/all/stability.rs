@@ -1,6 +1,6 @@
 //! The critical step of central differences, with a compliant contact.
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Adhesion, Damped};
 use carom_contact::{Initial, Integration, Law, Sliding};
 use carom_dynamics::scheme::CentralDifference;
@@ -22,7 +22,9 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
                 density: 1.0,
                 young: 1.0,
                 poisson: 0.0,
-            },
+            }
+            .into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -43,6 +45,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         massless: false,
         initial: Initial::Keep,
         depth: None,
+        friction: 0.0,
     }];
     let model = Model {
         bodies: bodies.clone(),
@@ -52,6 +55,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         scheme: Scheme::CentralDifference(CentralDifference),
         dt,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh: mesh.clone(),
     };
     Driver::new(System::new(model)?)

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Theta};
@@ -33,7 +33,8 @@ pub fn bar() -> Zoned {
             name: name.into(),
             cells: mesh.groups[name].elements.clone(),
             kinematics: Kinematics::Bar { area: 1e-4 },
-            material: steel,
+            material: steel.into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -59,6 +60,7 @@ pub fn bar() -> Zoned {
         massless: false,
         initial: Initial::Keep,
         depth: None,
+        friction: 0.0,
     }];
     let zone = |name: &str, body, scheme, substeps| ModelZone {
         name: name.into(),
@@ -86,6 +88,7 @@ pub fn bar() -> Zoned {
             scheme: Scheme::CentralDifference(CentralDifference),
             dt: 0.5 * 0.02 / (steel.young / steel.density).sqrt(),
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
             mesh,
         },
     }

@@ -5,5 +5,6 @@
 
 mod bounces;
 mod closed_forms;
+mod hertz;
 mod invariants;
 mod sets;

@@ -33,7 +33,7 @@ fn draw(state: &mut u64, n: usize) -> usize {
 
 #[test]
 fn a_file_cut_at_any_byte_is_refused() {
-    for (mesh, format) in MESHES
+    for (mesh, format) in MESHES[..4]
         .iter()
         .flat_map(|mesh| FORMATS.map(|format| (mesh, format)))
     {
@@ -50,7 +50,7 @@ fn a_file_cut_at_any_byte_is_refused() {
 #[test]
 fn overwritten_bytes_give_an_error_or_a_consistent_mesh() {
     let mut state = 0x2545_f491_4f6c_dd1d;
-    for (mesh, format) in MESHES
+    for (mesh, format) in MESHES[..4]
         .iter()
         .flat_map(|mesh| FORMATS.map(|format| (mesh, format)))
     {
@@ -74,7 +74,7 @@ fn overwritten_bytes_give_an_error_or_a_consistent_mesh() {
 
 #[test]
 fn lines_lost_or_doubled_give_an_error_or_a_consistent_mesh() {
-    for (mesh, format) in MESHES
+    for (mesh, format) in MESHES[..4]
         .iter()
         .flat_map(|mesh| ["-22", "-41"].map(|format| (mesh, format)))
     {

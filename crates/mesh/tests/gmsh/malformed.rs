@@ -406,11 +406,13 @@ fn elements_are_checked() {
 
 #[test]
 fn other_elements_are_refused_by_name() {
-    let accepted = "15 (point1), 1 (bar2), 2 (tri3), 3 (quad4), 4 (tet4), 5 (hex8)";
+    let accepted = "15 (point1), 1 (bar2), 8 (bar3), 2 (tri3), 9 (tri6), 3 (quad4), 16 (quad8), 10 (quad9), \
+                    4 (tet4), 11 (tet10), 5 (hex8), 17 (hex20), 12 (hex27), 6 (wedge6), 18 (wedge15), \
+                    7 (pyramid5)";
     for (number, name) in [
-        (8, "element type 8 (3-node second order line)"),
-        (11, "element type 11 (10-node second order tetrahedron)"),
-        (6, "element type 6 (6-node prism)"),
+        (26, "element type 26 (4-node third order line)"),
+        (29, "element type 29 (20-node third order tetrahedron)"),
+        (13, "element type 13 (18-node second order prism)"),
         (140, "element type 140"),
     ] {
         let message = format!("line 17: {name} cannot be read; accepted: {accepted}");

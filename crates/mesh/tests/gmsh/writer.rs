@@ -43,8 +43,8 @@ pub fn write_22(mesh: &Mesh, encoding: Encoding, tag: impl Fn(u32) -> u64) -> Ve
             out.int(number);
         }
         tags.iter().for_each(|&i| out.int(i));
-        let nodes = mesh.element_nodes(id).iter();
-        nodes.for_each(|&node| out.int(tag(node) as i32));
+        let nodes = in_order_of_gmsh(mesh, id).into_iter();
+        nodes.for_each(|node| out.int(tag(node) as i32));
         out.end();
     }
     out.line("$EndElements");
@@ -79,13 +79,22 @@ pub fn write_41(mesh: &Mesh, encoding: Encoding, tag: impl Fn(u32) -> u64) -> Ve
         out.end();
         for &id in *block {
             out.size(1);
-            let nodes = mesh.element_nodes(id).iter();
-            nodes.for_each(|&node| out.size(tag(node)));
+            let nodes = in_order_of_gmsh(mesh, id).into_iter();
+            nodes.for_each(|node| out.size(tag(node)));
             out.end();
         }
     }
     out.line("$EndElements");
     out.bytes
+}
+
+fn in_order_of_gmsh(mesh: &Mesh, id: ElementId) -> Vec<u32> {
+    let nodes = mesh.element_nodes(id);
+    let mut out = nodes.to_vec();
+    for (&node, &place) in nodes.iter().zip(mesh.kind(id).table().gmsh_order) {
+        out[place] = node;
+    }
+    out
 }
 
 fn elements(mesh: &Mesh) -> impl Iterator<Item = ElementId> {

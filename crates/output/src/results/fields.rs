@@ -440,7 +440,7 @@ fn vectors(dim: usize, values: &[f64]) -> Vec<[f64; 3]> {
 
 /// Mean stress of each cell in VTK's order xx, yy, zz, xy, yz, xz, Pa.
 fn stresses(system: &System, u: &[f64]) -> Vec<[f64; 6]> {
-    let of_bodies = system.bodies.iter().flat_map(|body| body.stresses(u));
+    let of_bodies = system.bodies.iter().flat_map(|body| body.stresses(u, &[]));
     of_bodies
         .map(|(_, s)| {
             [

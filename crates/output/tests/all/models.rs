@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{Newmark, Theta};
@@ -50,7 +50,8 @@ pub fn two_bars(n: usize) -> Arc<System> {
             name: name.to_owned(),
             cells: mesh.groups[name].elements.clone(),
             kinematics: Kinematics::Bar { area: AREA },
-            material: STEEL,
+            material: STEEL.into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -71,6 +72,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         massless: false,
         initial: Initial::Keep,
         depth: None,
+        friction: 0.0,
     }];
     let model = Model {
         bodies,
@@ -80,6 +82,7 @@ pub fn two_bars(n: usize) -> Arc<System> {
         scheme: Scheme::Theta(Theta { theta: 0.5 }),
         dt: 0.5 * LENGTH / n as f64 / wave_speed(),
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     System::new(model).unwrap()
@@ -114,7 +117,9 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
                 density: 1000.0,
                 young: 1e9,
                 poisson: 0.3,
-            },
+            }
+            .into(),
+            formulation: Formulation::Full,
             weights: None,
         },
         mass: MassKind::Lumped,
@@ -135,6 +140,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         massless: false,
         initial: Initial::Keep,
         depth: None,
+        friction: 0.0,
     };
     let model = Model {
         bodies: vec![body],
@@ -147,6 +153,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         }),
         dt: 1e-4,
         adaptive: None,
+        nonlinear: carom_dynamics::Nonlinear::default(),
         mesh,
     };
     System::new(model).unwrap()

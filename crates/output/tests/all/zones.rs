@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
-use carom_bodies::{BodySpec, CellWeights, Kinematics, MassKind};
+use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, MassKind};
 use carom_contact::{Initial, Integration, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
@@ -63,7 +63,8 @@ fn two_bars() -> Zoned {
                     name: name.to_owned(),
                     cells: cells.to_vec(),
                     kinematics: Kinematics::Bar { area: AREA },
-                    material: STEEL,
+                    material: STEEL.into(),
+                    formulation: Formulation::Full,
                     weights: Some(CellWeights {
                         inertia: weights.inertia,
                         stiffness: weights.stiffness,
@@ -96,6 +97,7 @@ fn two_bars() -> Zoned {
         massless: false,
         initial: Initial::Keep,
         depth: None,
+        friction: 0.0,
     }];
     let zone = |name: &str, bodies, scheme, substeps| ModelZone {
         name: name.to_owned(),
@@ -125,6 +127,7 @@ fn two_bars() -> Zoned {
             scheme: rest,
             dt: 0.5 * h / models::wave_speed(),
             adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
             mesh,
         },
     }

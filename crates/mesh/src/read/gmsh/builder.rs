@@ -71,11 +71,11 @@ impl Builder {
         }
     }
 
-    /// Adds an element that is in these physical groups.
+    /// Adds an element that is in these physical groups; `nodes` in Gmsh's order.
     pub(super) fn add_element(&mut self, kind: Kind, nodes: &[u32], physicals: &[u64]) {
         let cells = self.cells.entry(kind).or_default();
         let index = (cells.len() / nodes.len()) as u32;
-        cells.extend_from_slice(nodes);
+        cells.extend(kind.table().gmsh_order.iter().map(|&place| nodes[place]));
         for &tag in physicals {
             let members = self.members.entry((kind.table().dim, tag)).or_default();
             members.push((kind, index));

@@ -9,7 +9,8 @@
 //! is in: two elements of one kind on the same nodes are one, in the groups of both.
 //!
 //! **Nodes.** All are kept, in file order, whatever their tags; tags may have holes and come in any order. The
-//! parameters that MSH 4.1 may write behind the coordinates are read and dropped.
+//! parameters that MSH 4.1 may write behind the coordinates are read and dropped. Elements list their nodes in our order
+//! ([`Element::gmsh_order`](carom_elements::Element::gmsh_order)).
 //!
 //! **Dimension.** [`Mesh::dim`] is the last direction in which some node has a coordinate that is not zero, so a mesh
 //! flat in z = 0 is plane and one flat in z = 1 is in space; and at least the dimension of the elements.
@@ -159,18 +160,8 @@ fn kind(cursor: &mut Cursor) -> Result<Kind, Fault> {
 
 /// Common Gmsh types that are not read, to be called by name.
 const TYPE_NAMES: &[(u64, &str)] = &[
-    (6, "6-node prism"),
-    (7, "5-node pyramid"),
-    (8, "3-node second order line"),
-    (9, "6-node second order triangle"),
-    (10, "9-node second order quadrangle"),
-    (11, "10-node second order tetrahedron"),
-    (12, "27-node second order hexahedron"),
     (13, "18-node second order prism"),
     (14, "14-node second order pyramid"),
-    (16, "8-node second order quadrangle"),
-    (17, "20-node second order hexahedron"),
-    (18, "15-node second order prism"),
     (19, "13-node second order pyramid"),
     (21, "10-node third order triangle"),
     (26, "4-node third order line"),

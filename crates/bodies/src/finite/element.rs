@@ -1,0 +1,169 @@
+//! Forces and tangents of one element at finite strain.
+
+use carom_algebra::tensor::Mat3;
+use carom_materials::{Failure, Material, Response, Tangent, Want};
+
+use super::Stored;
+use super::cells::Cells;
+use super::gradient::{Gradient, mirror, symmetric};
+
+/// Where one element is.
+pub(super) struct Local<'a> {
+    pub(super) law: &'a dyn Material,
+    /// Displacement of its nodes in m.
+    pub(super) u: &'a [f64],
+    /// That at the start of the step, for the stress between the two.
+    pub(super) from: Option<&'a [f64]>,
+    /// Time since the old history, s.
+    pub(super) dt: f64,
+    /// History of its points at the start of the step.
+    pub(super) old: &'a [f64],
+}
+
+/// Why an element gave no force.
+#[derive(Clone, Debug)]
+pub(super) enum Fault {
+    /// The law gave no stress at a point.
+    Law { point: usize, failure: Failure },
+    /// There is no stress between two displacements.
+    NoBetween,
+}
+
+impl Stored {
+    pub(super) fn add(&mut self, volume: f64, response: &Response) {
+        self.strain += volume * response.stored;
+        self.hardening += volume * response.hardening;
+        self.dissipated += volume * response.dissipated;
+    }
+}
+
+impl Cells {
+    pub(super) fn gradient(&self, element: usize, point: usize) -> Gradient<'_> {
+        Gradient {
+            dim: self.dim,
+            axisymmetric: self.axisymmetric,
+            dn: self.gradients(element, point),
+        }
+    }
+
+    /// Adds the forces of an element (N) to `f`, writes its history into `new`.
+    pub(super) fn force(
+        &self,
+        element: usize,
+        at: &Local,
+        new: &mut [f64],
+        f: &mut [f64],
+    ) -> Result<Stored, Fault> {
+        if self.dilatation {
+            return self.dilated_force(element, at, new, f);
+        }
+        let mut stored = Stored::default();
+        for point in 0..self.points {
+            let response = self.response(element, point, at, new, Want::Stress)?;
+            let volume = self.weighted(element, point);
+            stored.add(volume, &response);
+            let gradient = self.gradient(element, point);
+            gradient.add_transposed(volume, &response.stress, f);
+        }
+        if let Some(hourglass) = &self.hourglass {
+            stored.strain += hourglass.force(element, self.dim, at.u, at.from, f);
+        }
+        Ok(stored)
+    }
+
+    /// Writes ∂f/∂u of an element (N/m, row-major, symmetric). `new`: room for its history.
+    pub(super) fn tangent(
+        &self,
+        element: usize,
+        at: &Local,
+        new: &mut [f64],
+        matrix: &mut [f64],
+    ) -> Result<(), Fault> {
+        matrix.fill(0.0);
+        if self.dilatation {
+            self.dilated_tangent(element, at, new, matrix)?;
+        } else {
+            for point in 0..self.points {
+                let response = self.response(element, point, at, new, Want::Tangent)?;
+                let a = symmetric(self.weighted(element, point), tangent(&response));
+                self.gradient(element, point).add_product(&a, matrix);
+            }
+        }
+        if let Some(hourglass) = &self.hourglass {
+            let factor = if at.from.is_some() { 0.5 } else { 1.0 };
+            hourglass.tangent(element, self.dim, factor, matrix);
+        }
+        mirror(matrix);
+        Ok(())
+    }
+
+    /// The law at one point, at its own F.
+    fn response(
+        &self,
+        element: usize,
+        point: usize,
+        at: &Local,
+        new: &mut [f64],
+        want: Want,
+    ) -> Result<Response, Fault> {
+        let gradient = self.gradient(element, point);
+        let f = gradient.deformation(at.u);
+        let failed = |failure| Fault::Law { point, failure };
+        let Some(from) = at.from else {
+            return at.update(self.points, point, &f, new, want);
+        };
+        let between = at.law.between(&gradient.deformation(from), &f, want);
+        new.copy_from_slice(at.old);
+        between.ok_or(Fault::NoBetween)?.map_err(failed)
+    }
+
+    /// Cauchy stress σ = P F^T / det F and det F times dV at a point, by the F that its law sees.
+    pub(super) fn cauchy(
+        &self,
+        element: usize,
+        at: &Local,
+        new: &mut [f64],
+    ) -> Result<(f64, Mat3), Fault> {
+        let theta = match self.dilatation {
+            true => Some(self.dilatation(element, at.u)?.ratio),
+            false => None,
+        };
+        let (mut volume, mut stress) = (0.0, Mat3::zeros());
+        for point in 0..self.points {
+            let mut f = self.gradient(element, point).deformation(at.u);
+            let current = self.volume(element, point) * f.determinant();
+            if let Some(theta) = theta {
+                f *= (theta / f.determinant()).cbrt();
+            }
+            let response = at.update(self.points, point, &f, new, Want::Stress)?;
+            stress += response.stress * f.transpose() * (current / f.determinant());
+            volume += current;
+        }
+        Ok((volume, stress / volume))
+    }
+}
+
+impl Local<'_> {
+    /// The law at a point with this F, one of `points` in the element.
+    pub(super) fn update(
+        &self,
+        points: usize,
+        point: usize,
+        f: &Mat3,
+        new: &mut [f64],
+        want: Want,
+    ) -> Result<Response, Fault> {
+        let length = new.len() / points;
+        let range = point * length..(point + 1) * length;
+        let history = (&self.old[range.clone()], &mut new[range]);
+        let updated = self.law.update(f, self.dt, history, want);
+        updated.map_err(|failure| Fault::Law { point, failure })
+    }
+}
+
+/// The tangent of a response for which one was wanted.
+pub(super) fn tangent(response: &Response) -> &Tangent {
+    const NONE: &Tangent = &[[0.0; 9]; 9];
+    debug_assert!(response.tangent.is_some());
+    response.tangent.as_deref().unwrap_or(NONE)
+}

@@ -1,0 +1,170 @@
+//! Bodies as a nonlinear solver sees them: forces and tangents at a displacement, history, energies.
+//!
+//! A body whose law is one of finite strain is total Lagrangian: F = I + ∂u/∂X at the integration points of the reference
+//! configuration, f = ∫ P(F) ∂N/∂X dV. A body at small strain answers through the same functions with f = K u.
+
+use carom_algebra::csr::Csr;
+
+use crate::block::Scratch;
+use crate::body::Body;
+use crate::error::Error;
+use crate::stability;
+
+mod cells;
+mod dilatation;
+mod element;
+mod gradient;
+mod hourglass;
+mod linear;
+mod pressure;
+mod sweep;
+
+pub(crate) use cells::{Cells, Shape};
+use element::Fault;
+pub use pressure::FollowerPressure;
+use sweep::Failed;
+pub(crate) use sweep::{Elements, Finite};
+
+/// How the elements of a body integrate the internal work.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Formulation {
+    /// All points of the stiffness rule.
+    #[default]
+    Full,
+    /// Mean dilatation, against volumetric locking: the volume ratio of an element is that of the whole element.
+    BBar,
+    /// One point, and a stiffness against the hourglass modes that it does not see: 4-node quadrilaterals and 8-node
+    /// hexahedra.
+    Reduced {
+        /// Factor of the hourglass stiffness, without unit; 0.05 to 0.1 as a rule.
+        hourglass: f64,
+    },
+}
+
+/// Where internal forces are taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement<'a> {
+    /// Displacement, system vector, m.
+    pub u: &'a [f64],
+    /// Displacement at the start of the step, for the algorithmic stress between the two, whose work over the step is the
+    /// change of the stored energy; none for the stress at `u`.
+    pub from: Option<&'a [f64]>,
+    /// Time since the history `old`, s.
+    pub dt: f64,
+    /// History of this body at the start of the step, [`Body::history_len`] numbers.
+    pub old: &'a [f64],
+}
+
+/// Energies of a body, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stored {
+    /// Stored by elastic strain, at `u`.
+    pub strain: f64,
+    /// Stored by hardening, at `u`.
+    pub hardening: f64,
+    /// Dissipated since the old history.
+    pub dissipated: f64,
+}
+
+impl Body {
+    /// Whether forces are linear in the displacement: small strain.
+    pub fn is_linear(&self) -> bool {
+        self.finite.is_none()
+    }
+
+    /// Numbers that the integration points keep from one step to the next.
+    pub fn history_len(&self) -> usize {
+        self.finite.as_ref().map_or(0, Finite::history_len)
+    }
+
+    /// Writes the history of a body that nothing has happened to, [`Body::history_len`] numbers.
+    pub fn start_history(&self, out: &mut [f64]) {
+        if let Some(finite) = &self.finite {
+            finite.start_history(out);
+        }
+    }
+
+    /// Adds the internal forces (N) to the system vector `f`, writes the history at the end of the step into `new` and
+    /// returns the energies.
+    ///
+    /// At small strain f = K u, or K (u_0 + u)/2 between two displacements. `scratch`: this body's own, empty before the
+    /// first call; later calls allocate nothing. Sums run in a fixed order whatever the number of threads. After an error
+    /// `f` and `new` are of no use.
+    ///
+    /// # Errors
+    /// An element whose law gives no stress; a law or a formulation without stress between two displacements.
+    pub fn finite_force(
+        &self,
+        at: &Placement,
+        new: &mut [f64],
+        scratch: &mut Scratch,
+        f: &mut [f64],
+    ) -> Result<Stored, Error> {
+        match &self.finite {
+            None => Ok(self.linear_force(at, scratch, f)),
+            Some(finite) => {
+                let stored = finite.force(at, new, &mut scratch.elements, f);
+                stored.map_err(|failed| self.failed(failed))
+            }
+        }
+    }
+
+    /// Adds `factor` ∂f/∂u (N/m) to a matrix over all unknowns of the system.
+    ///
+    /// The derivative is by `at.u`, with `at.from` held: between two displacements a body at small strain adds `factor` K/2,
+    /// and one at finite strain the symmetric part of ∂f/∂u, which is not symmetric there.
+    ///
+    /// # Errors
+    /// As [`Body::finite_force`]. The matrix is then of no use.
+    pub fn add_tangent(&self, at: &Placement, factor: f64, matrix: &mut Csr) -> Result<(), Error> {
+        match &self.finite {
+            None => {
+                self.add_linear_tangent(at, factor, matrix);
+                Ok(())
+            }
+            Some(finite) => {
+                let added = finite.add_tangent(at, factor, matrix);
+                added.map_err(|failed| self.failed(failed))
+            }
+        }
+    }
+
+    /// Upper bound of the angular frequencies (rad/s) with lumped mass about a displacement: the largest magnitude of an
+    /// eigenvalue of M_e⁻¹ K_e over the elements, with the tangents K_e there. [`Body::frequency_bound`] is that of the
+    /// undeformed body.
+    ///
+    /// An element that shortens in the direction of a wave keeps its mass, and its tangent grows. Costs about 2 n³ flops a
+    /// dozen times for each element of n unknowns: not for every step.
+    ///
+    /// # Errors
+    /// As [`Body::finite_force`].
+    pub fn frequency_bound_at(&self, at: &Placement) -> Result<f64, Error> {
+        let Some(finite) = &self.finite else {
+            return Ok(self.frequency_bound());
+        };
+        let mut masses = Vec::new();
+        self.each_matrix(false, &mut |element| masses.extend(element.lumped));
+        let (mut largest, mut scaled, mut first): (f64, _, _) = (0.0, Vec::new(), 0);
+        let visited = finite.each_tangent(at, &mut |nodes, dim, k| {
+            let masses = &masses[first..first + nodes.len()];
+            first += nodes.len();
+            stability::scale(dim, k, masses, &mut scaled);
+            largest = largest.max(stability::largest_magnitude(&mut scaled));
+        });
+        visited.map_err(|failed| self.failed(failed))?;
+        Ok(largest.sqrt())
+    }
+
+    fn failed(&self, (place, fault): Failed) -> Error {
+        let body = self.name().to_owned();
+        match fault {
+            Fault::Law { point, failure } => Error::NoStress {
+                body,
+                cell: self.cells()[place],
+                point,
+                failure,
+            },
+            Fault::NoBetween => Error::NoBetween { body },
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Pressure that follows the faces it acts on.
+
+use std::f64::consts::TAU;
+
+use carom_algebra::csr::Csr;
+use carom_elements::{Kind, MAX_NODES, map};
+use carom_mesh::Face;
+
+use crate::body::Kinematics;
+
+/// Faces under pressure, in their current position.
+///
+/// A pressure p (Pa, positive in compression) pushes against the outward normal: f_a = -p ∫ N_a n da, and with the tangents
+/// t_1, t_2 of the face ∂x/∂ξ, n da is t_1 × t_2 dξ in space, (t_y, -t_x) times the thickness in plane strain and times 2πr in
+/// axisymmetry. The thickness of plane stress and the section of a bar are the reference ones; the end of a bar is pushed
+/// along its reference axis.
+///
+/// Wriggers (2008), Nonlinear Finite Element Methods, chapter on deformation-dependent loads.
+#[derive(Clone, Debug)]
+pub struct FollowerPressure {
+    kinematics: Kinematics,
+    /// Unknowns of a node.
+    dim: usize,
+    faces: Vec<Loaded>,
+}
+
+/// A face on the nodes of the system.
+#[derive(Clone, Debug)]
+struct Loaded {
+    kind: Kind,
+    /// System numbers.
+    nodes: Vec<u32>,
+    /// Reference positions in m.
+    x: Vec<[f64; 3]>,
+    axis: [f64; 3],
+}
+
+/// One integration point of a face.
+struct Point<'a> {
+    /// N_a.
+    n: &'a [f64],
+    /// dN_a/dξ.
+    dn: &'a [[f64; 3]],
+    weight: f64,
+    /// ∂x/∂ξ_1 and ∂x/∂ξ_2.
+    tangents: [[f64; 3]; 2],
+    /// Place on the face.
+    place: [f64; 3],
+}
+
+impl FollowerPressure {
+    /// `faces`: on nodes of the mesh; `x`: their positions in m; `number`: system number of each mesh node; `dim`: unknowns of
+    /// a node; `kinematics`: of the body that they bound.
+    pub fn new(
+        faces: &[Face],
+        x: &[[f64; 3]],
+        number: &[u32],
+        dim: usize,
+        kinematics: Kinematics,
+    ) -> FollowerPressure {
+        let loaded = |face: &Face| Loaded {
+            kind: face.kind,
+            nodes: face.corners().iter().map(|&n| number[n as usize]).collect(),
+            x: face.corners().iter().map(|&n| x[n as usize]).collect(),
+            axis: face.axis,
+        };
+        FollowerPressure {
+            kinematics,
+            dim,
+            faces: faces.iter().map(loaded).collect(),
+        }
+    }
+
+    /// Adds the forces (N) of the pressure `p` (Pa) at the displacement `u` (m) to the system vector `f` of external forces.
+    pub fn add_force(&self, p: f64, u: &[f64], f: &mut [f64]) {
+        let dim = self.dim;
+        for face in &self.faces {
+            if face.kind == Kind::Point1 {
+                let first = dim * face.nodes[0] as usize;
+                for i in 0..dim {
+                    f[first + i] -= p * self.kinematics.surface_factor(&face.x[0]) * face.axis[i];
+                }
+                continue;
+            }
+            self.each_point(face, u, &mut |point| {
+                let area = self.area(point);
+                for (n, &node) in point.n.iter().zip(&face.nodes) {
+                    let f = &mut f[dim * node as usize..][..dim];
+                    for (f, area) in f.iter_mut().zip(&area) {
+                        *f -= p * point.weight * n * area;
+                    }
+                }
+            });
+        }
+    }
+
+    /// Adds `factor` times the symmetric part of ∂f/∂u (N/m) of the forces of [`FollowerPressure::add_force`] to a matrix over
+    /// all unknowns of the system.
+    ///
+    /// ∂f/∂u of a uniform pressure is symmetric but for terms on the border of the loaded surface, which vanish where it is
+    /// closed or ends on a symmetry plane or the axis; only elsewhere does the symmetric part cost Newton's method its last
+    /// order.
+    pub fn add_tangent(&self, p: f64, u: &[f64], factor: f64, matrix: &mut Csr) {
+        let dim = self.dim;
+        let (mut unknowns, mut block) = (Vec::new(), Vec::new());
+        for face in self.faces.iter().filter(|face| face.kind != Kind::Point1) {
+            let n = dim * face.nodes.len();
+            block.clear();
+            block.resize(n * n, 0.0);
+            self.each_point(face, u, &mut |point| {
+                self.add_point(p * factor, point, &mut block)
+            });
+            for row in 0..n {
+                for column in 0..row {
+                    let mean = 0.5 * (block[row * n + column] + block[column * n + row]);
+                    block[row * n + column] = mean;
+                    block[column * n + row] = mean;
+                }
+            }
+            unknowns.clear();
+            let of_node = |&node: &u32| (0..dim as u32).map(move |i| dim as u32 * node + i);
+            unknowns.extend(face.nodes.iter().flat_map(of_node));
+            matrix.add_block(&unknowns, &block);
+        }
+    }
+
+    /// n da/dξ with thickness or 2πr.
+    fn area(&self, point: &Point) -> [f64; 3] {
+        let [s, t] = &point.tangents;
+        if self.dim == 3 {
+            return cross(s, t);
+        }
+        let factor = self.kinematics.surface_factor(&point.place);
+        [s[1] * factor, -s[0] * factor, 0.0]
+    }
+
+    /// Adds -p w N_a ∂(n da/dξ)/∂u_b to the block (a, b) of a row-major matrix.
+    fn add_point(&self, p: f64, point: &Point, block: &mut [f64]) {
+        let (dim, nodes) = (self.dim, point.n.len());
+        for b in 0..nodes {
+            for j in 0..dim {
+                let change = self.area_change(point, b, j);
+                for (a, n) in point.n.iter().enumerate() {
+                    for (i, change) in change[..dim].iter().enumerate() {
+                        let entry = (dim * a + i) * dim * nodes + dim * b + j;
+                        block[entry] -= p * point.weight * n * change;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Derivative of n da/dξ by component `j` of node `b`.
+    fn area_change(&self, point: &Point, b: usize, j: usize) -> [f64; 3] {
+        let [s, t] = &point.tangents;
+        let dn = &point.dn[b];
+        let mut unit = [0.0; 3];
+        unit[j] = 1.0;
+        if self.dim == 3 {
+            let (first, second) = (cross(&unit, t), cross(s, &unit));
+            return [0, 1, 2].map(|i| dn[0] * first[i] + dn[1] * second[i]);
+        }
+        let factor = self.kinematics.surface_factor(&point.place);
+        let mut change = [unit[1] * dn[0] * factor, -unit[0] * dn[0] * factor, 0.0];
+        if self.kinematics == Kinematics::Axisymmetric && j == 0 {
+            change[0] += TAU * point.n[b] * s[1];
+            change[1] -= TAU * point.n[b] * s[0];
+        }
+        change
+    }
+
+    fn each_point(&self, face: &Loaded, u: &[f64], visit: &mut dyn FnMut(&Point)) {
+        let table = face.kind.table();
+        let mut x = face.x.clone();
+        for (x, &node) in x.iter_mut().zip(&face.nodes) {
+            let u = &u[self.dim * node as usize..][..self.dim];
+            x.iter_mut().zip(u).for_each(|(x, u)| *x += u);
+        }
+        let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);
+        let (n, dn) = (&mut n[..table.nodes], &mut dn[..table.nodes]);
+        let rule = table.mass_rule;
+        for (xi, &weight) in rule.points.iter().zip(rule.weights) {
+            (table.shape)(xi, n);
+            (table.gradient)(xi, dn);
+            let tangent = |k: usize| {
+                [0, 1, 2].map(|i| x.iter().zip(dn.iter()).map(|(x, dn)| x[i] * dn[k]).sum())
+            };
+            visit(&Point {
+                tangents: [tangent(0), tangent(1)],
+                place: map::point(&x, n),
+                n,
+                dn,
+                weight,
+            });
+        }
+    }
+}
+
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}

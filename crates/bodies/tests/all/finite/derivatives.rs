@@ -1,0 +1,50 @@
+//! Force is the gradient of energy, tangent that of force.
+//!
+//! Central differences of step h err by about h² f''/6 and by 1e-16 f/h: 1e-9 for h = 1e-5, relative to the largest entry.
+
+use super::{Step, displacement, elastic, samples};
+use crate::sample::largest;
+
+const STEP: f64 = 1e-5;
+
+#[test]
+fn force_is_the_derivative_of_what_is_stored() {
+    for sample in elastic().iter().flat_map(samples) {
+        let step = Step::new(&sample);
+        let u = displacement(&sample, 11);
+        let f = step.force(&u);
+        // every third unknown, the same for all components of nodes
+        for i in (0..sample.n).step_by(if sample.dim() == 2 { 3 } else { 7 }) {
+            let at = |side: f64| {
+                let mut moved = u.clone();
+                moved[i] += side * STEP;
+                step.potential(&moved)
+            };
+            let error = ((at(1.0) - at(-1.0)) / (2.0 * STEP) - f[i]).abs();
+            assert!(error < 1e-8 * largest(&f), "{}: {error}", sample.name);
+        }
+    }
+}
+
+#[test]
+fn tangent_is_the_derivative_of_force_and_symmetric() {
+    for sample in elastic().iter().flat_map(samples) {
+        let step = Step::new(&sample);
+        let u = displacement(&sample, 12);
+        let (k, n) = (step.tangent(&u), sample.n);
+        for i in (0..n).step_by(if sample.dim() == 2 { 3 } else { 7 }) {
+            let at = |side: f64| {
+                let mut moved = u.clone();
+                moved[i] += side * STEP;
+                step.force(&moved)
+            };
+            let (above, below) = (at(1.0), at(-1.0));
+            for row in 0..n {
+                let slope = (above[row] - below[row]) / (2.0 * STEP);
+                let error = (slope - k[row * n + i]).abs();
+                assert!(error < 1e-8 * largest(&k), "{}: {error}", sample.name);
+                assert_eq!(k[row * n + i], k[i * n + row], "{}", sample.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! Limits, refusals, threads.
+
+use carom_bodies::{Body, BodySpec, Error, Formulation, Kinematics, Placement, Scratch};
+use carom_materials::Failure;
+use carom_mesh::generate;
+
+use super::{Step, displacement, elastic, samples};
+use crate::sample::{Sample, cells, distance, largest, shapes};
+
+#[test]
+fn the_tangent_of_the_undeformed_body_is_the_stiffness_at_small_strain() {
+    for sample in elastic().iter().flat_map(samples) {
+        if sample.name.contains("Full") {
+            let k = Step::new(&sample).tangent(&vec![0.0; sample.n]);
+            let linear = sample.matrix(1.0, 0.0);
+            let error = distance(&k, &linear);
+            assert!(error < 1e-14 * largest(&k), "{}: {error}", sample.name);
+        }
+    }
+}
+
+#[test]
+fn a_body_at_small_strain_answers_through_the_same_functions() {
+    for (name, mesh, kinematics) in shapes() {
+        let sample = Sample::new(name, mesh, kinematics);
+        let (from, u) = (displacement(&sample, 41), displacement(&sample, 42));
+        let (f, energy) = sample.force(&u);
+        let step = Step::new(&sample);
+        assert_eq!(step.force(&u), f);
+        assert_eq!(step.run(&u).unwrap().1.strain, energy);
+        assert_eq!(step.tangent(&u), sample.matrix(1.0, 0.0));
+        let step = Step::between(&sample, &from);
+        let (f, stored, _) = step.run(&u).unwrap();
+        let work: f64 = (0..sample.n).map(|k| f[k] * (u[k] - from[k])).sum();
+        let error = (work - (stored.strain - sample.force(&from).1)).abs();
+        assert!(error < 1e-14 * stored.strain, "{}: {error}", sample.name);
+        assert_eq!(step.tangent(&u), sample.matrix(0.5, 0.0));
+    }
+}
+
+#[test]
+fn an_inverted_element_is_named_with_its_point() {
+    for (name, law) in elastic() {
+        for formulation in [Formulation::Full, Formulation::BBar, super::HOURGLASS] {
+            let mesh = generate::rectangle("b", [0.0; 2], [3.0, 1.0], [3, 1], false);
+            let plane = Kinematics::PlaneStrain { thickness: 1.0 };
+            let sample = Sample::of(name, mesh, plane, law, formulation);
+            // the right-hand side of the last cell goes through its left-hand side
+            let u = sample.field(|x| [if x[0] > 2.5 { -1.5 } else { 0.0 }, 0.0, 0.0]);
+            let last = sample.body.cells()[2];
+            let error = Step::new(&sample).run(&u).unwrap_err();
+            assert!(
+                matches!(&error, Error::NoStress { cell, point: 0, failure: Failure::Inverted { determinant }, .. }
+                    if *cell == last && (determinant + 0.5).abs() < 1e-14),
+                "{error}"
+            );
+            let mut matrix = sample.pattern();
+            let at = Step::new(&sample);
+            let error = sample.body.add_tangent(&at.at(&u), 1.0, &mut matrix);
+            assert!(matches!(error, Err(Error::NoStress { cell, .. }) if cell == last));
+        }
+    }
+}
+
+#[test]
+fn what_makes_no_sense_at_finite_strain_is_refused() {
+    let mesh = generate::rectangle("b", [0.0; 2], [1.0; 2], [1, 1], false);
+    let number: Vec<u32> = (0..4).collect();
+    let refusal = |kinematics, material, formulation| {
+        let spec = BodySpec {
+            name: "arm".to_owned(),
+            cells: cells(&mesh, 2),
+            kinematics,
+            material,
+            formulation,
+            weights: None,
+        };
+        Body::new(&mesh, spec, &number).unwrap_err()
+    };
+    let law = elastic()[0].1;
+    let stress = Kinematics::PlaneStress { thickness: 1.0 };
+    let error = refusal(stress, law, Formulation::Full);
+    assert!(matches!(
+        error,
+        Error::FiniteKinematics {
+            kinematics: "plane-stress",
+            ..
+        }
+    ));
+    let small = crate::sample::MATERIAL.into();
+    let error = refusal(stress, small, Formulation::BBar);
+    assert!(matches!(error, Error::LinearFormulation { .. }), "{error}");
+}
+
+#[test]
+fn forces_energies_and_tangents_have_the_same_bits_on_any_number_of_threads() {
+    let (name, law) = elastic()[0];
+    for formulation in [Formulation::Full, Formulation::BBar, super::HOURGLASS] {
+        let cube = generate::box_("b", [0.0; 3], [1.0; 3], [5, 6, 7], false);
+        let sample = Sample::of(name, cube, Kinematics::Solid, law, formulation);
+        let u: Vec<f64> = displacement(&sample, 51).iter().map(|u| 0.3 * u).collect();
+        let run = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let pool = pool.build().unwrap();
+            pool.install(|| {
+                let (mut scratch, mut f) = (Scratch::default(), vec![0.0; sample.n]);
+                let at = Placement {
+                    u: &u,
+                    from: None,
+                    dt: 1.0,
+                    old: &[],
+                };
+                let force = |_| sample.body.finite_force(&at, &mut [], &mut scratch, &mut f);
+                let energies: Vec<f64> = (0..2).map(force).map(|s| s.unwrap().strain).collect();
+                let mut matrix = sample.pattern();
+                sample.body.add_tangent(&at, 2.0, &mut matrix).unwrap();
+                let values: Vec<f64> = (0..sample.n)
+                    .flat_map(|row| matrix.row(row).1.to_vec())
+                    .collect();
+                (f, energies, values)
+            })
+        };
+        let one = run(1);
+        assert_eq!(one.1[0], one.1[1], "energies start afresh");
+        assert_eq!(one, run(3), "{formulation:?}");
+    }
+}
+
+#[test]
+fn the_frequency_bound_at_rest_is_that_of_the_undeformed_body() {
+    for sample in elastic().iter().flat_map(samples) {
+        if sample.name.contains("Full") {
+            let at_rest = Step::new(&sample);
+            let u = vec![0.0; sample.n];
+            let bound = sample.body.frequency_bound_at(&at_rest.at(&u)).unwrap();
+            // two bounds within a thousandth of the same eigenvalue
+            let ratio = bound / sample.body.frequency_bound();
+            assert!((ratio - 1.0).abs() < 1e-3, "{}: {ratio}", sample.name);
+        }
+    }
+}
+
+/// The largest Rayleigh quotient found by power iteration on M⁻¹ K stays below, and not by far.
+#[test]
+fn the_frequency_bound_of_a_deformed_body_bounds_its_frequencies() {
+    for sample in samples(&elastic()[0]) {
+        let step = Step::new(&sample);
+        let u = displacement(&sample, 61);
+        let bound = sample.body.frequency_bound_at(&step.at(&u)).unwrap();
+        let (k, m) = (step.tangent(&u), sample.lumped_mass());
+        let mut x = displacement(&sample, 62);
+        let mut value = 0.0;
+        for _ in 0..200 {
+            let y = crate::sample::multiply(&k, &x);
+            let square: f64 = (0..sample.n).map(|i| m[i] * x[i] * x[i]).sum();
+            value = crate::sample::dot(&x, &y) / square;
+            let scale = largest(&y);
+            x = (0..sample.n).map(|i| y[i] / m[i] / scale).collect();
+        }
+        let ratio = value.sqrt() / bound;
+        // an element that is fixed nowhere is stiffer for its mass than in its body, tetrahedra most
+        assert!((0.5..1.0).contains(&ratio), "{}: {ratio}", sample.name);
+    }
+}
+
+/// Shortened to λ, confined: P_11 = μ (λ - 1/λ) + λ_1 ln(λ)/λ, whose slope at λ = 1/2 is 5 μ + 4 (1 + ln 2) λ_1, beside
+/// 2 μ + λ_1 at rest. With Poisson's ratio 0 the axial waves of a strip of squares are the fastest in both states.
+#[test]
+fn the_frequency_bound_rises_as_the_body_shortens() {
+    let initial = carom_materials::Elastic {
+        poisson: 0.0,
+        ..crate::sample::MATERIAL
+    };
+    let law = carom_materials::Law::NeoHooke(carom_materials::NeoHooke { initial });
+    let mesh = generate::rectangle("b", [0.0; 2], [4.0, 1.0], [4, 1], false);
+    let plane = Kinematics::PlaneStrain { thickness: 1.0 };
+    let sample = Sample::of("strip", mesh, plane, law, Formulation::Full);
+    let bound = |shortening: f64| {
+        let u = sample.field(|x| [-shortening * x[0], 0.0, 0.0]);
+        let step = Step::new(&sample);
+        sample.body.frequency_bound_at(&step.at(&u)).unwrap()
+    };
+    let ratio = bound(0.5) / bound(0.0);
+    assert!((ratio * ratio - 2.5).abs() < 0.1, "{}", ratio * ratio);
+}

@@ -1,0 +1,337 @@
+//! The contacts of an iteration: pairing, candidates, forces.
+
+use std::sync::Arc;
+
+use carom_contact::law::{End, Level, Local, Status};
+use carom_contact::{Contact, Places};
+
+use super::Newton;
+use crate::driver::on_row;
+use crate::error::Error;
+use crate::interface::{Candidate, Failure, InterfaceProblem};
+use crate::step_map::Row;
+
+/// Additions of missed candidates within one iteration.
+const ADDITIONS: usize = 10;
+
+impl Newton {
+    /// The configuration in which a contact is paired: of a law in the gap the one that it constrains, of a law in the rate
+    /// the captured one, which is known; of a scheme between two states their middle.
+    pub(super) fn paired_at(&self, contact: &Contact) -> Row {
+        let map = &self.map;
+        let law = contact.law.get();
+        if self.between() {
+            let end = &map.displacement;
+            return Row {
+                u: 0.5 + 0.5 * end.u,
+                v: 0.5 * end.v,
+                a: 0.5 * end.a,
+                x: 0.5 * end.x,
+                ..Row::default()
+            };
+        }
+        match law.level() {
+            Level::Rate => Row {
+                v: map.placed.v + law.capture() * self.dt,
+                ..map.placed
+            },
+            Level::Gap | Level::GapAndRate => map.gap,
+        }
+    }
+
+    /// Whether internal forces and contacts belong to the way of the step.
+    pub(super) fn between(&self) -> bool {
+        self.map.inertia.x != 0.0 && self.system.scheme.get().is_between()
+    }
+
+    /// Derivative of the paired configuration by the unknown; zero where all of it is known before the step.
+    pub(super) fn turning(&self, contact: &Contact) -> f64 {
+        self.paired_at(contact).x
+    }
+
+    /// Pairs all contacts at the x of the iteration. `first`: those in known configurations too.
+    pub(super) fn pair(&mut self, first: bool) {
+        let system = Arc::clone(&self.system);
+        let known = |contact: &Contact| self.turning(contact) == 0.0;
+        if !first && system.contacts.iter().all(known) {
+            return;
+        }
+        self.pairing.clear();
+        for (k, contact) in system.contacts.iter().enumerate() {
+            let row = self.paired_at(contact);
+            row.whole(
+                &self.state.motion,
+                &self.vectors.x,
+                &[],
+                &mut self.vectors.place,
+            );
+            let places = Places {
+                dim: system.dim,
+                x: &system.x,
+                u: &self.vectors.place,
+            };
+            contact.pair_fully(&places, &mut self.search[k], &mut self.pairing);
+        }
+    }
+
+    /// Gap and rate that the law of a point constrains, at the x of the iteration.
+    fn now(&self, point: usize) -> (f64, f64) {
+        let rows = &self.pairing.rows;
+        let (contact, _) = self.system.point(point);
+        let motion = &self.state.motion;
+        let xc = [&self.vectors.x[..], &[]];
+        let ahead = self.map.gap.since(&self.paired_at(contact));
+        let gap = rows.gap(point) + on_row(rows, point, &ahead, motion, xc);
+        (gap, on_row(rows, point, &self.map.rate, motion, xc))
+    }
+
+    /// What the law of a point may know before the forces.
+    fn local(&self, point: usize, gap_free: f64) -> Local {
+        let (contact, place) = self.system.point(point);
+        let carrier = &contact.points[place];
+        let rows = &self.pairing.rows;
+        let gap = match self.between() {
+            // S_d looks at the start of the step
+            true => self.state.interface.gap[point],
+            false => rows.gap(point),
+        };
+        Local {
+            area: carrier.area,
+            share: carrier.share,
+            gap,
+            rate: rows.product(point, &self.state.motion.v),
+            gap_free,
+            dt: self.dt,
+            tolerance: self.system.tolerance,
+            crush: self.state.interface.crush[point],
+        }
+    }
+
+    /// Whether a point takes part, where its law says so before the forces.
+    fn told(&self, point: usize) -> Option<bool> {
+        let gap = self.pairing.rows.gap(point);
+        if gap == f64::INFINITY {
+            return Some(false);
+        }
+        let gap = match self.between() {
+            true => self.state.interface.gap[point],
+            false => gap,
+        };
+        let law = self.system.point(point).0.law.get();
+        law.watches(gap, self.system.tolerance)
+    }
+
+    /// Solves the interface problem of the iteration, whose motion without contact forces is in `dx` and whose begun solve
+    /// in `half`; completes `dx`.
+    pub(super) fn solve_interface(&mut self) -> Result<(), Error> {
+        self.choose_candidates();
+        if self.candidates.is_empty() {
+            self.next.interface.force.fill(0.0);
+            self.next.interface.status.fill(Status::Open);
+            return Ok(());
+        }
+        let free = self.vectors.dx.clone();
+        let begun = self.vectors.half.clone();
+        for _ in 0..ADDITIONS {
+            self.vectors.half.copy_from_slice(&begun);
+            self.solve_candidates(&free)?;
+            if !self.add_missed() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn choose_candidates(&mut self) {
+        self.candidates.clear();
+        for point in 0..self.system.points() {
+            let chosen = match self.told(point) {
+                Some(told) => told,
+                None => {
+                    let step = self.pairing.rows.product(point, &self.vectors.dx);
+                    self.next.interface.status[point] != Status::Open
+                        || self.now(point).0 + self.map.gap.x * step <= self.system.tolerance
+                }
+            };
+            self.next.interface.watched[point] = chosen;
+            if chosen {
+                self.candidates.push(point as u32);
+            }
+        }
+    }
+
+    fn solve_candidates(&mut self, free: &[f64]) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        let data = self.candidates.iter().map(|&point| {
+            let at = point as usize;
+            let step = self.pairing.rows.product(at, free);
+            let (gap, rate) = self.now(at);
+            Candidate {
+                law: system.point(at).0.law,
+                local: self.local(at, gap + self.map.gap.x * step),
+                rate_free: rate + self.map.rate.x * step,
+                status: self.next.interface.status[at],
+            }
+        });
+        self.candidate_data = data.collect();
+        let rows = &self.pairing.rows;
+        let factor = self.map.contact;
+        let factors = [self.map.gap.x * factor, self.map.rate.x * factor];
+        let Some((operators, compliance)) = self.effective.both() else {
+            return Ok(());
+        };
+        compliance.update(&self.candidates, rows, &system.fixed, operators);
+        let matrix = (&compliance.matrix[..], compliance.version);
+        let solved = self.interface.solve(&self.candidate_data, matrix, factors);
+        if let Err(failure) = solved {
+            let compliance = compliance.matrix.clone();
+            return Err(self.interface_error(failure, compliance, factors));
+        }
+        let interface = &mut self.next.interface;
+        interface.force.fill(0.0);
+        interface.status.fill(Status::Open);
+        for (k, &point) in self.candidates.iter().enumerate() {
+            let force = self.interface.forces[k];
+            interface.force[point as usize] = force;
+            interface.status[point as usize] = self.interface.statuses[k];
+            if force != 0.0 {
+                compliance.add(point, factor * force, operators, &mut self.vectors.half);
+            }
+        }
+        operators.end(&mut self.vectors.half, &mut self.vectors.dx);
+        for (dx, jump) in self.vectors.dx.iter_mut().zip(&self.vectors.jump) {
+            *dx += jump;
+        }
+        Ok(())
+    }
+
+    /// Adds the points that were no candidates and whose law asks for a force; whether there are any.
+    fn add_missed(&mut self) -> bool {
+        let before = self.candidates.len();
+        for point in 0..self.system.points() {
+            let known = self.candidates[..before].binary_search(&(point as u32));
+            if known.is_ok() || self.told(point).is_some() {
+                continue;
+            }
+            let step = self.pairing.rows.product(point, &self.vectors.dx);
+            let (gap, rate) = self.now(point);
+            if self.asks(
+                point,
+                gap + self.map.gap.x * step,
+                rate + self.map.rate.x * step,
+            ) {
+                self.candidates.push(point as u32);
+                self.next.interface.watched[point] = true;
+            }
+        }
+        self.candidates.sort_unstable();
+        self.candidates.len() > before
+    }
+
+    /// Whether the law of an open point asks for a force at this gap and rate, beyond rounding.
+    fn asks(&self, point: usize, gap: f64, rate: f64) -> bool {
+        let end = End {
+            gap_released: gap,
+            gap,
+            rate,
+            force: 0.0,
+        };
+        let law = self.system.point(point).0.law.get();
+        gap < -self.gap_tolerance()
+            && law.status(Status::Open, &end, &self.local(point, gap), 0) != Status::Open
+    }
+
+    /// Gap that counts as none where a step ends, m.
+    pub(super) fn gap_tolerance(&self) -> f64 {
+        100.0 * self.system.tolerance
+    }
+
+    /// The point that disobeys its law most at the x of the iteration, and by how much in tolerances.
+    pub(super) fn worst_point(&self) -> Option<(usize, f64)> {
+        let tolerance = self.gap_tolerance();
+        let mut worst: Option<(usize, f64)> = None;
+        for point in 0..self.system.points() {
+            if self.told(point) == Some(false) {
+                continue;
+            }
+            let (gap, rate) = self.now(point);
+            let status = self.next.interface.status[point];
+            let force = self.next.interface.force[point];
+            let law = self.system.point(point).0.law.get();
+            let defect = match status {
+                Status::Open if self.told(point).is_none() => match self.asks(point, gap, rate) {
+                    true => -gap / tolerance,
+                    false => 0.0,
+                },
+                Status::Open => (-rate * self.dt / tolerance).max(0.0),
+                _ => {
+                    let relation = law.relation(status, &self.local(point, gap));
+                    let left = relation.gap * gap
+                        + relation.rate * rate
+                        + relation.compliance * force
+                        + relation.offset;
+                    let scale = relation.gap.abs() + relation.rate.abs() / self.dt;
+                    (left / scale / tolerance).abs()
+                }
+            };
+            if worst.is_none_or(|(_, most)| defect > most) {
+                worst = Some((point, defect));
+            }
+        }
+        worst
+    }
+
+    /// Nᵀ P of the forces as they stand, into `contact`.
+    pub(super) fn spread(&mut self) {
+        let f = &mut self.vectors.contact;
+        f.fill(0.0);
+        for (point, &force) in self.next.interface.force.iter().enumerate() {
+            if force != 0.0 {
+                self.pairing.rows.add_force(point, force, f);
+            }
+        }
+    }
+
+    /// Contact, place in it and mesh node of a contact point.
+    pub(super) fn name(&self, point: usize) -> String {
+        let (contact, place) = self.system.point(point);
+        let node = self.system.mesh_node[contact.points[place].node() as usize];
+        format!("contact `{}`, point {place}, node {node}", contact.name)
+    }
+
+    fn interface_error(
+        &mut self,
+        failure: Failure,
+        compliance: Vec<f64>,
+        factors: [f64; 2],
+    ) -> Error {
+        let step = self.state.step + 1;
+        let names = self
+            .candidates
+            .iter()
+            .map(|&point| self.name(point as usize));
+        self.failed = Some(InterfaceProblem {
+            step,
+            names: names.collect(),
+            candidates: self.candidate_data.clone(),
+            compliance,
+            factors,
+        });
+        match failure {
+            Failure::Singular { points, cause } => Error::Interface {
+                step,
+                points,
+                cause,
+            },
+            Failure::Cycling { passes, candidate } => {
+                let (contact, point) = self.system.point(self.candidates[candidate] as usize);
+                Error::Statuses {
+                    step,
+                    passes,
+                    contact: contact.name.clone(),
+                    point,
+                }
+            }
+        }
+    }
+}

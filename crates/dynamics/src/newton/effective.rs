@@ -1,0 +1,250 @@
+//! The effective matrix of an iteration, its factor, and the compliance of the contact points in it.
+
+use carom_algebra::csr::Csr;
+use carom_algebra::pattern::Cliques;
+use carom_algebra::solver::FactorStats;
+use carom_bodies::Placement;
+use carom_contact::Pairing;
+
+use crate::compliance::Compliance;
+use crate::driver::Work;
+use crate::error::Error;
+use crate::operator::{Operator, Operators};
+use crate::step_map::StepMap;
+use crate::system::{System, push_cliques};
+
+/// A of the nonlinear step over the whole system, with its factor.
+pub(super) struct Effective {
+    operators: Option<Operators>,
+    pub(super) compliance: Compliance,
+    /// A with the rows and columns of held unknowns: supports that move load the others through them.
+    matrix: Option<Csr>,
+    /// Unknowns of the rows whose curvature the pattern has room for, one after the other.
+    coupled: Vec<Vec<u32>>,
+    /// Factors of dt and stage for which a constant matrix was made.
+    constant: Option<[f64; 4]>,
+    retired: Work,
+}
+
+/// Where the tangent of the bodies is taken.
+pub(super) struct At<'a> {
+    /// The map of the step.
+    pub(super) map: &'a StepMap,
+    /// Size of the step, s.
+    pub(super) dt: f64,
+    /// Configuration of the internal forces, m.
+    pub(super) u: &'a [f64],
+    /// The one at the start, for stresses between the two.
+    pub(super) from: Option<&'a [f64]>,
+    /// Histories at the start of the step.
+    pub(super) history: &'a [f64],
+}
+
+/// The contact points whose forces turn with the configuration.
+pub(super) struct Turning<'a> {
+    /// Rows and their derivatives.
+    pub(super) pairing: &'a Pairing,
+    /// Points and forces in N.
+    pub(super) forces: Vec<(usize, f64)>,
+    /// Derivative of the configuration of the contact by the unknown, times the factor of contact forces in the balance.
+    pub(super) factor: f64,
+}
+
+impl Effective {
+    pub(super) fn new(system: &System) -> Effective {
+        Effective {
+            operators: None,
+            compliance: Compliance::new(system.points()),
+            matrix: None,
+            coupled: Vec::new(),
+            constant: None,
+            retired: Work::default(),
+        }
+    }
+
+    /// Whether the factor at hand is that of this step's constant matrix.
+    pub(super) fn stands(&self, key: [f64; 4]) -> bool {
+        self.constant == Some(key)
+    }
+
+    /// Flops of a factorisation per flop of a pair of sweeps; none without a factor.
+    pub(super) fn price(&self) -> Option<f64> {
+        let stats = self.stats()?;
+        Some(stats.flops / (4.0 * stats.nnz_factor as f64))
+    }
+
+    /// Makes A and its factor anew. `constant`: the key under which it need not be made again.
+    ///
+    /// # Errors
+    /// A matrix that is not positive definite, an element without tangent.
+    pub(super) fn renew(
+        &mut self,
+        system: &System,
+        at: &At,
+        turning: &Turning,
+        constant: Option<[f64; 4]>,
+    ) -> Result<(), Error> {
+        self.constant = constant;
+        self.compliance.forget();
+        let map = at.map;
+        if map.force.x == 0.0 && system.mass.consistent.is_none() {
+            let lumped = system.mass.lumped.iter();
+            let diagonal: Vec<f64> = lumped.map(|m| map.inertia.x * m).collect();
+            self.operators = Some(Operators::whole(
+                Operator::diagonal(&diagonal, &system.fixed),
+                system.unknowns(),
+            ));
+            self.matrix = None;
+            return Ok(());
+        }
+        self.renew_pattern(system, turning);
+        let Some(mut a) = self.matrix.take() else {
+            return Ok(());
+        };
+        a.clear();
+        assemble(system, at, &mut a)?;
+        for &(point, force) in &turning.forces {
+            turning
+                .pairing
+                .add_curvature(point, force, -turning.factor, &mut a);
+        }
+        let free = a.with_identity(&system.fixed);
+        let factored = self.factorise(&free, system.dim);
+        self.matrix = Some(a);
+        factored.map_err(|cause| {
+            self.operators = None;
+            let node = match &cause {
+                carom_algebra::Error::NotPositiveDefinite { unknown, .. } => *unknown / system.dim,
+                _ => 0,
+            };
+            Error::Factor {
+                matrix: "effective matrix",
+                node: system.mesh_node[node],
+                cause,
+            }
+        })
+    }
+
+    fn factorise(&mut self, free: &Csr, dim: usize) -> Result<(), carom_algebra::Error> {
+        if let Some(Operator::Factored(factor)) =
+            self.operators.as_mut().map(|o| &mut o.operators[0])
+        {
+            return factor.refactor(free);
+        }
+        let none = vec![false; free.n];
+        self.operators = Some(Operators::whole(
+            Operator::factored(free, &none, dim)?,
+            free.n,
+        ));
+        Ok(())
+    }
+
+    /// Pattern of the bodies and of the rows that turn; the factor is dropped where the pattern changes.
+    fn renew_pattern(&mut self, system: &System, turning: &Turning) {
+        let mut rows: Vec<Vec<u32>> = Vec::new();
+        for &(point, _) in &turning.forces {
+            turning
+                .pairing
+                .cliques(point, |unknowns| rows.push(unknowns.to_vec()));
+        }
+        if self.matrix.is_some() && rows == self.coupled {
+            return;
+        }
+        let n = system.unknowns();
+        let mut cliques = Cliques::new();
+        for body in &system.bodies {
+            push_cliques(body, system.dim, &(0..n), &mut cliques);
+        }
+        for row in &rows {
+            cliques.push(row);
+        }
+        self.matrix = Some(Csr::from_cliques(n, &cliques));
+        self.coupled = rows;
+        self.retired = self.work();
+        self.operators = None;
+    }
+
+    /// y = A_held x: what a motion of held unknowns does to the others, N.
+    pub(super) fn load_of(&self, x: &[f64], y: &mut [f64]) {
+        match &self.matrix {
+            Some(matrix) => matrix.multiply(x, y),
+            None => y.fill(0.0),
+        }
+    }
+
+    /// The factor, and the compliance that goes with it.
+    pub(super) fn both(&mut self) -> Option<(&mut Operators, &mut Compliance)> {
+        Some((self.operators.as_mut()?, &mut self.compliance))
+    }
+
+    /// Largest diagonal entry of the stiffness in A, N/m; zero without one.
+    pub(super) fn stiffness_norm(&self, system: &System, map: &StepMap) -> f64 {
+        let Some(a) = self.matrix.as_ref().filter(|_| map.force.x != 0.0) else {
+            return 0.0;
+        };
+        let of = |i: usize| (a.get(i, i) - map.inertia.x * system.mass.lumped[i]).abs();
+        (0..a.n).map(of).fold(0.0, f64::max) / map.force.x
+    }
+
+    pub(super) fn stats(&self) -> Option<&FactorStats> {
+        self.operators.as_ref()?.operators[0].stats()
+    }
+
+    pub(super) fn work(&self) -> Work {
+        let mut work = self.retired;
+        if let Some(stats) = self.stats() {
+            work.factorisations += stats.factorisations;
+            work.sweeps += stats.sweeps;
+        }
+        work.columns = self.compliance.columns_computed;
+        work
+    }
+
+    pub(super) fn compliance_bytes(&self) -> usize {
+        self.compliance.bytes()
+    }
+}
+
+/// `inertia.x M + force.x K + damping` into a matrix of zeros.
+fn assemble(system: &System, at: &At, a: &mut Csr) -> Result<(), Error> {
+    let map = at.map;
+    for (k, body) in system.bodies.iter().enumerate() {
+        let placement = Placement {
+            u: at.u,
+            from: at.from,
+            dt: at.dt,
+            old: &at.history[system.nonlinear.histories[k].clone()],
+        };
+        body.add_tangent(&placement, map.force.x, a)?;
+        let damping = system.nonlinear.damping.get(k).copied().unwrap_or_default();
+        let rate = super::loads::damping_rate(map).x;
+        if damping.stiffness != 0.0 {
+            body.add_tangent(&placement, rate * damping.stiffness, a)?;
+        }
+        if damping.mass != 0.0 {
+            for &(node, m) in &system.body_masses[k] {
+                for i in 0..system.dim {
+                    let unknown = system.dim * node as usize + i;
+                    a.add(unknown, unknown, rate * damping.mass * m);
+                }
+            }
+        }
+    }
+    for (i, m) in system.mass.lumped.iter().enumerate() {
+        a.add(i, i, map.inertia.x * m);
+    }
+    if let Some(mass) = system
+        .mass
+        .consistent
+        .as_ref()
+        .filter(|_| map.inertia.x != 0.0)
+    {
+        for i in 0..system.unknowns() {
+            let (columns, values) = mass.row(i);
+            for (&j, m) in columns.iter().zip(values).filter(|(_, m)| **m != 0.0) {
+                a.add(i, j as usize, map.inertia.x * m);
+            }
+        }
+    }
+    Ok(())
+}

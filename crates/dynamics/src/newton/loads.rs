@@ -1,0 +1,94 @@
+//! Loads and damping forces of an iteration.
+
+use super::Newton;
+use crate::nonlinear::{Amplitude, NumberedForce};
+use crate::step_map::{Row, StepMap};
+
+/// The velocity that damping forces are taken at: at the instant of the internal forces, or of an explicit step the one
+/// that is known before the forces.
+pub(super) fn damping_rate(map: &StepMap) -> Row {
+    let velocity = &map.velocity;
+    if map.force.x == 0.0 {
+        return Row {
+            x: 0.0,
+            ..*velocity
+        };
+    }
+    let fraction = map.force_fraction.unwrap_or(1.0);
+    Row {
+        u: fraction * velocity.u,
+        v: 1.0 - fraction + fraction * velocity.v,
+        a: fraction * velocity.a,
+        m: 0.0,
+        x: fraction * velocity.x,
+        c: 0.0,
+    }
+}
+
+impl Newton {
+    /// The instant at which the balance of the step holds, s.
+    pub(super) fn instant(&self) -> f64 {
+        self.state.time + self.map.force_fraction.unwrap_or(1.0) * self.dt
+    }
+
+    /// Loads at a time and at the configuration in `place`, N.
+    pub(super) fn evaluate_loads(&mut self, time: f64) {
+        let system = &*self.system;
+        let ramp = system.nonlinear.ramp(time);
+        let load = &mut self.vectors.load;
+        for (sum, dead) in load.iter_mut().zip(&system.load) {
+            *sum = ramp * dead;
+        }
+        for given in &system.nonlinear.loads {
+            let factor = factor(&given.amplitude, ramp, time);
+            match &given.force {
+                NumberedForce::Dead(forces) => {
+                    for &(unknown, force) in forces {
+                        load[unknown as usize] += factor * force;
+                    }
+                }
+                NumberedForce::Follower(..) => {}
+            }
+        }
+    }
+
+    /// Damping forces at the x of the iteration, N.
+    pub(super) fn evaluate_damping(&mut self) {
+        let system = &*self.system;
+        let vectors = &mut self.vectors;
+        vectors.damping.fill(0.0);
+        if system.nonlinear.damping.is_empty() || self.map.inertia.x == 0.0 {
+            return;
+        }
+        let rate = damping_rate(&self.map);
+        rate.whole(&self.state.motion, &vectors.x, &[], &mut vectors.work);
+        for (k, damping) in system.nonlinear.damping.iter().enumerate() {
+            if damping.mass != 0.0 {
+                for &(node, m) in &system.body_masses[k] {
+                    for i in 0..system.dim {
+                        let unknown = system.dim * node as usize + i;
+                        vectors.damping[unknown] += damping.mass * m * vectors.work[unknown];
+                    }
+                }
+            }
+            if damping.stiffness != 0.0 {
+                for v in vectors.work.iter_mut() {
+                    *v *= damping.stiffness;
+                }
+                let scratch = &mut self.scratch[k];
+                system.bodies[k].internal_force(&vectors.work, scratch, &mut vectors.damping);
+                for v in vectors.work.iter_mut() {
+                    *v /= damping.stiffness;
+                }
+            }
+        }
+    }
+}
+
+/// Factor of a load: one without a course of its own grows with gravity over the static stage.
+fn factor(amplitude: &Amplitude, ramp: f64, time: f64) -> f64 {
+    match amplitude.is_constant() {
+        true => ramp * amplitude.at(time),
+        false => amplitude.at(time),
+    }
+}

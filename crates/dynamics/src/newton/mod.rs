@@ -1,0 +1,349 @@
+//! The solver of steps that are not linear: finite strain, plasticity, friction, sliding, loads in time, static stages.
+//!
+//! A step has the same table of numbers, the same laws and the same state as in the linear [`Driver`](crate::Driver). Its
+//! unknown x is found by Newton's method: each iteration linearises internal forces and gaps at the present x, and solves
+//! the interface problem of that linearisation exactly, with its signs,
+//!
+//! `A Δx - c Nᵀ P = r(x)`, `A = inertia.x M + force.x K(x) + damping - c ∂(Nᵀ P)/∂x`, `0 ≤ q(x) + s N Δx ⟂ P ≥ 0`.
+//!
+//! A is factorised at the start of a step, and again where keeping it would cost more. The step ends when the forces
+//! balance and every point obeys its law in the configuration reached. A step that finds no end is taken in halves.
+
+mod balance;
+mod contacts;
+mod effective;
+mod loads;
+mod solve;
+mod start;
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use carom_bodies::{Placement, Scratch, Stored};
+use carom_contact::{Pairing, Search};
+
+use crate::driver::{Costs, Phases};
+use crate::error::Error;
+use crate::interface::{Candidate, Interface, InterfaceProblem};
+use crate::march::Stepper;
+use crate::state::{ContactReport, State, StepReport, empty_state};
+use crate::step_map::StepMap;
+use crate::system::System;
+use effective::Effective;
+
+/// Takes steps of systems that are not linear.
+pub struct Newton {
+    system: Arc<System>,
+    /// Size of the attempt under way, s, and its map.
+    dt: f64,
+    map: StepMap,
+    effective: Effective,
+    interface: Interface,
+    pairing: Pairing,
+    search: Vec<Search>,
+    /// Points that may carry a force, ascending.
+    candidates: Vec<u32>,
+    candidate_data: Vec<Candidate>,
+    /// Buffers of the bodies.
+    scratch: Vec<Scratch>,
+    force_sweeps: usize,
+    /// Residuals of the iterations of the last attempt, relative.
+    residuals: Vec<f64>,
+    failed: Option<InterfaceProblem>,
+    state: State,
+    next: State,
+    report: StepReport,
+    vectors: Vectors,
+    /// Energies of the iteration.
+    stored: Stored,
+    /// Internal forces in the balance of the step, N.
+    balanced: Vec<f64>,
+    phases: Phases,
+}
+
+/// System vectors of the iterations.
+#[derive(Default)]
+struct Vectors {
+    /// The unknown.
+    x: Vec<f64>,
+    dx: Vec<f64>,
+    /// What supports that move add to the unknown in the first iteration.
+    jump: Vec<f64>,
+    /// Loads, inertia, internal and damping forces at x, N.
+    load: Vec<f64>,
+    inertia: Vec<f64>,
+    internal: Vec<f64>,
+    damping: Vec<f64>,
+    contact: Vec<f64>,
+    residual: Vec<f64>,
+    half: Vec<f64>,
+    /// A configuration or a velocity.
+    place: Vec<f64>,
+    work: Vec<f64>,
+    /// Histories of the bodies at the end of the attempt.
+    history: Vec<f64>,
+}
+
+impl Newton {
+    /// Sets the initial state.
+    ///
+    /// # Errors
+    /// A mass matrix that is not positive definite, elements that are turned inside out, a static stage of a body that
+    /// nothing holds.
+    pub fn new(system: Arc<System>) -> Result<Newton, Error> {
+        let n = system.unknowns();
+        let zeros = || vec![0.0; n];
+        let state = empty_state(&system);
+        let mut newton = Newton {
+            dt: 0.0,
+            map: system.scheme.get().step_map(system.dt),
+            effective: Effective::new(&system),
+            interface: Interface::default(),
+            pairing: Pairing::default(),
+            search: system.contacts.iter().map(|_| Search::default()).collect(),
+            candidates: Vec::new(),
+            candidate_data: Vec::new(),
+            scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
+            force_sweeps: 0,
+            residuals: Vec::new(),
+            failed: None,
+            report: StepReport {
+                contacts: vec![ContactReport::default(); system.contacts.len()],
+                ..StepReport::default()
+            },
+            vectors: Vectors {
+                x: zeros(),
+                dx: zeros(),
+                jump: zeros(),
+                load: zeros(),
+                inertia: zeros(),
+                internal: zeros(),
+                damping: zeros(),
+                contact: zeros(),
+                residual: zeros(),
+                half: zeros(),
+                place: zeros(),
+                work: zeros(),
+                history: state.motion.history.clone(),
+            },
+            next: state.clone(),
+            state,
+            stored: Stored::default(),
+            balanced: zeros(),
+            phases: Phases::default(),
+            system,
+        };
+        newton.check_free_motions()?;
+        newton.start()?;
+        Ok(newton)
+    }
+
+    /// A solver that goes on from a saved state.
+    ///
+    /// # Errors
+    /// As [`Newton::new`].
+    pub fn resume(system: Arc<System>, state: State) -> Result<Newton, Error> {
+        let mut newton = Newton::new(system)?;
+        newton.next.clone_from(&state);
+        newton.state = state;
+        Ok(newton)
+    }
+
+    /// The system.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// The last accepted state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// What the last step did.
+    pub fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    /// Relative residuals of the iterations of the last step.
+    pub fn residuals(&self) -> &[f64] {
+        &self.residuals
+    }
+
+    /// What the run cost so far.
+    pub fn costs(&self) -> Costs {
+        let elements: usize = self.system.bodies.iter().map(|b| b.cells().len()).sum();
+        Costs {
+            factors: self.effective.stats().into_iter().cloned().collect(),
+            work: self.effective.work(),
+            compliance_bytes: self.effective.compliance_bytes(),
+            force_sweeps: self.force_sweeps,
+            element_updates: (self.force_sweeps * elements) as u64,
+            phases: self.phases,
+        }
+    }
+
+    /// Takes one step: whole, or in halves of halves where it finds no equilibrium.
+    ///
+    /// # Errors
+    /// No equilibrium with the smallest part of the step; the state is then the one before the step.
+    pub fn step(&mut self) -> Result<(), Error> {
+        let start = self.state.clone();
+        let (first, end) = (self.state.time, self.end_of_step());
+        let mut control = self.state.control;
+        let (mut done, mut level) = (0u64, 0u32);
+        let parts = 1u64 << self.system.nonlinear.iteration.halvings;
+        self.report.attempts = 0;
+        while done < parts {
+            let part = parts >> level;
+            let to = first + (end - first) * ((done + part) as f64 / parts as f64);
+            self.report.attempts += 1;
+            match self.attempt(to - self.state.time) {
+                Ok(()) => {
+                    done += part;
+                    if done < parts {
+                        std::mem::swap(&mut self.state, &mut self.next);
+                        self.state.time = to;
+                    }
+                    while level > 0
+                        && done.is_multiple_of(2 * part)
+                        && done.is_multiple_of(parts >> (level - 1))
+                    {
+                        level -= 1;
+                    }
+                }
+                Err(error) if level < self.system.nonlinear.iteration.halvings => {
+                    tracing::debug!("step {}: {error}; taken in halves", start.step + 1);
+                    control.failed += 1;
+                    level += 1;
+                }
+                Err(error) => {
+                    self.state = start;
+                    return Err(error);
+                }
+            }
+        }
+        control.take(None, (start.step, first, end - first), self.system.dt);
+        self.next.step = start.step + 1;
+        self.next.time = end;
+        self.next.control = control;
+        self.failed = None;
+        std::mem::swap(&mut self.state, &mut self.next);
+        self.tell(end - first);
+        Ok(())
+    }
+
+    /// The instant at which the next step ends, s: instants of equal steps are products, not sums.
+    fn end_of_step(&self) -> f64 {
+        let (step, dt) = (self.state.step, self.system.dt);
+        match self.system.nonlinear.preload {
+            Some(preload) if step < preload.steps => {
+                preload.end * ((step + 1) as f64 / preload.steps as f64)
+            }
+            Some(preload) => preload.end + (step + 1 - preload.steps) as f64 * dt,
+            None => (step + 1) as f64 * dt,
+        }
+    }
+
+    /// Whether the step from the present state is static.
+    fn is_static(&self) -> bool {
+        let preload = self.system.nonlinear.preload;
+        preload.is_some_and(|preload| self.state.step < preload.steps)
+    }
+
+    /// Computes the next state from the state, a step of `dt` further.
+    fn attempt(&mut self, dt: f64) -> Result<(), Error> {
+        let begin = Instant::now();
+        let before = self.phases;
+        self.size(dt);
+        self.begin_stage()?;
+        self.solve()?;
+        let solved = Instant::now();
+        self.advance()?;
+        self.balance();
+        self.record();
+        self.finite()?;
+        self.phases.balance += solved.elapsed();
+        let counted = |phases: &Phases| phases.factorisation + phases.forces + phases.sweeps;
+        let other = (solved - begin).saturating_sub(counted(&self.phases) - counted(&before));
+        self.phases.contact += other;
+        Ok(())
+    }
+
+    /// Internal forces of all bodies where `place` says, into `out`; histories into the scratch history.
+    ///
+    /// # Errors
+    /// An element turned inside out, a material without stress.
+    fn internal(&mut self, (place, from): (Which, bool), dt: f64) -> Result<Stored, Error> {
+        let begin = Instant::now();
+        let system = &*self.system;
+        let Vectors {
+            place: configuration,
+            internal,
+            history,
+            ..
+        } = &mut self.vectors;
+        let u = match place {
+            Which::Place => &configuration[..],
+            Which::Next => &self.next.motion.u[..],
+        };
+        let from = from.then_some(&self.state.motion.u[..]);
+        internal.fill(0.0);
+        self.force_sweeps += 1;
+        let mut sum = Stored::default();
+        for (k, body) in system.bodies.iter().enumerate() {
+            let range = system.nonlinear.histories[k].clone();
+            let at = Placement {
+                u,
+                from,
+                dt,
+                old: &self.state.motion.history[range.clone()],
+            };
+            let stored =
+                body.finite_force(&at, &mut history[range], &mut self.scratch[k], internal)?;
+            sum.strain += stored.strain;
+            sum.hardening += stored.hardening;
+            sum.dissipated += stored.dissipated;
+        }
+        self.phases.forces += begin.elapsed();
+        Ok(sum)
+    }
+}
+
+/// A configuration of the step.
+#[derive(Clone, Copy)]
+enum Which {
+    /// The scratch configuration.
+    Place,
+    /// The end of the step.
+    Next,
+}
+
+impl Stepper for Newton {
+    fn step(&mut self) -> Result<(), Error> {
+        self.step()
+    }
+
+    fn system(&self) -> &System {
+        self.system()
+    }
+
+    fn state(&self) -> &State {
+        self.state()
+    }
+
+    fn report(&self) -> &StepReport {
+        self.report()
+    }
+
+    fn saved(&self) -> Result<Vec<u8>, Error> {
+        self.state().to_bytes()
+    }
+
+    fn costs(&self) -> Costs {
+        self.costs()
+    }
+
+    fn failed_problem(&self) -> Option<&InterfaceProblem> {
+        self.failed.as_ref()
+    }
+}

@@ -1,0 +1,384 @@
+//! Newton's iterations of one attempt at a step.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::effective::{At, Turning};
+use super::{Newton, Which};
+use crate::error::Error;
+use crate::step_map::StepMap;
+
+/// Residual before and after an iteration beyond which the motion of the iteration is halved.
+const GROWTH: f64 = 4.0;
+
+/// Halvings of the motion of one iteration.
+const SHORTENINGS: u32 = 5;
+
+/// Iterations that a fresh factor is counted to need.
+const FRESH: f64 = 2.0;
+
+/// Cost of a new tangent beside its factorisation, in iterations with the old one.
+const TANGENT: f64 = 3.0;
+
+/// Where an iteration stands.
+struct Standing {
+    /// Imbalance of the forces, relative.
+    imbalance: f64,
+    /// Largest defect of a contact law, in tolerances.
+    defect: f64,
+}
+
+impl Newton {
+    /// The map of the step of this size from the present state.
+    pub(super) fn size(&mut self, dt: f64) {
+        self.dt = dt;
+        self.map = match self.is_static() {
+            true => StepMap::equilibrium(),
+            false => self.system.scheme.get().step_map(dt),
+        };
+    }
+
+    /// Finds x and the contact forces of the step.
+    ///
+    /// # Errors
+    /// No equilibrium, an element or a matrix that fails.
+    pub(super) fn solve(&mut self) -> Result<(), Error> {
+        let limit = self.system.nonlinear.iteration.passes;
+        self.residuals.clear();
+        self.predict();
+        let interface = &mut self.next.interface;
+        interface.clone_from(&self.state.interface);
+        self.evaluate()?;
+        self.pair(true);
+        let mut standing = self.standing();
+        for pass in 0..limit {
+            let jumps = self.vectors.jump.iter().any(|jump| *jump != 0.0);
+            self.residuals.push(standing.imbalance);
+            if pass > 0 && !jumps && self.is_solved(&standing) {
+                return Ok(());
+            }
+            if self.wants_factor(pass) {
+                self.renew()?;
+            }
+            self.motion_of_iteration()?;
+            standing = self.go(&standing, jumps)?;
+            if self.is_affine() {
+                return Ok(());
+            }
+        }
+        if self.is_solved(&standing) {
+            return Ok(());
+        }
+        Err(self.no_equilibrium(limit))
+    }
+
+    fn is_solved(&self, standing: &Standing) -> bool {
+        let tolerance = self.system.nonlinear.iteration.tolerance;
+        standing.imbalance <= tolerance && standing.defect <= 1.0
+    }
+
+    /// Whether all is linear in the unknown, so that one iteration is all.
+    fn is_affine(&self) -> bool {
+        let system = &*self.system;
+        let bodies = self.map.force.x == 0.0 || system.bodies.iter().all(|body| body.is_linear());
+        let contacts = system.contacts.iter().all(|c| self.turning(c) == 0.0);
+        bodies && contacts && !system.nonlinear.has_followers()
+    }
+
+    /// Begins with the motion of no acceleration, or with the one before it; motions that are prescribed come as a jump in
+    /// the first iteration, so that the inside of the body goes along.
+    fn predict(&mut self) {
+        let system = Arc::clone(&self.system);
+        let (map, motion) = (&self.map, &self.state.motion);
+        let vectors = &mut self.vectors;
+        let inertia = &map.inertia;
+        if inertia.x == 0.0 {
+            vectors.x.fill(0.0);
+        } else {
+            inertia.known(motion, &mut vectors.x);
+            for x in vectors.x.iter_mut() {
+                *x *= -1.0 / inertia.x;
+            }
+        }
+        vectors.jump.fill(0.0);
+        let end = &map.displacement;
+        if end.x == 0.0 {
+            return;
+        }
+        end.known(motion, &mut vectors.place);
+        vectors.work.fill(0.0);
+        system
+            .nonlinear
+            .prescribe(self.state.time + self.dt, &mut vectors.work);
+        for i in (0..system.unknowns()).filter(|&i| system.fixed[i]) {
+            vectors.x[i] = (motion.u[i] - vectors.place[i]) / end.x;
+            vectors.jump[i] = (vectors.work[i] - motion.u[i]) / end.x;
+        }
+    }
+
+    /// Loads, inertia, internal and damping forces at x.
+    fn evaluate(&mut self) -> Result<(), Error> {
+        let map = self.map;
+        let motion = &self.state.motion;
+        let vectors = &mut self.vectors;
+        map.inertia
+            .whole(motion, &vectors.x, &[], &mut vectors.place);
+        self.system
+            .mass
+            .multiply(&vectors.place, &mut vectors.inertia);
+        self.evaluate_damping();
+        let vectors = &mut self.vectors;
+        map.force
+            .whole(&self.state.motion, &vectors.x, &[], &mut vectors.place);
+        let dt = match self.between() {
+            true => self.dt,
+            false => map.force_fraction.unwrap_or(1.0) * self.dt,
+        };
+        self.stored = self.internal((Which::Place, self.between()), dt)?;
+        self.evaluate_loads(self.instant());
+        let vectors = &mut self.vectors;
+        for i in 0..vectors.residual.len() {
+            vectors.residual[i] = match self.system.fixed[i] {
+                true => 0.0,
+                false => {
+                    vectors.load[i] - vectors.inertia[i] - vectors.internal[i] - vectors.damping[i]
+                }
+            };
+        }
+        Ok(())
+    }
+
+    /// How far forces and contacts are from what they must be. Forces are compared with the largest of those that balance,
+    /// and with the momentum per step; what rounding leaves of the internal forces counts as nothing.
+    fn standing(&mut self) -> Standing {
+        self.spread();
+        let factor = self.map.contact;
+        let vectors = &self.vectors;
+        let norm = |f: &[f64]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let (mut imbalance, mut contact) = (0.0, 0.0);
+        for (i, (r, c)) in vectors.residual.iter().zip(&vectors.contact).enumerate() {
+            if !self.system.fixed[i] {
+                imbalance += (r + factor * c).powi(2);
+            }
+            contact += (factor * c).powi(2);
+        }
+        let mut scale = f64::max(contact.sqrt(), norm(&vectors.load));
+        scale = scale
+            .max(norm(&vectors.internal))
+            .max(norm(&vectors.inertia));
+        if self.map.inertia.x != 0.0 {
+            scale = scale.max(self.momentum_scale());
+        }
+        let least = self.rounding();
+        let imbalance: f64 = imbalance.sqrt();
+        Standing {
+            imbalance: match imbalance <= least {
+                true => 0.0,
+                false => imbalance / scale.max(f64::MIN_POSITIVE),
+            },
+            defect: self.worst_point().map_or(0.0, |(_, defect)| defect),
+        }
+    }
+
+    /// |M v|/dt of the motion at the start of the step, N.
+    fn momentum_scale(&self) -> f64 {
+        let masses = self.system.body_masses.iter().flatten();
+        let dim = self.system.dim;
+        let squares = masses.map(|&(node, m)| {
+            let first = dim * node as usize;
+            let v = &self.state.motion.v[first..first + dim];
+            m * m * v.iter().map(|v| v * v).sum::<f64>()
+        });
+        squares.sum::<f64>().sqrt() / self.dt
+    }
+
+    /// What rounding of the positions leaves in the internal forces, N.
+    fn rounding(&self) -> f64 {
+        let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        let x = self
+            .system
+            .x
+            .iter()
+            .flatten()
+            .fold(0.0f64, |m, x| m.max(x.abs()));
+        let place = x + largest(&self.state.motion.u);
+        4.0 * f64::EPSILON * self.effective.stiffness_norm(&self.system, &self.map) * place
+    }
+
+    /// Whether this iteration needs a new factor.
+    fn wants_factor(&mut self, pass: usize) -> bool {
+        if let Some(key) = self.constant_key() {
+            return !self.effective.stands(key);
+        }
+        let [.., before, now] = self.residuals[..] else {
+            return true;
+        };
+        let Some(price) = self.effective.price() else {
+            return pass == 0;
+        };
+        let tolerance = self.system.nonlinear.iteration.tolerance;
+        let ratio = now / before;
+        if ratio.is_nan() || ratio >= 0.5 {
+            return true;
+        }
+        let needed = (tolerance / now).ln() / ratio.ln();
+        let keeps = needed <= FRESH + TANGENT + price;
+        tracing::debug!(
+            "step {}, iteration {pass}: residual {now:e}, {} times the one before; the factor is {}: \
+             {needed:.1} iterations with it against {FRESH} with a new one that costs {:.1}",
+            self.state.step + 1,
+            ratio,
+            if keeps { "kept" } else { "renewed" },
+            TANGENT + price,
+        );
+        !keeps
+    }
+
+    /// What a matrix that does not change in the run depends on; none where it changes.
+    fn constant_key(&self) -> Option<[f64; 4]> {
+        let system = &*self.system;
+        let linear = system.bodies.iter().all(|body| body.is_linear()) || self.map.force.x == 0.0;
+        let turns = system
+            .contacts
+            .iter()
+            .any(|contact| self.turning(contact) != 0.0);
+        let map = &self.map;
+        let key = [map.inertia.x, map.force.x, self.dt, map.contact];
+        (linear && !turns && !system.nonlinear.has_followers()).then_some(key)
+    }
+
+    /// Makes the effective matrix at x. Where it is not positive definite with the turning contact forces, it is made
+    /// without them: the iterations take longer, and the answer is the same.
+    fn renew(&mut self) -> Result<(), Error> {
+        let begin = Instant::now();
+        let system = Arc::clone(&self.system);
+        let constant = self.constant_key();
+        let motion = &self.state.motion;
+        self.map
+            .force
+            .whole(motion, &self.vectors.x, &[], &mut self.vectors.place);
+        let at = At {
+            map: &self.map,
+            dt: match self.between() {
+                true => self.dt,
+                false => self.map.force_fraction.unwrap_or(1.0) * self.dt,
+            },
+            u: &self.vectors.place,
+            from: self.between().then_some(&motion.u[..]),
+            history: &motion.history,
+        };
+        let forces = self.next.interface.force.iter().copied().enumerate();
+        let turns = |&(point, force): &(usize, f64)| {
+            force != 0.0 && self.turning(system.point(point).0) != 0.0
+        };
+        let forces: Vec<(usize, f64)> = forces.filter(turns).collect();
+        let factor = system.contacts.first().map_or(0.0, |c| self.turning(c)) * self.map.contact;
+        let mut turning = Turning {
+            pairing: &self.pairing,
+            forces,
+            factor,
+        };
+        let mut made = self.effective.renew(&system, &at, &turning, constant);
+        if made.is_err() && !turning.forces.is_empty() {
+            turning.forces.clear();
+            made = self.effective.renew(&system, &at, &turning, constant);
+        }
+        self.phases.factorisation += begin.elapsed();
+        made
+    }
+
+    /// The motion `dx` of the iteration and the contact forces after it.
+    fn motion_of_iteration(&mut self) -> Result<(), Error> {
+        let begin = Instant::now();
+        let vectors = &mut self.vectors;
+        vectors.work.copy_from_slice(&vectors.residual);
+        if vectors.jump.iter().any(|jump| *jump != 0.0) {
+            self.effective.load_of(&vectors.jump, &mut vectors.place);
+            for (i, (r, k)) in vectors.work.iter_mut().zip(&vectors.place).enumerate() {
+                *r = if self.system.fixed[i] { 0.0 } else { *r - k };
+            }
+        }
+        let Some((operators, _)) = self.effective.both() else {
+            return Ok(());
+        };
+        operators.begin(&vectors.work, &mut vectors.half);
+        vectors.work.copy_from_slice(&vectors.half);
+        operators.end(&mut vectors.work, &mut vectors.dx);
+        for (dx, jump) in vectors.dx.iter_mut().zip(&vectors.jump) {
+            *dx += jump;
+        }
+        self.phases.sweeps += begin.elapsed();
+        self.solve_interface()
+    }
+
+    /// Goes the way of the iteration, or as much of it as does not make things much worse.
+    fn go(&mut self, before: &Standing, jumps: bool) -> Result<Standing, Error> {
+        let x = self.vectors.x.clone();
+        let mut share = 1.0;
+        let mut last = None;
+        for _ in 0..=SHORTENINGS {
+            for (i, x_i) in self.vectors.x.iter_mut().enumerate() {
+                *x_i = x[i] + share * self.vectors.dx[i];
+            }
+            match self.evaluate() {
+                Ok(()) => {
+                    self.pair(false);
+                    let standing = self.standing();
+                    let grows = standing.imbalance > GROWTH * before.imbalance.max(1e-6);
+                    if jumps || !grows || self.is_affine() {
+                        last = Some(Ok(standing));
+                        break;
+                    }
+                    last = Some(Ok(standing));
+                }
+                Err(error) => last = Some(Err(error)),
+            }
+            share *= 0.5;
+        }
+        let mut rest = 0.0;
+        if jumps && share < 1.0 {
+            rest = 1.0 - share;
+        }
+        for jump in self.vectors.jump.iter_mut() {
+            *jump *= rest;
+        }
+        match last {
+            Some(outcome) => outcome,
+            None => Err(self.no_equilibrium(0)),
+        }
+    }
+
+    fn no_equilibrium(&self, passes: usize) -> Error {
+        let system = &*self.system;
+        let vectors = &self.vectors;
+        let imbalance = |i: usize| match system.fixed[i] {
+            true => 0.0,
+            false => (vectors.residual[i] + self.map.contact * vectors.contact[i]).abs(),
+        };
+        let larger = |best: usize, i: usize| match imbalance(i) > imbalance(best) {
+            true => i,
+            false => best,
+        };
+        let node = (0..system.unknowns()).fold(0, larger) / system.dim;
+        let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(n, _)| *n as usize == node);
+        let body = system.body_masses.iter().position(owns).unwrap_or(0);
+        let contact = match self.worst_point() {
+            Some((point, defect)) if defect > 1.0 => {
+                format!("; its law is missed most by {}", self.name(point))
+            }
+            _ => String::new(),
+        };
+        let last = self.residuals.len().saturating_sub(8);
+        let history = self.residuals[last..].iter().map(|r| format!("{r:.1e}"));
+        Error::Equilibrium {
+            step: self.state.step + 1,
+            time: self.state.time,
+            dt: self.dt,
+            passes,
+            node: system.mesh_node[node],
+            body: system.bodies[body].name().to_string(),
+            contact,
+            history: history.collect::<Vec<_>>().join(", "),
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! The initial state, the passage from the static stage to the dynamics, and bodies that nothing holds.
+
+use std::sync::Arc;
+
+use super::{Newton, Which};
+use crate::control::Control;
+use crate::error::Error;
+use crate::ledger::{Energies, Ledger, Resultant};
+use crate::operator::Operators;
+use crate::records::{ContactRecord, Records};
+use crate::scheme::EnergyIdentity;
+use crate::system::System;
+
+impl Newton {
+    /// Completes the initial state.
+    pub(super) fn start(&mut self) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        let motion = &mut self.state.motion;
+        motion.u.clone_from(&system.initial_displacement);
+        system.nonlinear.prescribe(0.0, &mut motion.u);
+        if system.nonlinear.preload.is_none() {
+            motion.v.clone_from(&system.initial_velocity);
+        }
+        self.size(system.dt);
+        self.next.clone_from(&self.state);
+        self.begin()?;
+        let n = system.contacts.len();
+        self.state.control = Control::start(system.dt);
+        self.state.records = Records {
+            contacts: vec![ContactRecord::default(); n],
+            impacts: Vec::new(),
+        };
+        self.vectors.x.fill(0.0);
+        self.pair_now();
+        for point in 0..system.points() {
+            self.state.interface.gap[point] = self.pairing.rows.gap(point);
+            self.state.interface.rate[point] =
+                self.pairing.rows.product(point, &self.state.motion.v);
+        }
+        self.next.clone_from(&self.state);
+        self.tell(0.0);
+        Ok(())
+    }
+
+    /// Gives the state the velocities, accelerations and balance with which a stage begins.
+    fn begin(&mut self) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        self.vectors.place.clone_from(&self.state.motion.u);
+        let stored = self.internal((Which::Place, false), 0.0)?;
+        self.state
+            .motion
+            .internal_force
+            .clone_from(&self.vectors.internal);
+        self.evaluate_loads(self.state.time);
+        if system.scheme.get().keeps_acceleration() && !self.is_static() {
+            let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
+            let (vectors, motion) = (&mut self.vectors, &mut self.state.motion);
+            for i in 0..system.unknowns() {
+                let balance = vectors.load[i] - vectors.internal[i] + motion.contact_force[i];
+                vectors.residual[i] = if system.fixed[i] { 0.0 } else { balance };
+            }
+            mass.begin(&vectors.residual, &mut vectors.half);
+            mass.end(&mut vectors.half, &mut motion.a);
+        }
+        self.forces_at_the_start();
+        let motion = &self.state.motion;
+        let energies = energies(&system, motion, stored.strain, &mut self.vectors.work);
+        let at = |k: usize| match self.state.forces.get(k) {
+            Some(f) => Resultant::at(&system, &[&motion.u], f),
+            None => Resultant::default(),
+        };
+        let forces = [at(0), at(1), at(2), Resultant::default(), at(5)];
+        self.state.ledger = Ledger::start(&energies, &EnergyIdentity::default(), forces);
+        self.state.ledger.store(stored.hardening);
+        Ok(())
+    }
+
+    /// Forces that a scheme with a balance at both ends of a step begins with.
+    fn forces_at_the_start(&mut self) {
+        let system = &*self.system;
+        if system.scheme.get().step_map(system.dt).impulse.old == 0.0 || self.is_static() {
+            return;
+        }
+        let motion = &self.state.motion;
+        let mut inertia = vec![0.0; system.unknowns()];
+        system.mass.multiply(&motion.a, &mut inertia);
+        let (load, internal) = (&self.vectors.load, &motion.internal_force);
+        let reaction = (0..system.unknowns()).map(|i| match system.fixed[i] {
+            true => inertia[i] + internal[i] - load[i] - motion.contact_force[i],
+            false => 0.0,
+        });
+        self.state.forces = vec![
+            load.clone(),
+            motion.contact_force.clone(),
+            reaction.collect(),
+            inertia,
+            internal.clone(),
+            vec![0.0; system.unknowns()],
+        ];
+    }
+
+    /// At the end of the static stage bodies are given their velocities, and the balance begins anew.
+    pub(super) fn begin_stage(&mut self) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        let Some(preload) = system.nonlinear.preload else {
+            return Ok(());
+        };
+        if self.state.step != preload.steps || self.state.motion.v.iter().any(|v| *v != 0.0) {
+            return Ok(());
+        }
+        if self.state.time != preload.end {
+            return Ok(());
+        }
+        self.state.motion.v.clone_from(&system.initial_velocity);
+        self.begin()
+    }
+
+    fn pair_now(&mut self) {
+        let system = Arc::clone(&self.system);
+        self.pairing.clear();
+        for (k, contact) in system.contacts.iter().enumerate() {
+            let places = carom_contact::Places {
+                dim: system.dim,
+                x: &system.x,
+                u: &self.state.motion.u,
+            };
+            contact.pair_fully(&places, &mut self.search[k], &mut self.pairing);
+        }
+    }
+
+    /// Refuses a static stage of a connected part that supports leave free to move, unless contacts in the gap may hold it.
+    pub(super) fn check_free_motions(&self) -> Result<(), Error> {
+        let system = &*self.system;
+        if system.nonlinear.preload.is_none() {
+            return Ok(());
+        }
+        for part in &system.parts {
+            let Some(motion) = free_motion(system, part.clone()) else {
+                continue;
+            };
+            let first = (part.start / system.dim) as u32;
+            let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(node, _)| *node == first);
+            let body = system.body_masses.iter().position(owns).unwrap_or(0);
+            return Err(Error::FreeMotion {
+                body: system.bodies[body].name().to_string(),
+                motion,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// A rigid motion of a part that its supports leave free, in words: the null space of the motions at held unknowns.
+fn free_motion(system: &System, part: std::ops::Range<usize>) -> Option<String> {
+    let dim = system.dim;
+    let nodes = part.start / dim..part.end / dim;
+    let centre = |i: usize| {
+        let sum: f64 = nodes.clone().map(|node| system.x[node][i]).sum();
+        sum / nodes.len() as f64
+    };
+    let centre = [centre(0), centre(1), centre(2)];
+    let size = nodes
+        .clone()
+        .map(|node| {
+            (0..3)
+                .map(|i| (system.x[node][i] - centre[i]).abs())
+                .fold(0.0, f64::max)
+        })
+        .fold(f64::MIN_POSITIVE, f64::max);
+    let modes = modes(dim, system.axisymmetric);
+    // Gram matrix of the modes over the held unknowns
+    let mut gram = vec![vec![0.0; modes.len()]; modes.len()];
+    for unknown in part.filter(|&unknown| system.fixed[unknown]) {
+        let (node, i) = (unknown / dim, unknown % dim);
+        let x = [0, 1, 2].map(|j| (system.x[node][j] - centre[j]) / size);
+        let values: Vec<f64> = modes.iter().map(|mode| mode.1(&x)[i]).collect();
+        for (a, row) in gram.iter_mut().enumerate() {
+            for (b, entry) in row.iter_mut().enumerate() {
+                *entry += values[a] * values[b];
+            }
+        }
+    }
+    // a mode that elimination leaves without pivot is free
+    for k in 0..modes.len() {
+        if gram[k][k] <= 1e-9 {
+            return Some(modes[k].0.to_string());
+        }
+        for a in k + 1..modes.len() {
+            let factor = gram[a][k] / gram[k][k];
+            for b in k..modes.len() {
+                gram[a][b] -= factor * gram[k][b];
+            }
+        }
+    }
+    None
+}
+
+type Mode = (&'static str, fn(&[f64; 3]) -> [f64; 3]);
+
+fn modes(dim: usize, axisymmetric: bool) -> Vec<Mode> {
+    if axisymmetric {
+        return vec![("move along its axis", |_| [0.0, 1.0, 0.0])];
+    }
+    let mut modes: Vec<Mode> = vec![("move along x", |_| [1.0, 0.0, 0.0])];
+    if dim > 1 {
+        modes.push(("move along y", |_| [0.0, 1.0, 0.0]));
+    }
+    if dim > 2 {
+        modes.push(("move along z", |_| [0.0, 0.0, 1.0]));
+        modes.push(("turn about x", |x| [0.0, -x[2], x[1]]));
+        modes.push(("turn about y", |x| [x[2], 0.0, -x[0]]));
+    }
+    if dim > 1 {
+        modes.push(("turn about z", |x| [-x[1], x[0], 0.0]));
+    }
+    modes
+}
+
+/// Energies and momentum of a motion; angular momentum about the origin, in the present configuration.
+pub(super) fn energies(
+    system: &System,
+    motion: &crate::state::Motion,
+    strain: f64,
+    work: &mut [f64],
+) -> Energies {
+    system.mass.multiply(&motion.v, work);
+    let kinetic: f64 = motion
+        .v
+        .iter()
+        .zip(work.iter())
+        .map(|(v, p)| 0.5 * v * p)
+        .sum();
+    Energies {
+        kinetic,
+        strain,
+        acceleration: 0.0,
+        memory: 0.0,
+        lagged: 0.0,
+        momentum: Resultant::at(system, &[&motion.u], work),
+    }
+}

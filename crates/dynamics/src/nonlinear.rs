@@ -1,0 +1,400 @@
+//! What only the nonlinear solver takes: loads and motions in time, damping, a static stage before the dynamics, and
+//! how its equations are solved.
+
+use std::ops::Range;
+
+use carom_bodies::Body;
+use carom_contact::{Contact, Integration};
+use carom_mesh::{Face, Surface};
+use serde::{Deserialize, Serialize};
+
+use crate::Error;
+use crate::contacts::renumbered;
+use crate::system::{Model, ModelBody, System};
+
+/// A quantity as a function of time: straight between its points, constant before the first and after the last.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Amplitude(Vec<[f64; 2]>);
+
+impl Amplitude {
+    /// The same value at all times.
+    pub fn constant(value: f64) -> Amplitude {
+        Amplitude(vec![[0.0, value]])
+    }
+
+    /// Points (time in s, value), their times ascending.
+    ///
+    /// # Errors
+    /// No point, a time that does not ascend, a number that is not finite.
+    pub fn new(points: Vec<[f64; 2]>) -> Result<Amplitude, Error> {
+        let ascend = points.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+        let finite = points.iter().flatten().all(|number| number.is_finite());
+        if points.is_empty() || !ascend || !finite {
+            return Err(Error::Amplitude);
+        }
+        Ok(Amplitude(points))
+    }
+
+    /// Value at a time in s.
+    pub fn at(&self, time: f64) -> f64 {
+        let points = &self.0;
+        let after = points.partition_point(|point| point[0] <= time);
+        match (after.checked_sub(1), points.get(after)) {
+            (None, Some(first)) => first[1],
+            (Some(last), None) => points[last][1],
+            (Some(before), Some(next)) => {
+                let [start, value] = points[before];
+                value + (next[1] - value) * (time - start) / (next[0] - start)
+            }
+            (None, None) => 0.0,
+        }
+    }
+
+    /// Whether it is the same at all times.
+    pub fn is_constant(&self) -> bool {
+        self.0.iter().all(|point| point[1] == self.0[0][1])
+    }
+
+    /// Largest absolute value.
+    pub fn largest(&self) -> f64 {
+        self.0.iter().fold(0.0, |m, point| m.max(point[1].abs()))
+    }
+}
+
+/// A load on a surface.
+#[derive(Clone, Debug)]
+pub struct Load {
+    /// Name as in the case file.
+    pub name: String,
+    /// Surface that it acts on.
+    pub surface: Surface,
+    /// What acts.
+    pub kind: LoadKind,
+    /// Factor in time.
+    pub amplitude: Amplitude,
+}
+
+/// What a load is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LoadKind {
+    /// Force per reference area, in Pa, of fixed direction.
+    Traction([f64; 3]),
+    /// Pressure in Pa on the surface as it moves and stretches, positive towards the body.
+    Pressure(f64),
+}
+
+/// Nodes that move as prescribed.
+#[derive(Clone, Debug)]
+pub struct Prescribed {
+    /// Nodes of the mesh.
+    pub nodes: Vec<u32>,
+    /// Displacement in m as a function of time, by direction; none where the direction is free.
+    pub displacement: [Option<Amplitude>; 3],
+}
+
+/// Rayleigh damping of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Damping {
+    /// Factor of the mass, 1/s. It brakes rigid motion too.
+    pub mass: f64,
+    /// Factor of the stiffness, s; for small strain only.
+    pub stiffness: f64,
+}
+
+/// A static stage before the dynamics: loads and contacts find their equilibrium, without inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preload {
+    /// End of the stage, s.
+    pub end: f64,
+    /// Equal steps to it, over which gravity and constant loads grow from nothing.
+    pub steps: u64,
+}
+
+/// How the equations of a step are solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iteration {
+    /// Residual, relative to the largest of the forces that balance, at which a step is solved.
+    pub tolerance: f64,
+    /// Iterations after which a step has failed.
+    pub passes: usize,
+    /// Times that a step that failed is halved before the run ends.
+    pub halvings: u32,
+}
+
+impl Default for Iteration {
+    fn default() -> Iteration {
+        Iteration {
+            tolerance: 1e-10,
+            passes: 30,
+            halvings: 6,
+        }
+    }
+}
+
+/// What only the nonlinear solver takes.
+#[derive(Clone, Debug, Default)]
+pub struct Nonlinear {
+    /// Loads.
+    pub loads: Vec<Load>,
+    /// Prescribed motions.
+    pub motions: Vec<Prescribed>,
+    /// Damping by body; empty for none.
+    pub damping: Vec<Damping>,
+    /// The static stage.
+    pub preload: Option<Preload>,
+    /// How steps are solved.
+    pub iteration: Iteration,
+}
+
+impl Nonlinear {
+    /// Whether anything is here that the linear solver does not know.
+    pub(crate) fn asks(&self) -> bool {
+        !self.loads.is_empty()
+            || !self.motions.is_empty()
+            || self.damping.iter().any(|d| *d != Damping::default())
+            || self.preload.is_some()
+    }
+}
+
+/// A load in the numbers of a system.
+#[derive(Debug)]
+pub(crate) struct NumberedLoad {
+    pub(crate) name: String,
+    pub(crate) amplitude: Amplitude,
+    pub(crate) force: NumberedForce,
+}
+
+/// Forces of a load at amplitude 1.
+#[derive(Debug)]
+pub(crate) enum NumberedForce {
+    /// Unknowns and forces, N.
+    Dead(Vec<(u32, f64)>),
+    /// Faces with nodes by system number, the body that they bound, and the pressure in Pa.
+    Follower(Vec<Face>, usize, f64),
+}
+
+/// A prescribed displacement of one unknown: which amplitude it follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Follows {
+    pub(crate) unknown: u32,
+    pub(crate) amplitude: usize,
+}
+
+/// [`Nonlinear`] in the numbers of a system.
+#[derive(Debug, Default)]
+pub(crate) struct NumberedNonlinear {
+    pub(crate) loads: Vec<NumberedLoad>,
+    pub(crate) amplitudes: Vec<Amplitude>,
+    pub(crate) follows: Vec<Follows>,
+    pub(crate) damping: Vec<Damping>,
+    pub(crate) preload: Option<Preload>,
+    pub(crate) iteration: Iteration,
+    /// Place of the history of each body in that of the system.
+    pub(crate) histories: Vec<Range<usize>>,
+    /// Whether the linear driver cannot take the system.
+    pub(crate) needed: bool,
+}
+
+impl NumberedNonlinear {
+    /// Numbers loads and motions. `number` and `x`: system numbers of the mesh nodes and reference coordinates (m) by system
+    /// number; `fixed`: unknowns held by supports.
+    ///
+    /// # Errors
+    /// A motion prescribed in a direction that a support holds.
+    pub(crate) fn new(
+        model: &Model,
+        (number, x): (&[u32], &[[f64; 3]]),
+        bodies: &[Body],
+        fixed: &[bool],
+    ) -> Result<NumberedNonlinear, Error> {
+        let given = &model.nonlinear;
+        let dim = model.mesh.dim;
+        let mut numbered = NumberedNonlinear {
+            damping: given.damping.clone(),
+            preload: given.preload,
+            iteration: given.iteration,
+            ..NumberedNonlinear::default()
+        };
+        for motion in &given.motions {
+            for (i, amplitude) in motion.displacement.iter().enumerate().take(dim) {
+                let Some(amplitude) = amplitude else { continue };
+                let place = numbered.amplitudes.len();
+                numbered.amplitudes.push(amplitude.clone());
+                for &node in &motion.nodes {
+                    let unknown = dim * number[node as usize] as usize + i;
+                    if fixed[unknown]
+                        || numbered
+                            .follows
+                            .iter()
+                            .any(|f| f.unknown as usize == unknown)
+                    {
+                        return Err(Error::Nonlinear {
+                            what: format!("the motion of node {node} of the mesh in direction {i}"),
+                            why: "a support or another motion holds it already",
+                        });
+                    }
+                    numbered.follows.push(Follows {
+                        unknown: unknown as u32,
+                        amplitude: place,
+                    });
+                }
+            }
+        }
+        for load in &given.loads {
+            numbered.loads.push(NumberedLoad {
+                name: load.name.clone(),
+                amplitude: load.amplitude.clone(),
+                force: numbered_force(load, model, number, x),
+            });
+        }
+        let mut first = 0;
+        for body in bodies {
+            numbered.histories.push(first..first + body.history_len());
+            first += body.history_len();
+        }
+        numbered.needed = given.asks()
+            || bodies.iter().any(|body| !body.is_linear())
+            || model.scheme.get().is_between()
+            || model.contacts.iter().any(|contact| contact.friction > 0.0);
+        Ok(numbered)
+    }
+
+    /// Whether any load turns with the body.
+    pub(crate) fn has_followers(&self) -> bool {
+        self.loads
+            .iter()
+            .any(|load| matches!(load.force, NumberedForce::Follower(..)))
+    }
+
+    /// Displacement of the unknowns that follow a function of time, m.
+    pub(crate) fn prescribe(&self, time: f64, u: &mut [f64]) {
+        for follows in &self.follows {
+            u[follows.unknown as usize] = self.amplitudes[follows.amplitude].at(time);
+        }
+    }
+
+    /// Factor of gravity and constant loads at a time: it grows over the static stage.
+    pub(crate) fn ramp(&self, time: f64) -> f64 {
+        match self.preload {
+            Some(preload) if time < preload.end => (time / preload.end).max(0.0),
+            _ => 1.0,
+        }
+    }
+}
+
+fn numbered_force(load: &Load, model: &Model, number: &[u32], x: &[[f64; 3]]) -> NumberedForce {
+    let dim = model.mesh.dim;
+    let owner = load.surface.faces.first().and_then(|face| {
+        let owns = |body: &ModelBody| body.spec.cells.contains(&face.parent);
+        model.bodies.iter().position(owns)
+    });
+    let body = owner.unwrap_or(0);
+    match load.kind {
+        LoadKind::Pressure(pressure) => {
+            let faces = load.surface.faces.iter();
+            let faces = faces.map(|face| renumbered(face, number)).collect();
+            NumberedForce::Follower(faces, body, pressure)
+        }
+        LoadKind::Traction(traction) => {
+            let kinematics = model.bodies[body].spec.kinematics;
+            let areas = load.surface.node_areas(&model.mesh);
+            let mut forces = Vec::new();
+            for (&node, area) in load.surface.nodes.iter().zip(areas) {
+                let node = number[node as usize] as usize;
+                let area = area * kinematics.surface_factor(&x[node]);
+                let of = |i: usize| ((dim * node + i) as u32, area * traction[i]);
+                forces.extend((0..dim).map(of));
+            }
+            NumberedForce::Dead(forces)
+        }
+    }
+}
+
+impl System {
+    /// Whether the model needs the nonlinear solver, [`Newton`](crate::Newton).
+    pub fn is_nonlinear(&self) -> bool {
+        self.nonlinear.needed
+    }
+
+    /// Histories of all materials where nothing has happened.
+    pub(crate) fn start_histories(&self) -> Vec<f64> {
+        let ranges = &self.nonlinear.histories;
+        let mut histories = vec![0.0; ranges.last().map_or(0, |range| range.end)];
+        for (body, range) in self.bodies.iter().zip(ranges) {
+            body.start_history(&mut histories[range.clone()]);
+        }
+        histories
+    }
+
+    /// Refuses what the nonlinear solver does not take, of a model that needs it.
+    pub(crate) fn check_nonlinear(&self) -> Result<(), Error> {
+        if !self.nonlinear.needed {
+            return Ok(());
+        }
+        let scheme = self.scheme.get();
+        let map = scheme.step_map(self.dt);
+        let refuse = |what: String, why| Err(Error::Nonlinear { what, why });
+        if map.has_memory()
+            || map.uses_contact_acceleration()
+            || scheme.projects_predictor()
+            || scheme.restores_contact_work()
+        {
+            return refuse(
+                format!("the scheme {}", scheme.name()),
+                "large transformations, friction, damping, loads in time and static stages take newmark, theta, \
+                 generalised-alpha, hht, central-difference, tchamwa-wielgosz, laursen-chawla and energy-momentum",
+            );
+        }
+        if self.adaptive.is_some() {
+            return refuse(
+                "an adaptive step".into(),
+                "the nonlinear solver halves steps by itself where it finds no equilibrium; give a fixed step",
+            );
+        }
+        if !self.massless.is_empty() {
+            return refuse(
+                "contact nodes without mass".into(),
+                "they follow a linear equilibrium; leave the mass of the nodes as it is",
+            );
+        }
+        let weak = |contact: &&Contact| matches!(contact.integration, Integration::Weak { .. });
+        if let Some(contact) = self.contacts.iter().find(weak) {
+            return refuse(
+                format!("contact '{}'", contact.name),
+                "the weak form with signs at Gauss points is for the linear driver; take node or mortar",
+            );
+        }
+        if let Some(contact) = self.contacts.iter().find(|contact| contact.law.projects()) {
+            return refuse(
+                format!("contact '{}'", contact.name),
+                "the projection at closure is for the linear driver; take the velocity law, or no projection",
+            );
+        }
+        for (damping, body) in self.nonlinear.damping.iter().zip(&self.bodies) {
+            if damping.stiffness != 0.0 && !body.is_linear() {
+                return refuse(
+                    format!("body '{}'", body.name()),
+                    "damping proportional to the stiffness would brake rotations at finite strain; take a viscoelastic material",
+                );
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn amplitude_is_straight_between_its_points_and_constant_outside() {
+        let ramp = Amplitude::new(vec![[1.0, 0.0], [2.0, 4.0], [4.0, 2.0]]).unwrap();
+        for (time, value) in [(0.0, 0.0), (1.25, 1.0), (2.0, 4.0), (3.0, 3.0), (9.0, 2.0)] {
+            assert_eq!(ramp.at(time), value);
+        }
+        assert_eq!(ramp.largest(), 4.0);
+        assert!(Amplitude::new(vec![[1.0, 0.0], [1.0, 1.0]]).is_err());
+        assert!(Amplitude::new(vec![]).is_err());
+        assert_eq!(Amplitude::constant(3.0).at(-7.0), 3.0);
+    }
+}

@@ -1,0 +1,246 @@
+//! Laws that have a stored energy alone: the form that they share, its stress and tangent, and the algorithmic stress of a
+//! step that does exactly the work of the energy difference.
+
+use carom_algebra::tensor::Mat3;
+
+use crate::lagrange::{Moduli, add_geometric, add_product, cofactor, green_lagrange, positive};
+use crate::{Elastic, Failure, Material, Response, Want};
+
+/// A hyperelastic law, chosen by the coefficients of its [`Potential`].
+pub(crate) trait Hyperelastic {
+    /// Stored energy.
+    fn potential(&self) -> Potential;
+    /// Linear elasticity of the undeformed material.
+    fn initial(&self) -> Elastic;
+}
+
+impl<T: Hyperelastic> Material for T {
+    fn history_len(&self) -> usize {
+        0
+    }
+
+    fn start(&self, _history: &mut [f64]) {}
+
+    fn update(
+        &self,
+        f: &Mat3,
+        _dt: f64,
+        _history: (&[f64], &mut [f64]),
+        want: Want,
+    ) -> Result<Response, Failure> {
+        self.potential().response(f, want)
+    }
+
+    fn between(&self, f_0: &Mat3, f_1: &Mat3, want: Want) -> Option<Result<Response, Failure>> {
+        Some(self.potential().between(f_0, f_1, want))
+    }
+
+    fn initial(&self) -> Elastic {
+        Hyperelastic::initial(self)
+    }
+}
+
+/// Stored energy ψ = a/2 (tr E)² + b E:E + m (tr E - ln J) + l/2 (ln J)² of the Green-Lagrange strain E, with
+/// J = sqrt(det(I + 2E)): quadratic in E, and functions of the volume. All coefficients in Pa. It vanishes, and so does
+/// its stress S = ∂ψ/∂E, at E = 0, where it is linear elasticity with λ = a + l and μ = b + m.
+pub(crate) struct Potential {
+    /// a, of (tr E)²/2.
+    pub(crate) trace: f64,
+    /// b, of E:E.
+    pub(crate) square: f64,
+    /// m, of tr E - ln J.
+    pub(crate) barrier: f64,
+    /// l, of (ln J)²/2.
+    pub(crate) volume: f64,
+}
+
+/// A strain with what the potential asks of it.
+struct State {
+    e: Mat3,
+    /// B = C⁻¹ = (I + 2E)⁻¹.
+    b: Mat3,
+    /// det C.
+    det: f64,
+    /// ln J.
+    ln_j: f64,
+    /// tr E - ln J, not negative.
+    gap: f64,
+}
+
+impl State {
+    /// det C - 1 = 2 I_1 + 4 I_2 + 8 I_3 with the invariants of E, and with it ln J and tr E - ln J free of cancellation:
+    /// the energy keeps its digits however small the strain is.
+    ///
+    /// # Errors
+    /// det C not positive, as round-off makes it where the volume is pressed to nothing.
+    fn new(e: Mat3) -> Result<State, Failure> {
+        let c = Mat3::identity() + e * 2.0;
+        let trace = e.trace();
+        let rest = (trace * trace - e.norm_squared()) + 4.0 * e.determinant();
+        let growth = 2.0 * (trace + rest);
+        let det = positive(1.0 + growth)?;
+        let ratio = growth / (2.0 + growth);
+        Ok(State {
+            b: cofactor(&c) / det,
+            det,
+            ln_j: 0.5 * growth.ln_1p(),
+            gap: 0.5 * growth * ratio - atanh_rest(ratio) - rest,
+            e,
+        })
+    }
+}
+
+/// 1/3, 1/5, ..., 1/25: the coefficients of t³, t⁵, ... in atanh t.
+const ATANH: [f64; 12] = {
+    let mut table = [0.0; 12];
+    let mut k = 0;
+    while k < table.len() {
+        table[k] = 1.0 / (2 * k + 3) as f64;
+        k += 1;
+    }
+    table
+};
+
+/// atanh(t) - t = t³/3 + t⁵/5 + ..., to its last digits for small t.
+fn atanh_rest(t: f64) -> f64 {
+    // up to here the next term, 0.04¹²/27, is below the last digit of the first
+    if t.abs() > 0.2 {
+        return t.atanh() - t;
+    }
+    let square = t * t;
+    let series = ATANH.iter().rev().fold(0.0, |sum, c| sum * square + c);
+    series * square * t
+}
+
+impl Potential {
+    fn energy(&self, state: &State) -> f64 {
+        let State { e, ln_j, gap, .. } = state;
+        let trace = e.trace();
+        0.5 * self.trace * trace * trace
+            + self.square * e.norm_squared()
+            + self.barrier * gap
+            + 0.5 * self.volume * ln_j * ln_j
+    }
+
+    /// S = a tr(E) I + 2 b E + m (I - B) + l ln(J) B, where I - B = 2 B E.
+    fn stress(&self, state: &State) -> Mat3 {
+        let State { e, b, ln_j, .. } = state;
+        Mat3::identity() * (self.trace * e.trace())
+            + e * (2.0 * self.square)
+            + b * e * (2.0 * self.barrier)
+            + b * (self.volume * ln_j)
+    }
+
+    /// ∂S/∂E, with ∂ ln J/∂E = B and ∂B/∂E = -2 B⊙B.
+    fn moduli(&self, state: &State) -> Moduli {
+        Moduli {
+            trace: self.trace,
+            identity: 2.0 * self.square,
+            product: self.volume,
+            cross: 2.0 * (self.barrier - self.volume * state.ln_j),
+            b: state.b,
+        }
+    }
+
+    /// First Piola-Kirchhoff stress P = F S and its derivative δ_ik S_JL + F_iM (∂S/∂E)_MJNL F_kN.
+    fn response(&self, f: &Mat3, want: Want) -> Result<Response, Failure> {
+        positive(f.determinant())?;
+        let state = State::new(green_lagrange(f))?;
+        let s = self.stress(&state);
+        let tangent = (want == Want::Tangent).then(|| {
+            let mut tangent = self.moduli(&state).pushed(f, f);
+            add_geometric(&mut tangent, &s);
+            tangent
+        });
+        Ok(Response {
+            stress: f * s,
+            tangent,
+            stored: self.energy(&state),
+            hardening: 0.0,
+            dissipated: 0.0,
+        })
+    }
+
+    /// Gonzalez' discrete gradient: P_alg = F_m S_alg, F_m = (F_0 + F_1)/2, and with E_m = (E_0 + E_1)/2, D = E_1 - E_0,
+    ///
+    /// S_alg = S(E_m) + x/(D:D) D,   x = ψ(E_1) - ψ(E_0) - S(E_m):D,
+    ///
+    /// so that P_alg : (F_1 - F_0) = S_alg : D = ψ(E_1) - ψ(E_0), because sym(F_mᵀ (F_1 - F_0)) = D. x is of third order in
+    /// D; taken from [`Potential::excess`] and not from the difference of energies it brings no noise into small steps.
+    ///
+    /// ∂P_alg/∂F_1 = S_alg/2 on each row, and F_m (∂S_alg/∂E_1) F_1, where
+    /// ∂S_alg/∂E_1 = (∂S/∂E)_m/2 + x/(D:D) 𝕀 + D⊗w,   w = (S_1 - S_m - (∂S/∂E)_m:D/2)/(D:D) - 2x/(D:D)² D.
+    ///
+    /// The stress is that of Gonzalez (2000), Comput. Methods Appl. Mech. Eng. 190, 1763, after Simo and Tarnow (1992), ZAMP 43,
+    /// 757; the derivative is derived here.
+    fn between(&self, f_0: &Mat3, f_1: &Mat3, want: Want) -> Result<Response, Failure> {
+        positive(f_0.determinant())?;
+        positive(f_1.determinant())?;
+        let f_m = (f_0 + f_1) * 0.5;
+        let product = f_m.tr_mul(&(f_1 - f_0));
+        let d = (product + product.transpose()) * 0.5;
+        let end = State::new(green_lagrange(f_1))?;
+        let middle = State::new((green_lagrange(f_0) + end.e) * 0.5)?;
+        let length = d.norm_squared();
+        let rate = if length > 0.0 {
+            self.excess(&middle, &d) / length
+        } else {
+            0.0
+        };
+        let s_m = self.stress(&middle);
+        let s = s_m + d * rate;
+        let tangent = (want == Want::Tangent).then(|| {
+            let mut moduli = self.moduli(&middle).half();
+            let bent = self.stress(&end) - s_m - moduli.times(&d);
+            moduli.identity += rate;
+            let mut tangent = moduli.pushed(&f_m, f_1);
+            add_geometric(&mut tangent, &(s * 0.5));
+            // below, D⊗w is smaller than the round-off of its parts
+            if length > 1e-16 {
+                let w = (bent - d * (2.0 * rate)) / length;
+                add_product(&mut tangent, &(f_m * d), &(f_1 * w));
+            }
+            tangent
+        });
+        Ok(Response {
+            stress: f_m * s,
+            tangent,
+            stored: self.energy(&end),
+            hardening: 0.0,
+            dissipated: 0.0,
+        })
+    }
+
+    /// ψ(E_m + D/2) - ψ(E_m - D/2) - S(E_m):D without cancellation. The part quadratic in E has none. With
+    ///
+    /// det(C_m ± D)/det C_m = 1 ± a + b ± c,   a = B:D, b = C_m:cof(D)/det C_m, c = det(D)/det C_m,
+    ///
+    /// ln J_1 - ln J_0 = atanh t, t = (a + c)/(1 + b), and the mean of ln J_0 and ln J_1 is
+    /// ln J_m + ln((1 + b)² - (a + c)²)/4.
+    fn excess(&self, middle: &State, d: &Mat3) -> f64 {
+        let c_m = Mat3::identity() + middle.e * 2.0;
+        let a = middle.b.dot(d);
+        let b = c_m.dot(&cofactor(d)) / middle.det;
+        let c = d.determinant() / middle.det;
+        let beyond = atanh_rest((a + c) / (1.0 + b)) + (c - a * b) / (1.0 + b);
+        let shift = 0.25 * (b * (2.0 + b) - (a + c) * (a + c)).ln_1p();
+        (self.volume * (middle.ln_j + shift) - self.barrier) * beyond + self.volume * shift * a
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rest_of_atanh_has_all_its_digits_on_both_sides_of_the_threshold() {
+        for t in [1e-8, 1e-3, 0.1, 0.1999, 0.2001, 0.7, -0.15, -0.9] {
+            let terms = (1..400)
+                .rev()
+                .map(|k| f64::powi(t, 2 * k + 1) / f64::from(2 * k + 1));
+            let sum: f64 = terms.sum();
+            // above the threshold t itself, a hundred times the rest at most, is rounded
+            assert!((atanh_rest(t) - sum).abs() < 2e-14 * sum.abs(), "{t}");
+        }
+    }
+}

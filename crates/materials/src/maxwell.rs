@@ -1,0 +1,171 @@
+//! Linear viscoelasticity at finite strain.
+
+use carom_algebra::tensor::Mat3;
+
+use crate::lagrange::{Moduli, add_geometric, green_lagrange, pack, positive, unpack};
+use crate::range::{OutOfRange, require};
+use crate::{Elastic, Failure, Material, Plane, Response, Want};
+
+/// Most branches of a [`Maxwell`] material.
+pub const MAX_BRANCHES: usize = 4;
+
+/// A spring and a dashpot in series.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Branch {
+    /// Part of the instantaneous shear modulus that relaxes in this branch, in ]0, 1[.
+    pub ratio: f64,
+    /// Relaxation time in s, positive.
+    pub time: f64,
+}
+
+/// Generalised Maxwell material, linear in the Green-Lagrange strain E: a spring beside branches of spring and dashpot, in the
+/// deviator e = dev E. The volume stays elastic.
+///
+/// With x_i the strain of the spring of branch i, dx_i/dt = de/dt - x_i/τ_i,
+///
+/// ψ = κ/2 (tr E)² + μ (1 - Σ g_i) e:e + μ Σ g_i x_i:x_i,   S = ∂ψ/∂E,   dissipated power Σ 2μ g_i x_i:x_i/τ_i,
+///
+/// κ and μ the instantaneous moduli: shear relaxes as μ (1 - Σ g_i (1 - exp(-t/τ_i))). A step solves this exactly for a strain
+/// that grows evenly over it, and its dissipation is the exact integral. At once, and at last, this is St Venant-Kirchhoff
+/// elasticity, with its limit to moderate strains. The history is e and all x_i (11, 22, 33, 12, 23, 13).
+/// Simo and Hughes (1998), Computational Inelasticity, chapter 10.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Maxwell {
+    /// Instantaneous law at small strain, with the density.
+    pub initial: Elastic,
+    /// The branches; their ratios sum to less than one.
+    pub branches: [Option<Branch>; MAX_BRANCHES],
+}
+
+/// A branch over a step of h = dt/τ: x_1 = decay x_0 + gain (e_1 - e_0), and the integral of x:x over the time in units of τ,
+/// `squares` times (x_0:x_0, x_0:(e_1 - e_0), (e_1 - e_0):(e_1 - e_0)).
+struct Relaxation {
+    decay: f64,
+    gain: f64,
+    squares: [f64; 3],
+}
+
+impl Relaxation {
+    /// With u = 1 - exp(-h): gain u/h, squares u - u²/2, u²/h, (h - u - u²/2)/h². Times from 0 to infinity.
+    fn new(h: f64) -> Relaxation {
+        if h == 0.0 {
+            return Relaxation {
+                decay: 1.0,
+                gain: 1.0,
+                squares: [0.0; 3],
+            };
+        }
+        let u = -(-h).exp_m1();
+        let gain = u / h;
+        let last = if u < 0.1 {
+            // h = u + u²/2 + u³/3 + ...; 0.1¹⁵ is below the last digit of the first term
+            let series = (3..18)
+                .rev()
+                .fold(0.0, |sum, k| sum * u + 1.0 / f64::from(k));
+            series * u * gain * gain
+        } else {
+            (1.0 - gain * (1.0 + 0.5 * u)) / h
+        };
+        Relaxation {
+            decay: (-h).exp(),
+            gain,
+            squares: [u - 0.5 * u * u, u * gain, last],
+        }
+    }
+}
+
+impl Maxwell {
+    /// Names a parameter outside its range.
+    ///
+    /// # Errors
+    /// The first such parameter.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        self.initial.check()?;
+        for branch in self.branches.iter().flatten() {
+            require("ratio", branch.ratio, branch.ratio > 0.0, "positive")?;
+            require("time", branch.time, branch.time > 0.0, "positive")?;
+        }
+        let sum = 1.0 - self.lasting();
+        require("sum of the ratios", sum, sum < 1.0, "less than 1")
+    }
+
+    /// 1 - Σ g_i.
+    fn lasting(&self) -> f64 {
+        let ratios = self.branches.iter().flatten().map(|branch| branch.ratio);
+        1.0 - ratios.sum::<f64>()
+    }
+}
+
+impl Material for Maxwell {
+    fn history_len(&self) -> usize {
+        6 + 6 * self.branches.iter().flatten().count()
+    }
+
+    fn start(&self, history: &mut [f64]) {
+        history.fill(0.0);
+    }
+
+    fn update(
+        &self,
+        f: &Mat3,
+        dt: f64,
+        (old, new): (&[f64], &mut [f64]),
+        want: Want,
+    ) -> Result<Response, Failure> {
+        positive(f.determinant())?;
+        let strain = green_lagrange(f);
+        let trace = strain.trace();
+        let e = strain - Mat3::identity() * (trace / 3.0);
+        let change = e - unpack(&old[..6]);
+        pack(&e, &mut new[..6]);
+        let mu = self.initial.shear_modulus();
+        let bulk = self.initial.lame_1(Plane::Full) + 2.0 / 3.0 * mu;
+        // shear stress, energy and modulus over 2μ
+        let mut shear = e * self.lasting();
+        let mut energy = 0.5 * self.lasting() * e.norm_squared();
+        let mut modulus = self.lasting();
+        let mut dissipated = 0.0;
+        let histories = old[6..].chunks_exact(6).zip(new[6..].chunks_exact_mut(6));
+        for (branch, (old, new)) in self.branches.iter().flatten().zip(histories) {
+            let step = Relaxation::new(dt / branch.time);
+            let x_0 = unpack(old);
+            let x_1 = x_0 * step.decay + change * step.gain;
+            pack(&x_1, new);
+            shear += x_1 * branch.ratio;
+            energy += 0.5 * branch.ratio * x_1.norm_squared();
+            modulus += branch.ratio * step.gain;
+            let squares = [x_0.norm_squared(), x_0.dot(&change), change.norm_squared()];
+            let integral: f64 = step.squares.iter().zip(squares).map(|(c, s)| c * s).sum();
+            // round-off can leave less than zero of an integral of squares
+            dissipated += branch.ratio * integral.max(0.0);
+        }
+        let s = Mat3::identity() * (bulk * trace) + shear * (2.0 * mu);
+        let tangent = (want == Want::Tangent).then(|| {
+            let moduli = Moduli {
+                trace: bulk - 2.0 / 3.0 * mu * modulus,
+                identity: 2.0 * mu * modulus,
+                product: 0.0,
+                cross: 0.0,
+                b: Mat3::zeros(),
+            };
+            let mut tangent = moduli.pushed(f, f);
+            add_geometric(&mut tangent, &s);
+            tangent
+        });
+        Ok(Response {
+            stress: f * s,
+            tangent,
+            stored: 0.5 * bulk * trace * trace + 2.0 * mu * energy,
+            hardening: 0.0,
+            dissipated: 2.0 * mu * dissipated,
+        })
+    }
+
+    fn between(&self, _f_0: &Mat3, _f_1: &Mat3, _want: Want) -> Option<Result<Response, Failure>> {
+        None
+    }
+
+    fn initial(&self) -> Elastic {
+        self.initial
+    }
+}
