@@ -114,9 +114,9 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
         }),
         sliding: Sliding::Finite,
         massless: false,
+        friction: 0.0,
         initial: Initial::Keep,
         depth: None,
-        friction: 0.0,
         integration: carom_contact::Integration::Node,
     };
     Ok(Model {

@@ -78,13 +78,13 @@ pub struct ModelContact {
     pub integration: Integration,
     /// Whether the nodes of both surfaces give their mass to the other nodes of their bodies.
     pub massless: bool,
+    /// Coefficient of Coulomb's friction; zero for none.
+    pub friction: f64,
     /// What is done about penetrations at the start.
     pub initial: Initial,
     /// Largest penetration that is a contact, m: points see only faces turned against them and not further away inside than
     /// this ([`Sight`](carom_contact::Sight)). `None`: they see everything, unless the surface faces itself.
     pub depth: Option<f64>,
-    /// Coefficient of Coulomb's friction; zero for none.
-    pub friction: f64,
 }
 
 /// What a secondary surface faces.
@@ -255,26 +255,12 @@ impl System {
                 load[dim * node as usize + i] += m * model.gravity[i];
             }
         }
-        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
         let nonlinear = NumberedNonlinear::new(&model, (&number, &x), &bodies, &fixed)?;
         let mut contacts: Vec<Contact> = model
             .contacts
             .iter()
             .map(|contact| numbered(contact, &model, &number, &x))
             .collect();
-        let ways = model.contacts.iter().map(|contact| contact.initial);
-        let places = Places {
-            dim,
-            time: 0.0,
-            x: &x,
-            u: &initial_displacement,
-        };
-        settle(
-            &mut contacts,
-            ways,
-            &places,
-            (&mesh_node, model.mesh.size()),
-        )?;
         let mut first_point = vec![0];
         for contact in &contacts {
             first_point.push(first_point[first_point.len() - 1] + contact.points.len());
@@ -293,6 +279,19 @@ impl System {
             fixed[follows.unknown as usize] = true;
         }
         let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
+        let ways = model.contacts.iter().map(|contact| contact.initial);
+        let places = Places {
+            dim,
+            time: 0.0,
+            x: &x,
+            u: &initial_displacement,
+        };
+        settle(
+            &mut contacts,
+            ways,
+            &places,
+            (&mesh_node, model.mesh.size()),
+        )?;
         let system = System {
             tolerance: 1e-12 * model.mesh.size(),
             axisymmetric: model

@@ -243,9 +243,9 @@ impl Run {
         Ok(Model {
             contacts: vec![ModelContact {
                 massless: self.massless,
+                friction: 0.0,
                 initial: Initial::Keep,
                 depth: None,
-                friction: 0.0,
                 ..contact(secondary, primary, self.law)
             }],
             bodies,

@@ -109,9 +109,9 @@ pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> Mod
         sliding: Sliding::Finite,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
         initial: Initial::Keep,
         depth: None,
-        friction: 0.0,
     }
 }
 

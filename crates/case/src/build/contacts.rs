@@ -66,9 +66,9 @@ impl Builder<'_> {
                 sliding,
                 integration: integration(contact.integration, &law, &sides),
                 massless: contact.nodes == schema::Nodes::Massless,
+                friction: 0.0,
                 initial: Initial::Keep,
                 depth: None,
-                friction: 0.0,
             });
         }
         contacts

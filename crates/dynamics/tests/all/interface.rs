@@ -25,9 +25,9 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
         initial: Initial::Keep,
         depth: None,
-        friction: 0.0,
     };
     let model = Model {
         bodies: vec![ModelBody {

@@ -165,9 +165,9 @@ impl Problem {
             sliding: Sliding::Finite,
             integration: Integration::Node,
             massless: false,
+            friction: 0.0,
             initial: Initial::Keep,
             depth: None,
-            friction: 0.0,
         };
         let terms = |c: &[f64], first: usize| {
             let term = |(i, c): (usize, &f64)| Term {

@@ -66,9 +66,9 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
             sliding: Sliding::Small,
             integration: Integration::Node,
             massless: false,
+            friction: 0.0,
             initial: Initial::Keep,
             depth: None,
-            friction: 0.0,
         }],
         scheme,
         // c = 2 m/s, h = 0.25 m: CFL 0.5 along the body

@@ -43,9 +43,9 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
         initial: Initial::Keep,
         depth: None,
-        friction: 0.0,
     }];
     let model = Model {
         bodies: bodies.clone(),

@@ -58,9 +58,9 @@ pub fn bar() -> Zoned {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
         initial: Initial::Keep,
         depth: None,
-        friction: 0.0,
     }];
     let zone = |name: &str, body, scheme, substeps| ModelZone {
         name: name.into(),

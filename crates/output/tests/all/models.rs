@@ -70,9 +70,9 @@ pub fn two_bars(n: usize) -> Arc<System> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
         initial: Initial::Keep,
         depth: None,
-        friction: 0.0,
     }];
     let model = Model {
         bodies,
@@ -138,9 +138,9 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
         initial: Initial::Keep,
         depth: None,
-        friction: 0.0,
     };
     let model = Model {
         bodies: vec![body],

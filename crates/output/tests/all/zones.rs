@@ -95,9 +95,9 @@ fn two_bars() -> Zoned {
         sliding: Sliding::Small,
         integration: Integration::Node,
         massless: false,
+        friction: 0.0,
         initial: Initial::Keep,
         depth: None,
-        friction: 0.0,
     }];
     let zone = |name: &str, bodies, scheme, substeps| ModelZone {
         name: name.to_owned(),
