@@ -376,6 +376,12 @@ impl Body {
         out
     }
 
+    /// Mean equivalent plastic strain of each element in the `history` of this body, in the order of [`Body::cells`]; none of
+    /// a law without plasticity.
+    pub fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
+        self.finite.as_ref()?.plastic_strains(history)
+    }
+
     /// Upper bound of the angular frequencies (rad/s) with lumped mass: the largest eigenvalue of M_e⁻¹ K_e over parts of
     /// the body that add up to it bounds that of the body (Irons). An explicit step is stable below 2/ω.
     ///

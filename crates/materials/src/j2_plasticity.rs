@@ -70,6 +70,11 @@ impl J2Plasticity {
         )
     }
 
+    /// ε_p of the history of a point.
+    pub fn plastic_strain(history: &[f64]) -> f64 {
+        history[6]
+    }
+
     fn bulk_modulus(&self) -> f64 {
         self.initial.lame_1(Plane::Full) + 2.0 / 3.0 * self.initial.shear_modulus()
     }

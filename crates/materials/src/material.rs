@@ -139,6 +139,14 @@ impl Law {
         }
     }
 
+    /// Equivalent plastic strain in the history of a point, without unit; none of a law without plasticity.
+    pub fn plastic_strain(&self, history: &[f64]) -> Option<f64> {
+        match self {
+            Law::J2Plasticity(_) => Some(J2Plasticity::plastic_strain(history)),
+            _ => None,
+        }
+    }
+
     /// Mass density in kg/m³.
     pub fn density(&self) -> f64 {
         self.initial().density

@@ -250,4 +250,21 @@ impl Finite {
         }
         out
     }
+
+    /// Mean equivalent plastic strain of each element, by volume; none of a law without.
+    pub(crate) fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
+        self.law.plastic_strain(history)?;
+        let (mut out, mut points) = (Vec::new(), history.chunks_exact(self.kept));
+        for cells in &self.cells {
+            for element in 0..cells.len() {
+                let (mut volume, mut sum) = (0.0, 0.0);
+                for (point, kept) in points.by_ref().take(cells.points).enumerate() {
+                    volume += cells.volume(element, point);
+                    sum += cells.volume(element, point) * self.law.plastic_strain(kept)?;
+                }
+                out.push(sum / volume);
+            }
+        }
+        Some(out)
+    }
 }

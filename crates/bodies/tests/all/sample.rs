@@ -281,7 +281,7 @@ fn mixed() -> Mesh {
 }
 
 /// Moves the nodes inside the bounding box.
-fn distorted(mut mesh: Mesh) -> Mesh {
+pub fn distorted(mut mesh: Mesh) -> Mesh {
     let inside = interior(&mesh.nodes, mesh.dim);
     let mut random = Random(3);
     for (x, inside) in mesh.nodes.iter_mut().zip(inside) {

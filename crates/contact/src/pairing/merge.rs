@@ -34,11 +34,10 @@ impl Merge {
         self.gap += weight * gap;
         self.normal += Vec3::from(normal) * weight;
         let frame = tangent_vectors(&normal, dim);
-        let vectors = [normal, frame[0], frame[1]].map(|v| Vec3::from(v) * weight);
-        self.rates[0] += weight * stencil.rate(&normal);
-        for (rate, t) in self.rates[1..].iter_mut().zip(&frame[..dim - 1]) {
-            *rate += weight * stencil.rate(t);
+        for (rate, vector) in self.rates.iter_mut().zip([normal, frame[0], frame[1]]) {
+            *rate += weight * stencil.rate(&vector);
         }
+        let vectors = [normal, frame[0], frame[1]].map(|v| Vec3::from(v) * weight);
         let turning = stencil.turning();
         for (i, (node, c)) in stencil.relative().enumerate() {
             let block = self.block(node);

@@ -4,7 +4,9 @@
 //! points of its support for a multiplier of the mortar method. A stencil is one point of the secondary surface and its
 //! closest point on the other side ([`stencil`]).
 
+mod block;
 mod clip;
+mod curvature;
 mod merge;
 mod mortar;
 mod overlap;
@@ -12,10 +14,11 @@ mod stencil;
 
 use carom_algebra::csr::Csr;
 
+use self::block::Block;
 use self::merge::Merge;
 use self::mortar::Quadrature;
 pub use self::mortar::{Basis, Mortar};
-use self::stencil::{Block, Stencil};
+use self::stencil::Stencil;
 use crate::{Contact, Integration, Places, Rows, Search};
 
 /// Contact points of a list of contacts at one configuration, with the derivatives that Newton's method and friction
@@ -185,21 +188,19 @@ impl Pairing {
 
 /// Adds the curvature of stencils times their loads; those that follow each other on the same nodes make one block.
 fn add_loads<'a>(loads: impl Iterator<Item = (&'a Stencil, f64)>, dim: usize, matrix: &mut Csr) {
-    let mut open: Option<(&Stencil, Block)> = None;
+    let mut block = Block::new(dim);
+    let mut first: Option<&Stencil> = None;
     for (stencil, load) in loads {
-        let block = match open.take() {
-            Some((first, block)) if first.is_like(stencil) => block,
-            other => {
-                if let Some((first, block)) = other {
-                    block.add_to(first, matrix);
-                }
-                Block::new(stencil, dim)
+        if !first.is_some_and(|first| first.is_like(stencil)) {
+            if let Some(first) = first {
+                block.add_to(first, matrix);
             }
-        };
-        let (_, block) = open.insert((stencil, block));
-        stencil.add_curvature(load, block);
+            block.clear(stencil);
+            first = Some(stencil);
+        }
+        stencil.add_curvature(load, &mut block);
     }
-    if let Some((first, block)) = open {
+    if let Some(first) = first {
         block.add_to(first, matrix);
     }
 }

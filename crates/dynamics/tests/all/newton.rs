@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::{
     Driver, Model, ModelBody, ModelContact, ModelTarget, Newton, Scheme, Stepper, System, scheme,
 };
@@ -43,7 +43,7 @@ pub(crate) fn square(scheme: Scheme, law: Law, material: Material, n: usize) -> 
         contacts: vec![ModelContact {
             name: "ground".into(),
             secondary: Surface::new(&mesh, &mesh.groups["a.bottom"], &cells).unwrap(),
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0, -0.01, 0.0],
                 normal: [0.0, 1.0, 0.0],
             }),
@@ -52,6 +52,8 @@ pub(crate) fn square(scheme: Scheme, law: Law, material: Material, n: usize) -> 
             integration: Integration::Node,
             massless: false,
             friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
         }],
         scheme,
         dt: 0.05,

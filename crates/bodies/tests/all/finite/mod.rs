@@ -3,10 +3,13 @@
 mod between;
 mod derivatives;
 mod facts;
+mod history;
+mod locking;
 mod patch;
+mod pressure;
 
 use carom_bodies::{Error, Formulation, Kinematics, Placement, Scratch, Stored};
-use carom_materials::{Law, NeoHooke, StVenantKirchhoff};
+use carom_materials::{Branch, J2Plasticity, Law, Maxwell, NeoHooke, StVenantKirchhoff};
 use carom_testing::Random;
 
 use crate::sample::{MATERIAL, Sample, dense, shapes};
@@ -22,6 +25,27 @@ fn elastic() -> Vec<(&'static str, Law)> {
             "st-venant-kirchhoff",
             Law::StVenantKirchhoff(StVenantKirchhoff { initial }),
         ),
+    ]
+}
+
+/// Laws with a history: a metal that flows and a polymer that relaxes.
+fn inelastic() -> Vec<(&'static str, Law)> {
+    let metal = J2Plasticity {
+        initial: MATERIAL,
+        yield_stress: 0.05,
+        hardening: 0.2,
+    };
+    let branch = Branch {
+        ratio: 0.4,
+        time: 0.2,
+    };
+    let polymer = Maxwell {
+        initial: MATERIAL,
+        branches: [Some(branch), None, None, None],
+    };
+    vec![
+        ("j2-plasticity", Law::J2Plasticity(metal)),
+        ("maxwell", Law::Maxwell(polymer)),
     ]
 }
 
