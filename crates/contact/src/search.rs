@@ -42,6 +42,8 @@ pub struct Search {
     /// Unit normals of the secondary faces, where sight asks for them.
     normals: Vec<[f64; 3]>,
     near: Vec<u32>,
+    /// Scratch of [`Contact::pair`](crate::Contact::pair) for the mortar method.
+    pub(crate) pairing: Pairing,
     /// Projections made since the last renewal.
     projections: usize,
 }
@@ -318,7 +320,7 @@ pub(crate) fn positions(places: &Places, face: &Face) -> [[f64; 3]; MAX_FACE_NOD
 
 /// A box that holds a face.
 fn hull(places: &Places, face: &Face) -> Bounds {
-    face.bounds(&positions(places, face)[..face.corners().len()])
+    Bounds::of_face(face.kind, &positions(places, face)[..face.corners().len()])
 }
 
 /// Whether a point faces the face on which its closest point lies: whether the way to it runs sideways by no more than

@@ -5,6 +5,7 @@
 
 mod allocation;
 mod dense;
+mod initial;
 mod interface;
 mod momentum;
 mod monolithic;
