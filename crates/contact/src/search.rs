@@ -44,6 +44,8 @@ pub struct Search {
     near: Vec<u32>,
     /// Projections made since the last renewal.
     projections: usize,
+    /// Scratch of [`Contact::pair`](crate::Contact::pair) for the mortar method.
+    pub(crate) pairing: Pairing,
 }
 
 /// What one query remembers.
