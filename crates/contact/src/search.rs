@@ -42,10 +42,10 @@ pub struct Search {
     /// Unit normals of the secondary faces, where sight asks for them.
     normals: Vec<[f64; 3]>,
     near: Vec<u32>,
-    /// Projections made since the last renewal.
-    projections: usize,
     /// Scratch of [`Contact::pair`](crate::Contact::pair) for the mortar method.
     pub(crate) pairing: Pairing,
+    /// Projections made since the last renewal.
+    projections: usize,
 }
 
 /// What one query remembers.
