@@ -36,7 +36,8 @@ pub struct Pairing {
     /// Rows T of the two tangents at a point: `T v` is the velocity in m/s at which the secondary slides over the primary
     /// along [`Rows::normal`] of that row; the gaps of these pools are zero. Unit vectors, square to each other and to the
     /// contact normal, that vary smoothly with it. [`Rows::rate`] of these rows is what the motion of an
-    /// obstacle adds. The second is empty in the plane, both are on a line.
+    /// obstacle adds. A force along T has no resultant, but a moment where the gap is not closed. The second
+    /// is empty in the plane, both are on a line.
     pub tangents: [Rows; 2],
     /// Reference area that each point stands for, m²: [`Point::area`](crate::Point::area), for a multiplier of the mortar
     /// method ∫ φ_A dΓ over what faces the primary surface now, if any does.
