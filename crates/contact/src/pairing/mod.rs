@@ -221,10 +221,10 @@ impl Contact {
     }
 
     fn pair_points(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
-        if let (Integration::Mortar { basis }, Some(mortar)) = (self.integration, &self.mortar) {
-            if !mortar.is_ends() {
-                return mortar.pair(self, basis, places, search, pairing);
-            }
+        if let (Integration::Mortar { basis }, Some(mortar)) = (self.integration, &self.mortar)
+            && !mortar.is_ends()
+        {
+            return mortar.pair(self, basis, places, search, pairing);
         }
         for (k, point) in self.points.iter().enumerate() {
             let stencil = Stencil::new(self, places, search, (point, self.view(k)));
