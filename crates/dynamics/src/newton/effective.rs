@@ -23,6 +23,8 @@ pub(super) struct Effective {
     coupled: Vec<Vec<u32>>,
     /// Factors of dt and stage for which a constant matrix was made.
     constant: Option<[f64; 4]>,
+    /// Scratch of the curvature.
+    loads: Vec<f64>,
     retired: Work,
 }
 
@@ -45,7 +47,7 @@ pub(super) struct At<'a> {
 /// The contact points whose forces turn with the configuration.
 pub(super) struct Turning<'a> {
     /// Rows and their derivatives.
-    pub(super) pairing: &'a mut Pairing,
+    pub(super) pairing: &'a Pairing,
     /// Force of each point in N, times the derivative of its configuration by the unknown.
     pub(super) forces: Vec<f64>,
     /// Factor of contact forces in the balance.
@@ -60,6 +62,7 @@ impl Effective {
             matrix: None,
             coupled: Vec::new(),
             constant: None,
+            loads: Vec::new(),
             retired: Work::default(),
         }
     }
@@ -106,9 +109,11 @@ impl Effective {
         a.clear();
         assemble(system, at, &mut a)?;
         super::loads::add_tangent(system, at.time, at.u, map.force.x, &mut a);
+        let forces = turning.forces.iter().copied().enumerate();
+        let forces = forces.filter(|(_, force)| *force != 0.0);
         turning
             .pairing
-            .add_curvatures(&turning.forces, -turning.factor, &mut a);
+            .add_curvatures(forces, -turning.factor, &mut self.loads, &mut a);
         let free = a.with_identity(&system.fixed);
         let factored = self.factorise(&free, system.dim);
         self.matrix = Some(a);

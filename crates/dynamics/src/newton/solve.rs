@@ -273,7 +273,7 @@ impl Newton {
         let turned = forces.map(|(point, force)| force * self.turning(system.point(point).0));
         let mut turning = Turning {
             forces: turned.collect(),
-            pairing: &mut self.pairing,
+            pairing: &self.pairing,
             factor: self.map.contact,
         };
         let mut made = self.effective.renew(&system, &at, &mut turning, constant);
