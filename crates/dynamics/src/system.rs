@@ -255,7 +255,11 @@ impl System {
                 load[dim * node as usize + i] += m * model.gravity[i];
             }
         }
-        let nonlinear = NumberedNonlinear::new(&model, (&number, &x), &bodies, &fixed)?;
+        let nonlinear = NumberedNonlinear::new(&model, &number, &bodies, &fixed)?;
+        for follows in &nonlinear.follows {
+            fixed[follows.unknown as usize] = true;
+        }
+        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
         let mut contacts: Vec<Contact> = model
             .contacts
             .iter()
@@ -288,10 +292,6 @@ impl System {
             faces.map(|face| renumbered(face, &number)).collect()
         };
         let secondary_faces = model.contacts.iter().map(faces_of).collect();
-        for follows in &nonlinear.follows {
-            fixed[follows.unknown as usize] = true;
-        }
-        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
         let system = System {
             tolerance: 1e-12 * model.mesh.size(),
             axisymmetric: model

@@ -364,14 +364,15 @@ fn the_curvature_of_all_points_is_the_sum_of_theirs() {
     let mut random = Random(4);
     for pair in flat_pairs() {
         let pair = bent(pair, &mut random, 0.01);
-        let mut pairing = pair.pairing(Basis::Standard);
+        let pairing = pair.pairing(Basis::Standard);
         let n = pair.dim * pair.x.len();
         let forces = random.vector(pairing.len());
         let (mut one, mut all) = (matrix(&pairing, n), matrix(&pairing, n));
         for (point, &force) in forces.iter().enumerate() {
             pairing.add_curvature(point, force, 3.0, &mut one);
         }
-        pairing.add_curvatures(&forces, 3.0, &mut all);
+        let forces = forces.iter().copied().enumerate();
+        pairing.add_curvatures(forces, 3.0, &mut Vec::new(), &mut all);
         let mut size = 0.0_f64;
         for i in 0..n {
             for (a, b) in one.row(i).1.iter().zip(all.row(i).1) {

@@ -8,6 +8,7 @@ mod dense;
 mod interface;
 mod momentum;
 mod monolithic;
+mod mortar;
 mod newton;
 mod quadrature;
 mod stability;
