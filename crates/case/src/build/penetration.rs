@@ -31,7 +31,7 @@ impl Builder<'_> {
                 continue;
             }
             let deep = contact.penetrations(&places, slack);
-            let Some(deepest) = deep.iter().max_by(|a, b| a.depth.total_cmp(&b.depth)) else {
+            let Some(deepest) = deep.iter().min_by(|a, b| b.depth.total_cmp(&a.depth)) else {
                 continue;
             };
             let node = system.mesh_node[deepest.node as usize];
