@@ -255,12 +255,29 @@ impl System {
                 load[dim * node as usize + i] += m * model.gravity[i];
             }
         }
-        let nonlinear = NumberedNonlinear::new(&model, (&number, &x), &bodies, &fixed)?;
+        let nonlinear = NumberedNonlinear::new(&model, &number, &bodies, &fixed)?;
+        for follows in &nonlinear.follows {
+            fixed[follows.unknown as usize] = true;
+        }
+        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
         let mut contacts: Vec<Contact> = model
             .contacts
             .iter()
             .map(|contact| numbered(contact, &model, &number, &x))
             .collect();
+        let ways = model.contacts.iter().map(|contact| contact.initial);
+        let places = Places {
+            dim,
+            time: 0.0,
+            x: &x,
+            u: &initial_displacement,
+        };
+        settle(
+            &mut contacts,
+            ways,
+            &places,
+            (&mesh_node, model.mesh.size()),
+        )?;
         let mut first_point = vec![0];
         for contact in &contacts {
             first_point.push(first_point[first_point.len() - 1] + contact.points.len());
@@ -275,23 +292,6 @@ impl System {
             faces.map(|face| renumbered(face, &number)).collect()
         };
         let secondary_faces = model.contacts.iter().map(faces_of).collect();
-        for follows in &nonlinear.follows {
-            fixed[follows.unknown as usize] = true;
-        }
-        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
-        let ways = model.contacts.iter().map(|contact| contact.initial);
-        let places = Places {
-            dim,
-            time: 0.0,
-            x: &x,
-            u: &initial_displacement,
-        };
-        settle(
-            &mut contacts,
-            ways,
-            &places,
-            (&mesh_node, model.mesh.size()),
-        )?;
         let system = System {
             tolerance: 1e-12 * model.mesh.size(),
             axisymmetric: model

@@ -11,8 +11,8 @@ impl Builder<'_> {
     pub(super) fn refused(&self, error: &Error) -> Problem {
         match error {
             Error::Body(cause) => {
-                let (body, key) = of_body(cause);
-                Problem::new(format!("body.{body}.{key}"), cause.to_string())
+                let path = format!("body.{}.{}", cause.body(), key(cause));
+                Problem::new(path, cause.to_string())
             }
             Error::Unstable { dt, critical } => {
                 let problem = Problem::new(
@@ -103,20 +103,13 @@ impl Builder<'_> {
     }
 }
 
-/// The body of an error, and the key that it is about.
-fn of_body(error: &carom_bodies::Error) -> (&str, &'static str) {
+/// The key of a body that its error is about.
+fn key(error: &carom_bodies::Error) -> &'static str {
     use carom_bodies::Error;
     match error {
-        Error::Empty { body }
-        | Error::WrongElement { body, .. }
-        | Error::QuadraticBar { body }
-        | Error::NegativeRadius { body, .. }
-        | Error::WeightCount { body, .. }
-        | Error::NegativeMass { body, .. }
-        | Error::NegativeStiffness { body, .. }
-        | Error::NoStress { body, .. } => (body, "region"),
-        Error::FiniteKinematics { body, .. } => (body, "section"),
-        Error::LinearFormulation { body } | Error::NotReduced { body, .. } => (body, "formulation"),
-        Error::NoBetween { body } => (body, "material"),
+        Error::FiniteKinematics { .. } => "section",
+        Error::LinearFormulation { .. } | Error::NotReduced { .. } => "formulation",
+        Error::NoBetween { .. } => "material",
+        _ => "region",
     }
 }

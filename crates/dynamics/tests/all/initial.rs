@@ -89,7 +89,7 @@ fn penetration_at_the_start_is_kept_refused_offset_or_removed() {
         }
         other => panic!("{other:?}"),
     }
-    // pushed out in one step, by some hundred times E times the strain of 0.04
+    // pushed out in one step: the 30 kg of a lower node by 0.01 m in 1e-4 s
     let (low, force) = after_a_step(start(Initial::Keep).unwrap());
     assert!(low == 0.0 && force > 1e6, "{low} {force}");
     assert_eq!(after_a_step(start(Initial::Offset).unwrap()), (0.0, 0.0));

@@ -9,6 +9,7 @@ mod initial;
 mod interface;
 mod momentum;
 mod monolithic;
+mod mortar;
 mod newton;
 mod quadrature;
 mod stability;
