@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use carom_algebra::reduce;
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Law, Plane, Sliding};
+use carom_contact::{Initial, Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Phases, Scheme, System};
 use carom_materials::{self as materials, Elastic};
@@ -104,7 +104,7 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
     let ground = ModelContact {
         name: "ground".to_owned(),
         secondary: bottom,
-        primary: ModelTarget::Plane(Plane {
+        primary: ModelTarget::rigid(Plane {
             point: [0.0; 3],
             normal: [0.0, 0.0, 1.0],
         }),
@@ -115,6 +115,8 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
         sliding: Sliding::Finite,
         massless: false,
         friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
         integration: carom_contact::Integration::Node,
     };
     Ok(Model {

@@ -277,8 +277,10 @@ pub(crate) fn degree(kind: Kind) -> usize {
     match kind {
         Kind::Point1 => 0,
         Kind::Bar2 | Kind::Tri3 | Kind::Tet4 => 1,
-        Kind::Quad4 => 2,
-        Kind::Hex8 => 3,
+        Kind::Quad4 | Kind::Bar3 | Kind::Tri6 | Kind::Tet10 | Kind::Wedge6 => 2,
+        Kind::Hex8 | Kind::Quad8 | Kind::Wedge15 | Kind::Pyramid5 => 3,
+        Kind::Quad9 | Kind::Hex20 => 4,
+        Kind::Hex27 => 6,
     }
 }
 

@@ -13,14 +13,22 @@ use crate::continuum::{self, Law, Points};
 use crate::finite::Elements;
 use crate::force::{self, Cell, Kernel};
 use crate::lanes::Lanes;
+use crate::single;
 use crate::weights::{CellWeights, ChunkWeights, ElementWeights, Unweighted, WIDEST, Weight};
 
 /// Elements per chunk, whatever the number of threads: about 30 microseconds of work.
 fn chunk_length(kind: Kind) -> usize {
     match kind {
-        Kind::Point1 | Kind::Bar2 => 4096,
+        Kind::Point1 | Kind::Bar2 | Kind::Bar3 => 4096,
         Kind::Tri3 | Kind::Quad4 | Kind::Tet4 => 1024,
-        Kind::Hex8 => 256,
+        Kind::Hex8
+        | Kind::Wedge6
+        | Kind::Pyramid5
+        | Kind::Tri6
+        | Kind::Quad8
+        | Kind::Quad9
+        | Kind::Tet10 => 256,
+        Kind::Hex20 | Kind::Hex27 | Kind::Wedge15 => 32,
     }
 }
 
@@ -177,11 +185,18 @@ impl Block {
     /// Calls `visit` with the matrices of each element.
     pub(crate) fn matrices(&self, dim: usize, stiffness: bool, visit: &mut Visit) {
         match self.kind {
-            Kind::Point1 => {}
+            Kind::Point1 | Kind::Bar3 => {}
             Kind::Bar2 => self.visit::<2>(dim, stiffness, visit),
             Kind::Tri3 => self.visit::<3>(dim, stiffness, visit),
             Kind::Quad4 | Kind::Tet4 => self.visit::<4>(dim, stiffness, visit),
-            Kind::Hex8 => self.visit::<8>(dim, stiffness, visit),
+            Kind::Pyramid5 => self.visit::<5>(dim, stiffness, visit),
+            Kind::Tri6 | Kind::Wedge6 => self.visit::<6>(dim, stiffness, visit),
+            Kind::Hex8 | Kind::Quad8 => self.visit::<8>(dim, stiffness, visit),
+            Kind::Quad9 => self.visit::<9>(dim, stiffness, visit),
+            Kind::Tet10 => self.visit::<10>(dim, stiffness, visit),
+            Kind::Wedge15 => self.visit::<15>(dim, stiffness, visit),
+            Kind::Hex20 => self.visit::<20>(dim, stiffness, visit),
+            Kind::Hex27 => self.visit::<27>(dim, stiffness, visit),
         }
     }
 
@@ -224,6 +239,17 @@ impl Block {
     /// scaled diagonal of others.
     fn lump(&self, m: &[f64], lumped: &mut [f64]) {
         let n = lumped.len();
+        if self.kind.table().is_quadratic() {
+            let diagonal: f64 = m.iter().step_by(n + 1).sum();
+            let scale = match diagonal == 0.0 {
+                true => 0.0,
+                false => m.iter().sum::<f64>() / diagonal,
+            };
+            for (lumped, own) in lumped.iter_mut().zip(m.iter().step_by(n + 1)) {
+                *lumped = scale * own;
+            }
+            return;
+        }
         for (lumped, row) in lumped.iter_mut().zip(m.chunks_exact(n)) {
             *lumped = row.iter().sum();
         }
@@ -255,11 +281,18 @@ impl Block {
     /// of the model.
     pub(crate) fn stresses(&self, dim: usize, u: &[f64], out: &mut Vec<(f64, Mat3)>) {
         match self.kind {
-            Kind::Point1 => {}
+            Kind::Point1 | Kind::Bar3 => {}
             Kind::Bar2 => self.stress::<2>(dim, u, out),
             Kind::Tri3 => self.stress::<3>(dim, u, out),
             Kind::Quad4 | Kind::Tet4 => self.stress::<4>(dim, u, out),
-            Kind::Hex8 => self.stress::<8>(dim, u, out),
+            Kind::Pyramid5 => self.stress::<5>(dim, u, out),
+            Kind::Tri6 | Kind::Wedge6 => self.stress::<6>(dim, u, out),
+            Kind::Hex8 | Kind::Quad8 => self.stress::<8>(dim, u, out),
+            Kind::Quad9 => self.stress::<9>(dim, u, out),
+            Kind::Tet10 => self.stress::<10>(dim, u, out),
+            Kind::Wedge15 => self.stress::<15>(dim, u, out),
+            Kind::Hex20 => self.stress::<20>(dim, u, out),
+            Kind::Hex27 => self.stress::<27>(dim, u, out),
         }
     }
 
@@ -324,11 +357,19 @@ impl Sweep<'_> {
         };
         let points = &self.block.stiffness_points;
         match self.block.kind {
-            Kind::Point1 | Kind::Bar2 => 0.0,
+            Kind::Point1 | Kind::Bar2 | Kind::Bar3 => 0.0,
             Kind::Tri3 => self.batches::<S, W, 3, 2>(&Cell::new(law, points, &force::TRI3), w),
             Kind::Quad4 => self.batches::<S, W, 4, 2>(&Cell::new(law, points, &force::QUAD4), w),
             Kind::Tet4 => self.batches::<S, W, 4, 3>(&Cell::new(law, points, &force::TET4), w),
             Kind::Hex8 => self.batches::<S, W, 8, 3>(&Cell::new(law, points, &force::HEX8), w),
+            Kind::Pyramid5 => self.singly::<5>(law),
+            Kind::Tri6 | Kind::Wedge6 => self.singly::<6>(law),
+            Kind::Quad8 => self.singly::<8>(law),
+            Kind::Quad9 => self.singly::<9>(law),
+            Kind::Tet10 => self.singly::<10>(law),
+            Kind::Wedge15 => self.singly::<15>(law),
+            Kind::Hex20 => self.singly::<20>(law),
+            Kind::Hex27 => self.singly::<27>(law),
         }
     }
 
@@ -365,6 +406,27 @@ impl Sweep<'_> {
                     for i in 0..D {
                         sum[i] += f[a][i].0[k];
                     }
+                }
+            }
+        }
+        energy
+    }
+
+    /// Takes the elements one after the other.
+    fn singly<const N: usize>(self, law: &Law) -> f64 {
+        let points = &self.block.stiffness_points;
+        let mut energy = 0.0;
+        for (place, element) in self.chunk.connectivity.chunks_exact(N).enumerate() {
+            let (x, u) = self.chunk.gather::<N>(element, self.dim, self.u);
+            let weight = |q: usize| match &self.chunk.weights {
+                Some(weights) => weights.stiffness_at(place, q),
+                None => 1.0,
+            };
+            let mut f = [[0.0; 3]; N];
+            energy += single::force(law, points, weight, [&x, &u], &mut f);
+            for (&node, f) in element.iter().zip(&f) {
+                for i in 0..self.dim {
+                    self.f[node as usize][i] += f[i];
                 }
             }
         }

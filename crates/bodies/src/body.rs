@@ -462,6 +462,11 @@ fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
                 dim,
             });
         }
+        if element.kind == Kind::Bar3 {
+            return Err(Error::QuadraticBar {
+                body: spec.name.clone(),
+            });
+        }
         if spec.kinematics == Kinematics::Axisymmetric {
             for &node in mesh.element_nodes(cell) {
                 let radius = mesh.nodes[node as usize][0];

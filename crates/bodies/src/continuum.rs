@@ -80,14 +80,14 @@ impl Law {
 }
 
 /// Geometry of one integration point: dN_a/dx, dV in m³ and, in axisymmetry, the radius.
-struct Local<const N: usize> {
-    dn: [[f64; 3]; N],
-    volume: f64,
-    radius: f64,
+pub(crate) struct Local<const N: usize> {
+    pub(crate) dn: [[f64; 3]; N],
+    pub(crate) volume: f64,
+    pub(crate) radius: f64,
 }
 
 #[inline]
-fn local<const N: usize>(law: &Law, point: &Point, x: &[[f64; 3]; N]) -> Local<N> {
+pub(crate) fn local<const N: usize>(law: &Law, point: &Point, x: &[[f64; 3]; N]) -> Local<N> {
     let (jacobian, det) = map::jacobian(x, &point.dn[..N], law.dim);
     let mut dn = [[0.0; 3]; N];
     map::physical_gradient(&jacobian, det, &point.dn[..N], &mut dn);
@@ -100,13 +100,9 @@ fn local<const N: usize>(law: &Law, point: &Point, x: &[[f64; 3]; N]) -> Local<N
     Local { dn, volume, radius }
 }
 
+/// H_ij = Σ_a u_ai dN_a/dx_j.
 #[inline]
-fn strain<const N: usize>(
-    law: &Law,
-    point: &Point,
-    at: &Local<N>,
-    u: &[[f64; 3]; N],
-) -> [[f64; 3]; 3] {
+pub(crate) fn slope<const N: usize>(at: &Local<N>, u: &[[f64; 3]; N]) -> [[f64; 3]; 3] {
     let mut h = [[0.0; 3]; 3];
     for a in 0..N {
         for i in 0..3 {
@@ -115,6 +111,17 @@ fn strain<const N: usize>(
             }
         }
     }
+    h
+}
+
+#[inline]
+fn strain<const N: usize>(
+    law: &Law,
+    point: &Point,
+    at: &Local<N>,
+    u: &[[f64; 3]; N],
+) -> [[f64; 3]; 3] {
+    let mut h = slope(at, u);
     if law.axisymmetric {
         h[2][2] = (0..N).map(|a| point.n[a] * u[a][0]).sum::<f64>() / at.radius;
     }

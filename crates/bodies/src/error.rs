@@ -27,6 +27,12 @@ pub enum Error {
         /// Dimension of the elements that it takes.
         dim: usize,
     },
+    /// Lines of three nodes as bars.
+    #[error("body '{body}': bars are bar2 elements, bar3 elements are the edges of plane cells")]
+    QuadraticBar {
+        /// Name of the body.
+        body: String,
+    },
     /// An axisymmetric model lies partly at negative radius.
     #[error(
         "body '{body}': node {node} has the radius {radius:e} m, negative in an axisymmetric model"

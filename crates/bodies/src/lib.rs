@@ -11,6 +11,7 @@ mod error;
 mod finite;
 mod force;
 mod lanes;
+mod single;
 mod size;
 mod stability;
 mod together;

@@ -26,8 +26,10 @@ fn measure(kind: Kind, x: &[[f64; 3]]) -> f64 {
         .sum()
 }
 
-/// Size of a cell normal to one of its faces, in m: f V / A with f = 1 for bars, quadrilaterals and hexahedra, and the
-/// dimension for simplices, whose altitude it is. `face`: nodes of the face.
+/// Size of a cell normal to one of its faces, in m: f V / A with f = 1 for bars, quadrilaterals and hexahedra, the
+/// dimension for simplices, whose altitude it is, and for wedges and pyramids what makes it the altitude of a right one: 1
+/// and 2 over the triangles and the sides of a wedge, 3 over the base of a pyramid, 3/2 over its sides (half of the
+/// altitude, as wide as the pyramid is on average). Nodes between corners do not count. `face`: nodes of the face.
 pub fn height(mesh: &Mesh, cell: ElementId, face: Kind, face_nodes: &[u32]) -> f64 {
     let kind = mesh.kind(cell);
     let gather = |nodes: &[u32]| {
@@ -36,9 +38,12 @@ pub fn height(mesh: &Mesh, cell: ElementId, face: Kind, face_nodes: &[u32]) -> f
             .map(|&node| mesh.nodes[node as usize])
             .collect::<Vec<_>>()
     };
-    let factor = match kind {
-        Kind::Point1 | Kind::Bar2 | Kind::Quad4 | Kind::Hex8 => 1.0,
+    let factor = match kind.table().linear {
         Kind::Tri3 | Kind::Tet4 => kind.table().dim as f64,
+        Kind::Wedge6 if face.table().linear == Kind::Quad4 => 2.0,
+        Kind::Pyramid5 if face.table().linear == Kind::Quad4 => 3.0,
+        Kind::Pyramid5 => 1.5,
+        _ => 1.0,
     };
     factor * measure(kind, &gather(mesh.element_nodes(cell))) / measure(face, &gather(face_nodes))
 }

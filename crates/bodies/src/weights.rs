@@ -109,6 +109,11 @@ impl ChunkWeights {
         uneven(inertia.copied()) || uneven(stiffness.map(|row| row[element]))
     }
 
+    /// δ of an element at a point of the stiffness rule.
+    pub(crate) fn stiffness_at(&self, element: usize, point: usize) -> f64 {
+        self.stiffness[point * self.stride + element]
+    }
+
     /// The force kernels' view.
     #[inline(always)]
     pub(crate) fn at_points(&self) -> AtPoints<'_> {

@@ -166,6 +166,7 @@ fn extent(system: &System, body: usize) -> f64 {
 fn contact_facts(system: &System, contact: usize) -> String {
     let places = Places {
         dim: system.dim,
+        time: 0.0,
         x: &system.x,
         u: &system.initial_displacement,
     };

@@ -1,19 +1,18 @@
 //! One contact: secondary points that carry the forces, what they face, and the law between them.
 
-use carom_elements::{Kind, MAX_FACE_NODES};
-use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
+use carom_elements::MAX_FACE_NODES;
+use carom_mesh::{Face, Projection};
 
-use crate::{Law, Plane, Point, Rows, Sphere};
+use crate::sight::View;
+use crate::{Basis, Distance, Law, Mortar, Obstacle, Point, Rows, Search, Sight};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
     /// Faces of deformable bodies, their nodes by system number; normals point out of the bodies.
     Surface(Vec<Face>),
-    /// A rigid plane.
-    Plane(Plane),
-    /// A rigid sphere.
-    Sphere(Sphere),
+    /// A rigid obstacle.
+    Rigid(Obstacle),
 }
 
 /// How far bodies slide along each other.
@@ -37,6 +36,11 @@ pub enum Integration {
         /// r of the augmented pressure p - r q, in Pa/m for a law in the gap, in Pa s/m for one in the rate.
         r: f64,
     },
+    /// At the corners of the faces in the mean: the weak gap of each multiplier, segment to segment.
+    Mortar {
+        /// Shape functions of the multipliers.
+        basis: Basis,
+    },
 }
 
 /// A frictionless contact.
@@ -52,8 +56,15 @@ pub struct Contact {
     pub integration: Integration,
     /// Secondary points: nodes, or Gauss points.
     pub points: Vec<Point>,
+    /// Faces of the secondary surface, where integration is by mortar; the points are then its own.
+    pub mortar: Option<Mortar>,
     /// What they face.
     pub target: Target,
+    /// What they see of it; `None` for everything: each point then faces the closest face.
+    pub sight: Option<Sight>,
+    /// What is added to the gap of each point, m: initial penetrations that are to count as contact without any
+    /// ([`Initial::Offset`](crate::Initial)). Empty for none.
+    pub offsets: Vec<f64>,
 }
 
 /// Positions of the system's nodes: reference coordinates and a displacement.
@@ -61,6 +72,8 @@ pub struct Contact {
 pub struct Places<'a> {
     /// Unknowns per node.
     pub dim: usize,
+    /// Time, s: where obstacles are that move.
+    pub time: f64,
     /// Reference coordinates by system number, m.
     pub x: &'a [[f64; 3]],
     /// Displacement, `dim` entries per node, m.
@@ -79,36 +92,30 @@ impl Places<'_> {
     }
 }
 
-/// Memory of the search: the boxes of the primary faces and a tree over them, renewed at each pairing.
-#[derive(Debug, Default)]
-pub struct Search {
-    boxes: Vec<Bounds>,
-    tree: Option<BoxTree>,
-    found: Vec<u32>,
-}
-
 impl Contact {
     /// Appends the rows of all points at the given configuration.
     ///
     /// Against a surface each point is projected on the closest face (the first of equals). It faces nothing, and gets
     /// an infinite gap, where the foot lies beyond the rim: where the way from the foot to the point runs sideways by
-    /// more than it runs along the normal. What `search` holds from before does not matter to the result.
+    /// more than it runs along the normal. With [`Contact::sight`] only faces in view count, and gaps beyond its reach are
+    /// infinite. What `search` holds from before does not matter to the result.
     pub fn pair(&self, places: &Places, search: &mut Search, rows: &mut Rows) {
         self.renew(places, search);
-        for point in &self.points {
+        for (k, point) in self.points.iter().enumerate() {
             let x = point.place(places);
             match &self.target {
-                Target::Plane(plane) => {
-                    rows.push(plane.gap(&x), plane.normal);
-                    add_point(places, point, &plane.normal, rows);
-                }
-                Target::Sphere(sphere) => {
-                    let (gap, normal) = sphere.gap(&x);
-                    rows.push(gap, normal);
+                Target::Rigid(obstacle) => {
+                    let placed = obstacle.at(places.time);
+                    let Distance { gap, normal, .. } = placed.distance(&x);
+                    rows.push(gap + self.offset(k), normal);
+                    rows.set_rate(placed.gap_rate(&x, &normal));
                     add_point(places, point, &normal, rows);
                 }
-                Target::Surface(faces) => match search.facing(places, faces, &x) {
-                    Some((foot, face)) => add_row(places, point, &foot, face, rows),
+                Target::Surface(faces) => match search.facing(places, faces, self.view(k), &x) {
+                    Some((foot, face)) => {
+                        rows.push(foot.gap + self.offset(k), foot.normal);
+                        add_row(places, point, &foot, face, rows);
+                    }
                     None => rows.push(f64::INFINITY, [0.0; 3]),
                 },
             }
@@ -118,82 +125,24 @@ impl Contact {
     /// Brings the search to a configuration.
     pub(crate) fn renew(&self, places: &Places, search: &mut Search) {
         if let Target::Surface(faces) = &self.target {
-            search.renew(places, faces);
-        }
-    }
-}
-
-impl Search {
-    fn renew(&mut self, places: &Places, faces: &[Face]) {
-        self.boxes.clear();
-        self.boxes.extend(faces.iter().map(|face| {
-            let (positions, n) = positions(places, face);
-            Bounds::of_face(face.kind, &positions[..n])
-        }));
-        match &mut self.tree {
-            Some(tree) if tree.len() == faces.len() => tree.refit(&self.boxes),
-            tree => *tree = Some(BoxTree::new(&self.boxes)),
+            search.renew(places, faces, self.sight.as_ref());
         }
     }
 
-    /// The closest point of a surface, if the point faces it.
-    pub(crate) fn facing<'a>(
-        &mut self,
-        places: &Places,
-        faces: &'a [Face],
-        x: &[f64; 3],
-    ) -> Option<(Projection, &'a Face)> {
-        self.closest(places, faces, x)
-            .filter(|(foot, face)| faces_point(foot, face))
+    /// What a point sees; `None` for everything.
+    pub(crate) fn view(&self, point: usize) -> Option<View<'_>> {
+        self.sight.as_ref().map(|sight| sight.of(point))
     }
 
-    /// Doubles the distance searched until a face is found, then looks once more as far as that face is.
-    fn closest<'a>(
-        &mut self,
-        places: &Places,
-        faces: &'a [Face],
-        x: &[f64; 3],
-    ) -> Option<(Projection, &'a Face)> {
-        let tree = self.tree.as_ref()?;
-        let all = self
-            .boxes
-            .iter()
-            .fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
-        let diagonal = (0..3)
-            .map(|i| (all.max[i] - all.min[i]).powi(2))
-            .sum::<f64>()
-            .sqrt();
-        let farthest = all.distance_squared(x).sqrt() + diagonal + f64::MIN_POSITIVE;
-        let mut distance = farthest / (1u64 << 10) as f64;
-        loop {
-            tree.near(x, distance, &mut self.found);
-            let mut best: Option<(Projection, &Face)> = None;
-            for face in self.found.iter().map(|&item| &faces[item as usize]) {
-                let (positions, n) = positions(places, face);
-                let foot = project(face, &positions[..n], x);
-                if best
-                    .as_ref()
-                    .is_none_or(|(closest, _)| foot.distance < closest.distance)
-                {
-                    best = Some((foot, face));
-                }
-            }
-            match &best {
-                Some((foot, _)) if foot.distance <= distance => return best,
-                Some((foot, _)) => distance = foot.distance,
-                None if distance >= farthest => return None,
-                None => distance *= 2.0,
-            }
-        }
+    /// What is added to the gap of a point, m.
+    pub(crate) fn offset(&self, point: usize) -> f64 {
+        self.offsets.get(point).copied().unwrap_or(0.0)
     }
-}
 
-fn positions(places: &Places, face: &Face) -> ([[f64; 3]; MAX_FACE_NODES], usize) {
-    let mut positions = [[0.0; 3]; MAX_FACE_NODES];
-    for (position, &node) in positions.iter_mut().zip(face.corners()) {
-        *position = places.of(node);
+    /// Whether the target moves by itself: gaps then have a rate at bodies at rest ([`Rows::rate`]).
+    pub fn moves(&self) -> bool {
+        matches!(&self.target, Target::Rigid(obstacle) if obstacle.motion.moves())
     }
-    (positions, face.corners().len())
 }
 
 fn add_point(places: &Places, point: &Point, normal: &[f64; 3], rows: &mut Rows) {
@@ -203,7 +152,6 @@ fn add_point(places: &Places, point: &Point, normal: &[f64; 3], rows: &mut Rows)
 }
 
 fn add_row(places: &Places, point: &Point, foot: &Projection, face: &Face, rows: &mut Rows) {
-    rows.push(foot.gap, foot.normal);
     add_point(places, point, &foot.normal, rows);
     let corners = face.corners();
     let mut shape = [0.0; MAX_FACE_NODES];
@@ -213,22 +161,9 @@ fn add_row(places: &Places, point: &Point, foot: &Projection, face: &Face, rows:
     }
 }
 
-fn faces_point(foot: &Projection, face: &Face) -> bool {
-    if foot.inside || face.kind == Kind::Point1 {
-        return true;
-    }
-    let sideways = (foot.distance.powi(2) - foot.gap.powi(2)).max(0.0).sqrt();
-    // Matching rims coincide only to rounding: a foot that close to the rim counts as inside.
-    let rounding = 1e-9
-        * foot
-            .point
-            .iter()
-            .fold(1e-300_f64, |size, x| size.max(x.abs()));
-    sideways <= foot.gap.abs().max(rounding)
-}
-
 #[cfg(test)]
 mod tests {
+    use carom_elements::Kind;
     use carom_mesh::{ElementId, face_nodes};
 
     use super::*;
@@ -260,13 +195,17 @@ mod tests {
             sliding: Sliding::Finite,
             integration: Integration::Node,
             points: vec![Point::at_node(25, 1.0, 1.0)],
+            mortar: None,
             target: Target::Surface(faces),
+            sight: None,
+            offsets: Vec::new(),
         };
         let mut rows = Rows::default();
         rows.clear();
         contact.pair(
             &Places {
                 dim: 3,
+                time: 0.0,
                 x: &x,
                 u: &vec![0.0; 78],
             },

@@ -7,19 +7,26 @@
 //! Signs: gap positive when open, gap rate positive when opening, force and pressure positive in compression.
 
 mod contact;
+mod initial;
 pub mod law;
+mod obstacle;
 mod pairing;
-mod plane;
 mod point;
 mod rows;
-mod sphere;
+mod search;
+mod sight;
 mod weak;
 
-pub use contact::{Contact, Integration, Places, Search, Sliding, Target};
+pub use contact::{Contact, Integration, Places, Sliding, Target};
+pub use initial::{Initial, Penetration};
 pub use law::Law;
-pub use pairing::Pairing;
-pub use plane::Plane;
+pub use obstacle::{
+    Cylinder, Distance, Motion, Obstacle, Placed, Plane, RigidSurface, Shape, Side, Sphere,
+    Translation, Turn,
+};
+pub use pairing::{Basis, Mortar, Pairing};
 pub use point::Point;
 pub use rows::Rows;
-pub use sphere::Sphere;
+pub use search::Search;
+pub use sight::Sight;
 pub use weak::Weak;

@@ -52,15 +52,7 @@ impl Point {
             }
             let rule = table.mass_rule;
             for (xi, weight) in rule.points.iter().zip(rule.weights) {
-                let mut point = Point {
-                    nodes: [0; MAX_FACE_NODES],
-                    shape: [0.0; MAX_FACE_NODES],
-                    count: corners.len(),
-                    area: 0.0,
-                    share: 0.0,
-                };
-                point.nodes[..corners.len()].copy_from_slice(corners);
-                (table.shape)(xi, &mut point.shape[..corners.len()]);
+                let mut point = Point::on_face(face, xi);
                 let mut gradients = [[0.0; 3]; MAX_FACE_NODES];
                 (table.gradient)(xi, &mut gradients[..corners.len()]);
                 let places = &places[..corners.len()];
@@ -75,6 +67,21 @@ impl Point {
             point.share = point.area / total;
         }
         points
+    }
+
+    /// A place of a face, by its reference coordinates; it stands for no area.
+    pub(crate) fn on_face(face: &Face, xi: &[f64; 3]) -> Point {
+        let nodes = face.corners();
+        let mut point = Point {
+            nodes: [0; MAX_FACE_NODES],
+            shape: [0.0; MAX_FACE_NODES],
+            count: nodes.len(),
+            area: 0.0,
+            share: 0.0,
+        };
+        point.nodes[..nodes.len()].copy_from_slice(nodes);
+        (face.kind.table().shape)(xi, &mut point.shape[..nodes.len()]);
+        point
     }
 
     /// Nodes that carry the point, by system number, and the values of their shape functions in it.
@@ -133,6 +140,7 @@ mod tests {
         let points = Point::of_faces(&[face(Kind::Quad4, &[0, 1, 2, 3])], &x, |_| 0.5);
         let places = Places {
             dim: 3,
+            time: 0.0,
             x: &x,
             u: &[0.0; 12],
         };

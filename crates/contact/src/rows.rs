@@ -2,8 +2,8 @@
 
 /// Gaps, normals and derivatives of the gaps of a list of contact points, at one configuration.
 ///
-/// `ġ = N v`, and a force P in a point acts on the unknowns as `Nᵀ P`. A point that faces nothing has an infinite gap
-/// and an empty row.
+/// `ġ = N v + ∂g/∂t`, the last by the given motion of an obstacle, and a force P in a point acts on the unknowns as
+/// `Nᵀ P`. A point that faces nothing has an infinite gap and an empty row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rows {
     offsets: Vec<u32>,
@@ -11,6 +11,7 @@ pub struct Rows {
     coefficients: Vec<f64>,
     gaps: Vec<f64>,
     normals: Vec<[f64; 3]>,
+    rates: Vec<f64>,
 }
 
 impl Rows {
@@ -22,6 +23,7 @@ impl Rows {
         self.coefficients.clear();
         self.gaps.clear();
         self.normals.clear();
+        self.rates.clear();
     }
 
     /// Number of points.
@@ -50,6 +52,12 @@ impl Rows {
         self.normals[point]
     }
 
+    /// Rate ∂g/∂t of the gap at bodies at rest, by the motion of the obstacle, m/s; zero against all that does not move by
+    /// itself.
+    pub fn rate(&self, point: usize) -> f64 {
+        self.rates[point]
+    }
+
     /// Product (N x) of the row of a point with a system vector.
     pub fn product(&self, point: usize, x: &[f64]) -> f64 {
         let (dofs, coefficients) = self.row(point);
@@ -74,6 +82,7 @@ impl Rows {
             self.gaps
                 .push(initial.gap(point) + initial.product(point, u));
             self.normals.push(initial.normal(point));
+            self.rates.push(initial.rate(point));
             self.dofs.extend_from_slice(dofs);
             self.coefficients.extend_from_slice(coefficients);
             self.offsets.push(self.dofs.len() as u32);
@@ -84,7 +93,20 @@ impl Rows {
     pub(crate) fn push(&mut self, gap: f64, normal: [f64; 3]) {
         self.gaps.push(gap);
         self.normals.push(normal);
+        self.rates.push(0.0);
         self.offsets.push(self.dofs.len() as u32);
+    }
+
+    /// Adds an offset in m to the gap of a point.
+    pub(crate) fn shift(&mut self, point: usize, offset: f64) {
+        self.gaps[point] += offset;
+    }
+
+    /// Gives the point pushed last the rate of its gap by the obstacle's motion, m/s.
+    pub(crate) fn set_rate(&mut self, rate: f64) {
+        if let Some(last) = self.rates.last_mut() {
+            *last = rate;
+        }
     }
 
     /// Adds to the row of the point pushed last the motion of a node along `direction`.

@@ -1,6 +1,6 @@
 //! Contacts in the numbers of a system: bodies of each side, points, and which law may hold where.
 
-use carom_contact::{Contact, Integration, Point, Target};
+use carom_contact::{Contact, Integration, Point, Sight, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
 
 use crate::Error;
@@ -47,7 +47,7 @@ pub(crate) fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usi
     };
     let primary = match &contact.primary {
         ModelTarget::Surface(surface) => body(surface),
-        ModelTarget::Plane(_) | ModelTarget::Sphere(_) => None,
+        ModelTarget::Rigid(_) => None,
     };
     (body(&contact.secondary).unwrap_or(0), primary)
 }
@@ -77,9 +77,16 @@ pub(crate) fn numbered(
         }
     };
     let target = match &contact.primary {
-        ModelTarget::Plane(plane) => Target::Plane(*plane),
-        ModelTarget::Sphere(sphere) => Target::Sphere(*sphere),
+        ModelTarget::Rigid(obstacle) => Target::Rigid(obstacle.clone()),
         ModelTarget::Surface(surface) => Target::Surface(faces(surface)),
+    };
+    let sight = match &target {
+        Target::Surface(primary) => {
+            let secondary = faces(surface);
+            let needed = contact.depth.is_some() || Sight::is_needed(&secondary, primary);
+            needed.then(|| Sight::new((&points, &secondary), primary, x, contact.depth))
+        }
+        Target::Rigid(_) => None,
     };
     Contact {
         name: contact.name.clone(),
@@ -88,6 +95,8 @@ pub(crate) fn numbered(
         integration: contact.integration,
         points,
         target,
+        sight,
+        offsets: Vec::new(),
     }
 }
 

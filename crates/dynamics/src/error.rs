@@ -139,6 +139,26 @@ pub enum Error {
         /// Why.
         cause: &'static str,
     },
+    /// A contact whose obstacle moves, in a scheme whose rows are rates at bodies at rest.
+    #[error("contact '{contact}': its obstacle moves, which the linear steps do not follow")]
+    MovingObstacle {
+        /// Name of the contact.
+        contact: String,
+    },
+    /// Surfaces that overlap at the start.
+    #[error(
+        "contact '{contact}': {points} points penetrate at the start, the deepest, at node {node}, by {depth:e} m"
+    )]
+    Penetration {
+        /// Name of the contact.
+        contact: String,
+        /// Number of points.
+        points: usize,
+        /// Mesh node of the deepest.
+        node: u32,
+        /// Its depth, m.
+        depth: f64,
+    },
     /// A secondary surface without area.
     #[error("contact '{contact}': the matrix of the multiplier on the secondary surface: {cause}")]
     WeakForm {

@@ -428,8 +428,12 @@ impl Ledger {
             + (energies.strain - start.strain)
             + (scheme_energy - start.scheme_energy)
             + (self.hardening - start.hardening);
-        let [work_supports, dissipation_material, dissipation_damping, dissipation_friction] =
-            self.beyond.map(|sum| sum.get());
+        let [
+            work_supports,
+            dissipation_material,
+            dissipation_damping,
+            dissipation_friction,
+        ] = self.beyond.map(|sum| sum.get());
         let works = work_loads + work_contact + work_links + work_supports;
         let dissipations =
             dissipation_scheme + dissipation_material + dissipation_damping + dissipation_friction;

@@ -10,6 +10,7 @@ mod control;
 mod coulomb;
 mod driver;
 mod error;
+mod initial;
 mod interface;
 mod ledger;
 mod march;
@@ -31,9 +32,11 @@ pub use driver::{Costs, Driver, Phases, Work};
 pub use error::Error;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Resultant};
-pub use newton::Newton;
-pub use nonlinear::{Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed};
 pub use march::{Observer, Outcome, Stepper, march, step_count};
+pub use newton::Newton;
+pub use nonlinear::{
+    Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed,
+};
 pub use records::{ContactRecord, Impact, Records};
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, StepReport};

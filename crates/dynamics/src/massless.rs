@@ -76,7 +76,7 @@ pub(crate) fn redistribute(
 fn nodes(contact: &ModelContact) -> impl Iterator<Item = u32> + '_ {
     let primary = match &contact.primary {
         ModelTarget::Surface(surface) => &surface.nodes[..],
-        ModelTarget::Plane(_) | ModelTarget::Sphere(_) => &[],
+        ModelTarget::Rigid(_) => &[],
     };
     contact.secondary.nodes.iter().chain(primary).copied()
 }

@@ -8,9 +8,9 @@ use carom_contact::{Contact, Integration};
 use carom_mesh::{Face, Surface};
 use serde::{Deserialize, Serialize};
 
+use crate::Error;
 use crate::contacts::renumbered;
 use crate::system::{Model, ModelBody, System};
-use crate::Error;
 
 /// A quantity as a function of time: straight between its points, constant before the first and after the last.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -222,13 +222,21 @@ impl NumberedNonlinear {
                 numbered.amplitudes.push(amplitude.clone());
                 for &node in &motion.nodes {
                     let unknown = dim * number[node as usize] as usize + i;
-                    if fixed[unknown] || numbered.follows.iter().any(|f| f.unknown as usize == unknown) {
+                    if fixed[unknown]
+                        || numbered
+                            .follows
+                            .iter()
+                            .any(|f| f.unknown as usize == unknown)
+                    {
                         return Err(Error::Nonlinear {
                             what: format!("the motion of node {node} of the mesh in direction {i}"),
                             why: "a support or another motion holds it already",
                         });
                     }
-                    numbered.follows.push(Follows { unknown: unknown as u32, amplitude: place });
+                    numbered.follows.push(Follows {
+                        unknown: unknown as u32,
+                        amplitude: place,
+                    });
                 }
             }
         }
@@ -253,7 +261,9 @@ impl NumberedNonlinear {
 
     /// Whether any load turns with the body.
     pub(crate) fn has_followers(&self) -> bool {
-        self.loads.iter().any(|load| matches!(load.force, NumberedForce::Follower(..)))
+        self.loads
+            .iter()
+            .any(|load| matches!(load.force, NumberedForce::Follower(..)))
     }
 
     /// Displacement of the unknowns that follow a function of time, m.

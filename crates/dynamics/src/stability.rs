@@ -54,6 +54,7 @@ impl System {
         rows.clear();
         let places = Places {
             dim: self.dim,
+            time: 0.0,
             x: &self.x,
             u: &self.initial_displacement,
         };

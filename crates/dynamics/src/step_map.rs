@@ -132,7 +132,13 @@ pub struct StepMap {
 impl StepMap {
     /// The map of a static step: the unknown is the way, internal forces are those of its end, and there is no inertia.
     pub fn equilibrium() -> StepMap {
-        let (none, now) = (Row::default(), Row { u: 1.0, ..Row::default() });
+        let (none, now) = (
+            Row::default(),
+            Row {
+                u: 1.0,
+                ..Row::default()
+            },
+        );
         let end = Row { x: 1.0, ..now };
         StepMap {
             inertia: none,

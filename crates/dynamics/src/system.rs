@@ -7,10 +7,11 @@ use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_bodies::{Body, BodySpec, Kinematics, MassKind};
 use carom_contact::law::Level;
-use carom_contact::{Contact, Integration, Law, Plane, Sliding, Sphere};
+use carom_contact::{Contact, Initial, Integration, Law, Obstacle, Places, Sliding};
 use carom_mesh::{Face, Mesh, Surface};
 
 use crate::contacts::{numbered, renumbered, sides};
+use crate::initial::settle;
 use crate::massless::redistribute;
 use crate::nonlinear::{Nonlinear, NumberedNonlinear};
 use crate::{Adaptive, Error, Scheme};
@@ -79,6 +80,11 @@ pub struct ModelContact {
     pub massless: bool,
     /// Coefficient of Coulomb's friction; zero for none.
     pub friction: f64,
+    /// What is done about penetrations at the start.
+    pub initial: Initial,
+    /// Largest penetration that is a contact, m: points see only faces turned against them and not further away inside than
+    /// this ([`Sight`](carom_contact::Sight)). `None`: they see everything, unless the surface faces itself.
+    pub depth: Option<f64>,
 }
 
 /// What a secondary surface faces.
@@ -86,10 +92,15 @@ pub struct ModelContact {
 pub enum ModelTarget {
     /// A surface of deformable bodies.
     Surface(Surface),
-    /// A rigid plane.
-    Plane(Plane),
-    /// A rigid sphere.
-    Sphere(Sphere),
+    /// A rigid obstacle.
+    Rigid(Obstacle),
+}
+
+impl ModelTarget {
+    /// A rigid obstacle, at rest if it is given by its shape.
+    pub fn rigid(obstacle: impl Into<Obstacle>) -> ModelTarget {
+        ModelTarget::Rigid(obstacle.into())
+    }
 }
 
 /// Mass of the system: a diagonal, and the consistent part where there is one.
@@ -205,7 +216,8 @@ impl System {
         Ok(Arc::new(system))
     }
 
-    fn assemble(model: Model) -> Result<(System, Vec<ModelBody>, Vec<ModelContact>), Error> {
+    fn assemble(mut model: Model) -> Result<(System, Vec<ModelBody>, Vec<ModelContact>), Error> {
+        model.remove_penetrations()?;
         let dim = model.mesh.dim;
         let (number, mesh_node, parts) = numbering(&model);
         let x: Vec<[f64; 3]> = mesh_node
@@ -244,11 +256,24 @@ impl System {
             }
         }
         let nonlinear = NumberedNonlinear::new(&model, (&number, &x), &bodies, &fixed)?;
-        let contacts: Vec<Contact> = model
+        let mut contacts: Vec<Contact> = model
             .contacts
             .iter()
             .map(|contact| numbered(contact, &model, &number, &x))
             .collect();
+        let ways = model.contacts.iter().map(|contact| contact.initial);
+        let places = Places {
+            dim,
+            time: 0.0,
+            x: &x,
+            u: &initial_displacement,
+        };
+        settle(
+            &mut contacts,
+            ways,
+            &places,
+            (&mesh_node, model.mesh.size()),
+        )?;
         let mut first_point = vec![0];
         for contact in &contacts {
             first_point.push(first_point[first_point.len() - 1] + contact.points.len());

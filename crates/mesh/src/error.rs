@@ -1,5 +1,7 @@
 //! What can be wrong with a mesh that was read or generated without fault.
 
+use carom_elements::Kind;
+
 use crate::ElementId;
 
 /// Failure of an operation on a mesh. Node numbers count from 0 in the mesh; points are in the unit of its
@@ -31,6 +33,16 @@ pub enum Error {
         /// The first such cell.
         cell: ElementId,
     },
+    /// Two facets of a surface without cells run along their common edge in the same sense.
+    #[error(
+        "two facets that share node {node} have normals to different sides: the order of their nodes disagrees"
+    )]
+    FacetsDisagree {
+        /// The facets.
+        facets: [ElementId; 2],
+        /// A node that both have.
+        node: u32,
+    },
     /// A facet is a face of none of the cells.
     #[error("the facet at {centre:?} is not a face of any cell of the body")]
     FacetOnNoCell {
@@ -48,6 +60,12 @@ pub enum Error {
         centre: [f64; 3],
         /// The two cells.
         cells: [ElementId; 2],
+    },
+    /// An element for which there is no quadratic kind.
+    #[error("there is no quadratic element on the corners of {}", kind.table().name)]
+    NoQuadratic {
+        /// Its kind.
+        kind: Kind,
     },
     /// Two facets of a surface have the same nodes.
     #[error("the facet at {centre:?} is in the surface twice")]

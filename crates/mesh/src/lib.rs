@@ -5,9 +5,12 @@
 //! point over one face, [`BoxTree`] the faces worth asking.
 
 mod curved;
+mod free;
 pub mod generate;
+mod hull;
 pub mod mesh;
 pub mod project;
+pub mod raise;
 pub mod read;
 pub mod search;
 pub mod surface;
@@ -19,5 +22,6 @@ mod random;
 pub use error::Error;
 pub use mesh::{Block, Defect, ElementId, Group, Mesh, gather};
 pub use project::{Projection, project};
+pub use raise::raise;
 pub use search::{Bounds, BoxTree};
 pub use surface::{Face, Surface, face_nodes};

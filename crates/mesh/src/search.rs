@@ -2,8 +2,8 @@
 //!
 //! Built by median splits of the centres along the longest side, with leaves of a fixed number of items. When the
 //! items move, [`BoxTree::refit`] keeps the tree and recomputes its boxes from the leaves up: answers stay right
-//! whatever the motion, only speed suffers. Answers are sorted by item, so they do not depend on the shape of the
-//! tree.
+//! whatever the motion, only speed suffers, and [`BoxTree::looseness`] tells how much. Answers are sorted by item, so they
+//! do not depend on the shape of the tree.
 
 use std::ops::Range;
 
@@ -86,6 +86,19 @@ impl Bounds {
             .sum()
     }
 
+    /// The largest absolute value of a coordinate, m; zero for the empty box.
+    fn reach(&self) -> f64 {
+        let ends = self.min.iter().chain(&self.max);
+        ends.filter(|x| x.is_finite())
+            .fold(0.0, |reach, x| reach.max(x.abs()))
+    }
+
+    /// Sum of the sides in m; zero for the empty box.
+    fn sides(&self) -> f64 {
+        let side = |i: usize| (self.max[i] - self.min[i]).max(0.0);
+        side(0) + side(1) + side(2)
+    }
+
     fn centre(&self, axis: usize) -> f64 {
         0.5 * (self.min[axis] + self.max[axis])
     }
@@ -121,7 +134,7 @@ fn beyond(middle: &[f64; 3], ends: &[f64; 3]) -> [f64; 3] {
 }
 
 /// A tree over numbered boxes, one per face of a surface for instance.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct BoxTree {
     /// Nodes in preorder: a node's first child follows it.
     nodes: Vec<Node>,
@@ -129,18 +142,32 @@ pub struct BoxTree {
     items: Vec<u32>,
     /// Box of each entry of `items`.
     boxes: Vec<Bounds>,
+    /// Sides of the boxes of all nodes when the tree was built, m.
+    built: f64,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Node {
     bounds: Bounds,
     /// The node after the whole subtree of this one.
-    next: usize,
+    next: u32,
     /// Range of `items` below it.
-    first: usize,
-    last: usize,
-    /// Second child; `None` for a leaf.
-    second: Option<usize>,
+    first: u32,
+    last: u32,
+    /// Second child; [`NO_CHILD`] for a leaf.
+    second: u32,
+}
+
+const NO_CHILD: u32 = u32::MAX;
+
+impl Node {
+    fn is_leaf(&self) -> bool {
+        self.second == NO_CHILD
+    }
+
+    fn range(&self) -> std::ops::Range<usize> {
+        self.first as usize..self.last as usize
+    }
 }
 
 impl BoxTree {
@@ -150,9 +177,11 @@ impl BoxTree {
             nodes: Vec::new(),
             items: (0..boxes.len() as u32).collect(),
             boxes: Vec::new(),
+            built: 0.0,
         };
         tree.split(boxes, 0, boxes.len());
         tree.refit(boxes);
+        tree.built = tree.sides();
         tree
     }
 
@@ -174,13 +203,111 @@ impl BoxTree {
             .extend(self.items.iter().map(|&item| boxes[item as usize]));
         for i in (0..self.nodes.len()).rev() {
             let node = &self.nodes[i];
-            self.nodes[i].bounds = match node.second {
-                Some(second) => self.nodes[i + 1].bounds.union(&self.nodes[second].bounds),
-                None => self.boxes[node.first..node.last]
+            self.nodes[i].bounds = match node.is_leaf() {
+                false => {
+                    let second = &self.nodes[node.second as usize];
+                    self.nodes[i + 1].bounds.union(&second.bounds)
+                }
+                true => self.boxes[node.range()]
                     .iter()
                     .fold(Bounds::EMPTY, |all, b| all.union(b)),
             };
         }
+    }
+
+    /// Sides of the boxes of all nodes over what they were when the tree was built: 1 then, larger where items that were
+    /// together have parted. Speed suffers in about this proportion.
+    pub fn looseness(&self) -> f64 {
+        match self.built > 0.0 {
+            true => self.sides() / self.built,
+            false => 1.0,
+        }
+    }
+
+    /// Memory of the tree, bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.items[..]) + size_of_val(&self.boxes[..])
+    }
+
+    fn sides(&self) -> f64 {
+        self.nodes.iter().map(|node| node.bounds.sides()).sum()
+    }
+
+    /// The item closest to a point, and its distance in m: the first of equals; `None` if none is within `within` (m,
+    /// boundary included).
+    ///
+    /// `measure` gives the distance of an item in m, infinite for one that does not count; an item lies in its box to the
+    /// rounding of coordinates. `moved`: how far in m items may have moved since the boxes were taken.
+    ///
+    /// Branch and bound, the nearer child first: boxes further than the best item so far are passed by.
+    pub fn closest(
+        &self,
+        point: &[f64; 3],
+        within: f64,
+        moved: f64,
+        measure: impl FnMut(u32) -> f64,
+    ) -> Option<(u32, f64)> {
+        let look = |bounds: &Bounds| bounds.distance_squared(point).sqrt();
+        self.descend(within, moved + self.rounding(point), look, measure)
+    }
+
+    /// Bound of the rounding of distances between a point and places in the tree, m.
+    pub fn rounding(&self, point: &[f64; 3]) -> f64 {
+        let tree = self.nodes.first().map_or(0.0, |root| root.bounds.reach());
+        // a foot is a sum of some ten products: this is a hundred times what it can err
+        1e-13 * (tree + Bounds::of(&[*point]).reach())
+    }
+
+    fn descend(
+        &self,
+        within: f64,
+        slack: f64,
+        mut look: impl FnMut(&Bounds) -> f64,
+        mut measure: impl FnMut(u32) -> f64,
+    ) -> Option<(u32, f64)> {
+        let mut best: Option<(u32, f64)> = None;
+        let mut limit = within + slack;
+        // a median split halves the items: no path is longer than the number of bits of their count
+        let mut waiting = [(0u32, 0.0); 40];
+        let mut count = usize::from(!self.nodes.is_empty());
+        while count > 0 {
+            count -= 1;
+            let (at, far) = waiting[count];
+            if far > limit {
+                continue;
+            }
+            let node = &self.nodes[at as usize];
+            if !node.is_leaf() {
+                let children = [at + 1, node.second]
+                    .map(|child| (child, look(&self.nodes[child as usize].bounds)));
+                let [one, other] = children;
+                let (near, later) = match other.1 < one.1 {
+                    true => (other, one),
+                    false => (one, other),
+                };
+                waiting[count] = later;
+                waiting[count + 1] = near;
+                count += 2;
+                continue;
+            }
+            let leaf = self.items[node.range()]
+                .iter()
+                .zip(&self.boxes[node.range()]);
+            for (&item, bounds) in leaf {
+                if look(bounds) > limit {
+                    continue;
+                }
+                let distance = measure(item);
+                let better = |(first, least): (u32, f64)| {
+                    distance < least || distance == least && item < first
+                };
+                if distance <= within && best.is_none_or(better) {
+                    best = Some((item, distance));
+                    limit = distance + slack;
+                }
+            }
+        }
+        best
     }
 
     /// Items whose box is within a distance (in m, boundary included) of a point, sorted, into `found`, which is
@@ -201,11 +328,11 @@ impl BoxTree {
         let mut i = 0;
         while let Some(node) = self.nodes.get(i) {
             if !test(&node.bounds) {
-                i = node.next;
+                i = node.next as usize;
                 continue;
             }
-            if node.second.is_none() {
-                let range = node.first..node.last;
+            if node.is_leaf() {
+                let range = node.range();
                 let leaf = self.items[range.clone()].iter().zip(&self.boxes[range]);
                 found.extend(leaf.filter(|(_, b)| test(b)).map(|(&item, _)| item));
             }
@@ -220,9 +347,9 @@ impl BoxTree {
         self.nodes.push(Node {
             bounds: Bounds::EMPTY,
             next: 0,
-            first,
-            last,
-            second: None,
+            first: first as u32,
+            last: last as u32,
+            second: NO_CHILD,
         });
         if last - first > LEAF {
             let items = &mut self.items[first..last];
@@ -234,10 +361,10 @@ impl BoxTree {
                 centre(a).total_cmp(&centre(b)).then(a.cmp(&b))
             });
             self.split(boxes, first, first + middle);
-            self.nodes[here].second = Some(self.nodes.len());
+            self.nodes[here].second = self.nodes.len() as u32;
             self.split(boxes, first + middle, last);
         }
-        self.nodes[here].next = self.nodes.len();
+        self.nodes[here].next = self.nodes.len() as u32;
     }
 }
 
@@ -268,6 +395,18 @@ mod tests {
             tree.near(&point, distance, &mut found);
             let near = |b: &Bounds| b.distance_squared(&point) <= distance * distance;
             assert_eq!(found, brute_force(boxes, near));
+            // items are the corners of their boxes, but every third does not count
+            let corner = |i: u32| match i % 3 {
+                0 => f64::INFINITY,
+                _ => Bounds::of(&[boxes[i as usize].min])
+                    .distance_squared(&point)
+                    .sqrt(),
+            };
+            let all = (0..boxes.len() as u32).map(|i| (i, corner(i)));
+            let closest = all
+                .filter(|(_, d)| *d <= distance)
+                .min_by(|a, b| a.1.total_cmp(&b.1));
+            assert_eq!(tree.closest(&point, distance, 0.0, corner), closest);
             let query = Bounds::of(&[random.point(1.0), random.point(1.0)]);
             tree.overlapping(&query, &mut found);
             assert_eq!(found, brute_force(boxes, |b| b.overlaps(&query)));
@@ -354,5 +493,72 @@ mod tests {
         tree.collect(test, &mut found);
         assert_eq!(found, [495, 496, 527, 528]);
         assert!(count.get() < 120, "{}", count.get());
+    }
+
+    #[test]
+    fn boxes_of_before_serve_items_that_moved_by_less_than_the_slack() {
+        let mut random = Random::new(5);
+        let boxes = random_boxes(&mut random, 200);
+        let tree = BoxTree::new(&boxes);
+        let step = random.point(0.1);
+        let moved = 0.1 * 3.0_f64.sqrt();
+        let place = |i: u32| [0, 1, 2].map(|k| boxes[i as usize].max[k] + step[k]);
+        for _ in 0..100 {
+            let point = random.point(1.5);
+            let measure = |i: u32| Bounds::of(&[place(i)]).distance_squared(&point).sqrt();
+            let all = (0..200).map(|i| (i, measure(i)));
+            let closest = all.min_by(|a, b| a.1.total_cmp(&b.1));
+            assert_eq!(tree.closest(&point, f64::INFINITY, moved, measure), closest);
+        }
+    }
+
+    #[test]
+    fn the_first_of_equals_is_the_closest() {
+        let boxes = vec![Bounds::of(&[[1.0; 3]]); 100];
+        let tree = BoxTree::new(&boxes);
+        let far = |i: u32| if i < 37 { 2.5 } else { 2.0 };
+        let from = [1.0, 1.0, 3.0];
+        assert_eq!(tree.closest(&from, 5.0, 0.0, far), Some((37, 2.0)));
+        assert_eq!(tree.closest(&from, 1.9, 0.0, far), None);
+    }
+
+    #[test]
+    fn looks_for_the_closest_grow_with_the_logarithm_of_the_number_of_boxes() {
+        let looks = |side: usize| {
+            let boxes: Vec<Bounds> = (0..side * side)
+                .map(|i| [(i % side) as f64, (i / side) as f64, 0.0])
+                .map(|x| Bounds::of(&[x, [x[0] + 1.0, x[1] + 1.0, 0.0]]))
+                .collect();
+            let tree = BoxTree::new(&boxes);
+            let mut random = Random::new(6);
+            let (mut looks, queries) = (0, 200);
+            for _ in 0..queries {
+                let p = random.point(0.5 * side as f64);
+                let p = [p[0] + 0.5 * side as f64, p[1] + 0.5 * side as f64, 0.3];
+                let look = |b: &Bounds| {
+                    looks += 1;
+                    b.distance_squared(&p).sqrt()
+                };
+                let measure = |i: u32| boxes[i as usize].distance_squared(&p).sqrt();
+                assert!(tree.descend(f64::INFINITY, 0.0, look, measure).is_some());
+            }
+            looks as f64 / f64::from(queries)
+        };
+        // 256 times as many boxes are 8 levels more: two boxes looked at in each, and now and then a neighbour
+        let (few, many) = (looks(16), looks(256));
+        assert!(many - few < 4.0 * 8.0, "{few} {many}");
+        assert!(many < 4.0 * 16.0 + 16.0, "{many}");
+    }
+
+    #[test]
+    fn a_tree_whose_items_part_gets_loose() {
+        let mut random = Random::new(7);
+        let boxes = random_boxes(&mut random, 300);
+        let mut tree = BoxTree::new(&boxes);
+        assert_eq!(tree.looseness(), 1.0);
+        let turned: Vec<Bounds> = (0..300).map(|i| boxes[(i * 7) % 300]).collect();
+        tree.refit(&turned);
+        assert!(tree.looseness() > 2.0, "{}", tree.looseness());
+        assert_eq!(tree.bytes(), BoxTree::new(&turned).bytes());
     }
 }

@@ -31,6 +31,7 @@ const RADIUS: f64 = 0.5;
 const BALL: Sphere = Sphere {
     centre: [0.5, 0.5, -RADIUS],
     radius: RADIUS,
+    side: carom_contact::Side::Outside,
 };
 
 /// A block of `n` coarse cells along each side.
@@ -66,7 +67,7 @@ impl Block {
         let mesh = generate::box_("block", [0.0; 3], [1.0; 3], [n; 3], false);
         let block = self.falling(&mesh, "block")?;
         let bottom = surface(&mesh, "block.bottom", &block)?;
-        let contact = contact(bottom, ModelTarget::Sphere(BALL), HALF);
+        let contact = contact(bottom, ModelTarget::rigid(BALL), HALF);
         Ok(Model {
             scheme: theta(0.5),
             ..model(mesh, vec![block], contact, self.dt())
@@ -128,7 +129,7 @@ impl Block {
             rows: overlap.rows(&Coupling::default())?.rows,
         }];
         let bottom = surface(&mesh, "tip.bottom", &bodies[0])?;
-        let contact = contact(bottom, ModelTarget::Sphere(BALL), HALF);
+        let contact = contact(bottom, ModelTarget::rigid(BALL), HALF);
         let zone = |name: &str, bodies, scheme, substeps| ModelZone {
             name: name.to_string(),
             bodies,

@@ -10,6 +10,8 @@
 
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::{Integration, Plane, Sliding};
+use carom_bodies::{BodySpec, Kinematics, MassKind};
+use carom_contact::{Initial, Integration, Plane, Sliding};
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, System, march};
 use carom_exact::{Bar, Impact};
 use carom_materials::Elastic;
@@ -117,7 +119,7 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
         contacts: vec![ModelContact {
             name: "ground".to_string(),
             secondary: Surface::new(&mesh, group(&mesh, "bar.left")?, &cells)?,
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal: [1.0, 0.0, 0.0],
             }),
@@ -126,6 +128,8 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
             integration: Integration::Node,
             massless: false,
             friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
         }],
         scheme: theta(0.5),
         dt: 0.5 * LENGTH / elements as f64 / 30.0,

@@ -1,7 +1,7 @@
 //! Bars in impact, made of elements of one, two or three dimensions. The numbers are in [`crate::figures`].
 
 use carom_bodies::{Kinematics, MassKind};
-use carom_contact::Law;
+use carom_contact::{Initial, Law};
 use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme};
 use carom_exact::{Bar, Impact, Solution};
 use carom_materials::Elastic;
@@ -244,6 +244,8 @@ impl Run {
             contacts: vec![ModelContact {
                 massless: self.massless,
                 friction: 0.0,
+                initial: Initial::Keep,
+                depth: None,
                 ..contact(secondary, primary, self.law)
             }],
             bodies,

@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Adhesion, Capture, Compliance, Damped, Displacement, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Scheme, Support};
 use carom_materials::Elastic;
@@ -110,6 +110,8 @@ pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> Mod
         integration: Integration::Node,
         massless: false,
         friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     }
 }
 
@@ -117,7 +119,7 @@ pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> Mod
 pub(crate) fn plane(axis: usize, sign: f64) -> ModelTarget {
     let mut normal = [0.0; 3];
     normal[axis] = sign;
-    ModelTarget::Plane(Plane {
+    ModelTarget::rigid(Plane {
         point: [0.0; 3],
         normal,
     })

@@ -66,7 +66,7 @@ fn tilted(n: usize, choice: Choice, integration: Integration) -> Result<Model, E
     block.velocity = [0.0, -SPEED, 0.0];
     let bottom = surface(&mesh, "block.bottom", &block)?;
     let along = 1.0 / SLOPE.hypot(1.0);
-    let wall = ModelTarget::Plane(Wall {
+    let wall = ModelTarget::rigid(Wall {
         point: [0.0; 3],
         normal: [SLOPE * along, along, 0.0],
     });

@@ -286,7 +286,7 @@ impl Builder<'_> {
         for contact in contacts {
             let primary = match &contact.primary {
                 ModelTarget::Surface(surface) => &surface.faces[..],
-                ModelTarget::Plane(_) | ModelTarget::Sphere(_) => &[],
+                ModelTarget::Rigid(_) => &[],
             };
             let sides = [
                 ("secondary", &contact.secondary.faces[..]),

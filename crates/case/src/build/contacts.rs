@@ -2,7 +2,7 @@
 
 use carom_contact::law::Level;
 use carom_contact::law::{Displacement, Reading, Restitution, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding, Sphere};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding, Sphere};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{ElementId, Mesh, Surface};
 
@@ -34,13 +34,14 @@ impl Builder<'_> {
                     .surface(mesh, &cells, &format!("{path}.primary"), primary)
                     .map(ModelTarget::Surface),
                 (None, Some(Obstacle::Plane(plane))) => {
-                    self.plane(mesh, &path, plane).map(ModelTarget::Plane)
+                    self.plane(mesh, &path, plane).map(ModelTarget::rigid)
                 }
                 (None, Some(Obstacle::Sphere(sphere))) => {
                     let path = format!("{path}.obstacle.sphere.centre");
-                    Some(ModelTarget::Sphere(Sphere {
+                    Some(ModelTarget::rigid(Sphere {
                         centre: self.vector(mesh, &path, &sphere.centre),
                         radius: sphere.radius.0,
+                        side: carom_contact::Side::Outside,
                     }))
                 }
                 (None, None) => None,
@@ -66,6 +67,8 @@ impl Builder<'_> {
                 integration: integration(contact.integration, &law, &sides),
                 massless: contact.nodes == schema::Nodes::Massless,
                 friction: 0.0,
+                initial: Initial::Keep,
+                depth: None,
             });
         }
         contacts
@@ -120,6 +123,7 @@ impl Builder<'_> {
             rows.clear();
             let places = carom_contact::Places {
                 dim: system.dim,
+                time: 0.0,
                 x: &system.x,
                 u: &system.initial_displacement,
             };

@@ -112,6 +112,7 @@ fn solve(
     contact.pair(
         &Places {
             dim: system.dim,
+            time: 0.0,
             x: &system.x,
             u: &system.initial_displacement,
         },

@@ -302,7 +302,7 @@ impl Builder<'_> {
         for contact in contacts {
             let primary = match &contact.primary {
                 ModelTarget::Surface(surface) => &surface.faces[..],
-                ModelTarget::Plane(_) | ModelTarget::Sphere(_) => &[],
+                ModelTarget::Rigid(_) => &[],
             };
             let faces = contact.secondary.faces.iter().chain(primary);
             let mut zones: Vec<usize> = faces

@@ -4,12 +4,19 @@
 //! points of its support for a multiplier of the mortar method. A stencil is one point of the secondary surface and its
 //! closest point on the other side ([`stencil`]).
 
+mod clip;
+mod merge;
+mod mortar;
+mod overlap;
 mod stencil;
 
 use carom_algebra::csr::Csr;
 
+use self::merge::Merge;
+use self::mortar::Quadrature;
+pub use self::mortar::{Basis, Mortar};
 use self::stencil::Stencil;
-use crate::{Contact, Places, Rows, Search};
+use crate::{Contact, Integration, Places, Rows, Search};
 
 /// Contact points of a list of contacts at one configuration, with the derivatives that Newton's method and friction
 /// ask for.
@@ -25,10 +32,11 @@ pub struct Pairing {
     pub rows: Rows,
     /// Rows T of the two tangents at a point: `T v` is the velocity in m/s at which the secondary slides over the primary
     /// along [`Rows::normal`] of that row; the gaps of these pools are zero. Unit vectors, square to each other and to the
-    /// contact normal, that vary smoothly with it. The second is empty in the plane, both are on a line.
+    /// contact normal, that vary smoothly with it. [`Rows::rate`] of these rows is what the motion of an
+    /// obstacle adds. The second is empty in the plane, both are on a line.
     pub tangents: [Rows; 2],
     /// Reference area that each point stands for, m²: [`Point::area`](crate::Point::area), for a multiplier of the mortar
-    /// method ∫ φ_A dΓ over what faces the primary surface now.
+    /// method ∫ φ_A dΓ over what faces the primary surface now, if any does.
     pub areas: Vec<f64>,
     stencils: Vec<Stencil>,
     /// Stencils of all points and their weights, point after point.
@@ -36,6 +44,24 @@ pub struct Pairing {
     /// Where the terms of a point end.
     ends: Vec<u32>,
     dim: usize,
+    work: Work,
+}
+
+/// A stencil's part in a multiplier: w_q φ_A.
+#[derive(Clone, Copy, Debug)]
+struct Share {
+    point: u32,
+    stencil: u32,
+    weight: f64,
+}
+
+/// Scratch of the mortar method.
+#[derive(Clone, Debug, Default)]
+struct Work {
+    found: Vec<u32>,
+    quadrature: Vec<Quadrature>,
+    shares: Vec<Share>,
+    merge: Merge,
 }
 
 impl Pairing {
@@ -102,14 +128,36 @@ impl Pairing {
                 self.terms.push((self.stencils.len() as u32, 1.0));
                 self.stencils.push(stencil);
             }
-            None => {
-                self.rows.push(f64::INFINITY, [0.0; 3]);
-                for tangent in &mut self.tangents[..self.dim - 1] {
-                    tangent.push(0.0, [0.0; 3]);
-                }
-            }
+            None => self.push_open(),
         }
         self.ends.push(self.terms.len() as u32);
+    }
+
+    /// Appends a point that is the mean of stencils with the given weights, and stands for their sum. Where that is not
+    /// above `least` the point faces nothing, and stands for `area`.
+    fn push_sum(&mut self, area: f64, least: f64, shares: &[Share], merge: &mut Merge) {
+        let total: f64 = shares.iter().map(|share| share.weight).sum();
+        if total > least {
+            self.areas.push(total);
+            merge.clear();
+            for share in shares {
+                let weight = share.weight / total;
+                merge.add(&self.stencils[share.stencil as usize], weight, self.dim);
+                self.terms.push((share.stencil, weight));
+            }
+            merge.push(self.dim, &mut self.rows, &mut self.tangents);
+        } else {
+            self.areas.push(area);
+            self.push_open();
+        }
+        self.ends.push(self.terms.len() as u32);
+    }
+
+    fn push_open(&mut self) {
+        self.rows.push(f64::INFINITY, [0.0; 3]);
+        for tangent in &mut self.tangents[..self.dim - 1] {
+            tangent.push(0.0, [0.0; 3]);
+        }
     }
 }
 
@@ -121,8 +169,21 @@ impl Contact {
     pub fn pair_fully(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
         pairing.dim = places.dim;
         self.renew(places, search);
-        for point in &self.points {
-            let stencil = Stencil::new(self, places, search, point);
+        let first = pairing.len();
+        self.pair_points(places, search, pairing);
+        for k in 0..self.points.len() {
+            pairing.rows.shift(first + k, self.offset(k));
+        }
+    }
+
+    fn pair_points(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
+        if let (Integration::Mortar { basis }, Some(mortar)) = (self.integration, &self.mortar) {
+            if !mortar.is_ends() {
+                return mortar.pair(self, basis, places, search, pairing);
+            }
+        }
+        for (k, point) in self.points.iter().enumerate() {
+            let stencil = Stencil::new(self, places, search, (point, self.view(k)));
             pairing.push(point.area, stencil);
         }
     }

@@ -23,13 +23,12 @@
 
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Vec3;
-use carom_elements::{Element, map};
+use carom_elements::{Element, MAX_FACE_NODES as NODES, map};
 use carom_mesh::{Face, Projection};
 
+use crate::sight::View;
 use crate::{Contact, Places, Point, Rows, Search, Target};
 
-/// The largest number of nodes of a face.
-const NODES: usize = 9;
 /// The largest number of unknowns of a stencil.
 const UNKNOWNS: usize = 6 * NODES;
 
@@ -48,8 +47,13 @@ pub(crate) struct Stencil {
 enum Foot {
     /// On a face that moves.
     Face(Foothold),
-    /// On an obstacle; the second derivative of the gap by the place of the point, 1/m.
-    Obstacle([[f64; 3]; 3]),
+    /// On an obstacle.
+    Obstacle {
+        /// Second derivative of the gap by the place of the point, 1/m.
+        hessian: [[f64; 3]; 3],
+        /// Velocity of the obstacle's particle there, m/s.
+        velocity: [f64; 3],
+    },
 }
 
 /// A foot on a face.
@@ -67,25 +71,34 @@ struct Foothold {
 }
 
 impl Stencil {
-    /// The stencil of a point of a contact, `None` where it faces nothing. `search` is that of these places.
+    /// The stencil of a point of a contact, `None` where it faces nothing. `search` is that of these places; `view`:
+    /// what it sees of a surface.
     pub fn new(
         contact: &Contact,
         places: &Places,
         search: &mut Search,
-        point: &Point,
+        (point, view): (&Point, Option<View>),
     ) -> Option<Stencil> {
         let x = point.place(places);
-        let obstacle = |(gap, normal), hessian| Stencil {
-            point: *point,
-            gap,
-            normal,
-            foot: Foot::Obstacle(hessian),
-        };
         match &contact.target {
-            Target::Plane(plane) => Some(obstacle((plane.gap(&x), plane.normal), [[0.0; 3]; 3])),
-            Target::Sphere(sphere) => Some(obstacle(sphere.gap(&x), sphere.hessian(&x))),
+            Target::Rigid(obstacle) => {
+                let placed = obstacle.at(places.time);
+                let found = placed.distance(&x);
+                if found.gap == f64::INFINITY {
+                    return None;
+                }
+                Some(Stencil {
+                    point: *point,
+                    gap: found.gap,
+                    normal: found.normal,
+                    foot: Foot::Obstacle {
+                        hessian: found.hessian,
+                        velocity: placed.velocity(&x),
+                    },
+                })
+            }
             Target::Surface(faces) => {
-                let (foot, face) = search.facing(places, faces, &x)?;
+                let (foot, face) = search.facing(places, faces, view, &x)?;
                 Some(Stencil::on_face(places, point, &x, &foot, face))
             }
         }
@@ -120,11 +133,23 @@ impl Stencil {
     /// Appends gap and rows.
     pub fn push(&self, dim: usize, rows: &mut Rows, tangents: &mut [Rows; 2]) {
         rows.push(self.gap, self.normal);
+        rows.set_rate(self.rate(&self.normal));
         self.each_normal(|node, direction| rows.add_node(dim, node, &direction));
         let frame = tangent_vectors(&self.normal, dim);
         for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
             rows.push(0.0, *t);
+            rows.set_rate(self.rate(t));
             self.each_along(t, |node, direction| rows.add_node(dim, node, &direction));
+        }
+    }
+
+    /// Rate at which the obstacle's motion carries the point off along a direction, m/s.
+    pub fn rate(&self, direction: &[f64; 3]) -> f64 {
+        match &self.foot {
+            Foot::Face(_) => 0.0,
+            Foot::Obstacle { velocity, .. } => {
+                -(0..3).map(|i| direction[i] * velocity[i]).sum::<f64>()
+            }
         }
     }
 
@@ -166,7 +191,7 @@ impl Stencil {
     fn nodes(&self) -> impl Iterator<Item = u32> + '_ {
         let primary = match &self.foot {
             Foot::Face(foot) => foot.face.corners(),
-            Foot::Obstacle(_) => &[],
+            Foot::Obstacle { .. } => &[],
         };
         let secondary = self.point.carriers().map(|(node, _)| node);
         secondary.chain(primary.iter().copied())
@@ -195,7 +220,7 @@ impl Stencil {
         match &self.foot {
             Foot::Face(foot) if foot.dim() == 0 => return,
             Foot::Face(foot) => Shape::new(self, foot).curvature(&mut block),
-            Foot::Obstacle(hessian) => self.obstacle_curvature(hessian, &mut block),
+            Foot::Obstacle { hessian, .. } => self.obstacle_curvature(hessian, &mut block),
         }
         let (unknowns, n) = self.unknowns(dim);
         matrix.add_block(&unknowns[..n], &block.entries[..n * n]);

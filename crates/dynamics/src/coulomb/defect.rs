@@ -102,13 +102,9 @@ impl FrictionProblem {
         for k in 0..self.tangents {
             let q = point.free[k] + self.factors[2] * lines[k].sum;
             y[k] = t[k] - rho * q;
-            size +=
-                t[k].abs() + rho * (point.free[k].abs() + self.factors[2] * lines[k].size);
+            size += t[k].abs() + rho * (point.free[k].abs() + self.factors[2] * lines[k].size);
         }
-        let (bound, length) = (
-            point.mu * solution.forces[i].max(0.0),
-            y[0].hypot(y[1]),
-        );
+        let (bound, length) = (point.mu * solution.forces[i].max(0.0), y[0].hypot(y[1]));
         let share = if length > bound { bound / length } else { 1.0 };
         relative((t[0] - share * y[0]).hypot(t[1] - share * y[1]), size)
     }

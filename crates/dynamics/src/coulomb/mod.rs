@@ -256,7 +256,11 @@ impl Coulomb {
             let row = problem.normal(i);
             let cut = p(row) < 0.0 && candidate.law.get().clips();
             self.forces.push(if cut { 0.0 } else { p(row) });
-            let second = if problem.tangents == 2 { p(row + 2) } else { 0.0 };
+            let second = if problem.tangents == 2 {
+                p(row + 2)
+            } else {
+                0.0
+            };
             self.tangential.push([p(row + 1), second]);
         }
     }

@@ -100,7 +100,11 @@ impl Trial {
             for k in 0..=problem.tangents {
                 let defect = self.defects[row + k];
                 self.merit += defect * defect;
-                let relative = if defect == 0.0 { 0.0 } else { defect.abs() / size };
+                let relative = if defect == 0.0 {
+                    0.0
+                } else {
+                    defect.abs() / size
+                };
                 // a comparison that a NaN does not pass
                 if !(relative <= self.worst.0) {
                     self.worst = (relative, i);
@@ -110,13 +114,7 @@ impl Trial {
     }
 
     /// Status and defect of the normal; P - R, zero in an open point.
-    fn measure_normal(
-        &mut self,
-        problem: &Posed,
-        i: usize,
-        reversals: u32,
-        size: &mut f64,
-    ) -> f64 {
+    fn measure_normal(&mut self, problem: &Posed, i: usize, reversals: u32, size: &mut f64) -> f64 {
         let row = problem.normal(i);
         let candidate = &problem.candidates[i];
         let (force, product) = (self.p[row], self.product[row]);

@@ -17,6 +17,7 @@ impl Driver {
         let system = Arc::clone(&self.system);
         let places = Places {
             dim: system.dim,
+            time: 0.0,
             x: &system.x,
             u: &self.vectors.work,
         };
@@ -64,6 +65,7 @@ impl Driver {
                 None => {
                     let places = Places {
                         dim: system.dim,
+                        time: 0.0,
                         x: &system.x,
                         u,
                     };

@@ -194,6 +194,11 @@ impl Driver {
     /// # Errors
     /// A matrix that is not positive definite.
     pub fn new(system: Arc<System>) -> Result<Driver, Error> {
+        if let Some(contact) = system.contacts.iter().find(|contact| contact.moves()) {
+            return Err(Error::MovingObstacle {
+                contact: contact.name.clone(),
+            });
+        }
         let scheme = system.scheme.get();
         let (map, identity) = (
             scheme.step_map(system.dt),

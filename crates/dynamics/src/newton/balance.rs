@@ -50,7 +50,10 @@ impl Newton {
         let interface = &mut self.next.interface;
         interface.carried.clone_from(&interface.force);
         for point in 0..system.points() {
-            let ahead = self.map.displacement.since(&self.paired_at(system.point(point).0));
+            let ahead = self
+                .map
+                .displacement
+                .since(&self.paired_at(system.point(point).0));
             let motion = &self.state.motion;
             let xc = [&self.vectors.x[..], &[]];
             let rows = &self.pairing.rows;
@@ -119,9 +122,7 @@ impl Newton {
             &self.balanced,
             &vectors.damping,
         ];
-        let way = |f: &[f64]| -> f64 {
-            (0..f.len()).map(|i| f[i] * (new.u[i] - old.u[i])).sum()
-        };
+        let way = |f: &[f64]| -> f64 { (0..f.len()).map(|i| f[i] * (new.u[i] - old.u[i])).sum() };
         let means = [0, 1, 2, 3, 4, 5].map(|k| mean(k, now[k]));
         let [load, touch, support, inertia, internal, damping] =
             [0, 1, 2, 3, 4, 5].map(|k| way(&means[k]));
@@ -196,7 +197,9 @@ impl Newton {
                 crushed: crate::driver::crush_energy(&system, k, new),
                 jump: [(0.0, [0.0; 3]); 2],
             };
-            self.next.records.add(&system, k, &step, &self.state, &self.next.motion.v);
+            self.next
+                .records
+                .add(&system, k, &step, &self.state, &self.next.motion.v);
             self.report.contacts[k] = report;
         }
     }
@@ -231,8 +234,14 @@ impl Newton {
         if state.step == 0 {
             for (k, report) in self.report.contacts.iter_mut().enumerate() {
                 let interface = &state.interface;
-                *report =
-                    contact_report(&self.system, k, &self.pairing.rows, interface, interface, 0.0);
+                *report = contact_report(
+                    &self.system,
+                    k,
+                    &self.pairing.rows,
+                    interface,
+                    interface,
+                    0.0,
+                );
             }
         }
     }

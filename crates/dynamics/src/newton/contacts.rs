@@ -59,7 +59,12 @@ impl Newton {
         self.pairing.clear();
         for (k, contact) in system.contacts.iter().enumerate() {
             let row = self.paired_at(contact);
-            row.whole(&self.state.motion, &self.vectors.x, &[], &mut self.vectors.place);
+            row.whole(
+                &self.state.motion,
+                &self.vectors.x,
+                &[],
+                &mut self.vectors.place,
+            );
             let places = Places {
                 dim: system.dim,
                 x: &system.x,
@@ -210,7 +215,11 @@ impl Newton {
             }
             let step = self.pairing.rows.product(point, &self.vectors.dx);
             let (gap, rate) = self.now(point);
-            if self.asks(point, gap + self.map.gap.x * step, rate + self.map.rate.x * step) {
+            if self.asks(
+                point,
+                gap + self.map.gap.x * step,
+                rate + self.map.rate.x * step,
+            ) {
                 self.candidates.push(point as u32);
                 self.next.interface.watched[point] = true;
             }
@@ -290,9 +299,17 @@ impl Newton {
         format!("contact `{}`, point {place}, node {node}", contact.name)
     }
 
-    fn interface_error(&mut self, failure: Failure, compliance: Vec<f64>, factors: [f64; 2]) -> Error {
+    fn interface_error(
+        &mut self,
+        failure: Failure,
+        compliance: Vec<f64>,
+        factors: [f64; 2],
+    ) -> Error {
         let step = self.state.step + 1;
-        let names = self.candidates.iter().map(|&point| self.name(point as usize));
+        let names = self
+            .candidates
+            .iter()
+            .map(|&point| self.name(point as usize));
         self.failed = Some(InterfaceProblem {
             step,
             names: names.collect(),

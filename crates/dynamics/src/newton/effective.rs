@@ -90,16 +90,23 @@ impl Effective {
         if map.force.x == 0.0 && system.mass.consistent.is_none() {
             let lumped = system.mass.lumped.iter();
             let diagonal: Vec<f64> = lumped.map(|m| map.inertia.x * m).collect();
-            self.operators = Some(Operators::whole(Operator::diagonal(&diagonal, &system.fixed), system.unknowns()));
+            self.operators = Some(Operators::whole(
+                Operator::diagonal(&diagonal, &system.fixed),
+                system.unknowns(),
+            ));
             self.matrix = None;
             return Ok(());
         }
         self.renew_pattern(system, turning);
-        let Some(mut a) = self.matrix.take() else { return Ok(()) };
+        let Some(mut a) = self.matrix.take() else {
+            return Ok(());
+        };
         a.clear();
         assemble(system, at, &mut a)?;
         for &(point, force) in &turning.forces {
-            turning.pairing.add_curvature(point, force, -turning.factor, &mut a);
+            turning
+                .pairing
+                .add_curvature(point, force, -turning.factor, &mut a);
         }
         let free = a.with_identity(&system.fixed);
         let factored = self.factorise(&free, system.dim);
@@ -119,11 +126,16 @@ impl Effective {
     }
 
     fn factorise(&mut self, free: &Csr, dim: usize) -> Result<(), carom_algebra::Error> {
-        if let Some(Operator::Factored(factor)) = self.operators.as_mut().map(|o| &mut o.operators[0]) {
+        if let Some(Operator::Factored(factor)) =
+            self.operators.as_mut().map(|o| &mut o.operators[0])
+        {
             return factor.refactor(free);
         }
         let none = vec![false; free.n];
-        self.operators = Some(Operators::whole(Operator::factored(free, &none, dim)?, free.n));
+        self.operators = Some(Operators::whole(
+            Operator::factored(free, &none, dim)?,
+            free.n,
+        ));
         Ok(())
     }
 
@@ -131,7 +143,9 @@ impl Effective {
     fn renew_pattern(&mut self, system: &System, turning: &Turning) {
         let mut rows: Vec<Vec<u32>> = Vec::new();
         for &(point, _) in &turning.forces {
-            turning.pairing.cliques(point, |unknowns| rows.push(unknowns.to_vec()));
+            turning
+                .pairing
+                .cliques(point, |unknowns| rows.push(unknowns.to_vec()));
         }
         if self.matrix.is_some() && rows == self.coupled {
             return;
@@ -219,7 +233,12 @@ fn assemble(system: &System, at: &At, a: &mut Csr) -> Result<(), Error> {
     for (i, m) in system.mass.lumped.iter().enumerate() {
         a.add(i, i, map.inertia.x * m);
     }
-    if let Some(mass) = system.mass.consistent.as_ref().filter(|_| map.inertia.x != 0.0) {
+    if let Some(mass) = system
+        .mass
+        .consistent
+        .as_ref()
+        .filter(|_| map.inertia.x != 0.0)
+    {
         for i in 0..system.unknowns() {
             let (columns, values) = mass.row(i);
             for (&j, m) in columns.iter().zip(values).filter(|(_, m)| **m != 0.0) {

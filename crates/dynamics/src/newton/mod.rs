@@ -204,7 +204,10 @@ impl Newton {
                         std::mem::swap(&mut self.state, &mut self.next);
                         self.state.time = to;
                     }
-                    while level > 0 && done.is_multiple_of(2 * part) && done.is_multiple_of(parts >> (level - 1)) {
+                    while level > 0
+                        && done.is_multiple_of(2 * part)
+                        && done.is_multiple_of(parts >> (level - 1))
+                    {
                         level -= 1;
                     }
                 }
@@ -270,11 +273,7 @@ impl Newton {
     ///
     /// # Errors
     /// An element turned inside out, a material without stress.
-    fn internal(
-        &mut self,
-        (place, from): (Which, bool),
-        dt: f64,
-    ) -> Result<Stored, Error> {
+    fn internal(&mut self, (place, from): (Which, bool), dt: f64) -> Result<Stored, Error> {
         let begin = Instant::now();
         let system = &*self.system;
         let Vectors {

@@ -107,7 +107,9 @@ impl Newton {
         }
         end.known(motion, &mut vectors.place);
         vectors.work.fill(0.0);
-        system.nonlinear.prescribe(self.state.time + self.dt, &mut vectors.work);
+        system
+            .nonlinear
+            .prescribe(self.state.time + self.dt, &mut vectors.work);
         for i in (0..system.unknowns()).filter(|&i| system.fixed[i]) {
             vectors.x[i] = (motion.u[i] - vectors.place[i]) / end.x;
             vectors.jump[i] = (vectors.work[i] - motion.u[i]) / end.x;
@@ -119,11 +121,15 @@ impl Newton {
         let map = self.map;
         let motion = &self.state.motion;
         let vectors = &mut self.vectors;
-        map.inertia.whole(motion, &vectors.x, &[], &mut vectors.place);
-        self.system.mass.multiply(&vectors.place, &mut vectors.inertia);
+        map.inertia
+            .whole(motion, &vectors.x, &[], &mut vectors.place);
+        self.system
+            .mass
+            .multiply(&vectors.place, &mut vectors.inertia);
         self.evaluate_damping();
         let vectors = &mut self.vectors;
-        map.force.whole(&self.state.motion, &vectors.x, &[], &mut vectors.place);
+        map.force
+            .whole(&self.state.motion, &vectors.x, &[], &mut vectors.place);
         let dt = match self.between() {
             true => self.dt,
             false => map.force_fraction.unwrap_or(1.0) * self.dt,
@@ -135,10 +141,7 @@ impl Newton {
             vectors.residual[i] = match self.system.fixed[i] {
                 true => 0.0,
                 false => {
-                    vectors.load[i]
-                        - vectors.inertia[i]
-                        - vectors.internal[i]
-                        - vectors.damping[i]
+                    vectors.load[i] - vectors.inertia[i] - vectors.internal[i] - vectors.damping[i]
                 }
             };
         }
@@ -160,7 +163,9 @@ impl Newton {
             contact += (factor * c).powi(2);
         }
         let mut scale = f64::max(contact.sqrt(), norm(&vectors.load));
-        scale = scale.max(norm(&vectors.internal)).max(norm(&vectors.inertia));
+        scale = scale
+            .max(norm(&vectors.internal))
+            .max(norm(&vectors.inertia));
         if self.map.inertia.x != 0.0 {
             scale = scale.max(self.momentum_scale());
         }
@@ -190,7 +195,12 @@ impl Newton {
     /// What rounding of the positions leaves in the internal forces, N.
     fn rounding(&self) -> f64 {
         let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        let x = self.system.x.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+        let x = self
+            .system
+            .x
+            .iter()
+            .flatten()
+            .fold(0.0f64, |m, x| m.max(x.abs()));
         let place = x + largest(&self.state.motion.u);
         4.0 * f64::EPSILON * self.effective.stiffness_norm(&self.system, &self.map) * place
     }
@@ -228,7 +238,10 @@ impl Newton {
     fn constant_key(&self) -> Option<[f64; 4]> {
         let system = &*self.system;
         let linear = system.bodies.iter().all(|body| body.is_linear()) || self.map.force.x == 0.0;
-        let turns = system.contacts.iter().any(|contact| self.turning(contact) != 0.0);
+        let turns = system
+            .contacts
+            .iter()
+            .any(|contact| self.turning(contact) != 0.0);
         let map = &self.map;
         let key = [map.inertia.x, map.force.x, self.dt, map.contact];
         (linear && !turns && !system.nonlinear.has_followers()).then_some(key)
@@ -241,7 +254,9 @@ impl Newton {
         let system = Arc::clone(&self.system);
         let constant = self.constant_key();
         let motion = &self.state.motion;
-        self.map.force.whole(motion, &self.vectors.x, &[], &mut self.vectors.place);
+        self.map
+            .force
+            .whole(motion, &self.vectors.x, &[], &mut self.vectors.place);
         let at = At {
             map: &self.map,
             dt: match self.between() {

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-
 use super::{Newton, Which};
 use crate::control::Control;
 use crate::error::Error;
@@ -35,7 +34,8 @@ impl Newton {
         self.pair_now();
         for point in 0..system.points() {
             self.state.interface.gap[point] = self.pairing.rows.gap(point);
-            self.state.interface.rate[point] = self.pairing.rows.product(point, &self.state.motion.v);
+            self.state.interface.rate[point] =
+                self.pairing.rows.product(point, &self.state.motion.v);
         }
         self.next.clone_from(&self.state);
         self.tell(0.0);
@@ -47,14 +47,16 @@ impl Newton {
         let system = Arc::clone(&self.system);
         self.vectors.place.clone_from(&self.state.motion.u);
         let stored = self.internal((Which::Place, false), 0.0)?;
-        self.state.motion.internal_force.clone_from(&self.vectors.internal);
+        self.state
+            .motion
+            .internal_force
+            .clone_from(&self.vectors.internal);
         self.evaluate_loads(self.state.time);
         if system.scheme.get().keeps_acceleration() && !self.is_static() {
             let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
             let (vectors, motion) = (&mut self.vectors, &mut self.state.motion);
             for i in 0..system.unknowns() {
-                let balance =
-                    vectors.load[i] - vectors.internal[i] + motion.contact_force[i];
+                let balance = vectors.load[i] - vectors.internal[i] + motion.contact_force[i];
                 vectors.residual[i] = if system.fixed[i] { 0.0 } else { balance };
             }
             mass.begin(&vectors.residual, &mut vectors.half);
@@ -159,7 +161,11 @@ fn free_motion(system: &System, part: std::ops::Range<usize>) -> Option<String> 
     let centre = [centre(0), centre(1), centre(2)];
     let size = nodes
         .clone()
-        .map(|node| (0..3).map(|i| (system.x[node][i] - centre[i]).abs()).fold(0.0, f64::max))
+        .map(|node| {
+            (0..3)
+                .map(|i| (system.x[node][i] - centre[i]).abs())
+                .fold(0.0, f64::max)
+        })
         .fold(f64::MIN_POSITIVE, f64::max);
     let modes = modes(dim, system.axisymmetric);
     // Gram matrix of the modes over the held unknowns
@@ -218,7 +224,12 @@ pub(super) fn energies(
     work: &mut [f64],
 ) -> Energies {
     system.mass.multiply(&motion.v, work);
-    let kinetic: f64 = motion.v.iter().zip(work.iter()).map(|(v, p)| 0.5 * v * p).sum();
+    let kinetic: f64 = motion
+        .v
+        .iter()
+        .zip(work.iter())
+        .map(|(v, p)| 0.5 * v * p)
+        .sum();
     Energies {
         kinetic,
         strain,

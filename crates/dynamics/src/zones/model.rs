@@ -5,9 +5,9 @@ use std::sync::Arc;
 use carom_arlequin::Row;
 use serde::{Deserialize, Serialize};
 
-use crate::nonlinear::Nonlinear;
 use crate::contacts::sides;
 use crate::error::Error;
+use crate::nonlinear::Nonlinear;
 use crate::scheme::Scheme;
 use crate::system::{Model, System};
 

@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{
     Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Stepper, System, Zones,
@@ -41,7 +41,7 @@ fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
         contacts: vec![ModelContact {
             name: "ground".into(),
             secondary: Surface::new(&mesh, &mesh.groups["cube.bottom"], &cells).unwrap(),
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal: [0.0, 0.0, 1.0],
             }),
@@ -50,6 +50,8 @@ fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
             integration,
             massless: false,
             friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
         }],
         scheme,
         dt: 5e-5,

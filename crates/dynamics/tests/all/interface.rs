@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::Displacement;
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{
     Driver, Error, InterfaceProblem, Model, ModelBody, ModelContact, ModelTarget, Scheme, System,
@@ -17,7 +17,7 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
     let wall = |name: &str| ModelContact {
         name: name.into(),
         secondary: Surface::new(&mesh, &mesh.groups["bar.left"], &cells).unwrap(),
-        primary: ModelTarget::Plane(Plane {
+        primary: ModelTarget::rigid(Plane {
             point: [0.0; 3],
             normal: [1.0, 0.0, 0.0],
         }),
@@ -26,6 +26,8 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         integration: Integration::Node,
         massless: false,
         friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     };
     let model = Model {
         bodies: vec![ModelBody {

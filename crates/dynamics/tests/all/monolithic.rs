@@ -6,7 +6,7 @@
 use carom_arlequin::{Row, Term};
 use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Zoned,
@@ -154,7 +154,7 @@ impl Problem {
         let wall = ModelContact {
             name: "wall".into(),
             secondary: end,
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal: [1.0, 0.0, 0.0],
             }),
@@ -166,6 +166,8 @@ impl Problem {
             integration: Integration::Node,
             massless: false,
             friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
         };
         let terms = |c: &[f64], first: usize| {
             let term = |(i, c): (usize, &f64)| Term {

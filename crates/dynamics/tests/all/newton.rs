@@ -64,13 +64,31 @@ pub(crate) fn square(scheme: Scheme, law: Law, material: Material, n: usize) -> 
 #[test]
 fn a_linear_system_takes_the_steps_of_the_linear_driver() {
     let pairs = [
-        (Scheme::Newmark(scheme::Newmark { beta: 0.25, gamma: 0.5 }), DISPLACEMENT),
-        (Scheme::Newmark(scheme::Newmark { beta: 0.49, gamma: 0.9 }), VELOCITY),
+        (
+            Scheme::Newmark(scheme::Newmark {
+                beta: 0.25,
+                gamma: 0.5,
+            }),
+            DISPLACEMENT,
+        ),
+        (
+            Scheme::Newmark(scheme::Newmark {
+                beta: 0.49,
+                gamma: 0.9,
+            }),
+            VELOCITY,
+        ),
         (Scheme::Theta(scheme::Theta { theta: 0.5 }), VELOCITY),
         (Scheme::Theta(scheme::Theta { theta: 0.75 }), DISPLACEMENT),
-        (Scheme::GeneralisedAlpha(scheme::GeneralisedAlpha { rho_inf: 0.8 }), DISPLACEMENT),
+        (
+            Scheme::GeneralisedAlpha(scheme::GeneralisedAlpha { rho_inf: 0.8 }),
+            DISPLACEMENT,
+        ),
         (Scheme::LaursenChawla(scheme::LaursenChawla), VELOCITY),
-        (Scheme::CentralDifference(scheme::CentralDifference), VELOCITY),
+        (
+            Scheme::CentralDifference(scheme::CentralDifference),
+            VELOCITY,
+        ),
     ];
     for (scheme, law) in pairs {
         let system = System::new(square(scheme, law, SOFT.into(), 3)).unwrap();
@@ -80,10 +98,15 @@ fn a_linear_system_takes_the_steps_of_the_linear_driver() {
         for _ in 0..40 {
             linear.step().unwrap();
             Stepper::step(&mut newton).unwrap();
-            let [one, other] = [linear.report(), newton.report()].map(|report| report.contacts[0].force);
+            let [one, other] =
+                [linear.report(), newton.report()].map(|report| report.contacts[0].force);
             largest = largest.max(one);
             // both solve the same linear equations to rounding, again at each step
-            assert!((one - other).abs() < 1e-9 * largest.max(1e-3), "{}: {one} {other}", scheme.get().name());
+            assert!(
+                (one - other).abs() < 1e-9 * largest.max(1e-3),
+                "{}: {one} {other}",
+                scheme.get().name()
+            );
         }
         assert!(largest > 0.0, "{} never touches", scheme.get().name());
         let [one, other] = [linear.state(), newton.state()].map(|state| &state.motion.u);
@@ -94,11 +117,15 @@ fn a_linear_system_takes_the_steps_of_the_linear_driver() {
         let ledger = &newton.state().ledger;
         assert!(
             ledger.largest_energy_residual < 1e-11 * ledger.largest_energy,
-            "{}: {:e} of {:e}", scheme.get().name(), ledger.largest_energy_residual, ledger.largest_energy
+            "{}: {:e} of {:e}",
+            scheme.get().name(),
+            ledger.largest_energy_residual,
+            ledger.largest_energy
         );
         assert!(
             ledger.largest_momentum_residual < 1e-11 * ledger.largest_momentum,
-            "{}: momentum", scheme.get().name()
+            "{}: momentum",
+            scheme.get().name()
         );
     }
 }

@@ -4,7 +4,7 @@ use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{
     Adhesion, Capture, Damped, Displacement, Level, Penalty, Reading, Velocity,
 };
-use carom_contact::{Integration, Law, Plane, Sliding, Weak};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding, Weak};
 use carom_dynamics::{
     Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, scheme,
 };
@@ -58,7 +58,7 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
         contacts: vec![ModelContact {
             name: "ground".into(),
             secondary: Surface::new(&mesh, &mesh.groups[side], &cells).unwrap(),
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal,
             }),
@@ -67,6 +67,8 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
             integration: Integration::Node,
             massless: false,
             friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
         }],
         scheme,
         // c = 2 m/s, h = 0.25 m: CFL 0.5 along the body

@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Adhesion, Damped};
-use carom_contact::{Integration, Law, Sliding};
+use carom_contact::{Initial, Integration, Law, Sliding};
 use carom_dynamics::scheme::CentralDifference;
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -44,6 +44,8 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         integration: Integration::Node,
         massless: false,
         friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     }];
     let model = Model {
         bodies: bodies.clone(),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Stepper,
@@ -47,7 +47,7 @@ pub fn bar() -> Zoned {
     let contacts = vec![ModelContact {
         name: "wall".into(),
         secondary: Surface::new(&mesh, &mesh.groups["tip.right"], &bodies[1].spec.cells).unwrap(),
-        primary: ModelTarget::Plane(Plane {
+        primary: ModelTarget::rigid(Plane {
             point: [0.0; 3],
             normal: [-1.0, 0.0, 0.0],
         }),
@@ -59,6 +59,8 @@ pub fn bar() -> Zoned {
         integration: Integration::Node,
         massless: false,
         friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     }];
     let zone = |name: &str, body, scheme, substeps| ModelZone {
         name: name.into(),

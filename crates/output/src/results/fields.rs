@@ -342,6 +342,7 @@ impl SurfaceGrid {
         let reference = vec![0.0; system.unknowns()];
         let places = Places {
             dim: system.dim,
+            time: 0.0,
             x: &system.x,
             u: &reference,
         };

@@ -81,6 +81,7 @@ pub(crate) fn contact_point(
     let at_rest = vec![0.0; system.unknowns()];
     let places = Places {
         dim: system.dim,
+        time: 0.0,
         x: &system.x,
         u: &at_rest,
     };
@@ -94,7 +95,7 @@ pub(crate) fn contact_point(
     let secondary = nearest(system, contact.points.iter().map(Point::node), &centroid)?;
     let place = system.x[secondary as usize];
     let primary = match &contact.target {
-        Target::Plane(_) | Target::Sphere(_) => None,
+        Target::Rigid(_) => None,
         Target::Surface(faces) => {
             let corners = faces.iter().flat_map(|face| face.corners().iter().copied());
             nearest(system, corners, &place)
@@ -134,6 +135,7 @@ fn nearest(system: &System, nodes: impl Iterator<Item = u32>, to: &[f64; 3]) -> 
 fn normal(system: &System, contact: usize, secondary: u32, primary: Option<u32>) -> [f64; 3] {
     let places = Places {
         dim: system.dim,
+        time: 0.0,
         x: &system.x,
         u: &system.initial_displacement,
     };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{Newmark, Theta};
 use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System};
 use carom_exact::{Bar, Impact};
@@ -71,6 +71,8 @@ pub fn two_bars(n: usize) -> Arc<System> {
         integration: Integration::Node,
         massless: false,
         friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     }];
     let model = Model {
         bodies,
@@ -128,7 +130,7 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
     let ground = ModelContact {
         name: "ground".to_owned(),
         secondary: bottom,
-        primary: ModelTarget::Plane(Plane {
+        primary: ModelTarget::rigid(Plane {
             point: [0.0; 3],
             normal: [0.0, 0.0, 1.0],
         }),
@@ -137,6 +139,8 @@ pub fn block(n: usize, plane: bool) -> Arc<System> {
         integration: Integration::Node,
         massless: false,
         friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     };
     let model = Model {
         bodies: vec![body],

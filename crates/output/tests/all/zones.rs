@@ -8,6 +8,8 @@ use std::time::Duration;
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
 use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, MassKind};
 use carom_contact::{Integration, Sliding};
+use carom_bodies::{BodySpec, CellWeights, Kinematics, MassKind};
+use carom_contact::{Initial, Integration, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Stepper,
@@ -96,6 +98,8 @@ fn two_bars() -> Zoned {
         integration: Integration::Node,
         massless: false,
         friction: 0.0,
+        initial: Initial::Keep,
+        depth: None,
     }];
     let zone = |name: &str, bodies, scheme, substeps| ModelZone {
         name: name.to_owned(),

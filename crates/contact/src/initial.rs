@@ -1,0 +1,104 @@
+//! Surfaces that overlap before anything has moved, and what is done about it.
+
+use crate::{Contact, Places, Rows, Search};
+
+/// What is done about points that penetrate at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Initial {
+    /// Nothing: the law pushes them out.
+    #[default]
+    Keep,
+    /// The model is refused.
+    Refuse,
+    /// Their gaps count from where they are: the overlap stays and carries no force ([`Contact::offsets`]).
+    Offset,
+    /// Their nodes are moved onto the other surface before bodies are built: the mesh changes, no stress arises.
+    Remove,
+}
+
+/// A point that penetrates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Penetration {
+    /// Its place in [`Contact::points`].
+    pub point: usize,
+    /// Its node, or the node nearest to it, by system number.
+    pub node: u32,
+    /// Depth -g, m, positive.
+    pub depth: f64,
+    /// Unit normal out of what is penetrated: the point is free once it has moved by `depth` along it.
+    pub normal: [f64; 3],
+}
+
+impl Contact {
+    /// The points deeper than `slack` (m) at a configuration, in their order.
+    pub fn penetrations(&self, places: &Places, slack: f64) -> Vec<Penetration> {
+        let mut rows = Rows::default();
+        rows.clear();
+        self.pair(places, &mut Search::default(), &mut rows);
+        let deep = (0..rows.len()).filter(|&point| rows.gap(point) < -slack);
+        deep.map(|point| Penetration {
+            point,
+            node: self.points[point].node(),
+            depth: -rows.gap(point),
+            normal: rows.normal(point),
+        })
+        .collect()
+    }
+
+    /// Takes the penetrations at a configuration, those deeper than `slack` (m), as gaps of zero from now on.
+    pub fn offset_penetrations(&mut self, places: &Places, slack: f64) {
+        for found in self.penetrations(places, slack) {
+            self.offsets.resize(self.points.len(), 0.0);
+            self.offsets[found.point] += found.depth;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Displacement;
+    use crate::{Integration, Law, Plane, Point, Sliding, Target};
+
+    #[test]
+    fn penetrations_are_found_and_become_gaps_of_zero_that_move_on() {
+        let floor = Plane {
+            point: [0.0; 3],
+            normal: [0.0, 1.0, 0.0],
+        };
+        let mut contact = Contact {
+            name: "floor".into(),
+            law: Law::Displacement(Displacement::default()),
+            sliding: Sliding::Finite,
+            integration: Integration::Node,
+            points: (0..3).map(|k| Point::at_node(k, 1.0, 1.0 / 3.0)).collect(),
+            mortar: None,
+            target: Target::Rigid(floor.into()),
+            sight: None,
+            offsets: Vec::new(),
+        };
+        let x = [[0.0, 0.5, 0.0], [1.0, -0.25, 0.0], [2.0, -1e-12, 0.0]];
+        let places = Places {
+            dim: 2,
+            time: 0.0,
+            x: &x,
+            u: &[0.0; 6],
+        };
+        let expected = Penetration {
+            point: 1,
+            node: 1,
+            depth: 0.25,
+            normal: floor.normal,
+        };
+        assert_eq!(contact.penetrations(&places, 1e-9), [expected]);
+        contact.offset_penetrations(&places, 1e-9);
+        assert_eq!(contact.offsets, [0.0, 0.25, 0.0]);
+        assert_eq!(contact.penetrations(&places, 1e-9), []);
+        let places = Places {
+            u: &[0.0, 0.0, 0.0, -0.5, 0.0, 0.0],
+            ..places
+        };
+        let found = contact.penetrations(&places, 1e-9);
+        assert_eq!((found.len(), found[0].depth), (1, 0.5));
+    }
+}

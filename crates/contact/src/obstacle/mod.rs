@@ -1,0 +1,315 @@
+//! Rigid obstacles: a shape each, and a given motion that all share.
+//!
+//! A shape knows itself at rest: gap, normal and curvature at a place, [`Distance`]. A place is brought back by the
+//! motion to where the shape is at rest, and what is found there is turned forward. Friction and rates take the
+//! velocity of the obstacle's particle.
+
+mod cylinder;
+mod motion;
+mod plane;
+mod sphere;
+mod surface;
+
+pub use cylinder::Cylinder;
+pub use motion::{Motion, Translation, Turn};
+pub use plane::Plane;
+pub use sphere::Sphere;
+pub use surface::RigidSurface;
+
+use motion::Pose;
+
+/// Where a place stands over an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distance {
+    /// g in m, positive when open, infinite where the place faces nothing.
+    pub gap: f64,
+    /// Unit normal out of the obstacle: ∂g/∂x. Zero where the place faces nothing.
+    pub normal: [f64; 3],
+    /// ∂²g/∂x², symmetric, 1/m.
+    pub hessian: [[f64; 3]; 3],
+}
+
+/// The side of a round obstacle on which the material must stay.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// Outside: a ball, a shaft.
+    #[default]
+    Outside,
+    /// Inside: a hollow, a bore.
+    Inside,
+}
+
+/// Shape of an obstacle at time 0.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A plane.
+    Plane(Plane),
+    /// A sphere; a circle in the plane.
+    Sphere(Sphere),
+    /// A cylinder.
+    Cylinder(Cylinder),
+    /// Faces of a mesh.
+    Surface(Box<RigidSurface>),
+}
+
+/// A rigid obstacle: unilateral, and as heavy as its motion asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Obstacle {
+    /// Shape and place at time 0.
+    pub shape: Shape,
+    /// Its motion from there.
+    pub motion: Motion,
+}
+
+/// An obstacle at one time.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed<'a> {
+    shape: &'a Shape,
+    pose: Option<Pose>,
+}
+
+impl Obstacle {
+    /// The obstacle at a time in s.
+    pub fn at(&self, t: f64) -> Placed<'_> {
+        Placed {
+            shape: &self.shape,
+            pose: self.motion.at(t),
+        }
+    }
+}
+
+impl From<Shape> for Obstacle {
+    fn from(shape: Shape) -> Obstacle {
+        Obstacle {
+            shape,
+            motion: Motion::default(),
+        }
+    }
+}
+
+impl From<Plane> for Obstacle {
+    fn from(plane: Plane) -> Obstacle {
+        Shape::Plane(plane).into()
+    }
+}
+
+impl From<Sphere> for Obstacle {
+    fn from(sphere: Sphere) -> Obstacle {
+        Shape::Sphere(sphere).into()
+    }
+}
+
+impl From<Cylinder> for Obstacle {
+    fn from(cylinder: Cylinder) -> Obstacle {
+        Shape::Cylinder(cylinder).into()
+    }
+}
+
+impl From<RigidSurface> for Obstacle {
+    fn from(surface: RigidSurface) -> Obstacle {
+        Shape::Surface(Box::new(surface)).into()
+    }
+}
+
+impl Placed<'_> {
+    /// Gap, normal and curvature at a place x in m, all at this time: the derivatives are those by x.
+    pub fn distance(&self, x: &[f64; 3]) -> Distance {
+        let Some(pose) = &self.pose else {
+            return self.shape.distance(x);
+        };
+        let Distance {
+            gap,
+            normal,
+            hessian,
+        } = self.shape.distance(&pose.back(x));
+        Distance {
+            gap,
+            normal: pose.turned(&normal),
+            hessian: pose.turned_tensor(&hessian),
+        }
+    }
+
+    /// Velocity in m/s of the obstacle's particle at a place x in m; the obstacle is taken as filling all space, so x may
+    /// lie off its surface.
+    pub fn velocity(&self, x: &[f64; 3]) -> [f64; 3] {
+        self.pose.as_ref().map_or([0.0; 3], |pose| pose.velocity(x))
+    }
+
+    /// Rate ∂g/∂t of the gap at a fixed place by the motion of the obstacle, -n · v, m/s. `normal`: that at `x`.
+    ///
+    /// Exact at the foot and, because a rigid motion keeps the distance of particles along n, at x too.
+    pub fn gap_rate(&self, x: &[f64; 3], normal: &[f64; 3]) -> f64 {
+        let v = self.velocity(x);
+        -(0..3).map(|i| normal[i] * v[i]).sum::<f64>()
+    }
+}
+
+impl Shape {
+    fn distance(&self, x: &[f64; 3]) -> Distance {
+        match self {
+            Shape::Plane(plane) => plane.distance(x),
+            Shape::Sphere(sphere) => sphere.distance(x),
+            Shape::Cylinder(cylinder) => cylinder.distance(x),
+            Shape::Surface(surface) => surface.distance(x),
+        }
+    }
+}
+
+/// Gap ± (|d| - radius) over a round shape, n = ± d/|d|, Hessian ± (I - a ⊗ a - n ⊗ n) / |d|.
+///
+/// `d`: way from the centre or the axis, m; `axis`: direction along which the shape does not bend, zero for a sphere.
+fn round(d: &[f64; 3], axis: &[f64; 3], radius: f64, side: Side) -> Distance {
+    let sign = match side {
+        Side::Outside => 1.0,
+        Side::Inside => -1.0,
+    };
+    let length = d.iter().map(|d| d * d).sum::<f64>().sqrt();
+    if length == 0.0 {
+        return Distance {
+            gap: -sign * radius,
+            normal: across(axis).map(|n| sign * n),
+            hessian: [[0.0; 3]; 3],
+        };
+    }
+    let n = d.map(|d| d / length);
+    let delta = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+    let bend = |i: usize, j: usize| delta(i, j) - axis[i] * axis[j] - n[i] * n[j];
+    Distance {
+        gap: sign * (length - radius),
+        normal: n.map(|n| sign * n),
+        hessian: [0, 1, 2].map(|i| [0, 1, 2].map(|j| sign * bend(i, j) / length)),
+    }
+}
+
+/// A unit vector across another; the last axis if that one is zero.
+fn across(axis: &[f64; 3]) -> [f64; 3] {
+    // of the unit vectors the one least along the axis, the last of equals
+    let least = (0..3).fold(2, |best, i| {
+        if axis[i].abs() < axis[best].abs() {
+            i
+        } else {
+            best
+        }
+    });
+    let n = [0, 1, 2].map(|i| f64::from(i == least) - axis[least] * axis[i]);
+    let length = n.iter().map(|n| n * n).sum::<f64>().sqrt();
+    n.map(|n| n / length)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// The normal is the gradient of the gap, the Hessian that of the normal.
+    pub(crate) fn assert_derivatives(distance: impl Fn(&[f64; 3]) -> Distance, x: &[f64; 3]) {
+        let here = distance(x);
+        for j in 0..3 {
+            let at = |step: f64| {
+                let mut x = *x;
+                x[j] += step;
+                distance(&x)
+            };
+            // central differences err by the square of the step over that of the distance from the centre of curvature
+            let (before, after) = (at(-1e-4), at(1e-4));
+            assert!(((after.gap - before.gap) / 2e-4 - here.normal[j]).abs() < 1e-7);
+            for i in 0..3 {
+                let difference = (after.normal[i] - before.normal[i]) / 2e-4;
+                assert!(
+                    (difference - here.hessian[i][j]).abs() < 1e-6,
+                    "{i} {j} {difference} {:?}",
+                    here.hessian
+                );
+            }
+        }
+    }
+
+    fn moving(shape: Shape) -> Obstacle {
+        Obstacle {
+            shape,
+            motion: Motion {
+                translation: Some(Translation::Velocity([0.4, -0.7, 1.1])),
+                turn: Some(Turn {
+                    point: [0.2, 0.1, -0.3],
+                    axis: [0.6, 0.0, 0.8],
+                    rate: 2.0,
+                }),
+            },
+        }
+    }
+
+    #[test]
+    fn derivatives_of_moved_obstacles_and_rates_of_their_gaps_are_right() {
+        let x = [1.1, 0.4, 0.2];
+        let plane = Plane {
+            point: [0.0, 0.1, 0.0],
+            normal: [0.36, 0.48, 0.8],
+        };
+        let cylinder = Cylinder {
+            point: [0.0, 0.3, 0.1],
+            axis: [0.0, 0.6, 0.8],
+            radius: 0.2,
+            side: Side::Outside,
+        };
+        let mut fastest = 0.0_f64;
+        for shape in [Shape::Plane(plane), Shape::Cylinder(cylinder)] {
+            let obstacle = moving(shape);
+            assert_derivatives(|x| obstacle.at(0.3).distance(x), &x);
+            let gap = |t: f64| obstacle.at(t).distance(&x).gap;
+            let placed = obstacle.at(0.3);
+            let rate = placed.gap_rate(&x, &placed.distance(&x).normal);
+            // central difference: third derivative of order ω³ times h²/6
+            assert!(((gap(0.3 + 1e-4) - gap(0.3 - 1e-4)) / 2e-4 - rate).abs() < 1e-6);
+            fastest = fastest.max(rate.abs());
+        }
+        assert!(fastest > 0.1);
+    }
+
+    #[test]
+    fn a_plane_that_comes_closer_takes_its_way_from_the_gap() {
+        let plane = Plane {
+            point: [0.0; 3],
+            normal: [0.0, 0.0, 1.0],
+        };
+        let obstacle = Obstacle {
+            motion: Motion {
+                translation: Some(Translation::Velocity([5.0, 0.0, 2.0])),
+                turn: None,
+            },
+            ..plane.into()
+        };
+        let placed = obstacle.at(0.25);
+        let found = placed.distance(&[1.0, 2.0, 3.0]);
+        assert!((found.gap - 2.5).abs() < 1e-15);
+        assert_eq!(placed.gap_rate(&[1.0, 2.0, 3.0], &found.normal), -2.0);
+    }
+
+    #[test]
+    fn a_ball_that_spins_about_its_centre_does_not_change_gaps() {
+        let centre = [1.0, -2.0, 0.5];
+        let ball = Sphere {
+            centre,
+            radius: 0.5,
+            side: Side::Outside,
+        };
+        let turn = Turn {
+            point: centre,
+            axis: [0.0, 0.6, 0.8],
+            rate: 30.0,
+        };
+        let spinning = Obstacle {
+            motion: Motion {
+                translation: None,
+                turn: Some(turn),
+            },
+            ..ball.into()
+        };
+        let x = [1.7, -1.6, 0.9];
+        let (still, placed) = (ball.distance(&x), spinning.at(0.77));
+        let found = placed.distance(&x);
+        assert!((found.gap - still.gap).abs() < 1e-14);
+        assert!(placed.gap_rate(&x, &found.normal).abs() < 1e-13);
+        // and yet it drags: its surface moves at ω times the distance from the axis
+        let v = placed.velocity(&x);
+        assert!(v.iter().map(|v| v * v).sum::<f64>().sqrt() > 10.0);
+    }
+}

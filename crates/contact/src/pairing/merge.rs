@@ -1,0 +1,80 @@
+//! Sums of the rows of stencils that share nodes.
+
+use carom_algebra::tensor::Vec3;
+
+use super::stencil::{Stencil, tangent_vectors};
+use crate::Rows;
+
+/// The sum being made: blocks of the rows N and T of each node, in the order in which nodes appear.
+#[derive(Clone, Debug, Default)]
+pub struct Merge {
+    gap: f64,
+    normal: Vec3,
+    /// Rates by the motion of an obstacle, of the gap and along the tangents, m/s.
+    rates: [f64; 3],
+    blocks: Vec<(u32, [Vec3; 3])>,
+    /// Place of each node in `blocks`.
+    places: Vec<u32>,
+}
+
+impl Merge {
+    /// Begins a sum.
+    pub fn clear(&mut self) {
+        for (node, _) in self.blocks.drain(..) {
+            self.places[node as usize] = u32::MAX;
+        }
+        self.gap = 0.0;
+        self.normal = Vec3::zeros();
+        self.rates = [0.0; 3];
+    }
+
+    /// Adds a stencil times a weight.
+    pub fn add(&mut self, stencil: &Stencil, weight: f64, dim: usize) {
+        let (gap, normal) = stencil.gap();
+        self.gap += weight * gap;
+        self.normal += Vec3::from(normal) * weight;
+        self.rates[0] += weight * stencil.rate(&normal);
+        stencil.each_normal(|node, n| self.block(node)[0] += Vec3::from(n) * weight);
+        let frame = tangent_vectors(&normal, dim);
+        for (k, t) in frame[..dim - 1].iter().enumerate() {
+            self.rates[k + 1] += weight * stencil.rate(t);
+            stencil.each_along(t, |node, n| {
+                self.block(node)[k + 1] += Vec3::from(n) * weight
+            });
+        }
+    }
+
+    fn block(&mut self, node: u32) -> &mut [Vec3; 3] {
+        if self.places.len() <= node as usize {
+            self.places.resize(node as usize + 1, u32::MAX);
+        }
+        let place = &mut self.places[node as usize];
+        if *place == u32::MAX {
+            *place = self.blocks.len() as u32;
+            self.blocks.push((node, [Vec3::zeros(); 3]));
+        }
+        &mut self.blocks[*place as usize].1
+    }
+
+    /// Appends gap and rows of the sum; its normal is the mean one, and the directions of the tangents are square to it.
+    pub fn push(&self, dim: usize, rows: &mut Rows, tangents: &mut [Rows; 2]) {
+        let length = self.normal.norm();
+        let normal: [f64; 3] = match length > 0.0 {
+            true => (self.normal / length).into(),
+            false => [0.0; 3],
+        };
+        rows.push(self.gap, normal);
+        rows.set_rate(self.rates[0]);
+        let frame = tangent_vectors(&normal, dim);
+        for (k, rows) in tangents[..dim - 1].iter_mut().enumerate() {
+            rows.push(0.0, frame[k]);
+            rows.set_rate(self.rates[k + 1]);
+        }
+        for (node, blocks) in &self.blocks {
+            rows.add_node(dim, *node, &blocks[0].into());
+            for (k, rows) in tangents[..dim - 1].iter_mut().enumerate() {
+                rows.add_node(dim, *node, &blocks[k + 1].into());
+            }
+        }
+    }
+}

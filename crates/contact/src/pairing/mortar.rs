@@ -1,0 +1,373 @@
+//! Mortar integration: weak gaps at the nodes of the secondary surface.
+//!
+//! ```text
+//! g_A = Σ_q c_Aq g_q,      c_Aq = w_q φ_A(ξ_q) / ∫ φ_A,      ∫ φ_A = Σ_q w_q φ_A(ξ_q)
+//! ```
+//!
+//! over quadrature points on the pieces that a secondary face and the shadow of a primary one have in common
+//! ([`super::overlap`]): what has nothing opposite is left out, also of ∫ φ_A. In each point the gap is that to the
+//! closest point of the primary face that casts the shadow, so a multiplier's forces have neither resultant nor moment;
+//! where surfaces are flat their pieces and feet agree, shape functions of both sides are integrated exactly, and a
+//! uniform pressure gives the consistent nodal forces of both (the patch test of non-matching meshes).
+//!
+//! Weights w_q are those of the reference secondary surface: `P_A / ∫ φ_A` is a pressure per reference area. Pieces and
+//! weights are found anew at each configuration and held in derivatives, so Newton's method with sliding converges fast
+//! but not quadratically; its residual is exact.
+//!
+//! Segment-to-segment mortar: Puso and Laursen (2004), Popp, Gee and Wall (2009); dual bases: Wohlmuth (2000). Known from
+//! these, derived here; the gap of a point along the primary normal, rather than an averaged secondary one, is a choice
+//! of this project.
+
+use carom_elements::{Element, MAX_FACE_NODES, map};
+use carom_mesh::{Bounds, Face, Projection, project};
+use serde::{Deserialize, Serialize};
+
+use super::overlap::{Cell, Sample, cells, linear};
+use super::stencil::Stencil;
+use super::{Pairing, Share};
+use crate::search::{faces_point, positions};
+use crate::{Contact, Places, Point, Search, Target};
+
+/// The largest number of multipliers of a face: that of its corners.
+const CORNERS: usize = 4;
+
+/// Part of its area that a multiplier must have opposite it to face anything.
+const LEAST: f64 = 1e-12;
+
+/// Shape functions of the multipliers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Basis {
+    /// The linear shape functions of the corners of the faces.
+    Standard,
+    /// Their biorthogonal functions, `∫ ψ_A φ_B = δ_AB ∫ φ_B` on each face: weak gaps of neighbours then share no
+    /// secondary node of linear faces. On a face partly opposite to nothing the integrals are those over the rest
+    /// (Cichosz and Bischoff 2011); where that rest is too thin to tell the functions apart they are the standard ones.
+    Dual,
+}
+
+/// Faces of a secondary surface with the numbers of their multipliers.
+///
+/// Multipliers sit at the corners of the faces, and their functions are linear between them: midside nodes of quadratic
+/// faces have none, because the integrals of their corners' own shape functions vanish or are negative.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mortar {
+    faces: Vec<Face>,
+    /// For each face the points of its corners.
+    multipliers: Vec<[u32; CORNERS]>,
+    /// For each face the factor of its measure at its nodes.
+    factors: Vec<[f64; MAX_FACE_NODES]>,
+}
+
+impl Mortar {
+    /// The multipliers of a surface and their points: the corners of the faces, sorted, with the areas `∫ φ_A dΓ` of the
+    /// whole surface. The ends of bars have one multiplier each.
+    ///
+    /// `x`: reference coordinates by system number, m. `factor`: area in m² that a unit of the measure of the faces
+    /// stands for at a place, as in [`Point::of_faces`]; between nodes it is interpolated.
+    pub fn new(
+        faces: Vec<Face>,
+        x: &[[f64; 3]],
+        factor: impl Fn(&[f64; 3]) -> f64,
+    ) -> (Mortar, Vec<Point>) {
+        let corners = |face: &Face| linear(face.kind.table()).nodes;
+        let mut nodes: Vec<u32> = faces
+            .iter()
+            .flat_map(|face| face.corners()[..corners(face)].to_vec())
+            .collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let multipliers = faces.iter().map(|face| {
+            let mut numbers = [u32::MAX; CORNERS];
+            for (number, node) in numbers.iter_mut().zip(&face.corners()[..corners(face)]) {
+                *number = nodes.partition_point(|other| other < node) as u32;
+            }
+            numbers
+        });
+        let factors = faces.iter().map(|face| {
+            let mut factors = [0.0; MAX_FACE_NODES];
+            for (to, &node) in factors.iter_mut().zip(face.corners()) {
+                *to = factor(&x[node as usize]);
+            }
+            factors
+        });
+        let mortar = Mortar {
+            multipliers: multipliers.collect(),
+            factors: factors.collect(),
+            faces,
+        };
+        let points = mortar.points(x, &nodes);
+        (mortar, points)
+    }
+
+    fn points(&self, x: &[[f64; 3]], nodes: &[u32]) -> Vec<Point> {
+        let mut areas = vec![0.0; nodes.len()];
+        for index in 0..self.faces.len() {
+            let rule = self.faces[index].kind.table().mass_rule;
+            for (xi, weight) in rule.points.iter().zip(rule.weights) {
+                let weight = weight * self.measure(index, xi, x);
+                for (&number, phi) in self.multipliers[index].iter().zip(self.phi(index, xi)) {
+                    if number != u32::MAX {
+                        areas[number as usize] += weight * phi;
+                    }
+                }
+            }
+        }
+        let total: f64 = areas.iter().sum();
+        let areas = nodes.iter().zip(areas);
+        areas
+            .map(|(&node, area)| Point::at_node(node, area, area / total))
+            .collect()
+    }
+
+    /// Whether the surface is made of ends of bars: there is nothing to integrate over.
+    pub(super) fn is_ends(&self) -> bool {
+        self.faces.iter().all(|face| face.kind.table().dim == 0)
+    }
+
+    /// Area per unit of the reference cell, from the reference coordinates.
+    fn measure(&self, index: usize, xi: &[f64; 3], x: &[[f64; 3]]) -> f64 {
+        let face = &self.faces[index];
+        let (table, mut positions) = (face.kind.table(), [[0.0; 3]; MAX_FACE_NODES]);
+        for (position, &node) in positions.iter_mut().zip(face.corners()) {
+            *position = x[node as usize];
+        }
+        let (mut shape, mut gradients) = ([0.0; MAX_FACE_NODES], [[0.0; 3]; MAX_FACE_NODES]);
+        (table.shape)(xi, &mut shape[..table.nodes]);
+        (table.gradient)(xi, &mut gradients[..table.nodes]);
+        let nodes = table.nodes;
+        let (measure, _) = map::measure(&positions[..nodes], &gradients[..nodes], table.dim);
+        let factors = self.factors[index].iter().zip(&shape[..nodes]);
+        measure * factors.map(|(factor, n)| factor * n).sum::<f64>()
+    }
+
+    /// Linear functions of the corners, zero beyond their number.
+    fn phi(&self, index: usize, xi: &[f64; 3]) -> [f64; CORNERS] {
+        let element = linear(self.faces[index].kind.table());
+        let mut phi = [0.0; CORNERS];
+        (element.shape)(xi, &mut phi[..element.nodes]);
+        phi
+    }
+
+    /// Appends the multipliers of the contact as points.
+    pub(super) fn pair(
+        &self,
+        contact: &Contact,
+        basis: Basis,
+        places: &Places,
+        search: &mut Search,
+        pairing: &mut Pairing,
+    ) {
+        let mut work = std::mem::take(&mut pairing.work);
+        work.shares.clear();
+        for index in 0..self.faces.len() {
+            work.quadrature.clear();
+            let mut sweep = Sweep {
+                mortar: self,
+                index,
+                places,
+                stencils: &mut pairing.stencils,
+                quadrature: &mut work.quadrature,
+            };
+            match &contact.target {
+                Target::Surface(faces) => {
+                    sweep.over_faces((contact, faces), search, &mut work.found)
+                }
+                Target::Rigid(_) => sweep.over_obstacle(contact, search),
+            }
+            self.share(index, basis, &work.quadrature, &mut work.shares);
+        }
+        work.shares
+            .sort_unstable_by_key(|share| (share.point, share.stencil));
+        let mut shares = work.shares.as_slice();
+        for (number, point) in contact.points.iter().enumerate() {
+            let own = shares.partition_point(|share| share.point as usize <= number);
+            let (these, rest) = shares.split_at(own);
+            pairing.push_sum(point.area, LEAST * point.area, these, &mut work.merge);
+            shares = rest;
+        }
+        pairing.work = work;
+    }
+
+    /// Appends w_q φ_A of the quadrature points of a face.
+    fn share(
+        &self,
+        index: usize,
+        basis: Basis,
+        quadrature: &[Quadrature],
+        shares: &mut Vec<Share>,
+    ) {
+        let n = linear(self.faces[index].kind.table()).nodes;
+        let functions = match basis {
+            Basis::Standard => None,
+            Basis::Dual => biorthogonal(quadrature, n),
+        };
+        for point in quadrature {
+            for a in 0..n {
+                let phi = match &functions {
+                    Some(functions) => (0..n).map(|b| functions[a][b] * point.phi[b]).sum(),
+                    None => point.phi[a],
+                };
+                shares.push(Share {
+                    point: self.multipliers[index][a],
+                    stencil: point.stencil,
+                    weight: point.weight * phi,
+                });
+            }
+        }
+    }
+}
+
+/// A quadrature point of one face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quadrature {
+    stencil: u32,
+    weight: f64,
+    phi: [f64; CORNERS],
+}
+
+/// The quadrature points of one face on their way into the pools.
+struct Sweep<'a> {
+    mortar: &'a Mortar,
+    index: usize,
+    places: &'a Places<'a>,
+    stencils: &'a mut Vec<Stencil>,
+    quadrature: &'a mut Vec<Quadrature>,
+}
+
+impl<'a> Sweep<'a> {
+    fn face(&self) -> &'a Face {
+        &self.mortar.faces[self.index]
+    }
+
+    /// All of the face, by its own rule.
+    fn over_obstacle(&mut self, contact: &Contact, search: &mut Search) {
+        let rule = self.face().kind.table().mass_rule;
+        for (xi, &weight) in rule.points.iter().zip(rule.weights) {
+            let point = self.point(xi);
+            if let Some(stencil) = Stencil::new(contact, self.places, search, (&point, None)) {
+                self.push(&Sample { xi: *xi, weight }, stencil);
+            }
+        }
+    }
+
+    /// What the shadows of other faces cover.
+    fn over_faces(
+        &mut self,
+        (contact, faces): (&Contact, &[Face]),
+        search: &mut Search,
+        found: &mut Vec<u32>,
+    ) {
+        let (x, element) = (
+            positions(self.places, self.face()),
+            self.face().kind.table(),
+        );
+        // a face sees what its first corner sees
+        let view = contact.view(self.mortar.multipliers[self.index][0] as usize);
+        for cell in cells(element, &x[..element.nodes]) {
+            let Some((closest, _)) = search.closest(self.places, faces, view, &cell.middle())
+            else {
+                return;
+            };
+            search.overlapping((self.places, faces), &shade(&cell, &closest), found);
+            for &item in found.iter() {
+                let face = &faces[item as usize];
+                let low = is_linear(element) && is_linear(face.kind.table());
+                self.over_face((&cell, low), face, |foot| search.shows(view, item, foot));
+            }
+        }
+    }
+
+    fn over_face(
+        &mut self,
+        (cell, low): (&Cell, bool),
+        face: &Face,
+        sees: impl Fn(&Projection) -> bool,
+    ) {
+        let (x, element) = (positions(self.places, face), face.kind.table());
+        let x = &x[..element.nodes];
+        for other in cells(element, x) {
+            cell.shared(&other, low, |sample| {
+                let point = self.point(&sample.xi);
+                let place = point.place(self.places);
+                let foot = project(face, x, &place);
+                if faces_point(&foot, face) && sees(&foot) {
+                    let stencil = Stencil::on_face(self.places, &point, &place, &foot, face);
+                    self.push(&sample, stencil);
+                }
+            });
+        }
+    }
+
+    fn point(&self, xi: &[f64; 3]) -> Point {
+        Point::on_face(self.face(), xi)
+    }
+
+    fn push(&mut self, sample: &Sample, stencil: Stencil) {
+        let measure = self.mortar.measure(self.index, &sample.xi, self.places.x);
+        self.quadrature.push(Quadrature {
+            stencil: self.stencils.len() as u32,
+            weight: sample.weight * measure,
+            phi: self.mortar.phi(self.index, &sample.xi),
+        });
+        self.stencils.push(stencil);
+    }
+}
+
+/// Whether all shape functions are linear, and so are their products with the measure quadratic at most.
+fn is_linear(element: &Element) -> bool {
+    element.nodes == element.dim + 1
+}
+
+/// The box that a cell sweeps along its normal, both ways, as far as a face at the distance of the closest point and
+/// turned by 60 degrees could be.
+fn shade(cell: &Cell, closest: &Projection) -> Bounds {
+    let middle = cell.middle();
+    let square = |x: &[f64; 3]| (0..3).map(|i| (x[i] - middle[i]).powi(2)).sum::<f64>();
+    let radius = cell.corners().iter().map(square).fold(0.0, f64::max).sqrt();
+    let reach = cell.normal() * (2.0 * (closest.distance + radius));
+    let moved = |x: &[f64; 3], sign: f64| [0, 1, 2].map(|i| x[i] + sign * reach[i]);
+    cell.corners().iter().fold(Bounds::EMPTY, |bounds, x| {
+        bounds.union(&Bounds::of(&[moved(x, 1.0), moved(x, -1.0)]))
+    })
+}
+
+/// D M⁻¹ with `M_ab = Σ w φ_a φ_b` and `D_a = Σ w φ_a`; none where M is singular to 1e-10.
+fn biorthogonal(quadrature: &[Quadrature], n: usize) -> Option<[[f64; CORNERS]; CORNERS]> {
+    let (mut mass, mut areas) = ([[0.0; CORNERS]; CORNERS], [0.0; CORNERS]);
+    for point in quadrature {
+        for a in 0..n {
+            areas[a] += point.weight * point.phi[a];
+            for b in 0..n {
+                mass[a][b] += point.weight * point.phi[a] * point.phi[b];
+            }
+        }
+    }
+    // Gauss and Jordan: M is symmetric and positive definite, or a pivot shows that it is not.
+    let diagonal: [f64; CORNERS] = std::array::from_fn(|a| mass[a][a]);
+    let mut inverse = [[0.0; CORNERS]; CORNERS];
+    for (a, row) in inverse.iter_mut().enumerate() {
+        row[a] = 1.0;
+    }
+    for k in 0..n {
+        let pivot = mass[k][k];
+        if pivot <= 1e-10 * diagonal[k] || diagonal[k] == 0.0 {
+            return None;
+        }
+        for b in 0..n {
+            mass[k][b] /= pivot;
+            inverse[k][b] /= pivot;
+        }
+        for a in (0..n).filter(|&a| a != k) {
+            let factor = mass[a][k];
+            for b in 0..n {
+                mass[a][b] -= factor * mass[k][b];
+                inverse[a][b] -= factor * inverse[k][b];
+            }
+        }
+    }
+    for (row, area) in inverse.iter_mut().zip(areas) {
+        row.iter_mut().for_each(|entry| *entry *= area);
+    }
+    Some(inverse)
+}

@@ -1,0 +1,243 @@
+//! Which faces a point of the secondary surface may touch: those in front of it, not the far side of its own body.
+//!
+//! Needed where a surface faces itself, and where parts are so thin that the closest face can be the far one. A face is
+//! in the view of a point if
+//!
+//! - it is not beside it: it shares no node with a face that has a node of the point;
+//! - it is turned against it: its normal makes more than 120° with that of one of the secondary faces around the point,
+//!   in the current configuration. The normals of two surfaces that touch are opposite; a corner touches with any of its
+//!   faces. Where a surface is smooth the faces further along it are turned the same way, so they are not in view;
+//! - the point is not deeper behind it than the *depth*: on a surface that faces itself at most half the thickness of the
+//!   body there, so that the far side, at the whole thickness, is out of view until the body is pressed together to half
+//!   of it.
+
+use carom_elements::{MAX_FACE_NODES, map};
+use carom_mesh::{Bounds, BoxTree, Face, Projection};
+
+use crate::search::{faces_point, positions};
+use crate::{Places, Point};
+
+/// Cosine of the angle between the normals of a point and of a face up to which the face is in view.
+const OPPOSED: f64 = -0.5;
+
+/// Views of the points of a contact.
+#[derive(Clone, Debug)]
+pub struct Sight {
+    /// Faces of the secondary surface, their nodes by system number.
+    faces: Vec<Face>,
+    /// Secondary faces around each point.
+    around: Lists,
+    /// Faces of the target beside each point, ascending.
+    beside: Lists,
+    /// Largest penetration of each point, m.
+    depth: Vec<f64>,
+    /// Gap beyond which nothing is looked for, m.
+    reach: f64,
+}
+
+/// Lists of numbers in one pool.
+#[derive(Clone, Debug, Default)]
+struct Lists {
+    numbers: Vec<u32>,
+    ends: Vec<u32>,
+}
+
+/// What one point sees.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View<'a> {
+    sight: &'a Sight,
+    point: usize,
+}
+
+impl Lists {
+    fn push(&mut self, list: impl IntoIterator<Item = u32>) {
+        self.numbers.extend(list);
+        self.ends.push(self.numbers.len() as u32);
+    }
+
+    fn of(&self, k: usize) -> &[u32] {
+        let first = k.checked_sub(1).map_or(0, |k| self.ends[k]);
+        &self.numbers[first as usize..self.ends[k] as usize]
+    }
+}
+
+/// Faces by the nodes that they have: sorted pairs.
+struct Incidence(Vec<(u32, u32)>);
+
+impl Incidence {
+    fn new(faces: &[Face]) -> Incidence {
+        let pairs = faces.iter().zip(0..);
+        let mut pairs: Vec<(u32, u32)> = pairs
+            .flat_map(|(face, k)| face.corners().iter().map(move |&node| (node, k)))
+            .collect();
+        pairs.sort_unstable();
+        Incidence(pairs)
+    }
+
+    /// Faces that have a node.
+    fn of(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
+        let first = self.0.partition_point(|(n, _)| *n < node);
+        let pairs = self.0[first..].iter();
+        pairs.take_while(move |(n, _)| *n == node).map(|(_, k)| *k)
+    }
+}
+
+impl Sight {
+    /// Whether two surfaces share nodes: one faces itself.
+    pub fn is_needed(secondary: &[Face], target: &[Face]) -> bool {
+        let nodes = Incidence::new(target);
+        let mut own = secondary.iter().flat_map(Face::corners);
+        own.any(|&node| nodes.of(node).next().is_some())
+    }
+
+    /// The views of the points of a secondary surface on a target.
+    ///
+    /// `x`: reference coordinates by system number, m. `depth`: largest penetration that is a contact, m; by default half
+    /// the smallest diagonal of the faces around a point. On a surface that faces itself it is half the thickness of the body
+    /// at the point if that is less, the thickness being the way back to the closest face turned against it in the reference
+    /// configuration, which has to be free of penetration; gaps beyond four times the largest diagonal are then not looked
+    /// for: in a step parts must come closer by less than that.
+    pub fn new(
+        (points, secondary): (&[Point], &[Face]),
+        target: &[Face],
+        x: &[[f64; 3]],
+        depth: Option<f64>,
+    ) -> Sight {
+        let (own, other) = (Incidence::new(secondary), Incidence::new(target));
+        let (mut around, mut beside) = (Lists::default(), Lists::default());
+        for point in points {
+            let carriers: Vec<u32> = point.carriers().map(|(node, _)| node).collect();
+            let has_all = |k: &u32| {
+                let nodes = secondary[*k as usize].corners();
+                carriers.iter().all(|node| nodes.contains(node))
+            };
+            around.push(own.of(carriers[0]).filter(has_all));
+            let first = carriers.iter().flat_map(|&node| other.of(node));
+            let nodes = first.flat_map(|k| target[k as usize].corners());
+            let mut second: Vec<u32> = nodes.flat_map(|&node| other.of(node)).collect();
+            second.sort_unstable();
+            second.dedup();
+            beside.push(second);
+        }
+        let itself = !beside.numbers.is_empty();
+        let diagonal = |face: &Face| diagonal(&bounds(face, x));
+        let size = |k: usize| {
+            let faces = around.of(k).iter();
+            faces.fold(f64::INFINITY, |least, &k| {
+                least.min(diagonal(&secondary[k as usize]))
+            })
+        };
+        let largest = secondary.iter().chain(target).map(diagonal);
+        let largest = largest.fold(0.0, f64::max);
+        let mut sight = Sight {
+            depth: (0..points.len())
+                .map(|k| depth.unwrap_or_else(|| 0.5 * size(k)))
+                .collect(),
+            faces: secondary.to_vec(),
+            around,
+            beside,
+            reach: if itself { 4.0 * largest } else { f64::INFINITY },
+        };
+        if itself {
+            sight.limit_to_thickness(points, target, x);
+        }
+        sight
+    }
+
+    /// The normals of the secondary faces, at their centres.
+    pub(crate) fn normals(&self, places: &Places) -> impl Iterator<Item = [f64; 3]> {
+        let places = *places;
+        self.faces.iter().map(move |face| normal(face, &places))
+    }
+
+    /// The view of a point.
+    pub(crate) fn of(&self, point: usize) -> View<'_> {
+        View { sight: self, point }
+    }
+
+    /// Takes half the way back to the closest face turned against a point as depth where that is less.
+    fn limit_to_thickness(&mut self, points: &[Point], target: &[Face], x: &[[f64; 3]]) {
+        let rest = vec![0.0; 3 * x.len()];
+        let places = Places {
+            dim: 3,
+            time: 0.0,
+            x,
+            u: &rest,
+        };
+        let normals: Vec<[f64; 3]> = self.normals(&places).collect();
+        let boxes: Vec<Bounds> = target.iter().map(|face| bounds(face, x)).collect();
+        let tree = BoxTree::new(&boxes);
+        let mut depth = self.depth.clone();
+        for (k, (point, depth)) in points.iter().zip(&mut depth).enumerate() {
+            let place = point.place(&places);
+            let view = self.of(k);
+            let behind = |item: u32| {
+                let face = &target[item as usize];
+                let x = positions(&places, face);
+                let foot = carom_mesh::project(face, &x[..face.corners().len()], &place);
+                let back =
+                    foot.gap < 0.0 && view.opposes(&foot, &normals) && faces_point(&foot, face);
+                if back { foot.distance } else { f64::INFINITY }
+            };
+            if let Some((_, thickness)) = tree.closest(&place, 2.0 * *depth, 0.0, behind) {
+                *depth = depth.min(0.5 * thickness);
+            }
+        }
+        self.depth = depth;
+    }
+}
+
+impl View<'_> {
+    /// Gap in m beyond which nothing is looked for.
+    pub(crate) fn reach(&self) -> f64 {
+        self.sight.reach
+    }
+
+    /// Whether a face of the target is in view, its foot being the closest point to the viewer. `normals`: of the
+    /// secondary faces, at this configuration.
+    pub(crate) fn shows(&self, item: u32, foot: &Projection, normals: &[[f64; 3]]) -> bool {
+        foot.gap >= -self.sight.depth[self.point]
+            && self.opposes(foot, normals)
+            && self
+                .sight
+                .beside
+                .of(self.point)
+                .binary_search(&item)
+                .is_err()
+    }
+
+    fn opposes(&self, foot: &Projection, normals: &[[f64; 3]]) -> bool {
+        let opposed = |&k: &u32| {
+            let n = &normals[k as usize];
+            (0..3).map(|i| n[i] * foot.normal[i]).sum::<f64>() < OPPOSED
+        };
+        self.sight.around.of(self.point).iter().any(opposed)
+    }
+}
+
+fn bounds(face: &Face, x: &[[f64; 3]]) -> Bounds {
+    let places: Vec<[f64; 3]> = face.corners().iter().map(|&n| x[n as usize]).collect();
+    face.bounds(&places)
+}
+
+fn diagonal(bounds: &Bounds) -> f64 {
+    let squares = (0..3).map(|i| (bounds.max[i] - bounds.min[i]).powi(2));
+    squares.sum::<f64>().sqrt()
+}
+
+/// Unit normal of a face at the mean of its reference corners.
+fn normal(face: &Face, places: &Places) -> [f64; 3] {
+    let (table, x) = (face.kind.table(), positions(places, face));
+    if table.dim == 0 {
+        return face.axis;
+    }
+    let mut centre = [0.0; 3];
+    for xi in table.reference {
+        for i in 0..3 {
+            centre[i] += xi[i] / table.nodes as f64;
+        }
+    }
+    let mut dn = [[0.0; 3]; MAX_FACE_NODES];
+    (table.gradient)(&centre, &mut dn[..table.nodes]);
+    map::measure(&x[..table.nodes], &dn[..table.nodes], table.dim).1
+}

@@ -1,0 +1,13 @@
+//! Facts about gaps, rows and curvature that hold for every kind of face and every integration.
+
+// Helpers of tests panic as the tests themselves do.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod derivatives;
+mod fixture;
+mod mortar;
+mod search;
+mod sight;
+
+#[global_allocator]
+static COUNTER: carom_testing::Counter = carom_testing::Counter;

@@ -1,0 +1,406 @@
+//! Weak gaps: what their forces are, what they cover, and their derivatives.
+
+use carom_contact::{
+    Basis, Contact, Integration, Mortar, Pairing, Places, Plane, Search, Side, Sphere, Target,
+};
+use carom_elements::Kind;
+use carom_mesh::Face;
+use carom_testing::{Random, allocations};
+
+use crate::fixture::{assert_balanced, assert_derivatives, contact, face, full, paired};
+
+const BASES: [Basis; 2] = [Basis::Standard, Basis::Dual];
+
+/// Nodes of both sides, and the faces of each.
+struct Pair {
+    dim: usize,
+    x: Vec<[f64; 3]>,
+    secondary: Vec<Face>,
+    primary: Vec<Face>,
+}
+
+impl Pair {
+    fn contact(&self, basis: Basis, factor: f64) -> Contact {
+        let (mortar, points) = Mortar::new(self.secondary.clone(), &self.x, |_| factor);
+        Contact {
+            integration: Integration::Mortar { basis },
+            mortar: Some(mortar),
+            ..contact(points, Target::Surface(self.primary.clone()))
+        }
+    }
+
+    fn pairing(&self, basis: Basis) -> Pairing {
+        let u = vec![0.0; self.dim * self.x.len()];
+        let places = self.places(&u);
+        paired(&self.contact(basis, 1.0), &places)
+    }
+
+    fn places<'a>(&'a self, u: &'a [f64]) -> Places<'a> {
+        Places {
+            dim: self.dim,
+            time: 0.0,
+            x: &self.x,
+            u,
+        }
+    }
+
+    /// The same pair turned about an axis that is none of the coordinate axes (the third one in the plane).
+    fn turned(mut self) -> Pair {
+        let (s, c) = 0.7_f64.sin_cos();
+        for x in &mut self.x {
+            *x = [c * x[0] - s * x[1], s * x[0] + c * x[1], x[2]];
+            if self.dim == 3 {
+                *x = [x[0], c * x[1] - s * x[2], s * x[1] + c * x[2]];
+            }
+        }
+        self
+    }
+
+    /// ∫ N_a over some faces, by node.
+    fn consistent(&self, faces: &[Face]) -> Vec<f64> {
+        let mut areas = vec![0.0; self.x.len()];
+        for point in carom_contact::Point::of_faces(faces, &self.x, |_| 1.0) {
+            for (node, n) in point.carriers() {
+                areas[node as usize] += n * point.area;
+            }
+        }
+        areas
+    }
+}
+
+/// Two lines of edges over the same or another stretch, `gap` apart, the secondary one above.
+fn lines(secondary: &[f64], primary: &[f64], gap: f64) -> Pair {
+    let line = |first: usize, n: usize, up: bool| -> Vec<Face> {
+        let edges = (first as u32..(first + n - 1) as u32).map(|a| match up {
+            true => face(Kind::Bar2, &[a + 1, a]),
+            false => face(Kind::Bar2, &[a, a + 1]),
+        });
+        edges.collect()
+    };
+    let upper = secondary.iter().map(|&x| [x, gap, 0.0]);
+    let lower = primary.iter().map(|&x| [x, 0.0, 0.0]);
+    Pair {
+        dim: 2,
+        x: upper.chain(lower).collect(),
+        secondary: line(0, secondary.len(), false),
+        primary: line(secondary.len(), primary.len(), true),
+    }
+}
+
+/// A grid of faces over a rectangle: nodes moved along by a shear, which keeps parallelograms.
+fn grid(
+    x: &mut Vec<[f64; 3]>,
+    kind: Kind,
+    stretch: [[f64; 2]; 2],
+    cells: [u32; 2],
+    height: f64,
+    up: bool,
+) -> Vec<Face> {
+    let (first, row) = (x.len() as u32, cells[0] + 1);
+    for j in 0..=cells[1] {
+        for i in 0..=cells[0] {
+            let part = [
+                f64::from(i) / f64::from(cells[0]),
+                f64::from(j) / f64::from(cells[1]),
+            ];
+            let at = |k: usize| stretch[k][0] + part[k] * (stretch[k][1] - stretch[k][0]);
+            x.push([at(0), at(1), height]);
+        }
+    }
+    let mut faces = Vec::new();
+    for j in 0..cells[1] {
+        for i in 0..cells[0] {
+            let a = first + j * row + i;
+            let mut square = [a, a + 1, a + 1 + row, a + row];
+            if !up {
+                square.reverse();
+            }
+            let [a, b, c, d] = square;
+            match kind {
+                Kind::Quad4 => faces.push(face(kind, &square)),
+                _ => faces.extend([face(kind, &[a, b, c]), face(kind, &[a, c, d])]),
+            }
+        }
+    }
+    faces
+}
+
+/// Two grids over the unit square, or the primary one over another rectangle.
+fn grids(kinds: [Kind; 2], cells: [[u32; 2]; 2], primary: [[f64; 2]; 2], gap: f64) -> Pair {
+    let mut x = Vec::new();
+    let unit = [[0.0, 1.0]; 2];
+    let secondary = grid(&mut x, kinds[0], unit, cells[0], gap, false);
+    let primary = grid(&mut x, kinds[1], primary, cells[1], 0.0, true);
+    Pair {
+        dim: 3,
+        x,
+        secondary,
+        primary,
+    }
+}
+
+const KINDS: [[Kind; 2]; 4] = [
+    [Kind::Tri3, Kind::Tri3],
+    [Kind::Quad4, Kind::Quad4],
+    [Kind::Tri3, Kind::Quad4],
+    [Kind::Quad4, Kind::Tri3],
+];
+
+fn flat_pairs() -> Vec<Pair> {
+    let one = [0.0, 0.13, 0.5, 0.61, 1.0];
+    let other = [0.0, 0.2, 0.25, 0.7, 0.9, 1.0];
+    let mut pairs = vec![
+        lines(&one, &other, 0.1),
+        lines(&one, &other, -0.02).turned(),
+    ];
+    for kinds in KINDS {
+        let made = || grids(kinds, [[3, 2], [2, 5]], [[0.0, 1.0]; 2], 0.1);
+        pairs.extend([made(), made().turned()]);
+    }
+    pairs
+}
+
+#[test]
+fn a_uniform_pressure_gives_the_consistent_forces_of_both_sides() {
+    for pair in flat_pairs() {
+        for basis in BASES {
+            let pairing = pair.pairing(basis);
+            let mut forces = vec![0.0; pair.dim * pair.x.len()];
+            for point in 0..pairing.len() {
+                let force = 3.0 * pairing.areas[point];
+                pairing.rows.add_force(point, force, &mut forces);
+            }
+            let n = pairing.rows.normal(0);
+            let (one, other) = (
+                pair.consistent(&pair.secondary),
+                pair.consistent(&pair.primary),
+            );
+            for node in 0..pair.x.len() {
+                for i in 0..pair.dim {
+                    let expected = 3.0 * n[i] * (one[node] - other[node]);
+                    let force = forces[pair.dim * node + i];
+                    // sums of some hundred numbers below 0.1
+                    assert!(
+                        (force - expected).abs() < 1e-14,
+                        "{node} {force} {expected}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_uniform_gap_is_the_gap_of_every_multiplier_and_areas_add_up() {
+    for pair in flat_pairs() {
+        for basis in BASES {
+            let pairing = pair.pairing(basis);
+            let gap = pairing.rows.gap(0);
+            for point in 0..pairing.len() {
+                assert!((pairing.rows.gap(point) - gap).abs() < 1e-15);
+            }
+            assert!((pairing.areas.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            let points = pair.contact(basis, 1.0).points;
+            for (point, area) in points.iter().zip(&pairing.areas) {
+                assert!((point.area - area).abs() < 1e-15);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_dual_multiplier_holds_one_secondary_node() {
+    for pair in flat_pairs() {
+        let pairing = pair.pairing(Basis::Dual);
+        let contact = pair.contact(Basis::Dual, 1.0);
+        for point in 0..pairing.len() {
+            let row = full(&pairing, point, pair.dim * pair.x.len());
+            let n = pairing.rows.normal(point);
+            let secondary = contact.points.iter().map(|point| point.node() as usize);
+            for (other, node) in secondary.enumerate() {
+                for i in 0..pair.dim {
+                    let expected = if other == point { n[i] } else { 0.0 };
+                    // the conditioning of a mass matrix of four functions is about ten
+                    assert!((row[pair.dim * node + i] - expected).abs() < 1e-14);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_has_nothing_opposite_is_left_out() {
+    // the primary side covers [0.35, 1.3] of a secondary one of [0, 1], in space x [-0.2, 0.7]
+    let mut pairs = vec![(
+        lines(&[0.0, 0.3, 0.4, 0.8, 1.0], &[0.35, 0.5, 1.3], 0.1),
+        0.65,
+    )];
+    for kinds in KINDS {
+        let pair = grids(kinds, [[4, 3], [2, 3]], [[0.35, 1.3], [-0.2, 0.7]], 0.1);
+        pairs.push((pair, 0.65 * 0.7));
+    }
+    for (pair, area) in pairs {
+        for basis in BASES {
+            let (pairing, contact) = (pair.pairing(basis), pair.contact(basis, 1.0));
+            let mut covered = 0.0;
+            let mut forces = vec![0.0; pair.dim * pair.x.len()];
+            let mut open = 0;
+            for (point, whole) in contact.points.iter().enumerate() {
+                let gap = pairing.rows.gap(point);
+                if gap.is_infinite() {
+                    open += 1;
+                    assert_eq!(pairing.areas[point], whole.area);
+                    assert!(pair.x[whole.node() as usize][0] < 0.35);
+                    continue;
+                }
+                assert!((gap - 0.1).abs() < 1e-14);
+                assert!(pairing.areas[point] < whole.area + 1e-14);
+                covered += pairing.areas[point];
+                pairing
+                    .rows
+                    .add_force(point, pairing.areas[point], &mut forces);
+            }
+            assert!(open > 0);
+            assert!((covered - area).abs() < 1e-14, "{covered} {area}");
+            // the resultant of a uniform pressure passes through the middle of what is covered
+            let last = pair.dim - 1;
+            let moment: f64 = contact
+                .points
+                .iter()
+                .map(|point| {
+                    let node = point.node() as usize;
+                    pair.x[node][0] * forces[pair.dim * node + last]
+                })
+                .sum();
+            assert!((moment - area * 0.675).abs() < 1e-14, "{moment}");
+        }
+    }
+}
+
+/// A bent pair: neither side flat, nothing parallel.
+fn bent(mut pair: Pair, random: &mut Random, size: f64) -> Pair {
+    for x in &mut pair.x {
+        x[pair.dim - 1] += 0.3 * x[0] * x[0]
+            - if pair.dim == 3 {
+                0.2 * x[0] * x[1]
+            } else {
+                0.0
+            };
+        for x in &mut x[..pair.dim] {
+            *x += size * random.next();
+        }
+    }
+    pair
+}
+
+#[test]
+fn forces_of_every_multiplier_balance_on_bent_surfaces() {
+    let mut random = Random(5);
+    for pair in flat_pairs() {
+        let pair = bent(pair, &mut random, 0.01);
+        let u = vec![0.0; pair.dim * pair.x.len()];
+        for basis in BASES {
+            let pairing = pair.pairing(basis);
+            for point in 0..pairing.len() {
+                // a point stands at the rim, where what faces it may be a sliver and the dual functions large
+                assert_balanced(&pairing, point, &pair.places(&u), 1e-12);
+                let sliding = &pairing.tangents[0];
+                let motion: Vec<f64> = (0..u.len())
+                    .map(|dof| [0.3, 0.5, -0.4][dof % pair.dim])
+                    .collect();
+                assert!(sliding.product(point, &motion).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+#[test]
+fn rows_and_curvature_of_multipliers_are_derivatives_where_pieces_keep() {
+    // each secondary face sees one primary face: its piece is itself wherever it moves
+    let mut random = Random(9);
+    for kind in [Kind::Bar2, Kind::Tri3, Kind::Quad4] {
+        let pair = match kind {
+            Kind::Bar2 => lines(&[0.0, 0.4, 1.0], &[-1.0, 2.0], 0.3),
+            kind => {
+                let wide = [[-2.0, 1.5], [-0.5, 3.0]];
+                let mut pair = grids([Kind::Tri3, kind], [[1, 1], [1, 1]], wide, 0.3);
+                pair.secondary.truncate(1);
+                pair.primary.truncate(1);
+                pair
+            }
+        };
+        let pair = bent(pair, &mut random, 0.05);
+        let u = vec![0.01; pair.dim * pair.x.len()];
+        for basis in BASES {
+            let contact = pair.contact(basis, 0.7);
+            assert_derivatives(&pair.places(&u), |places| paired(&contact, places));
+        }
+    }
+}
+
+#[test]
+fn obstacles_are_integrated_over_whole_faces() {
+    for mut pair in flat_pairs() {
+        pair.primary.clear();
+        let n = pair.pairing_normal();
+        let plane = Plane {
+            point: [0.0; 3],
+            normal: n,
+        };
+        for basis in BASES {
+            let mut contact = pair.contact(basis, 1.0);
+            contact.target = Target::Rigid(plane.into());
+            let u = vec![0.0; pair.dim * pair.x.len()];
+            let pairing = paired(&contact, &pair.places(&u));
+            for (point, at) in contact.points.iter().enumerate() {
+                let gap = plane.distance(&pair.x[at.node() as usize]).gap;
+                assert!((pairing.rows.gap(point) - gap).abs() < 1e-15);
+                assert!((pairing.areas[point] - at.area).abs() < 1e-15);
+            }
+            let sphere = Sphere {
+                centre: n.map(|n| -2.0 * n),
+                radius: 1.5,
+                side: Side::Outside,
+            };
+            contact.target = Target::Rigid(sphere.into());
+            let pairing = paired(&contact, &pair.places(&u));
+            assert!((0..pairing.len()).all(|point| pairing.rows.gap(point) > 0.0));
+        }
+    }
+}
+
+impl Pair {
+    /// Normal of the plane of the secondary surface, from the primary to it.
+    fn pairing_normal(&self) -> [f64; 3] {
+        let x = carom_contact::Point::of_faces(&self.secondary, &self.x, |_| 1.0);
+        assert!(!x.is_empty());
+        let face = &self.secondary[0];
+        let corners: Vec<[f64; 3]> = face.corners().iter().map(|&a| self.x[a as usize]).collect();
+        carom_mesh::project(face, &corners, &corners[0])
+            .normal
+            .map(|n| -n)
+    }
+}
+
+#[test]
+fn a_pairing_depends_on_nothing_before_it_and_a_second_one_allocates_nothing() {
+    for pair in flat_pairs() {
+        let contact = pair.contact(Basis::Dual, 1.0);
+        let (mut search, mut pairing) = (Search::default(), Pairing::default());
+        let u: Vec<f64> = Random(1).vector(pair.dim * pair.x.len());
+        let small: Vec<f64> = u.iter().map(|u| 1e-3 * u).collect();
+        let rest = vec![0.0; u.len()];
+        for u in [&rest, &small] {
+            pairing.clear();
+            contact.pair_fully(&pair.places(u), &mut search, &mut pairing);
+        }
+        let fresh = paired(&contact, &pair.places(&small));
+        assert_eq!(pairing.rows, fresh.rows);
+        assert_eq!(pairing.tangents, fresh.tangents);
+        assert_eq!(pairing.areas, fresh.areas);
+        let before = allocations();
+        pairing.clear();
+        contact.pair_fully(&pair.places(&small), &mut search, &mut pairing);
+        assert_eq!(allocations() - before, 0);
+    }
+}

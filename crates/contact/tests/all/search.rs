@@ -1,0 +1,218 @@
+//! The search with its memory against asking all faces.
+
+use carom_contact::{Contact, Places, Point, Rows, Search, Target};
+use carom_elements::Kind;
+use carom_mesh::{Face, project};
+use carom_testing::Random;
+
+use crate::fixture::{contact, face};
+
+/// A waving strip or sheet, and points over, under and beside it.
+struct Scene {
+    dim: usize,
+    x: Vec<[f64; 3]>,
+    contact: Contact,
+    faces: Vec<Face>,
+    random: Random,
+}
+
+impl Scene {
+    /// `side`: faces along a side.
+    fn new(kind: Kind, side: u32, points: u32) -> Scene {
+        let dim = kind.table().dim + 1;
+        let mut random = Random(11);
+        let (mut x, faces) = match dim {
+            2 => strip(side),
+            _ => sheet(kind, side),
+        };
+        let first = x.len() as u32;
+        for _ in 0..points {
+            let place = [0; 3].map(|_| random.between(-0.3, 1.3) * f64::from(side));
+            x.push(match dim {
+                2 => [place[0], 0.2 * place[1], 0.0],
+                _ => [place[0], place[1], 0.2 * place[2]],
+            });
+        }
+        let points = (first..first + points).map(|node| Point::at_node(node, 1.0, 1.0));
+        Scene {
+            dim,
+            x,
+            contact: contact(points.collect(), Target::Surface(faces.clone())),
+            faces,
+            random,
+        }
+    }
+
+    /// Everything waves by `size`, and some points jump.
+    fn displacement(&mut self, time: f64, size: f64) -> Vec<f64> {
+        let dim = self.dim;
+        let mut u = vec![0.0; dim * self.x.len()];
+        let jumps = self.random.between(0.0, 1.0) < 0.2;
+        for (u, x) in u.chunks_exact_mut(dim).zip(&self.x) {
+            for (i, u) in u.iter_mut().enumerate() {
+                *u = size * (time + 0.7 * x[0] + 0.4 * x[1] + i as f64).sin();
+            }
+            if jumps && self.random.between(0.0, 1.0) < 0.02 {
+                u[0] += self.random.between(-2.0, 2.0);
+            }
+        }
+        u
+    }
+
+    /// Gap and normal of a point over the first of the closest of all faces, if it faces it.
+    fn brute_force(&self, places: &Places, point: &Point) -> (f64, [f64; 3]) {
+        let x = point.place(places);
+        let feet = self.faces.iter().map(|face| {
+            let positions: Vec<[f64; 3]> =
+                face.corners().iter().map(|&node| places.of(node)).collect();
+            project(face, &positions, &x)
+        });
+        let closest = feet.reduce(|best, foot| match foot.distance < best.distance {
+            true => foot,
+            false => best,
+        });
+        let foot = closest.unwrap();
+        let sideways = (foot.distance.powi(2) - foot.gap.powi(2)).max(0.0).sqrt();
+        match foot.inside || sideways <= foot.gap.abs() {
+            true => (foot.gap, foot.normal),
+            false => (f64::INFINITY, [0.0; 3]),
+        }
+    }
+}
+
+fn strip(side: u32) -> (Vec<[f64; 3]>, Vec<Face>) {
+    let x = (0..=side).map(|i| [f64::from(i), 0.3 * f64::from(i).sin(), 0.0]);
+    let faces = (0..side).map(|i| face(Kind::Bar2, &[i + 1, i]));
+    (x.collect(), faces.collect())
+}
+
+fn sheet(kind: Kind, side: u32) -> (Vec<[f64; 3]>, Vec<Face>) {
+    let n = side + 1;
+    let x = (0..n * n).map(|i| {
+        let [x, y] = [f64::from(i % n), f64::from(i / n)];
+        [x, y, 0.3 * (x + 0.5 * y).sin()]
+    });
+    let mut faces = Vec::new();
+    for i in 0..side * side {
+        let a = i % side + n * (i / side);
+        match kind {
+            Kind::Quad4 => faces.push(face(kind, &[a, a + 1, a + n + 1, a + n])),
+            _ => {
+                faces.push(face(kind, &[a, a + 1, a + n + 1]));
+                faces.push(face(kind, &[a, a + n + 1, a + n]));
+            }
+        }
+    }
+    (x.collect(), faces)
+}
+
+fn paired(contact: &Contact, places: &Places, search: &mut Search) -> Rows {
+    let mut rows = Rows::default();
+    rows.clear();
+    contact.pair(places, search, &mut rows);
+    rows
+}
+
+#[test]
+fn pairings_of_moving_surfaces_equal_brute_force_whatever_the_search_remembers() {
+    for (kind, side) in [(Kind::Bar2, 40), (Kind::Quad4, 9), (Kind::Tri3, 7)] {
+        let mut scene = Scene::new(kind, side, 60);
+        let mut search = Search::default();
+        let mut facing = 0;
+        for step in 0..60 {
+            // slow, then fast, then standing still
+            let time = match step {
+                0..30 => 0.02 * f64::from(step),
+                30..45 => 0.6 + 0.7 * f64::from(step - 30),
+                _ => 11.1,
+            };
+            let u = scene.displacement(time, 0.5);
+            let places = Places {
+                dim: scene.dim,
+                time: 0.0,
+                x: &scene.x,
+                u: &u,
+            };
+            let rows = paired(&scene.contact, &places, &mut search);
+            assert_eq!(
+                rows,
+                paired(&scene.contact, &places, &mut Search::default())
+            );
+            for (k, point) in scene.contact.points.iter().enumerate() {
+                let expected = scene.brute_force(&places, point);
+                assert_eq!(
+                    (rows.gap(k), rows.normal(k)),
+                    expected,
+                    "{kind:?} {step} {k}"
+                );
+                facing += usize::from(expected.0.is_finite());
+            }
+        }
+        assert!(facing > 1000, "{kind:?} {facing}");
+    }
+}
+
+#[test]
+fn a_slow_surface_is_hardly_searched() {
+    let mut scene = Scene::new(Kind::Quad4, 40, 300);
+    let mut search = Search::default();
+    let mut projections = Vec::new();
+    let shape = scene.displacement(0.0, 0.1);
+    for step in 0..12 {
+        let u: Vec<f64> = shape.iter().map(|u| 1e-2 * f64::from(step) * u).collect();
+        let places = Places {
+            dim: 3,
+            time: 0.0,
+            x: &scene.x,
+            u: &u,
+        };
+        paired(&scene.contact, &places, &mut search);
+        projections.push(search.projections());
+    }
+    // of 1600 faces a point asks the one on which its foot was and those of its eight neighbours that may be as close
+    assert!(projections[11] < 300 * 9, "{projections:?}");
+    assert!(projections[11] < projections[0], "{projections:?}");
+}
+
+#[test]
+fn memory_of_other_faces_does_no_harm() {
+    let scenes = [
+        Scene::new(Kind::Quad4, 6, 30),
+        Scene::new(Kind::Tri3, 6, 30),
+    ];
+    let mut search = Search::default();
+    for _ in 0..3 {
+        for scene in &scenes {
+            let u = vec![0.0; 3 * scene.x.len()];
+            let places = Places {
+                dim: 3,
+                time: 0.0,
+                x: &scene.x,
+                u: &u,
+            };
+            let rows = paired(&scene.contact, &places, &mut search);
+            assert_eq!(
+                rows,
+                paired(&scene.contact, &places, &mut Search::default())
+            );
+        }
+    }
+}
+
+#[test]
+fn memory_of_the_search_is_a_few_hundred_bytes_for_a_face() {
+    let scene = Scene::new(Kind::Quad4, 100, 1);
+    let u = vec![0.0; 3 * scene.x.len()];
+    let places = Places {
+        dim: 3,
+        time: 0.0,
+        x: &scene.x,
+        u: &u,
+    };
+    let mut search = Search::default();
+    paired(&scene.contact, &places, &mut search);
+    // two boxes of 48 bytes, four places of 24, a number, and up to one node of 64 for two faces: 232 and what a leaf of
+    // two faces instead of four costs
+    let per_face = search.bytes() / scene.faces.len();
+    assert!((200..280).contains(&per_face), "{per_face}");
+}

@@ -1,0 +1,114 @@
+//! Contacts that penetrate at the start: refused, offset, or their nodes moved before bodies are built.
+
+use carom_contact::{Contact, Initial, Integration, Places};
+
+use crate::Error;
+use crate::contacts::numbered;
+use crate::system::Model;
+
+/// The most passes over all contacts that are to be freed of penetrations.
+const PASSES: usize = 10;
+
+impl Model {
+    /// Moves the secondary nodes of contacts with [`Initial::Remove`] onto what they penetrate, in the initial
+    /// displacement, by changing the mesh.
+    ///
+    /// A node moves by -g along the normal, onto its closest point; where several contacts move a node passes are repeated.
+    /// Interior nodes stay: a move longer than an element turns it inside out, which the check of the mesh tells.
+    ///
+    /// # Errors
+    /// [`Error::Penetration`] if some are left after ten passes.
+    pub(crate) fn remove_penetrations(&mut self) -> Result<(), Error> {
+        let slack = slack(self.mesh.size());
+        for pass in 0..PASSES {
+            let mut free = true;
+            for contact in &self.contacts {
+                if contact.initial != Initial::Remove {
+                    continue;
+                }
+                let mut contact = contact.clone();
+                contact.integration = Integration::Node;
+                let number: Vec<u32> = (0..self.mesh.nodes.len() as u32).collect();
+                let numbered = numbered(&contact, self, &number, &self.mesh.nodes);
+                let u = self.displacement();
+                let places = Places {
+                    dim: self.mesh.dim,
+                    time: 0.0,
+                    x: &self.mesh.nodes,
+                    u: &u,
+                };
+                let found = numbered.penetrations(&places, slack);
+                free &= found.is_empty();
+                if pass + 1 == PASSES {
+                    check(&numbered, &places, &number, slack)?;
+                }
+                for found in found {
+                    let x = &mut self.mesh.nodes[found.node as usize];
+                    for (x, n) in x.iter_mut().zip(found.normal) {
+                        *x += found.depth * n;
+                    }
+                }
+            }
+            if free {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Initial displacement of the nodes of the mesh, m.
+    fn displacement(&self) -> Vec<f64> {
+        let dim = self.mesh.dim;
+        let mut u = vec![0.0; dim * self.mesh.nodes.len()];
+        for body in &self.bodies {
+            for &cell in &body.spec.cells {
+                for &node in self.mesh.element_nodes(cell) {
+                    let first = dim * node as usize;
+                    u[first..first + dim].copy_from_slice(&body.displacement[..dim]);
+                }
+            }
+        }
+        u
+    }
+}
+
+/// Depth that is no penetration yet: the rounding of a mesh of this size.
+fn slack(size: f64) -> f64 {
+    1e-9 * size
+}
+
+/// Refuses penetrations, or takes them as gaps of zero, as each contact asks. `size`: of the mesh, m; `mesh_node`: mesh
+/// node of each system node.
+///
+/// # Errors
+/// [`Error::Penetration`] for a contact with [`Initial::Refuse`] that penetrates.
+pub(crate) fn settle(
+    contacts: &mut [Contact],
+    ways: impl Iterator<Item = Initial>,
+    places: &Places,
+    (mesh_node, size): (&[u32], f64),
+) -> Result<(), Error> {
+    let slack = slack(size);
+    for (contact, way) in contacts.iter_mut().zip(ways) {
+        match way {
+            Initial::Keep | Initial::Remove => {}
+            Initial::Refuse => check(contact, places, mesh_node, slack)?,
+            Initial::Offset => contact.offset_penetrations(places, slack),
+        }
+    }
+    Ok(())
+}
+
+fn check(contact: &Contact, places: &Places, mesh_node: &[u32], slack: f64) -> Result<(), Error> {
+    let found = contact.penetrations(places, slack);
+    let deepest = found.iter().max_by(|a, b| a.depth.total_cmp(&b.depth));
+    match deepest {
+        None => Ok(()),
+        Some(deepest) => Err(Error::Penetration {
+            contact: contact.name.clone(),
+            points: found.len(),
+            node: mesh_node[deepest.node as usize],
+            depth: deepest.depth,
+        }),
+    }
+}
