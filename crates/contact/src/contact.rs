@@ -98,8 +98,17 @@ impl Contact {
     /// Against a surface each point is projected on the closest face (the first of equals). It faces nothing, and gets
     /// an infinite gap, where the foot lies beyond the rim: where the way from the foot to the point runs sideways by
     /// more than it runs along the normal. With [`Contact::sight`] only faces in view count, and gaps beyond its reach are
-    /// infinite. What `search` holds from before does not matter to the result.
+    /// infinite. What `search` holds from before does not matter to the result. Integration by mortar has the rows of
+    /// [`Contact::pair_fully`].
     pub fn pair(&self, places: &Places, search: &mut Search, rows: &mut Rows) {
+        if self.mortar.is_some() {
+            let mut pairing = std::mem::take(&mut search.pairing);
+            pairing.clear();
+            self.pair_fully(places, search, &mut pairing);
+            rows.append(&pairing.rows);
+            search.pairing = pairing;
+            return;
+        }
         self.renew(places, search);
         for (k, point) in self.points.iter().enumerate() {
             let x = point.place(places);

@@ -75,17 +75,25 @@ impl Rows {
         }
     }
 
-    /// Appends the points of `initial`, paired once at zero displacement, with gaps moved by N u.
-    pub fn append_moved(&mut self, initial: &Rows, u: &[f64]) {
-        for point in 0..initial.len() {
-            let (dofs, coefficients) = initial.row(point);
-            self.gaps
-                .push(initial.gap(point) + initial.product(point, u));
-            self.normals.push(initial.normal(point));
-            self.rates.push(initial.rate(point));
+    /// Appends the points of another pool.
+    pub(crate) fn append(&mut self, other: &Rows) {
+        for point in 0..other.len() {
+            let (dofs, coefficients) = other.row(point);
+            self.gaps.push(other.gap(point));
+            self.normals.push(other.normal(point));
+            self.rates.push(other.rate(point));
             self.dofs.extend_from_slice(dofs);
             self.coefficients.extend_from_slice(coefficients);
             self.offsets.push(self.dofs.len() as u32);
+        }
+    }
+
+    /// Appends the points of `initial`, paired once at zero displacement, with gaps moved by N u.
+    pub fn append_moved(&mut self, initial: &Rows, u: &[f64]) {
+        let first = self.len();
+        self.append(initial);
+        for (point, gap) in self.gaps[first..].iter_mut().enumerate() {
+            *gap += initial.product(point, u);
         }
     }
 

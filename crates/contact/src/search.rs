@@ -11,8 +11,9 @@
 use carom_elements::{Kind, MAX_FACE_NODES};
 use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
 
+use crate::Pairing;
 use crate::sight::View;
-use crate::{Places, Sight};
+use crate::{Pairing, Places, Sight};
 
 /// Renewals of an unmoved tree from which on points keep their faces.
 const SLOW: u32 = 3;
@@ -42,8 +43,12 @@ pub struct Search {
     /// Unit normals of the secondary faces, where sight asks for them.
     normals: Vec<[f64; 3]>,
     near: Vec<u32>,
+    /// Scratch of [`Contact::pair`](crate::Contact::pair) for the mortar method.
+    pub(crate) pairing: Pairing,
     /// Projections made since the last renewal.
     projections: usize,
+    /// Scratch of [`Contact::pair`](crate::Contact::pair) for the mortar method.
+    pub(crate) pairing: Pairing,
 }
 
 /// What one query remembers.

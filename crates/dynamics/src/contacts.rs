@@ -1,6 +1,6 @@
 //! Contacts in the numbers of a system: bodies of each side, points, and which law may hold where.
 
-use carom_contact::{Contact, Integration, Point, Sight, Target};
+use carom_contact::{Contact, Integration, Mortar, Point, Sight, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
 
 use crate::Error;
@@ -17,7 +17,10 @@ impl System {
             }
             Integration::Weak { .. } if !contact.law.has_weak_form() => Some(WHICH_LAWS),
             Integration::Points if !contact.law.is_function() => Some(WHICH_LAWS),
-            Integration::Weak { .. } | Integration::Points | Integration::Node => None,
+            Integration::Weak { .. }
+            | Integration::Points
+            | Integration::Node
+            | Integration::Mortar { .. } => None,
         };
         let mut contacts = self.contacts.iter();
         match contacts.find_map(|contact| Some((contact, cause(contact)?))) {
@@ -70,10 +73,14 @@ pub(crate) fn numbered(
         let faces = surface.faces.iter();
         faces.map(|face| renumbered(face, number)).collect()
     };
-    let points = match contact.integration {
-        Integration::Node => nodes(surface, &model.mesh, number, factor),
+    let (points, mortar) = match contact.integration {
+        Integration::Node => (nodes(surface, &model.mesh, number, factor), None),
         Integration::Points | Integration::Weak { .. } => {
-            Point::of_faces(&faces(surface), x, factor)
+            (Point::of_faces(&faces(surface), x, factor), None)
+        }
+        Integration::Mortar { .. } => {
+            let (mortar, points) = Mortar::new(faces(surface), x, factor);
+            (points, Some(mortar))
         }
     };
     let target = match &contact.primary {
@@ -94,6 +101,7 @@ pub(crate) fn numbered(
         sliding: contact.sliding,
         integration: contact.integration,
         points,
+        mortar,
         target,
         sight,
         offsets: Vec::new(),

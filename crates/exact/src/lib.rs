@@ -3,6 +3,7 @@
 //! * [`solve`] gives the exact motion of elastic bars that hit a rigid wall or each other: piecewise-linear
 //!   velocity waves, no time step, any number of bounces.
 //! * [`closed_forms`] holds the formulas of the discrete schemes that are known in closed form.
+//! * [`friction`] holds motions under Coulomb friction that slide and stick.
 //! * [`hertz`] is the contact of spheres and cylinders, at rest and in impact.
 //!
 //! Nothing here is shared with the code that is judged: this crate depends on no other.
@@ -10,6 +11,7 @@
 mod bar;
 pub mod closed_forms;
 mod error;
+pub mod friction;
 pub mod hertz;
 mod impact;
 mod motion;

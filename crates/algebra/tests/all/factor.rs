@@ -325,3 +325,51 @@ mod allocations {
         assert_eq!(allocations() - before, 0);
     }
 }
+
+mod dense_lu {
+    use super::*;
+    use carom_algebra::dense::DenseLu;
+    use carom_testing::Random;
+
+    #[test]
+    fn unsymmetric_systems_are_solved_with_zeros_on_the_diagonal() {
+        let mut random = Random(2);
+        for n in [1, 2, 3, 17, 80] {
+            let mut a = random.vector(n * n);
+            if n > 1 {
+                // a cyclic permutation dominates, and the diagonal vanishes
+                for k in 0..n {
+                    a[k * n + k] = 0.0;
+                    a[k * n + (k + 1) % n] += n as f64;
+                }
+            }
+            let x = random.vector(n);
+            // column-major
+            let b: Vec<f64> = (0..n)
+                .map(|i| (0..n).map(|j| a[j * n + i] * x[j]).sum())
+                .collect();
+            let solved = DenseLu::new(n, a).unwrap().solve(&b);
+            for (x, solved) in x.iter().zip(&solved) {
+                // dominated by a permutation: condition of a few
+                assert!((x - solved).abs() < 1e-12, "{n}: {x} {solved}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_matrix_that_is_no_matrix_is_refused() {
+        assert!(matches!(
+            DenseLu::new(2, vec![1.0; 3]),
+            Err(Error::WrongLength { .. })
+        ));
+        let error = DenseLu::new(2, vec![1.0, 2.0, f64::INFINITY, 1.0]).err();
+        assert_eq!(
+            error,
+            Some(Error::NotFinite {
+                row: 0,
+                column: 1,
+                value: f64::INFINITY
+            })
+        );
+    }
+}

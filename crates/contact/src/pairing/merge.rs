@@ -33,14 +33,24 @@ impl Merge {
         let (gap, normal) = stencil.gap();
         self.gap += weight * gap;
         self.normal += Vec3::from(normal) * weight;
-        self.rates[0] += weight * stencil.rate(&normal);
-        stencil.each_normal(|node, n| self.block(node)[0] += Vec3::from(n) * weight);
         let frame = tangent_vectors(&normal, dim);
+        for (rate, vector) in self.rates.iter_mut().zip([normal, frame[0], frame[1]]) {
+            *rate += weight * stencil.rate(&vector);
+        }
+        let vectors = [normal, frame[0], frame[1]].map(|v| Vec3::from(v) * weight);
+        self.rates[0] += weight * stencil.rate(&normal);
         for (k, t) in frame[..dim - 1].iter().enumerate() {
             self.rates[k + 1] += weight * stencil.rate(t);
-            stencil.each_along(t, |node, n| {
-                self.block(node)[k + 1] += Vec3::from(n) * weight
-            });
+        }
+        let turning = stencil.turning();
+        for (i, (node, c)) in stencil.relative().enumerate() {
+            let block = self.block(node);
+            for (block, vector) in block.iter_mut().zip(&vectors) {
+                *block += vector * c;
+            }
+            if let Some(turning) = &turning {
+                block[0] += turning[i] * weight;
+            }
         }
     }
 

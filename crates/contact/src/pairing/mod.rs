@@ -4,7 +4,9 @@
 //! points of its support for a multiplier of the mortar method. A stencil is one point of the secondary surface and its
 //! closest point on the other side ([`stencil`]).
 
+mod block;
 mod clip;
+mod curvature;
 mod merge;
 mod mortar;
 mod overlap;
@@ -12,6 +14,7 @@ mod stencil;
 
 use carom_algebra::csr::Csr;
 
+use self::block::Block;
 use self::merge::Merge;
 use self::mortar::Quadrature;
 pub use self::mortar::{Basis, Mortar};
@@ -55,9 +58,11 @@ struct Share {
     weight: f64,
 }
 
-/// Scratch of the mortar method.
+/// Scratch.
 #[derive(Clone, Debug, Default)]
 struct Work {
+    /// Force on each stencil.
+    loads: Vec<f64>,
     found: Vec<u32>,
     quadrature: Vec<Quadrature>,
     shares: Vec<Share>,
@@ -96,10 +101,30 @@ impl Pairing {
     /// every kind of face, foot inside, on an edge or in a corner; for the mortar method with the quadrature points and
     /// their weights held. Panics if the pattern of the matrix lacks the pairs of [`Pairing::cliques`].
     pub fn add_curvature(&self, point: usize, force: f64, factor: f64, matrix: &mut Csr) {
-        for &(stencil, weight) in self.terms(point) {
+        let terms = self.terms(point).iter();
+        let loads = terms.map(|&(stencil, weight)| {
             let stencil = &self.stencils[stencil as usize];
-            stencil.add_curvature(self.dim, weight * factor * force, matrix);
+            (stencil, weight * factor * force)
+        });
+        add_loads(loads, self.dim, matrix);
+    }
+
+    /// Adds factor · Σ force · ∂²g/∂u² of all points: the sum of [`Pairing::add_curvature`] over them, each stencil looked
+    /// at once however many multipliers share it. `forces`: one per point, in N.
+    pub fn add_curvatures(&mut self, forces: &[f64], factor: f64, matrix: &mut Csr) {
+        let mut loads = std::mem::take(&mut self.work.loads);
+        loads.clear();
+        loads.resize(self.stencils.len(), 0.0);
+        for (point, force) in forces.iter().enumerate() {
+            for &(stencil, weight) in self.terms(point) {
+                loads[stencil as usize] += weight * force;
+            }
         }
+        let loaded = self.stencils.iter().zip(&loads);
+        let loaded = loaded.filter(|(_, load)| **load != 0.0);
+        let loaded = loaded.map(|(stencil, load)| (stencil, factor * load));
+        add_loads(loaded, self.dim, matrix);
+        self.work.loads = loads;
     }
 
     /// The unknowns of each stencil of a point: the pairs of unknowns that [`Pairing::add_curvature`] fills. Also a list
@@ -158,6 +183,25 @@ impl Pairing {
         for tangent in &mut self.tangents[..self.dim - 1] {
             tangent.push(0.0, [0.0; 3]);
         }
+    }
+}
+
+/// Adds the curvature of stencils times their loads; those that follow each other on the same nodes make one block.
+fn add_loads<'a>(loads: impl Iterator<Item = (&'a Stencil, f64)>, dim: usize, matrix: &mut Csr) {
+    let mut block = Block::new(dim);
+    let mut first: Option<&Stencil> = None;
+    for (stencil, load) in loads {
+        if !first.is_some_and(|first| first.is_like(stencil)) {
+            if let Some(first) = first {
+                block.add_to(first, matrix);
+            }
+            block.clear(stencil);
+            first = Some(stencil);
+        }
+        stencil.add_curvature(load, &mut block);
+    }
+    if let Some(first) = first {
+        block.add_to(first, matrix);
     }
 }
 

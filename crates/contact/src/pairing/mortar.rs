@@ -8,7 +8,8 @@
 //! ([`super::overlap`]): what has nothing opposite is left out, also of ∫ φ_A. In each point the gap is that to the
 //! closest point of the primary face that casts the shadow, so a multiplier's forces have neither resultant nor moment;
 //! where surfaces are flat their pieces and feet agree, shape functions of both sides are integrated exactly, and a
-//! uniform pressure gives the consistent nodal forces of both (the patch test of non-matching meshes).
+//! uniform pressure gives the consistent nodal forces of both (the patch test of non-matching meshes). On quadrilaterals
+//! that are no parallelograms shape functions are not polynomials in the plane, and the rules leave some 1e-5 of a force.
 //!
 //! Weights w_q are those of the reference secondary surface: `P_A / ∫ φ_A` is a pressure per reference area. Pieces and
 //! weights are found anew at each configuration and held in derivatives, so Newton's method with sliding converges fast

@@ -7,7 +7,7 @@ use carom_elements::Kind;
 use carom_mesh::Face;
 use carom_testing::{Random, allocations};
 
-use crate::fixture::{assert_balanced, assert_derivatives, contact, face, full, paired};
+use crate::fixture::{assert_balanced, assert_derivatives, contact, face, full, matrix, paired};
 
 const BASES: [Basis; 2] = [Basis::Standard, Basis::Dual];
 
@@ -68,26 +68,33 @@ impl Pair {
     }
 }
 
-/// Two lines of edges over the same or another stretch, `gap` apart, the secondary one above.
-fn lines(secondary: &[f64], primary: &[f64], gap: f64) -> Pair {
-    let line = |first: usize, n: usize, up: bool| -> Vec<Face> {
-        let edges = (first as u32..(first + n - 1) as u32).map(|a| match up {
-            true => face(Kind::Bar2, &[a + 1, a]),
-            false => face(Kind::Bar2, &[a, a + 1]),
+/// Two lines of edges, `gap` apart, the secondary one above; of two nodes or, through midpoints, of three.
+fn lines(secondary: &[f64], primary: &[f64], gap: f64, kind: Kind) -> Pair {
+    let mut x = Vec::new();
+    let mut line = |ends: &[f64], height: f64, up: bool| -> Vec<Face> {
+        let first = x.len() as u32;
+        x.extend(ends.iter().map(|&end| [end, height, 0.0]));
+        let edges = ends.windows(2).enumerate().map(|(k, ends)| {
+            let (a, b) = (first + k as u32, first + k as u32 + 1);
+            let mut nodes = if up { vec![b, a] } else { vec![a, b] };
+            if kind == Kind::Bar3 {
+                nodes.push(x.len() as u32);
+                x.push([0.5 * (ends[0] + ends[1]), height, 0.0]);
+            }
+            face(kind, &nodes)
         });
         edges.collect()
     };
-    let upper = secondary.iter().map(|&x| [x, gap, 0.0]);
-    let lower = primary.iter().map(|&x| [x, 0.0, 0.0]);
+    let (secondary, primary) = (line(secondary, gap, false), line(primary, 0.0, true));
     Pair {
         dim: 2,
-        x: upper.chain(lower).collect(),
-        secondary: line(0, secondary.len(), false),
-        primary: line(secondary.len(), primary.len(), true),
+        x,
+        secondary,
+        primary,
     }
 }
 
-/// A grid of faces over a rectangle: nodes moved along by a shear, which keeps parallelograms.
+/// A grid of faces over a rectangle.
 fn grid(
     x: &mut Vec<[f64; 3]>,
     kind: Kind,
@@ -96,6 +103,8 @@ fn grid(
     height: f64,
     up: bool,
 ) -> Vec<Face> {
+    let step = if kind.table().nodes > 4 { 2 } else { 1 };
+    let cells = cells.map(|n| step * n);
     let (first, row) = (x.len() as u32, cells[0] + 1);
     for j in 0..=cells[1] {
         for i in 0..=cells[0] {
@@ -108,21 +117,32 @@ fn grid(
         }
     }
     let mut faces = Vec::new();
-    for j in 0..cells[1] {
-        for i in 0..cells[0] {
-            let a = first + j * row + i;
-            let mut square = [a, a + 1, a + 1 + row, a + row];
-            if !up {
-                square.reverse();
-            }
-            let [a, b, c, d] = square;
-            match kind {
-                Kind::Quad4 => faces.push(face(kind, &square)),
-                _ => faces.extend([face(kind, &[a, b, c]), face(kind, &[a, c, d])]),
-            }
+    for j in (0..cells[1]).step_by(step as usize) {
+        for i in (0..cells[0]).step_by(step as usize) {
+            let at = |k: u32| first + j * row + i + step * (k % 2) + step * row * (k / 2);
+            let corners = match up {
+                true => [at(0), at(1), at(3), at(2)],
+                false => [at(2), at(3), at(1), at(0)],
+            };
+            faces.extend(split(kind, corners));
         }
     }
     faces
+}
+
+/// The faces of one square of a grid; midside nodes have the mean number of their ends.
+fn split(kind: Kind, [a, b, c, d]: [u32; 4]) -> Vec<Face> {
+    let m = |a: u32, b: u32| (a + b) / 2;
+    let (sides, middle) = ([m(a, b), m(b, c), m(c, d), m(d, a)], m(a, c));
+    let [ab, bc, cd, da] = sides;
+    let nodes: Vec<Vec<u32>> = match kind {
+        Kind::Tri3 => vec![vec![a, b, c], vec![a, c, d]],
+        Kind::Tri6 => vec![vec![a, b, c, ab, bc, middle], vec![a, c, d, middle, cd, da]],
+        Kind::Quad4 => vec![vec![a, b, c, d]],
+        Kind::Quad8 => vec![vec![a, b, c, d, ab, bc, cd, da]],
+        _ => vec![vec![a, b, c, d, ab, bc, cd, da, middle]],
+    };
+    nodes.iter().map(|nodes| face(kind, nodes)).collect()
 }
 
 /// Two grids over the unit square, or the primary one over another rectangle.
@@ -139,20 +159,24 @@ fn grids(kinds: [Kind; 2], cells: [[u32; 2]; 2], primary: [[f64; 2]; 2], gap: f6
     }
 }
 
-const KINDS: [[Kind; 2]; 4] = [
+const KINDS: [[Kind; 2]; 7] = [
     [Kind::Tri3, Kind::Tri3],
     [Kind::Quad4, Kind::Quad4],
     [Kind::Tri3, Kind::Quad4],
     [Kind::Quad4, Kind::Tri3],
+    [Kind::Tri6, Kind::Quad8],
+    [Kind::Quad8, Kind::Quad9],
+    [Kind::Quad9, Kind::Tri6],
 ];
 
 fn flat_pairs() -> Vec<Pair> {
     let one = [0.0, 0.13, 0.5, 0.61, 1.0];
     let other = [0.0, 0.2, 0.25, 0.7, 0.9, 1.0];
-    let mut pairs = vec![
-        lines(&one, &other, 0.1),
-        lines(&one, &other, -0.02).turned(),
-    ];
+    let mut pairs = Vec::new();
+    for kind in [Kind::Bar2, Kind::Bar3] {
+        let made = |gap| lines(&one, &other, gap, kind);
+        pairs.extend([made(0.1), made(-0.02).turned()]);
+    }
     for kinds in KINDS {
         let made = || grids(kinds, [[3, 2], [2, 5]], [[0.0, 1.0]; 2], 0.1);
         pairs.extend([made(), made().turned()]);
@@ -210,7 +234,9 @@ fn a_uniform_gap_is_the_gap_of_every_multiplier_and_areas_add_up() {
 
 #[test]
 fn a_dual_multiplier_holds_one_secondary_node() {
-    for pair in flat_pairs() {
+    let linear = |kind| [Kind::Bar2, Kind::Tri3, Kind::Quad4].contains(&kind);
+    let pairs = flat_pairs().into_iter();
+    for pair in pairs.filter(|pair| linear(pair.secondary[0].kind)) {
         let pairing = pair.pairing(Basis::Dual);
         let contact = pair.contact(Basis::Dual, 1.0);
         for point in 0..pairing.len() {
@@ -231,10 +257,9 @@ fn a_dual_multiplier_holds_one_secondary_node() {
 #[test]
 fn what_has_nothing_opposite_is_left_out() {
     // the primary side covers [0.35, 1.3] of a secondary one of [0, 1], in space x [-0.2, 0.7]
-    let mut pairs = vec![(
-        lines(&[0.0, 0.3, 0.4, 0.8, 1.0], &[0.35, 0.5, 1.3], 0.1),
-        0.65,
-    )];
+    let (one, other) = ([0.0, 0.3, 0.4, 0.8, 1.0], [0.35, 0.5, 1.3]);
+    let line = |kind| (lines(&one, &other, 0.1, kind), 0.65);
+    let mut pairs = vec![line(Kind::Bar2), line(Kind::Bar3)];
     for kinds in KINDS {
         let pair = grids(kinds, [[4, 3], [2, 3]], [[0.35, 1.3], [-0.2, 0.7]], 0.1);
         pairs.push((pair, 0.65 * 0.7));
@@ -264,13 +289,9 @@ fn what_has_nothing_opposite_is_left_out() {
             assert!((covered - area).abs() < 1e-14, "{covered} {area}");
             // the resultant of a uniform pressure passes through the middle of what is covered
             let last = pair.dim - 1;
-            let moment: f64 = contact
-                .points
-                .iter()
-                .map(|point| {
-                    let node = point.node() as usize;
-                    pair.x[node][0] * forces[pair.dim * node + last]
-                })
+            let upper = (0..pair.x.len()).filter(|&node| pair.x[node][last] == 0.1);
+            let moment: f64 = upper
+                .map(|node| pair.x[node][0] * forces[pair.dim * node + last])
                 .sum();
             assert!((moment - area * 0.675).abs() < 1e-14, "{moment}");
         }
@@ -318,9 +339,9 @@ fn forces_of_every_multiplier_balance_on_bent_surfaces() {
 fn rows_and_curvature_of_multipliers_are_derivatives_where_pieces_keep() {
     // each secondary face sees one primary face: its piece is itself wherever it moves
     let mut random = Random(9);
-    for kind in [Kind::Bar2, Kind::Tri3, Kind::Quad4] {
+    for kind in [Kind::Bar2, Kind::Tri3, Kind::Quad4, Kind::Quad9] {
         let pair = match kind {
-            Kind::Bar2 => lines(&[0.0, 0.4, 1.0], &[-1.0, 2.0], 0.3),
+            Kind::Bar2 | Kind::Bar3 => lines(&[0.0, 0.4, 1.0], &[-1.0, 2.0], 0.3, kind),
             kind => {
                 let wide = [[-2.0, 1.5], [-0.5, 3.0]];
                 let mut pair = grids([Kind::Tri3, kind], [[1, 1], [1, 1]], wide, 0.3);
@@ -335,6 +356,82 @@ fn rows_and_curvature_of_multipliers_are_derivatives_where_pieces_keep() {
             let contact = pair.contact(basis, 0.7);
             assert_derivatives(&pair.places(&u), |places| paired(&contact, places));
         }
+    }
+}
+
+#[test]
+fn the_curvature_of_all_points_is_the_sum_of_theirs() {
+    let mut random = Random(4);
+    for pair in flat_pairs() {
+        let pair = bent(pair, &mut random, 0.01);
+        let mut pairing = pair.pairing(Basis::Standard);
+        let n = pair.dim * pair.x.len();
+        let forces = random.vector(pairing.len());
+        let (mut one, mut all) = (matrix(&pairing, n), matrix(&pairing, n));
+        for (point, &force) in forces.iter().enumerate() {
+            pairing.add_curvature(point, force, 3.0, &mut one);
+        }
+        pairing.add_curvatures(&forces, 3.0, &mut all);
+        let mut size = 0.0_f64;
+        for i in 0..n {
+            for (a, b) in one.row(i).1.iter().zip(all.row(i).1) {
+                // sums of a hundred numbers of the order of the curvature per stencil
+                assert!((a - b).abs() < 1e-12, "{a} {b}");
+                size = size.max(a.abs());
+            }
+        }
+        assert!(size > 1e-2);
+    }
+}
+
+#[test]
+fn shadows_of_a_bent_surface_cover_another_once() {
+    // the primary side is wider, so that shadows along any normal reach every rim
+    let line = lines(
+        &[0.0, 0.1, 0.5, 0.8, 1.0],
+        &[-0.5, 0.1, 0.3, 0.7, 0.9, 1.5],
+        0.05,
+        Kind::Bar2,
+    );
+    let wide = [[-0.5, 1.5]; 2];
+    let [tri, quad] = [Kind::Tri3, Kind::Quad4]
+        .map(|kind| grids([Kind::Tri3, kind], [[4, 3], [5, 6]], wide, 0.05));
+    let mut random = Random(8);
+    for pair in [line, tri, quad] {
+        let pair = bent(pair, &mut random, 0.02);
+        let whole: f64 = pair.consistent(&pair.secondary).iter().sum();
+        for basis in BASES {
+            let pairing = pair.pairing(basis);
+            let covered: f64 = pairing.areas.iter().sum();
+            assert!((covered - whole).abs() < 1e-13, "{covered} {whole}");
+        }
+    }
+}
+
+#[test]
+fn on_distorted_quadrilaterals_forces_are_consistent_to_a_hundred_thousandth() {
+    let cells = [[6, 4], [4, 10]];
+    let mut pair = grids([Kind::Quad4; 2], cells, [[0.0, 1.0]; 2], 0.1);
+    let mut random = Random(8);
+    for x in &mut pair.x {
+        let inside = |x: f64| x > 1e-9 && x < 1.0 - 1e-9;
+        for x in x[..2].iter_mut().filter(|x| inside(**x)) {
+            *x += 0.03 * random.next();
+        }
+    }
+    let pairing = pair.pairing(Basis::Standard);
+    let mut forces = vec![0.0; 3 * pair.x.len()];
+    for point in 0..pairing.len() {
+        pairing
+            .rows
+            .add_force(point, pairing.areas[point], &mut forces);
+    }
+    let sides = [&pair.secondary, &pair.primary].map(|faces| pair.consistent(faces));
+    for node in 0..pair.x.len() {
+        let expected = sides[0][node] - sides[1][node];
+        let error = (forces[3 * node + 2] - expected).abs();
+        // shape functions are quotients of polynomials on such faces: a rule of degree 5 leaves the sixth derivatives
+        assert!(error < 3e-5 * expected.abs(), "{node} {error} {expected}");
     }
 }
 

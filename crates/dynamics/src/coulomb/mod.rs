@@ -10,9 +10,13 @@
 //!
 //! Method: the semi-smooth Newton method on the equations of Alart and Curnier (1991), [`trial`] and [`newton`]; in the
 //! plane it moves from one set of statuses to the next. Where its passes bring nothing, sweeps of nonsmooth Gauss-Seidel
-//! (Jean and Moreau 1992), [`sweep`], give it a better start; their number doubles each time. Solutions exist for
-//! positive definite D, but for large μ there may be several; with an unsymmetric influence of the bound no method is
-//! known that always ends, so the error of the problem that was not solved names the worst candidate.
+//! (Jean and Moreau 1992), [`sweep`], give it a better start, and the next passes are damped, then proximal; the number
+//! of sweeps doubles each time. The methods are known, the texts of both papers were not at hand; the equations are
+//! derived in [`trial`].
+//!
+//! Solutions exist for positive definite D, but for large μ there may be several. Nearly all such problems are solved in
+//! about ten passes; where many contacts jam a body of few freedoms (D of low rank, μ of one and more) some are not, and
+//! the error names the worst candidate.
 //! [`FrictionProblem::defect`] measures a solution by code that knows no solver.
 
 mod defect;
@@ -119,8 +123,8 @@ impl FrictionProblem {
         Ok(FrictionSolution {
             forces: coulomb.forces,
             tangential: coulomb.tangential,
-            statuses: coulomb.trial.statuses,
-            slips: coulomb.trial.slips,
+            statuses: coulomb.statuses,
+            slips: coulomb.slips,
             passes: coulomb.passes,
             sweeps: coulomb.sweeps,
         })
@@ -141,8 +145,12 @@ impl FrictionProblem {
 const TOLERANCE: f64 = 1e-12;
 /// Newton passes without progress before sweeps.
 const PATIENCE: usize = 10;
-/// Halvings of a pass in a round of damped passes.
-const HALVINGS: i32 = 8;
+/// Newton passes of a round.
+const PASSES: usize = 200;
+/// Shift of the linear systems, and halvings of a pass whose whole length does not reduce the defects, in each round in
+/// turn. The large shift makes proximal steps: where D is singular or the contacts jam, it keeps forces that little
+/// decides from running away.
+const MEANS: [(f64, i32); 3] = [(newton::SHIFT, 0), (newton::SHIFT, 8), (1e-3, 8)];
 /// Sweeps of the first round; each further round makes twice as many.
 const SWEEPS: usize = 16;
 /// Rounds of passes and sweeps.
@@ -155,6 +163,10 @@ pub(crate) struct Coulomb {
     pub(crate) forces: Vec<f64>,
     /// Tangential force of each candidate, N.
     pub(crate) tangential: Vec<[f64; 2]>,
+    /// Normal status of each candidate.
+    pub(crate) statuses: Vec<Status>,
+    /// Tangential status of each candidate.
+    pub(crate) slips: Vec<Slip>,
     /// Newton passes of the last solve.
     pub(crate) passes: usize,
     /// Sweeps of the last solve.
@@ -178,8 +190,7 @@ impl Coulomb {
         self.best = self.trial.clone();
         self.best.merit = f64::INFINITY;
         for round in 0..ROUNDS {
-            let damped = round % 2 == 1;
-            if self.newton(problem, damped) {
+            if self.newton(problem, MEANS[round % MEANS.len()]) {
                 self.finish(problem);
                 return Ok(());
             }
@@ -205,17 +216,21 @@ impl Coulomb {
     }
 
     /// Newton passes while they bring the trial nearer; whether it is a solution then. `best` is the nearest trial.
-    fn newton(&mut self, problem: &Posed, damped: bool) -> bool {
+    /// `means`: shift and halvings.
+    fn newton(&mut self, problem: &Posed, means: (f64, i32)) -> bool {
         let mut patience = PATIENCE;
-        while patience > 0 {
+        for _ in 0..PASSES {
+            if patience == 0 {
+                break;
+            }
             if self.best.merit.is_finite() && self.trial.worst.0 <= TOLERANCE {
                 return true;
             }
             self.passes += 1;
-            if newton::step(problem, &self.trial, &mut self.change).is_err() {
+            if newton::step(problem, &self.trial, means.0, &mut self.change).is_err() {
                 return false;
             }
-            self.advance(problem, if damped { HALVINGS } else { 0 });
+            self.advance(problem, means.1);
             if self.trial.merit < 0.999 * self.best.merit {
                 self.best.clone_from(&self.trial);
                 patience = PATIENCE;
@@ -250,6 +265,8 @@ impl Coulomb {
     /// Takes the forces of the trial over, tension cut off where the law wants it.
     fn finish(&mut self, problem: &Posed) {
         let p = |row: usize| self.trial.p[row];
+        self.statuses.clone_from(&self.trial.statuses);
+        self.slips.clone_from(&self.trial.slips);
         self.forces.clear();
         self.tangential.clear();
         for (i, candidate) in problem.candidates.iter().enumerate() {
@@ -263,15 +280,5 @@ impl Coulomb {
             };
             self.tangential.push([p(row + 1), second]);
         }
-    }
-
-    /// Normal status of each candidate.
-    pub(crate) fn statuses(&self) -> &[Status] {
-        &self.trial.statuses
-    }
-
-    /// Tangential status of each candidate.
-    pub(crate) fn slips(&self) -> &[Slip] {
-        &self.trial.slips
     }
 }

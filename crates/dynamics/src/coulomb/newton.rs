@@ -9,7 +9,7 @@ use super::{Posed, Slip};
 
 /// What is added to the diagonal of the equations, which is about one: where D is singular the forces that nothing
 /// decides stay as they are. Refinement takes its effect on all others away.
-const SHIFT: f64 = 1e-11;
+pub(super) const SHIFT: f64 = 1e-11;
 /// Refinements of the solution of the linear system.
 const REFINEMENTS: usize = 6;
 
@@ -20,7 +20,12 @@ const REFINEMENTS: usize = 6;
 /// δt - μ e δP - c Π (δt - ρ s_t D_t δp) = -(t - μ e P)
 /// ```
 /// where b = μ (P - R) is replaced by the μ P to which it is equal once R = 0.
-pub(super) fn step(problem: &Posed, trial: &Trial, dp: &mut [f64]) -> Result<(), Error> {
+pub(super) fn step(
+    problem: &Posed,
+    trial: &Trial,
+    shift: f64,
+    dp: &mut [f64],
+) -> Result<(), Error> {
     let rows = active(problem, trial);
     let mut free = vec![true; problem.rows()];
     for &row in &rows {
@@ -42,7 +47,7 @@ pub(super) fn step(problem: &Posed, trial: &Trial, dp: &mut [f64]) -> Result<(),
         }
     }
     if m > 0 {
-        for (&row, change) in rows.iter().zip(refined(&matrix, &rhs)?) {
+        for (&row, change) in rows.iter().zip(refined(&matrix, &rhs, shift)?) {
             dp[row] = change;
         }
     }
@@ -107,16 +112,16 @@ fn set(line: &mut [f64], factor: f64, d: &[f64]) {
 }
 
 /// Solution of a column-major system by its shifted matrix and refinement.
-fn refined(matrix: &[f64], rhs: &[f64]) -> Result<Vec<f64>, Error> {
+fn refined(matrix: &[f64], rhs: &[f64], shift: f64) -> Result<Vec<f64>, Error> {
     let m = rhs.len();
     let mut shifted = matrix.to_vec();
     for k in 0..m {
-        shifted[k * m + k] += SHIFT;
+        shifted[k * m + k] += shift;
     }
     let factor = DenseLu::new(m, shifted)?;
     let (mut x, mut rest) = (vec![0.0; m], rhs.to_vec());
     let mut before = f64::INFINITY;
-    for _ in 0..REFINEMENTS {
+    for _ in 0..if shift > SHIFT { 1 } else { REFINEMENTS } {
         let change = factor.solve(&rest);
         for (x, change) in x.iter_mut().zip(&change) {
             *x += change;

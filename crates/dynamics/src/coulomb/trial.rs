@@ -82,9 +82,9 @@ impl Trial {
         self.worst = (0.0, 0);
         self.merit = 0.0;
         for i in 0..problem.len() {
-            let mut sizes = vec![0.0; 1 + problem.tangents];
+            let mut sizes = [0.0; 3];
             let row = problem.normal(i);
-            for (k, size) in sizes.iter_mut().enumerate() {
+            for (k, size) in sizes.iter_mut().enumerate().take(1 + problem.tangents) {
                 let terms = problem.d(row + k).iter().zip(&self.p).map(|(d, p)| d * p);
                 let (mut sum, mut absolute) = (0.0, 0.0);
                 for term in terms {
@@ -105,8 +105,7 @@ impl Trial {
                 } else {
                     defect.abs() / size
                 };
-                // a comparison that a NaN does not pass
-                if !(relative <= self.worst.0) {
+                if relative.is_nan() || relative > self.worst.0 {
                     self.worst = (relative, i);
                 }
             }

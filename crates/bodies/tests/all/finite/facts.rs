@@ -1,8 +1,9 @@
 //! Limits, refusals, threads.
 
 use carom_bodies::{Body, BodySpec, Error, Formulation, Kinematics, Placement, Scratch};
+use carom_elements::Kind;
 use carom_materials::Failure;
-use carom_mesh::generate;
+use carom_mesh::{Mesh, generate};
 
 use super::{Step, displacement, elastic, samples};
 use crate::sample::{Sample, cells, distance, largest, shapes};
@@ -90,6 +91,28 @@ fn what_makes_no_sense_at_finite_strain_is_refused() {
     let small = crate::sample::MATERIAL.into();
     let error = refusal(stress, small, Formulation::BBar);
     assert!(matches!(error, Error::LinearFormulation { .. }), "{error}");
+}
+
+#[test]
+fn reduced_integration_of_a_quadratic_element_is_refused() {
+    let reference = Kind::Quad8.table().reference;
+    let mut mesh = Mesh::new(2);
+    mesh.nodes.extend(reference);
+    let number: Vec<u32> = (0..8).collect();
+    mesh.push(Kind::Quad8, &number);
+    let spec = BodySpec {
+        name: "arm".to_owned(),
+        cells: cells(&mesh, 2),
+        kinematics: Kinematics::PlaneStrain { thickness: 1.0 },
+        material: elastic()[0].1,
+        formulation: super::HOURGLASS,
+        weights: None,
+    };
+    let error = Body::new(&mesh, spec, &number).unwrap_err();
+    assert!(
+        matches!(error, Error::NotReduced { found: "quad8", .. }),
+        "{error}"
+    );
 }
 
 #[test]

@@ -1,0 +1,73 @@
+//! The curvature of a stencil as a small matrix over the unknowns of its nodes.
+
+use carom_algebra::csr::Csr;
+
+use super::curvature::Form;
+use super::stencil::{Stencil, UNKNOWNS};
+
+/// Small symmetric matrix over the unknowns of a stencil.
+pub struct Block {
+    dim: usize,
+    /// Unknowns: rows of the matrix.
+    n: usize,
+    entries: [f64; UNKNOWNS * UNKNOWNS],
+}
+
+impl Block {
+    /// No unknowns yet.
+    pub fn new(dim: usize) -> Block {
+        Block {
+            dim,
+            n: 0,
+            entries: [0.0; UNKNOWNS * UNKNOWNS],
+        }
+    }
+
+    /// Zeros over the unknowns of a stencil.
+    pub fn clear(&mut self, stencil: &Stencil) {
+        self.n = self.dim * stencil.relative().count();
+        self.entries[..self.n * self.n].fill(0.0);
+    }
+
+    /// Adds the block to the matrix over all unknowns.
+    pub fn add_to(&self, stencil: &Stencil, matrix: &mut Csr) {
+        let (unknowns, n) = stencil.unknowns(self.dim);
+        matrix.add_block(&unknowns[..n], &self.entries[..n * n]);
+    }
+
+    /// Adds value · matrix in the rows of one node and the columns of another.
+    pub fn add_nodes(&mut self, row: usize, column: usize, value: f64, matrix: &[[f64; 3]; 3]) {
+        for (i, entries) in matrix.iter().enumerate().take(self.dim) {
+            let first = (self.dim * row + i) * self.n + self.dim * column;
+            for (to, entry) in self.entries[first..].iter_mut().zip(&entries[..self.dim]) {
+                *to += value * entry;
+            }
+        }
+    }
+
+    /// Adds value · (a bᵀ + b aᵀ).
+    pub fn add(&mut self, value: f64, a: &Form, b: &Form) {
+        let (a, b) = (self.flat(a), self.flat(b));
+        let (a, b) = (&a[..self.n], &b[..self.n]);
+        for (i, row) in self
+            .entries
+            .chunks_exact_mut(self.n)
+            .take(self.n)
+            .enumerate()
+        {
+            let (a_i, b_i) = (value * a[i], value * b[i]);
+            for ((entry, a_j), b_j) in row.iter_mut().zip(a).zip(b) {
+                *entry += a_i * b_j + b_i * a_j;
+            }
+        }
+    }
+
+    /// The components that are unknowns.
+    fn flat(&self, form: &Form) -> [f64; UNKNOWNS] {
+        let mut flat = [0.0; UNKNOWNS];
+        for (flat, vector) in flat.chunks_exact_mut(self.dim).zip(form) {
+            flat.copy_from_slice(&vector.as_slice()[..self.dim]);
+        }
+        flat
+    }
+}
