@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
-use carom_elements::Kind;
+use carom_elements::{Kind, MAX_NODES};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
@@ -38,7 +38,7 @@ pub struct Grid<'a> {
 pub struct Cells<'a> {
     /// Their kind.
     pub kind: Kind,
-    /// Point numbers counted from zero, one cell after the other.
+    /// Point numbers counted from zero, one cell after the other, in the order of our tables.
     pub nodes: &'a [u32],
 }
 
@@ -226,13 +226,13 @@ impl Document {
         let mut end = 0_i64;
         for block in blocks {
             let table = block.kind.table();
-            connectivity.extend(
-                block
-                    .nodes
-                    .iter()
-                    .flat_map(|node| i64::from(*node).to_le_bytes()),
-            );
-            for _ in block.nodes.chunks_exact(table.nodes) {
+            for nodes in block.nodes.chunks_exact(table.nodes) {
+                let mut cell = [0_i64; MAX_NODES];
+                for (&node, &place) in nodes.iter().zip(table.vtk_order) {
+                    cell[place] = i64::from(node);
+                }
+                let cell = &cell[..table.nodes];
+                connectivity.extend(cell.iter().flat_map(|node| node.to_le_bytes()));
                 end += table.nodes as i64;
                 offsets.extend_from_slice(&end.to_le_bytes());
                 types.push(table.vtk);
