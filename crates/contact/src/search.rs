@@ -11,7 +11,6 @@
 use carom_elements::{Kind, MAX_FACE_NODES};
 use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
 
-use crate::Pairing;
 use crate::sight::View;
 use crate::{Pairing, Places, Sight};
 
@@ -47,8 +46,6 @@ pub struct Search {
     pub(crate) pairing: Pairing,
     /// Projections made since the last renewal.
     projections: usize,
-    /// Scratch of [`Contact::pair`](crate::Contact::pair) for the mortar method.
-    pub(crate) pairing: Pairing,
 }
 
 /// What one query remembers.

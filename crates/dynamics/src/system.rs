@@ -256,6 +256,10 @@ impl System {
             }
         }
         let nonlinear = NumberedNonlinear::new(&model, (&number, &x), &bodies, &fixed)?;
+        for follows in &nonlinear.follows {
+            fixed[follows.unknown as usize] = true;
+        }
+        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
         let mut contacts: Vec<Contact> = model
             .contacts
             .iter()
@@ -288,10 +292,6 @@ impl System {
             faces.map(|face| renumbered(face, &number)).collect()
         };
         let secondary_faces = model.contacts.iter().map(faces_of).collect();
-        for follows in &nonlinear.follows {
-            fixed[follows.unknown as usize] = true;
-        }
-        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
         let system = System {
             tolerance: 1e-12 * model.mesh.size(),
             axisymmetric: model

@@ -268,6 +268,16 @@ pub struct Friction {
     pub peak_force: f64,
 }
 
+/// Names of the [`Energy::works`] that only runs have that are not linear: of moving supports, of what materials, damping and
+/// friction dissipate, and of what hardening stores.
+pub const NONLINEAR_WORKS: [&str; 5] = [
+    "work of supports",
+    "dissipation of the materials",
+    "dissipation of the damping",
+    "dissipation of friction",
+    "stored in hardening",
+];
+
 /// Balance of energy, J. Each term has its own formula; nothing is found by subtraction but the residual.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
@@ -281,8 +291,7 @@ pub struct Energy {
     pub strain_final: f64,
     /// Further work and stored or lost energies over the run, by name, positive when the bodies *gain*: `work of
     /// loads`, `work of contact`, `dissipation of the scheme`, `stored by the scheme` where its energy has a term
-    /// of its own, and in zones `work of links`; where there is some, `work of supports`, `dissipation of the materials`,
-    /// `dissipation of the damping`, `dissipation of friction`, `stored in hardening`.
+    /// of its own, and in zones `work of links`; where there is some, those of [`NONLINEAR_WORKS`].
     pub works: BTreeMap<String, f64>,
     /// Final - initial - Σ works.
     #[serde(with = "float")]

@@ -67,6 +67,7 @@ impl Newton {
             );
             let places = Places {
                 dim: system.dim,
+                time: self.state.time,
                 x: &system.x,
                 u: &self.vectors.place,
             };

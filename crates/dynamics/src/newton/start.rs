@@ -121,6 +121,7 @@ impl Newton {
         for (k, contact) in system.contacts.iter().enumerate() {
             let places = carom_contact::Places {
                 dim: system.dim,
+                time: self.state.time,
                 x: &system.x,
                 u: &self.state.motion.u,
             };

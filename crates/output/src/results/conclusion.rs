@@ -11,7 +11,7 @@ use crate::results::exact;
 use crate::results::impacts::ContactTotals;
 use crate::results::{Comparison, Ending, Last, Results};
 use crate::summary::{
-    Angular, Check, Contact, ENERGY_CHECK, Energy, Exact, Friction, Model, Momentum, Rejected, Summary, Time, Verdict,
+    Angular, Check, Contact, ENERGY_CHECK, Energy, Exact, Friction, Model, Momentum, NONLINEAR_WORKS, Rejected, Summary, Time, Verdict,
     Zones, hash,
 };
 use crate::{Error, Report, atomic};
@@ -311,14 +311,14 @@ fn energy(last: &Last, linked: bool) -> Energy {
     }
     // what linear runs have not is named only where there is some
     let further = [
-        ("work of supports", end.work_supports),
-        ("dissipation of the materials", -end.dissipation_material),
-        ("dissipation of the damping", -end.dissipation_damping),
-        ("dissipation of friction", -end.dissipation_friction),
-        ("stored in hardening", start.hardening - end.hardening),
+        end.work_supports,
+        -end.dissipation_material,
+        -end.dissipation_damping,
+        -end.dissipation_friction,
+        start.hardening - end.hardening,
     ];
-    let further = further.into_iter().filter(|(_, work)| *work != 0.0);
-    works.extend(further.map(|(name, work)| (name.to_owned(), work)));
+    let further = NONLINEAR_WORKS.iter().zip(further).filter(|(_, work)| *work != 0.0);
+    works.extend(further.map(|(name, work)| ((*name).to_owned(), work)));
     let stored = end.scheme_energy - start.scheme_energy;
     if stored != 0.0 {
         works.insert("stored by the scheme".to_owned(), -stored);

@@ -244,10 +244,10 @@ impl Volume {
             ("acceleration", fields.acceleration, &snapshot.a),
         ];
         let chosen = chosen.into_iter().filter(|(_, on, _)| *on);
-        let vectors: Vec<(&str, Vec<[f64; 3]>)> = chosen
+        let motions: Vec<(&str, Vec<[f64; 3]>)> = chosen
             .map(|(name, _, values)| (name, vectors(system.dim, values)))
             .collect();
-        let point_fields = vectors.iter().map(|(name, values)| Field {
+        let point_fields = motions.iter().map(|(name, values)| Field {
             name,
             values: Values::Vector(values),
         });
