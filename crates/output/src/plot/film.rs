@@ -42,6 +42,11 @@ const COLOURS: [[f64; 3]; 5] = [
 ];
 /// Steps of colour.
 const LEVELS: usize = 24;
+/// Steps of shade of solids, the part of the colour that the darkest of them keeps, and where the light comes from: to the
+/// right, upward, towards the viewer.
+const SHADES: usize = 8;
+const DARK: f64 = 0.72;
+const LIGHT: [f64; 3] = [-0.35, 0.55, 0.76];
 
 /// A face, or a plane cell, with its value.
 #[derive(Clone, Debug)]
@@ -78,8 +83,25 @@ pub(crate) struct Scene<'a> {
 /// A polygon in the plane of the picture.
 struct Flat {
     points: Vec<[f64; 2]>,
-    level: usize,
+    tone: Tone,
     depth: f64,
+}
+
+/// A colour: the step of its value, and how much light falls on it, the most being `SHADES - 1`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Tone {
+    level: usize,
+    shade: usize,
+}
+
+impl Tone {
+    /// Of a value in full light.
+    fn bright(level: usize) -> Tone {
+        Tone {
+            level,
+            shade: SHADES - 1,
+        }
+    }
 }
 
 /// Where a frame is drawn: pixels per metre, the corner of the model's box (m), the corner of the frame and its size (px).
@@ -152,9 +174,13 @@ fn flatten(dim: usize, frame: &Frame, largest: f64) -> Vec<Flat> {
     let mut flats: Vec<Flat> = Vec::with_capacity(frame.patches.len());
     for patch in &frame.patches {
         let seen: Vec<([f64; 2], f64)> = patch.points.iter().map(|x| project(dim, x)).collect();
+        let level = level(patch.value);
         let flat = Flat {
             points: seen.iter().map(|(x, _)| *x).collect(),
-            level: level(patch.value),
+            tone: match dim {
+                3 => shaded(level, &seen),
+                _ => Tone::bright(level),
+            },
             depth: seen.iter().map(|(_, depth)| depth).sum::<f64>() / seen.len() as f64,
         };
         if dim < 3 || area(&flat.points) > 0.0 {
@@ -165,6 +191,23 @@ fn flatten(dim: usize, frame: &Frame, largest: f64) -> Vec<Flat> {
         flats.sort_by(|a, b| a.depth.total_cmp(&b.depth));
     }
     flats
+}
+
+/// The tone of a face by the light on it, from its places to the right, upward and towards the viewer.
+fn shaded(level: usize, seen: &[([f64; 2], f64)]) -> Tone {
+    let mut normal = [0.0; 3];
+    let next = seen.iter().cycle().skip(1);
+    for (([x, y], z), ([u, v], w)) in seen.iter().zip(next) {
+        normal[0] += y * w - z * v;
+        normal[1] += z * u - x * w;
+        normal[2] += x * v - y * u;
+    }
+    let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+    let light = (0..3).map(|i| normal[i] * LIGHT[i]).sum::<f64>() / length.max(f64::MIN_POSITIVE);
+    Tone {
+        level,
+        shade: (light.max(0.0) * (SHADES - 1) as f64).round() as usize,
+    }
 }
 
 /// Place in the plane of the picture, and how near to the viewer, m.
@@ -240,7 +283,7 @@ fn draw_head(scene: &Scene, window: &Window, largest: f64, frames: &[Frame], svg
             "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"6.2\" height=\"10\" fill=\"{}\"/>",
             x + 6.0 * level as f64,
             y - 5.0,
-            colour(level)
+            colour(Tone::bright(level))
         );
     }
     x += 6.0 * LEVELS as f64 + 8.0;
@@ -322,7 +365,7 @@ fn draw_faces(flats: &[Flat], window: &Window, svg: &mut String) {
     for flat in flats {
         let mut path = String::new();
         trace(flat.points.iter().map(|x| window.at(*x)), &mut path);
-        let colour = colour(flat.level);
+        let colour = colour(flat.tone);
         // without an edge of its own colour a face would leave a hair of white to its neighbours
         let stroke = if edges { "#5c6670" } else { &colour };
         let _ = writeln!(
@@ -392,13 +435,14 @@ fn stripe(path: &mut String, [x, y]: [f64; 2], length: f64) {
 }
 
 /// A colour of the scale, `#rrggbb`.
-fn colour(level: usize) -> String {
-    let place = level as f64 / (LEVELS - 1) as f64 * (COLOURS.len() - 1) as f64;
+fn colour(tone: Tone) -> String {
+    let place = tone.level as f64 / (LEVELS - 1) as f64 * (COLOURS.len() - 1) as f64;
     let below = (place as usize).min(COLOURS.len() - 2);
     let part = place - below as f64;
+    let light = DARK + (1.0 - DARK) * tone.shade as f64 / (SHADES - 1) as f64;
     let [r, g, b] = [0, 1, 2].map(|i| {
         let [from, to] = [COLOURS[below][i], COLOURS[below + 1][i]];
-        (from + part * (to - from)).round() as u8
+        (light * (from + part * (to - from))).round() as u8
     });
     format!("#{r:02x}{g:02x}{b:02x}")
 }

@@ -8,7 +8,7 @@ use std::time::Duration;
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::Displacement;
 use carom_contact::{Initial, Integration, Law, Plane, Sliding};
-use carom_dynamics::scheme::EnergyMomentum;
+use carom_dynamics::scheme::{EnergyMomentum, Newmark};
 use carom_dynamics::{
     Model, ModelBody, ModelContact, ModelTarget, Newton, Nonlinear, Scheme, System, march,
 };
@@ -26,8 +26,16 @@ const RUBBER: Elastic = Elastic {
     poisson: 0.3,
 };
 
-/// A block of 3 cells a side over a rigid floor at y = 0, 1 m high, with the energy-momentum scheme.
-pub fn block(dim: usize, material: Material, velocity: [f64; 3], floor: bool) -> Arc<System> {
+/// A block of 3 cells a side over a rigid floor at y = 0, 1 m high.
+fn block(dim: usize, material: Material, velocity: [f64; 3], floor: bool) -> Arc<System> {
+    // plasticity has no stress between two states with a discrete gradient
+    let scheme = match material {
+        Material::J2Plasticity(_) => Scheme::Newmark(Newmark {
+            beta: 0.25,
+            gamma: 0.5,
+        }),
+        _ => Scheme::EnergyMomentum(EnergyMomentum),
+    };
     let mesh = match dim {
         2 => generate::rectangle("a", [0.0, 0.02], [1.0, 1.0], [3; 2], false),
         _ => generate::box_("a", [0.0, 0.02, 0.0], [1.0; 3], [3; 3], false),
@@ -71,7 +79,7 @@ pub fn block(dim: usize, material: Material, velocity: [f64; 3], floor: bool) ->
         supports: Vec::new(),
         gravity: [0.0; 3],
         contacts: if floor { vec![ground] } else { Vec::new() },
-        scheme: Scheme::EnergyMomentum(EnergyMomentum),
+        scheme,
         dt: 1e-3,
         adaptive: None,
         nonlinear: Nonlinear::default(),
@@ -215,7 +223,7 @@ fn a_film_shows_six_instants_of_what_moves() {
         }
         let frames: Vec<&str> = film.split("<g>").skip(1).collect();
         assert_eq!(frames.len(), 6);
-        assert!(frames[0].contains("t = 0 s") && frames[5].contains("t = 50 ms"));
+        assert!(frames[0].contains("t = 0 s") && frames[5].contains("t = 50.0 ms"));
         // nine cells; of a cube the nine faces of each of the three sides in view
         let faces = if dim == 2 { 9 } else { 27 };
         for frame in &frames {
@@ -239,9 +247,8 @@ fn a_linear_run_that_hardly_moves_has_no_film_and_no_further_columns() {
     assert!(!still.join("plots/film.svg").exists());
     assert!(summary.newton.is_none() && summary.momentum.angular.is_none());
     let text = read(&still.join("summary.json"));
-    for word in ["newton", "angular", "supports\":", "hardening"] {
-        let known = word == "supports\":";
-        assert_eq!(text.contains(word), known, "{word}: supports have an impulse");
+    for key in ["newton", "angular", "friction", "work of supports", "stored in hardening"] {
+        assert!(!text.contains(&format!("\"{key}\"")), "{key}");
     }
     let table = columns(&still.join("histories.csv"));
     assert!(table.keys().all(|name| !name.contains("hardening") && !name.contains("angular")));

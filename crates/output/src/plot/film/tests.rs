@@ -52,6 +52,11 @@ fn of_a_cube_three_faces_are_seen_top_right_side_and_front() {
     for (area, cosine) in areas.iter().zip(cosines) {
         assert!((area - cosine).abs() < 1e-14);
     }
+    // the light comes from above, in front and the left
+    let shade = |k: usize| flats[k].tone.shade;
+    let top = (0..3).max_by_key(|k| shade(*k)).unwrap();
+    let highest = |flat: &Flat| flat.points.iter().map(|x| x[1]).fold(f64::MIN, f64::max);
+    assert!(flats.iter().all(|flat| highest(flat) <= highest(&flats[top])));
     // z goes upward, x to the right
     let ([x, _], _) = project(3, &[1.0, 0.0, 0.0]);
     let ([_, y], _) = project(3, &[0.0, 0.0, 1.0]);
@@ -63,7 +68,7 @@ fn what_is_nearer_is_drawn_later() {
     let mut patches = cube([0.0, -5.0, 0.0], 1.0);
     patches.extend(cube([0.0; 3], 0.0));
     let flats = flatten(3, &frame(patches), 1.0);
-    let levels: Vec<usize> = flats.iter().map(|flat| flat.level).collect();
+    let levels: Vec<usize> = flats.iter().map(|flat| flat.tone.level).collect();
     assert_eq!(levels, [0, 0, 0, LEVELS - 1, LEVELS - 1, LEVELS - 1]);
 }
 
@@ -82,7 +87,7 @@ fn many_faces_are_drawn_in_squares_over_the_same_area() {
     let svg = film_figure(&scene(2), &[many]).unwrap();
     assert!(!svg.contains("Z\"") && svg.len() < 20_000, "{}", svg.len());
     // one run in each row of squares, of the length of the model: 1/(1 + 2 MARGIN) of the frame
-    let path = svg.split(&format!("stroke=\"{}\"", colour(LEVELS - 1))).next().unwrap();
+    let path = svg.split(&format!("stroke=\"{}\"", colour(Tone::bright(LEVELS - 1)))).next().unwrap();
     let path = path.rsplit("<path d=\"").next().unwrap();
     let runs: Vec<f64> = path
         .split('h')
