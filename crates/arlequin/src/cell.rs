@@ -272,7 +272,7 @@ impl Cell {
     }
 }
 
-/// Total degree of the shape functions of a kind under an affine map.
+/// Total degree of the shape functions of a kind under an affine map; the pyramid's are rational.
 pub(crate) fn degree(kind: Kind) -> usize {
     match kind {
         Kind::Point1 => 0,

@@ -44,6 +44,18 @@ pub enum Error {
         /// The dimension of the mesh.
         expected: usize,
     },
+    /// A kind of cell whose common parts with others are not known how to cut.
+    #[error(
+        "{kind} cells in the {model} model: overlapping models take bar2, tri3, quad4, tet4 and hex8 cells"
+    )]
+    Kind {
+        /// Its model.
+        model: Model,
+        /// The first such cell.
+        cell: ElementId,
+        /// Name of its kind.
+        kind: &'static str,
+    },
     /// A cell is not fit for computation.
     #[error("a cell of the overlapping models is {0}")]
     Defect(Defect),

@@ -8,7 +8,7 @@ use carom_algebra::tensor::Mat3;
 use carom_elements::{Kind, MAX_NODES, Rule, map};
 use carom_materials::{Elastic, Plane};
 
-use crate::body::Kinematics;
+use crate::Kinematics;
 
 /// Shape functions and reference gradients at the points of a rule, evaluated once per block.
 #[derive(Debug)]

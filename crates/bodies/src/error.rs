@@ -130,3 +130,23 @@ pub enum Error {
         body: String,
     },
 }
+
+impl Error {
+    /// Name of the body.
+    pub fn body(&self) -> &str {
+        match self {
+            Error::Empty { body }
+            | Error::WrongElement { body, .. }
+            | Error::QuadraticBar { body, .. }
+            | Error::NegativeRadius { body, .. }
+            | Error::WeightCount { body, .. }
+            | Error::NegativeMass { body, .. }
+            | Error::NegativeStiffness { body, .. }
+            | Error::FiniteKinematics { body, .. }
+            | Error::LinearFormulation { body }
+            | Error::NotReduced { body, .. }
+            | Error::NoStress { body, .. }
+            | Error::NoBetween { body } => body,
+        }
+    }
+}

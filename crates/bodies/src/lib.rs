@@ -10,6 +10,7 @@ mod continuum;
 mod error;
 mod finite;
 mod force;
+mod kinematics;
 mod lanes;
 mod single;
 mod size;
@@ -18,8 +19,9 @@ mod together;
 mod weights;
 
 pub use block::Scratch;
-pub use body::{Body, BodySpec, Kinematics, MassKind};
+pub use body::{Body, BodySpec};
 pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};
+pub use kinematics::{Kinematics, MassKind};
 pub use size::{height, smallest as smallest_size};
 pub use weights::CellWeights;

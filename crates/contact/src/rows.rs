@@ -75,16 +75,21 @@ impl Rows {
         }
     }
 
+    /// Appends one point of another pool.
+    pub fn push_from(&mut self, other: &Rows, point: usize) {
+        let (dofs, coefficients) = other.row(point);
+        self.gaps.push(other.gap(point));
+        self.normals.push(other.normal(point));
+        self.rates.push(other.rate(point));
+        self.dofs.extend_from_slice(dofs);
+        self.coefficients.extend_from_slice(coefficients);
+        self.offsets.push(self.dofs.len() as u32);
+    }
+
     /// Appends the points of another pool.
     pub(crate) fn append(&mut self, other: &Rows) {
         for point in 0..other.len() {
-            let (dofs, coefficients) = other.row(point);
-            self.gaps.push(other.gap(point));
-            self.normals.push(other.normal(point));
-            self.rates.push(other.rate(point));
-            self.dofs.extend_from_slice(dofs);
-            self.coefficients.extend_from_slice(coefficients);
-            self.offsets.push(self.dofs.len() as u32);
+            self.push_from(other, point);
         }
     }
 

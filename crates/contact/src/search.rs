@@ -320,7 +320,7 @@ pub(crate) fn positions(places: &Places, face: &Face) -> [[f64; 3]; MAX_FACE_NOD
 
 /// A box that holds a face.
 fn hull(places: &Places, face: &Face) -> Bounds {
-    face.bounds(&positions(places, face)[..face.corners().len()])
+    Bounds::of_face(face.kind, &positions(places, face)[..face.corners().len()])
 }
 
 /// Whether a point faces the face on which its closest point lies: whether the way to it runs sideways by no more than

@@ -217,7 +217,7 @@ impl View<'_> {
 
 fn bounds(face: &Face, x: &[[f64; 3]]) -> Bounds {
     let places: Vec<[f64; 3]> = face.corners().iter().map(|&n| x[n as usize]).collect();
-    face.bounds(&places)
+    Bounds::of_face(face.kind, &places)
 }
 
 fn diagonal(bounds: &Bounds) -> f64 {

@@ -42,6 +42,16 @@ pub enum Error {
         /// A point that still changes.
         point: usize,
     },
+    /// The contact problem with friction was not solved.
+    #[error("step {step}: {point}: the contact problem with friction was not solved: {cause}")]
+    Friction {
+        /// Number of the step.
+        step: u64,
+        /// The point that is furthest from its laws.
+        point: String,
+        /// Cause.
+        cause: crate::coulomb::FrictionFailure,
+    },
     /// A displacement, velocity or force is infinite or not a number.
     #[error(
         "step {step}, t = {time:e} s: the {quantity} is not finite; the step is too large for the scheme, or the model is not supported"

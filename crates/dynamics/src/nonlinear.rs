@@ -3,14 +3,13 @@
 
 use std::ops::Range;
 
-use carom_bodies::Body;
+use carom_bodies::{Body, FollowerPressure};
 use carom_contact::{Contact, Integration};
-use carom_mesh::{Face, Surface};
+use carom_mesh::Surface;
 use serde::{Deserialize, Serialize};
 
 use crate::Error;
-use crate::contacts::renumbered;
-use crate::system::{Model, ModelBody, System};
+use crate::system::{Model, ModelBody, ModelContact, ModelTarget, System};
 
 /// A quantity as a function of time: straight between its points, constant before the first and after the last.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -159,7 +158,6 @@ impl Nonlinear {
 /// A load in the numbers of a system.
 #[derive(Debug)]
 pub(crate) struct NumberedLoad {
-    pub(crate) name: String,
     pub(crate) amplitude: Amplitude,
     pub(crate) force: NumberedForce,
 }
@@ -169,8 +167,8 @@ pub(crate) struct NumberedLoad {
 pub(crate) enum NumberedForce {
     /// Unknowns and forces, N.
     Dead(Vec<(u32, f64)>),
-    /// Faces with nodes by system number, the body that they bound, and the pressure in Pa.
-    Follower(Vec<Face>, usize, f64),
+    /// A pressure in Pa.
+    Follower(FollowerPressure, f64),
 }
 
 /// A prescribed displacement of one unknown: which amplitude it follows.
@@ -196,14 +194,13 @@ pub(crate) struct NumberedNonlinear {
 }
 
 impl NumberedNonlinear {
-    /// Numbers loads and motions. `number` and `x`: system numbers of the mesh nodes and reference coordinates (m) by system
-    /// number; `fixed`: unknowns held by supports.
+    /// Numbers loads and motions. `number`: system numbers of the mesh nodes; `fixed`: unknowns held by supports.
     ///
     /// # Errors
     /// A motion prescribed in a direction that a support holds.
     pub(crate) fn new(
         model: &Model,
-        (number, x): (&[u32], &[[f64; 3]]),
+        number: &[u32],
         bodies: &[Body],
         fixed: &[bool],
     ) -> Result<NumberedNonlinear, Error> {
@@ -242,9 +239,8 @@ impl NumberedNonlinear {
         }
         for load in &given.loads {
             numbered.loads.push(NumberedLoad {
-                name: load.name.clone(),
                 amplitude: load.amplitude.clone(),
-                force: numbered_force(load, model, number, x),
+                force: numbered_force(load, model, number),
             });
         }
         let mut first = 0;
@@ -255,7 +251,7 @@ impl NumberedNonlinear {
         numbered.needed = given.asks()
             || bodies.iter().any(|body| !body.is_linear())
             || model.scheme.get().is_between()
-            || model.contacts.iter().any(|contact| contact.friction > 0.0);
+            || model.contacts.iter().any(needs_newton);
         Ok(numbered)
     }
 
@@ -282,7 +278,12 @@ impl NumberedNonlinear {
     }
 }
 
-fn numbered_force(load: &Load, model: &Model, number: &[u32], x: &[[f64; 3]]) -> NumberedForce {
+fn needs_newton(contact: &ModelContact) -> bool {
+    let moves = matches!(&contact.primary, ModelTarget::Rigid(obstacle) if obstacle.motion.moves());
+    contact.friction > 0.0 || moves || matches!(contact.integration, Integration::Mortar { .. })
+}
+
+fn numbered_force(load: &Load, model: &Model, number: &[u32]) -> NumberedForce {
     let dim = model.mesh.dim;
     let owner = load.surface.faces.first().and_then(|face| {
         let owns = |body: &ModelBody| body.spec.cells.contains(&face.parent);
@@ -291,17 +292,18 @@ fn numbered_force(load: &Load, model: &Model, number: &[u32], x: &[[f64; 3]]) ->
     let body = owner.unwrap_or(0);
     match load.kind {
         LoadKind::Pressure(pressure) => {
-            let faces = load.surface.faces.iter();
-            let faces = faces.map(|face| renumbered(face, number)).collect();
-            NumberedForce::Follower(faces, body, pressure)
+            let kinematics = model.bodies[body].spec.kinematics;
+            let (faces, x) = (&load.surface.faces, &model.mesh.nodes);
+            let load = FollowerPressure::new(faces, x, number, dim, kinematics);
+            NumberedForce::Follower(load, pressure)
         }
         LoadKind::Traction(traction) => {
             let kinematics = model.bodies[body].spec.kinematics;
             let areas = load.surface.node_areas(&model.mesh);
             let mut forces = Vec::new();
             for (&node, area) in load.surface.nodes.iter().zip(areas) {
+                let area = area * kinematics.surface_factor(&model.mesh.nodes[node as usize]);
                 let node = number[node as usize] as usize;
-                let area = area * kinematics.surface_factor(&x[node]);
                 let of = |i: usize| ((dim * node + i) as u32, area * traction[i]);
                 forces.extend((0..dim).map(of));
             }

@@ -255,7 +255,7 @@ impl System {
                 load[dim * node as usize + i] += m * model.gravity[i];
             }
         }
-        let nonlinear = NumberedNonlinear::new(&model, (&number, &x), &bodies, &fixed)?;
+        let nonlinear = NumberedNonlinear::new(&model, &number, &bodies, &fixed)?;
         for follows in &nonlinear.follows {
             fixed[follows.unknown as usize] = true;
         }

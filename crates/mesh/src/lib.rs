@@ -4,10 +4,10 @@
 //! one. A [`Surface`] is a group of facets, each matched to the cell that it bounds. [`project()`] finds the gap of a
 //! point over one face, [`BoxTree`] the faces worth asking.
 
+mod bounds;
 mod curved;
 mod free;
 pub mod generate;
-mod hull;
 pub mod mesh;
 pub mod project;
 pub mod raise;
@@ -19,9 +19,10 @@ mod error;
 #[cfg(test)]
 mod random;
 
+pub use bounds::Bounds;
 pub use error::Error;
 pub use mesh::{Block, Defect, ElementId, Group, Mesh, gather};
 pub use project::{Projection, project};
 pub use raise::raise;
-pub use search::{Bounds, BoxTree};
+pub use search::BoxTree;
 pub use surface::{Face, Surface, face_nodes};

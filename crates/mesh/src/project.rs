@@ -4,7 +4,7 @@
 //! the normal m of a face points away from its own body, and the gap of a point x over its projection y is
 //! g = m·(x - y), positive when open.
 
-use carom_elements::{Element, Kind, MAX_NODES, map};
+use carom_elements::{Element, Kind, MAX_FACE_NODES, MAX_NODES, map};
 
 use crate::{Face, curved};
 
@@ -39,13 +39,19 @@ pub struct Projection {
 /// radius of curvature. For the end of a bar the normal is the face's axis.
 pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Projection {
     let element = face.kind.table();
+    // Seen from the point: far from the origin the rounding of places would keep iterations from their end.
+    let mut local = [[0.0; 3]; MAX_FACE_NODES];
+    for (local, x) in local.iter_mut().zip(positions) {
+        *local = difference(x, point);
+    }
+    let (local, origin) = (&local[..element.nodes], &[0.0; 3]);
     let (xi, free) = match face.kind {
         Kind::Point1 => ([0.0; 3], [0.0; 3]),
         Kind::Bar2 => on_segment(positions, point),
         Kind::Tri3 => on_triangle(positions, point),
-        Kind::Quad4 => on_patch(element, positions, point),
-        Kind::Bar3 => curved::on_curve(element, positions, point),
-        Kind::Tri6 | Kind::Quad8 | Kind::Quad9 => curved::on_patch(element, positions, point),
+        Kind::Quad4 => on_patch(element, local, origin),
+        Kind::Bar3 => curved::on_curve(element, local, origin),
+        Kind::Tri6 | Kind::Quad8 | Kind::Quad9 => curved::on_patch(element, local, origin),
         Kind::Tet4
         | Kind::Tet10
         | Kind::Hex8

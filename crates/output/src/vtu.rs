@@ -38,7 +38,7 @@ pub struct Grid<'a> {
 pub struct Cells<'a> {
     /// Their kind.
     pub kind: Kind,
-    /// Point numbers counted from zero, one cell after the other, in the order of our tables.
+    /// Point numbers counted from zero, one cell after the other.
     pub nodes: &'a [u32],
 }
 
@@ -227,12 +227,12 @@ impl Document {
         for block in blocks {
             let table = block.kind.table();
             for nodes in block.nodes.chunks_exact(table.nodes) {
-                let mut cell = [0_i64; MAX_NODES];
+                let mut listed = [0_i64; MAX_NODES];
                 for (&node, &place) in nodes.iter().zip(table.vtk_order) {
-                    cell[place] = i64::from(node);
+                    listed[place] = i64::from(node);
                 }
-                let cell = &cell[..table.nodes];
-                connectivity.extend(cell.iter().flat_map(|node| node.to_le_bytes()));
+                let listed = listed[..table.nodes].iter();
+                connectivity.extend(listed.flat_map(|node| node.to_le_bytes()));
                 end += table.nodes as i64;
                 offsets.extend_from_slice(&end.to_le_bytes());
                 types.push(table.vtk);

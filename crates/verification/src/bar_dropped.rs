@@ -9,8 +9,6 @@
 //! the energy: 1e-11 m g h, as for every run.
 
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
-use carom_contact::{Integration, Plane, Sliding};
-use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_contact::{Initial, Integration, Plane, Sliding};
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, System, march};
 use carom_exact::{Bar, Impact};

@@ -4,7 +4,7 @@ use carom_elements::{Kind, MAX_NODES, map};
 
 use super::Formulation;
 use super::hourglass::Hourglass;
-use crate::body::Kinematics;
+use crate::Kinematics;
 use crate::weights::CellWeights;
 
 /// Unknowns of the largest element.

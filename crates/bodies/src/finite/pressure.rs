@@ -6,7 +6,7 @@ use carom_algebra::csr::Csr;
 use carom_elements::{Kind, MAX_NODES, map};
 use carom_mesh::Face;
 
-use crate::body::Kinematics;
+use crate::Kinematics;
 
 /// Faces under pressure, in their current position.
 ///

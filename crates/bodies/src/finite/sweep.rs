@@ -43,6 +43,9 @@ struct Piece {
     fault: Option<(usize, Fault)>,
 }
 
+/// What is called for each element: system numbers of its nodes, unknowns of a node, tangent in N/m, row-major.
+pub(super) type VisitTangent<'a> = dyn FnMut(&[u32], usize, &mut [f64]) + 'a;
+
 /// A place in the body, and what went wrong there.
 pub(super) type Failed = (usize, Fault);
 
@@ -189,12 +192,11 @@ impl Finite {
         })
     }
 
-    /// Calls `visit` with system numbers of the nodes, unknowns of a node and tangent (N/m, row-major) of each element in
-    /// their order.
+    /// Calls `visit` with each element in their order.
     pub(super) fn each_tangent(
         &self,
         at: &Placement,
-        visit: &mut dyn FnMut(&[u32], usize, &mut [f64]),
+        visit: &mut VisitTangent,
     ) -> Result<(), Failed> {
         let (mut first, mut kept) = (0, 0);
         let (mut tangents, mut results) = (Vec::new(), Vec::new());

@@ -10,6 +10,7 @@ mod derivatives;
 mod finite;
 mod mass;
 mod patch;
+mod quadratic;
 mod refusals;
 mod sample;
 mod sizes;

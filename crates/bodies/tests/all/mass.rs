@@ -55,9 +55,15 @@ fn total_mass_is_density_times_volume_lumped_and_consistent() {
     }
 }
 
+/// Whether the cells have nodes besides their corners.
+fn is_quadratic(sample: &Sample) -> bool {
+    let mut kinds = sample.mesh.blocks.iter();
+    kinds.any(|block| block.kind.table().is_quadratic())
+}
+
 #[test]
 fn lumped_mass_is_the_row_sum_of_the_consistent_mass_and_positive() {
-    for sample in all() {
+    for sample in all().into_iter().filter(|sample| !is_quadratic(sample)) {
         let sums = multiply(&sample.matrix(0.0, 1.0), &vec![1.0; sample.n]);
         for (sum, mass) in sums.iter().zip(sample.lumped_mass()) {
             assert!(mass > 0.0 && (sum - mass).abs() < 1e-14, "{}", sample.name);

@@ -5,7 +5,7 @@ use carom_algebra::pattern::Cliques;
 use carom_bodies::{Body, BodySpec, CellWeights, Formulation, Kinematics, Scratch};
 use carom_elements::Kind;
 use carom_materials::{Elastic, Law};
-use carom_mesh::{ElementId, Mesh, generate};
+use carom_mesh::{ElementId, Mesh, generate, raise};
 use carom_testing::Random;
 
 /// Numbers of order one, so that tolerances are plain.
@@ -97,9 +97,15 @@ impl Sample {
     pub fn random_weights(&self, seed: u64) -> CellWeights {
         let count = self.at_cells(|_| 0.0).len();
         let mut random = Random(seed);
+        // between the nodes of a quadratic cell the weight goes beyond those at the nodes
+        let mut blocks = self.mesh.blocks.iter();
+        let spread = match blocks.any(|block| block.kind.table().is_quadratic()) {
+            true => 0.1,
+            false => 0.5,
+        };
         let mut list = || {
             let list = random.vector(count).into_iter();
-            list.map(|w| 0.5 * (w + 1.0)).collect::<Vec<_>>()
+            list.map(|w| 0.5 + spread * w).collect::<Vec<_>>()
         };
         CellWeights {
             inertia: list(),
@@ -248,6 +254,9 @@ pub fn shapes() -> Vec<(&'static str, Mesh, Kinematics)> {
             ("tri3", distorted(rectangle(true))),
             ("quad4", distorted(rectangle(false))),
             ("tri3 and quad4", distorted(mixed())),
+            ("tri6", raised(small_rectangle(true), false)),
+            ("quad8", raised(small_rectangle(false), false)),
+            ("quad9", raised(small_rectangle(false), true)),
         ] {
             samples.push((name, mesh, kinematics));
         }
@@ -256,7 +265,68 @@ pub fn shapes() -> Vec<(&'static str, Mesh, Kinematics)> {
         let mesh = generate::box_("b", [0.5, 0.0, 0.0], [1.0, 0.9, 1.2], [2, 2, 3], tets);
         samples.push((name, distorted(mesh), Kinematics::Solid));
     }
+    for (name, mesh) in [
+        ("tet10", raised(small_box([2, 1, 1], true), false)),
+        ("hex20", raised(small_box([2, 2, 2], false), false)),
+        ("hex27", raised(small_box([2, 1, 2], false), true)),
+        ("wedge6", distorted(wedges(&small_box([2, 2, 2], false)))),
+        (
+            "wedge15",
+            raised(wedges(&small_box([2, 2, 1], false)), false),
+        ),
+        (
+            "pyramid5",
+            distorted(pyramids(&small_box([2, 1, 2], false))),
+        ),
+    ] {
+        samples.push((name, mesh, Kinematics::Solid));
+    }
     samples
+}
+
+/// A coarse mesh for elements of many nodes.
+fn small_rectangle(triangles: bool) -> Mesh {
+    generate::rectangle("b", [0.5, 0.0], [1.0, 1.2], [2, 2], triangles)
+}
+
+fn small_box(n: [usize; 3], tets: bool) -> Mesh {
+    generate::box_("b", [0.5, 0.0, 0.0], [1.0, 0.9, 1.2], n, tets)
+}
+
+/// The mesh distorted, then with quadratic elements: straight edges, but nodes inside that are nowhere special.
+fn raised(mesh: Mesh, complete: bool) -> Mesh {
+    raise(&distorted(mesh), complete).unwrap()
+}
+
+/// Each hexahedron cut into two wedges.
+pub fn wedges(hexes: &Mesh) -> Mesh {
+    let mut mesh = Mesh::new(3);
+    mesh.nodes.clone_from(&hexes.nodes);
+    for cell in cells(hexes, 3) {
+        let n = hexes.element_nodes(cell);
+        mesh.push(Kind::Wedge6, &[0, 1, 2, 4, 5, 6].map(|a| n[a]));
+        mesh.push(Kind::Wedge6, &[0, 2, 3, 4, 6, 7].map(|a| n[a]));
+    }
+    mesh
+}
+
+/// Each hexahedron cut into six pyramids around a node in its middle.
+fn pyramids(hexes: &Mesh) -> Mesh {
+    let mut mesh = Mesh::new(3);
+    mesh.nodes.clone_from(&hexes.nodes);
+    for cell in cells(hexes, 3) {
+        let n = hexes.element_nodes(cell);
+        let sum = |i: usize| n.iter().map(|&a| hexes.nodes[a as usize][i]).sum::<f64>();
+        let top = mesh.nodes.len() as u32;
+        mesh.nodes.push([0, 1, 2].map(|i| sum(i) / 8.0));
+        for face in Kind::Hex8.table().faces {
+            // seen from the middle the base turns the other way round
+            let mut base: Vec<u32> = face.nodes.iter().rev().map(|&a| n[a]).collect();
+            base.push(top);
+            mesh.push(Kind::Pyramid5, &base);
+        }
+    }
+    mesh
 }
 
 /// Radii from 0.5 to 1.5, height 1.2.

@@ -101,6 +101,8 @@ fn frequency_bound_of_a_single_element_is_its_highest_frequency() {
         let element = kind.table();
         let kinematics = match element.dim {
             0 => continue,
+            // not a bar: an edge of plane cells
+            _ if kind == Kind::Bar3 => continue,
             1 => Kinematics::Bar { area: AREA },
             2 => PLANE,
             _ => Kinematics::Solid,

@@ -214,15 +214,12 @@ impl Builder<'_> {
     pub(super) fn refused(&self, error: &Error) -> Problem {
         match error {
             Error::Body(cause) => {
-                let name = match cause {
-                    carom_bodies::Error::Empty { body }
-                    | carom_bodies::Error::WrongElement { body, .. }
-                    | carom_bodies::Error::NegativeRadius { body, .. }
-                    | carom_bodies::Error::WeightCount { body, .. }
-                    | carom_bodies::Error::NegativeMass { body, .. }
-                    | carom_bodies::Error::NegativeStiffness { body, .. } => body,
+                let path = match cause {
+                    carom_bodies::Error::FiniteKinematics { body, .. }
+                    | carom_bodies::Error::LinearFormulation { body } => format!("body.{body}"),
+                    cause => format!("body.{}.region", cause.body()),
                 };
-                Problem::new(format!("body.{name}.region"), cause.to_string())
+                Problem::new(path, cause.to_string())
             }
             Error::Unstable { dt, critical } => {
                 let problem = Problem::new(

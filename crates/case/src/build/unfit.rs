@@ -89,6 +89,11 @@ impl Builder<'_> {
                 std::slice::from_ref(cell),
                 "sound cells that fill the space of the mesh",
             ),
+            Error::Kind { cell, .. } => (
+                "",
+                std::slice::from_ref(cell),
+                "bodies of linear cells, pyramids and wedges apart",
+            ),
             Error::SharedNode { .. } => ("", &[], "bodies with meshes of their own"),
             Error::NoCells { .. } => ("", &[], "bodies with cells"),
             Error::Defect(_)

@@ -34,7 +34,7 @@ impl RigidSurface {
         let x: Vec<[f64; 3]> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
         let boxes: Vec<Bounds> = faces
             .iter()
-            .map(|face| face.bounds(&places(&x, face)[..face.corners().len()]))
+            .map(|face| Bounds::of_face(face.kind, &places(&x, face)[..face.corners().len()]))
             .collect();
         RigidSurface {
             tree: BoxTree::new(&boxes),

@@ -28,7 +28,7 @@ use super::block::Block;
 use super::stencil::Foothold;
 use crate::Point;
 
-/// A linear form of the motion of the stencil's nodes: one vector per node, m⁻¹ of what it gives.
+/// A linear form of the motion of the stencil's nodes, those of the point first: one vector per node.
 pub type Form = [Vec3; 2 * NODES];
 
 /// The face at the foot: derivatives of its shape functions and what they make of its nodes.

@@ -38,10 +38,6 @@ impl Merge {
             *rate += weight * stencil.rate(&vector);
         }
         let vectors = [normal, frame[0], frame[1]].map(|v| Vec3::from(v) * weight);
-        self.rates[0] += weight * stencil.rate(&normal);
-        for (k, t) in frame[..dim - 1].iter().enumerate() {
-            self.rates[k + 1] += weight * stencil.rate(t);
-        }
         let turning = stencil.turning();
         for (i, (node, c)) in stencil.relative().enumerate() {
             let block = self.block(node);

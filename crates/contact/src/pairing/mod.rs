@@ -36,7 +36,8 @@ pub struct Pairing {
     /// Rows T of the two tangents at a point: `T v` is the velocity in m/s at which the secondary slides over the primary
     /// along [`Rows::normal`] of that row; the gaps of these pools are zero. Unit vectors, square to each other and to the
     /// contact normal, that vary smoothly with it. [`Rows::rate`] of these rows is what the motion of an
-    /// obstacle adds. The second is empty in the plane, both are on a line.
+    /// obstacle adds. A force along T has no resultant, but a moment where the gap is not closed. The second
+    /// is empty in the plane, both are on a line.
     pub tangents: [Rows; 2],
     /// Reference area that each point stands for, m²: [`Point::area`](crate::Point::area), for a multiplier of the mortar
     /// method ∫ φ_A dΓ over what faces the primary surface now, if any does.
@@ -58,11 +59,9 @@ struct Share {
     weight: f64,
 }
 
-/// Scratch.
+/// Scratch of the mortar method.
 #[derive(Clone, Debug, Default)]
 struct Work {
-    /// Force on each stencil.
-    loads: Vec<f64>,
     found: Vec<u32>,
     quadrature: Vec<Quadrature>,
     shares: Vec<Share>,
@@ -109,30 +108,39 @@ impl Pairing {
         add_loads(loads, self.dim, matrix);
     }
 
-    /// Adds factor · Σ force · ∂²g/∂u² of all points: the sum of [`Pairing::add_curvature`] over them, each stencil looked
-    /// at once however many multipliers share it. `forces`: one per point, in N.
-    pub fn add_curvatures(&mut self, forces: &[f64], factor: f64, matrix: &mut Csr) {
-        let mut loads = std::mem::take(&mut self.work.loads);
+    /// Adds factor · Σ force · ∂²g/∂u² of some points: the sum of [`Pairing::add_curvature`] over them, each stencil looked
+    /// at once however many multipliers share it. `forces`: points and forces in N; `loads`: scratch.
+    pub fn add_curvatures(
+        &self,
+        forces: impl Iterator<Item = (usize, f64)>,
+        factor: f64,
+        loads: &mut Vec<f64>,
+        matrix: &mut Csr,
+    ) {
         loads.clear();
         loads.resize(self.stencils.len(), 0.0);
-        for (point, force) in forces.iter().enumerate() {
+        for (point, force) in forces {
             for &(stencil, weight) in self.terms(point) {
                 loads[stencil as usize] += weight * force;
             }
         }
-        let loaded = self.stencils.iter().zip(&loads);
+        let loaded = self.stencils.iter().zip(&*loads);
         let loaded = loaded.filter(|(_, load)| **load != 0.0);
         let loaded = loaded.map(|(stencil, load)| (stencil, factor * load));
         add_loads(loaded, self.dim, matrix);
-        self.work.loads = loads;
     }
 
-    /// The unknowns of each stencil of a point: the pairs of unknowns that [`Pairing::add_curvature`] fills. Also a list
-    /// that holds those of the point's row where there is one stencil.
+    /// Lists of unknowns of which [`Pairing::add_curvature`] of a point fills all pairs: those of each stencil, once for
+    /// stencils on the same nodes that follow each other.
     pub fn cliques(&self, point: usize, mut each: impl FnMut(&[u32])) {
+        let mut last: Option<&Stencil> = None;
         for &(stencil, _) in self.terms(point) {
-            let (unknowns, n) = self.stencils[stencil as usize].unknowns(self.dim);
-            each(&unknowns[..n]);
+            let stencil = &self.stencils[stencil as usize];
+            if !last.is_some_and(|last| last.is_like(stencil)) {
+                let (unknowns, n) = stencil.unknowns(self.dim);
+                each(&unknowns[..n]);
+            }
+            last = Some(stencil);
         }
     }
 
@@ -221,10 +229,10 @@ impl Contact {
     }
 
     fn pair_points(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
-        if let (Integration::Mortar { basis }, Some(mortar)) = (self.integration, &self.mortar) {
-            if !mortar.is_ends() {
-                return mortar.pair(self, basis, places, search, pairing);
-            }
+        if let (Integration::Mortar { basis }, Some(mortar)) = (self.integration, &self.mortar)
+            && !mortar.is_ends()
+        {
+            return mortar.pair(self, basis, places, search, pairing);
         }
         for (k, point) in self.points.iter().enumerate() {
             let stencil = Stencil::new(self, places, search, (point, self.view(k)));

@@ -6,6 +6,7 @@
 mod derivatives;
 mod fixture;
 mod mortar;
+mod moving;
 mod search;
 mod sight;
 

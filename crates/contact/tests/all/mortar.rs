@@ -298,6 +298,43 @@ fn what_has_nothing_opposite_is_left_out() {
     }
 }
 
+#[test]
+fn slivers_of_any_width_leave_gaps_and_rows_bounded() {
+    // the primary side ends a little beyond a node of the secondary one
+    for exponent in 1..16 {
+        let end = 0.4 + 10.0_f64.powi(-exponent);
+        let line = lines(&[0.0, 0.2, 0.4, 1.0], &[-0.3, 0.1, end], 0.1, Kind::Bar2);
+        let mut pairs = vec![line];
+        for kinds in &KINDS[..4] {
+            pairs.push(grids(
+                *kinds,
+                [[5, 3], [2, 3]],
+                [[-0.3, end], [-0.2, 0.7]],
+                0.1,
+            ));
+        }
+        for pair in pairs {
+            for basis in BASES {
+                // dual functions are as large as the pivots of their mass matrix, down to 1e-10, are small
+                let rounding = if basis == Basis::Dual { 1e-9 } else { 1e-14 };
+                let pairing = pair.pairing(basis);
+                for point in 0..pairing.len() {
+                    let gap = pairing.rows.gap(point);
+                    assert!(
+                        gap == f64::INFINITY || (gap - 0.1).abs() < rounding,
+                        "{exponent} {gap}"
+                    );
+                    // extrapolation from a sliver to the far node of its face, of both sides' functions, at most
+                    let (_, row) = pairing.rows.row(point);
+                    let largest = row.iter().fold(0.0_f64, |largest, n| largest.max(n.abs()));
+                    assert!(largest < 10.0, "{exponent} {basis:?} {largest}");
+                    assert!(pairing.areas[point] > 0.0);
+                }
+            }
+        }
+    }
+}
+
 /// A bent pair: neither side flat, nothing parallel.
 fn bent(mut pair: Pair, random: &mut Random, size: f64) -> Pair {
     for x in &mut pair.x {
@@ -364,14 +401,15 @@ fn the_curvature_of_all_points_is_the_sum_of_theirs() {
     let mut random = Random(4);
     for pair in flat_pairs() {
         let pair = bent(pair, &mut random, 0.01);
-        let mut pairing = pair.pairing(Basis::Standard);
+        let pairing = pair.pairing(Basis::Standard);
         let n = pair.dim * pair.x.len();
         let forces = random.vector(pairing.len());
         let (mut one, mut all) = (matrix(&pairing, n), matrix(&pairing, n));
         for (point, &force) in forces.iter().enumerate() {
             pairing.add_curvature(point, force, 3.0, &mut one);
         }
-        pairing.add_curvatures(&forces, 3.0, &mut all);
+        let forces = forces.iter().copied().enumerate();
+        pairing.add_curvatures(forces, 3.0, &mut Vec::new(), &mut all);
         let mut size = 0.0_f64;
         for i in 0..n {
             for (a, b) in one.row(i).1.iter().zip(all.row(i).1) {

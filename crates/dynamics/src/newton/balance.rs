@@ -83,6 +83,7 @@ impl Newton {
     /// Energy and momentum of the step.
     pub(super) fn balance(&mut self) {
         let system = Arc::clone(&self.system);
+        let rubbed = self.friction_work();
         let (old, new) = (&self.state.motion, &self.next.motion);
         let map = &self.map;
         let vectors = &mut self.vectors;
@@ -114,6 +115,7 @@ impl Newton {
             })
             .collect();
         let contact: Vec<f64> = vectors.contact.iter().map(|f| map.contact * f).collect();
+        let rubbing: Vec<f64> = vectors.friction.iter().map(|f| map.contact * f).collect();
         let now = [
             &vectors.load,
             &contact,
@@ -121,6 +123,7 @@ impl Newton {
             &vectors.inertia,
             &self.balanced,
             &vectors.damping,
+            &rubbing,
         ];
         let way = |f: &[f64]| -> f64 { (0..f.len()).map(|i| f[i] * (new.u[i] - old.u[i])).sum() };
         let means = [0, 1, 2, 3, 4, 5].map(|k| mean(k, now[k]));
@@ -129,6 +132,11 @@ impl Newton {
         let start = &self.state.ledger.balance;
         let gained = energies.kinetic - start.kinetic;
         let stored = energies.strain - start.strain + self.stored.hardening - start.hardening;
+        let friction = weights[1] * rubbed
+            + match before.get(6) {
+                Some(f) => weights[0] * way(f),
+                None => 0.0,
+            };
         let scheme = inertia - gained + internal - stored - self.stored.dissipated;
         let places = [&old.u[..], &new.u[..]];
         let forces = [
@@ -147,7 +155,7 @@ impl Newton {
             work_supports: support,
             dissipation_material: self.stored.dissipated,
             dissipation_damping: damping,
-            dissipation_friction: 0.0,
+            dissipation_friction: -friction,
             hardening: self.stored.hardening,
         });
         let squares = Squares {
@@ -163,7 +171,7 @@ impl Newton {
         self.next.ledger.add(
             (dt, &EnergyIdentity::default(), impulses),
             &energies,
-            [load, touch, 0.0],
+            [load, touch - friction, 0.0],
             &squares,
             forces,
         );

@@ -6,6 +6,7 @@ use carom_contact::law::{End, Level, Local, Status};
 use carom_contact::{Contact, Places};
 
 use super::Newton;
+use crate::coulomb::Slip;
 use crate::driver::on_row;
 use crate::error::Error;
 use crate::interface::{Candidate, Failure, InterfaceProblem};
@@ -67,11 +68,22 @@ impl Newton {
             );
             let places = Places {
                 dim: system.dim,
-                time: self.state.time,
+                time: self.state.time + self.paired_after(contact),
                 x: &system.x,
                 u: &self.vectors.place,
             };
             contact.pair_fully(&places, &mut self.search[k], &mut self.pairing);
+        }
+        self.stack();
+    }
+
+    /// How long after the start of the step a contact is paired, s.
+    fn paired_after(&self, contact: &Contact) -> f64 {
+        let law = contact.law.get();
+        match law.level() {
+            _ if self.between() => 0.5 * self.dt,
+            Level::Rate => law.capture() * self.dt,
+            Level::Gap | Level::GapAndRate => self.dt,
         }
     }
 
@@ -82,8 +94,14 @@ impl Newton {
         let motion = &self.state.motion;
         let xc = [&self.vectors.x[..], &[]];
         let ahead = self.map.gap.since(&self.paired_at(contact));
-        let gap = rows.gap(point) + on_row(rows, point, &ahead, motion, xc);
-        (gap, on_row(rows, point, &self.map.rate, motion, xc))
+        let obstacle = rows.rate(point);
+        let gap = rows.gap(point)
+            + on_row(rows, point, &ahead, motion, xc)
+            + obstacle * (self.dt - self.paired_after(contact));
+        (
+            gap,
+            on_row(rows, point, &self.map.rate, motion, xc) + obstacle,
+        )
     }
 
     /// What the law of a point may know before the forces.
@@ -100,7 +118,7 @@ impl Newton {
             area: carrier.area,
             share: carrier.share,
             gap,
-            rate: rows.product(point, &self.state.motion.v),
+            rate: rows.product(point, &self.state.motion.v) + rows.rate(point),
             gap_free,
             dt: self.dt,
             tolerance: self.system.tolerance,
@@ -127,8 +145,7 @@ impl Newton {
     pub(super) fn solve_interface(&mut self) -> Result<(), Error> {
         self.choose_candidates();
         if self.candidates.is_empty() {
-            self.next.interface.force.fill(0.0);
-            self.next.interface.status.fill(Status::Open);
+            self.release();
             return Ok(());
         }
         let free = self.vectors.dx.clone();
@@ -175,6 +192,9 @@ impl Newton {
             }
         });
         self.candidate_data = data.collect();
+        if self.rubs() {
+            return self.solve_with_friction(free);
+        }
         let rows = &self.pairing.rows;
         let factor = self.map.contact;
         let factors = [self.map.gap.x * factor, self.map.rate.x * factor];
@@ -199,11 +219,27 @@ impl Newton {
                 compliance.add(point, factor * force, operators, &mut self.vectors.half);
             }
         }
-        operators.end(&mut self.vectors.half, &mut self.vectors.dx);
+        self.end_iteration();
+        Ok(())
+    }
+
+    /// No contact force at all.
+    fn release(&mut self) {
+        let interface = &mut self.next.interface;
+        interface.force.fill(0.0);
+        interface.friction.fill([0.0; 2]);
+        interface.status.fill(Status::Open);
+        self.slips.fill(Slip::Open);
+    }
+
+    /// The motion of the iteration from the begun solve with all forces in it.
+    pub(super) fn end_iteration(&mut self) {
+        if let Some((operators, _)) = self.effective.both() {
+            operators.end(&mut self.vectors.half, &mut self.vectors.dx);
+        }
         for (dx, jump) in self.vectors.dx.iter_mut().zip(&self.vectors.jump) {
             *dx += jump;
         }
-        Ok(())
     }
 
     /// Adds the points that were no candidates and whose law asks for a force; whether there are any.
@@ -275,6 +311,7 @@ impl Newton {
                     (left / scale / tolerance).abs()
                 }
             };
+            let defect = defect.max(self.slip_defect(point) / tolerance);
             if worst.is_none_or(|(_, most)| defect > most) {
                 worst = Some((point, defect));
             }
@@ -291,6 +328,7 @@ impl Newton {
                 self.pairing.rows.add_force(point, force, f);
             }
         }
+        self.spread_friction();
     }
 
     /// Contact, place in it and mesh node of a contact point.
@@ -300,7 +338,7 @@ impl Newton {
         format!("contact `{}`, point {place}, node {node}", contact.name)
     }
 
-    fn interface_error(
+    pub(super) fn interface_error(
         &mut self,
         failure: Failure,
         compliance: Vec<f64>,

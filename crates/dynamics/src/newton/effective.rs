@@ -23,6 +23,8 @@ pub(super) struct Effective {
     coupled: Vec<Vec<u32>>,
     /// Factors of dt and stage for which a constant matrix was made.
     constant: Option<[f64; 4]>,
+    /// Scratch of the curvature.
+    loads: Vec<f64>,
     retired: Work,
 }
 
@@ -32,6 +34,8 @@ pub(super) struct At<'a> {
     pub(super) map: &'a StepMap,
     /// Size of the step, s.
     pub(super) dt: f64,
+    /// Instant of the balance, s.
+    pub(super) time: f64,
     /// Configuration of the internal forces, m.
     pub(super) u: &'a [f64],
     /// The one at the start, for stresses between the two.
@@ -44,9 +48,9 @@ pub(super) struct At<'a> {
 pub(super) struct Turning<'a> {
     /// Rows and their derivatives.
     pub(super) pairing: &'a Pairing,
-    /// Points and forces in N.
-    pub(super) forces: Vec<(usize, f64)>,
-    /// Derivative of the configuration of the contact by the unknown, times the factor of contact forces in the balance.
+    /// Force of each point in N, times the derivative of its configuration by the unknown.
+    pub(super) forces: Vec<f64>,
+    /// Factor of contact forces in the balance.
     pub(super) factor: f64,
 }
 
@@ -54,10 +58,11 @@ impl Effective {
     pub(super) fn new(system: &System) -> Effective {
         Effective {
             operators: None,
-            compliance: Compliance::new(system.points()),
+            compliance: Compliance::new(system.points() * (1 + system.tangents())),
             matrix: None,
             coupled: Vec::new(),
             constant: None,
+            loads: Vec::new(),
             retired: Work::default(),
         }
     }
@@ -81,7 +86,7 @@ impl Effective {
         &mut self,
         system: &System,
         at: &At,
-        turning: &Turning,
+        turning: &mut Turning,
         constant: Option<[f64; 4]>,
     ) -> Result<(), Error> {
         self.constant = constant;
@@ -103,11 +108,12 @@ impl Effective {
         };
         a.clear();
         assemble(system, at, &mut a)?;
-        for &(point, force) in &turning.forces {
-            turning
-                .pairing
-                .add_curvature(point, force, -turning.factor, &mut a);
-        }
+        super::loads::add_tangent(system, at.time, at.u, map.force.x, &mut a);
+        let forces = turning.forces.iter().copied().enumerate();
+        let forces = forces.filter(|(_, force)| *force != 0.0);
+        turning
+            .pairing
+            .add_curvatures(forces, -turning.factor, &mut self.loads, &mut a);
         let free = a.with_identity(&system.fixed);
         let factored = self.factorise(&free, system.dim);
         self.matrix = Some(a);
@@ -142,7 +148,8 @@ impl Effective {
     /// Pattern of the bodies and of the rows that turn; the factor is dropped where the pattern changes.
     fn renew_pattern(&mut self, system: &System, turning: &Turning) {
         let mut rows: Vec<Vec<u32>> = Vec::new();
-        for &(point, _) in &turning.forces {
+        let loaded = turning.forces.iter().enumerate();
+        for (point, _) in loaded.filter(|(_, force)| **force != 0.0) {
             turning
                 .pairing
                 .cliques(point, |unknowns| rows.push(unknowns.to_vec()));

@@ -1,8 +1,11 @@
 //! Loads and damping forces of an iteration.
 
+use carom_algebra::csr::Csr;
+
 use super::Newton;
 use crate::nonlinear::{Amplitude, NumberedForce};
 use crate::step_map::{Row, StepMap};
+use crate::system::System;
 
 /// The velocity that damping forces are taken at: at the instant of the internal forces, or of an explicit step the one
 /// that is known before the forces.
@@ -35,7 +38,7 @@ impl Newton {
     pub(super) fn evaluate_loads(&mut self, time: f64) {
         let system = &*self.system;
         let ramp = system.nonlinear.ramp(time);
-        let load = &mut self.vectors.load;
+        let (load, place) = (&mut self.vectors.load, &self.vectors.place);
         for (sum, dead) in load.iter_mut().zip(&system.load) {
             *sum = ramp * dead;
         }
@@ -47,7 +50,9 @@ impl Newton {
                         load[unknown as usize] += factor * force;
                     }
                 }
-                NumberedForce::Follower(..) => {}
+                NumberedForce::Follower(given, pressure) => {
+                    given.add_force(factor * pressure, place, load);
+                }
             }
         }
     }
@@ -81,6 +86,17 @@ impl Newton {
                     *v /= damping.stiffness;
                 }
             }
+        }
+    }
+}
+
+/// Adds to the effective matrix what loads that turn with the body take from it, at this instant (s) and configuration.
+pub(super) fn add_tangent(system: &System, time: f64, u: &[f64], factor_of_x: f64, a: &mut Csr) {
+    let ramp = system.nonlinear.ramp(time);
+    for given in &system.nonlinear.loads {
+        if let NumberedForce::Follower(load, pressure) = &given.force {
+            let p = factor(&given.amplitude, ramp, time) * pressure;
+            load.add_tangent(p, u, -factor_of_x, a);
         }
     }
 }

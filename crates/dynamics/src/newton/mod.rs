@@ -12,6 +12,7 @@
 mod balance;
 mod contacts;
 mod effective;
+mod friction;
 mod loads;
 mod solve;
 mod start;
@@ -20,8 +21,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use carom_bodies::{Placement, Scratch, Stored};
-use carom_contact::{Pairing, Search};
+use carom_contact::{Pairing, Rows, Search};
 
+use crate::coulomb::{Coulomb, Slip};
 use crate::driver::{Costs, Phases};
 use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
@@ -44,6 +46,10 @@ pub struct Newton {
     /// Points that may carry a force, ascending.
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,
+    coulomb: Coulomb,
+    /// Normal and tangential rows of all points, point after point, where there is friction.
+    stacked: Rows,
+    slips: Vec<Slip>,
     /// Buffers of the bodies.
     scratch: Vec<Scratch>,
     force_sweeps: usize,
@@ -75,6 +81,8 @@ struct Vectors {
     internal: Vec<f64>,
     damping: Vec<f64>,
     contact: Vec<f64>,
+    /// What friction has in `contact`.
+    friction: Vec<f64>,
     residual: Vec<f64>,
     half: Vec<f64>,
     /// A configuration or a velocity.
@@ -103,6 +111,9 @@ impl Newton {
             search: system.contacts.iter().map(|_| Search::default()).collect(),
             candidates: Vec::new(),
             candidate_data: Vec::new(),
+            coulomb: Coulomb::default(),
+            stacked: Rows::default(),
+            slips: Vec::new(),
             scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
             force_sweeps: 0,
             residuals: Vec::new(),
@@ -120,6 +131,7 @@ impl Newton {
                 internal: zeros(),
                 damping: zeros(),
                 contact: zeros(),
+                friction: zeros(),
                 residual: zeros(),
                 half: zeros(),
                 place: zeros(),
@@ -134,7 +146,8 @@ impl Newton {
             system,
         };
         newton.check_free_motions()?;
-        newton.start()?;
+        let system = Arc::clone(&newton.system);
+        newton.restart(&system.initial_displacement, &system.initial_velocity)?;
         Ok(newton)
     }
 

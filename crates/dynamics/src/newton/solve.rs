@@ -48,6 +48,7 @@ impl Newton {
         self.predict();
         let interface = &mut self.next.interface;
         interface.clone_from(&self.state.interface);
+        self.guess_slips();
         self.evaluate()?;
         self.pair(true);
         let mut standing = self.standing();
@@ -263,25 +264,22 @@ impl Newton {
                 true => self.dt,
                 false => self.map.force_fraction.unwrap_or(1.0) * self.dt,
             },
+            time: self.instant(),
             u: &self.vectors.place,
             from: self.between().then_some(&motion.u[..]),
             history: &motion.history,
         };
-        let forces = self.next.interface.force.iter().copied().enumerate();
-        let turns = |&(point, force): &(usize, f64)| {
-            force != 0.0 && self.turning(system.point(point).0) != 0.0
-        };
-        let forces: Vec<(usize, f64)> = forces.filter(turns).collect();
-        let factor = system.contacts.first().map_or(0.0, |c| self.turning(c)) * self.map.contact;
+        let forces = self.next.interface.force.iter().enumerate();
+        let turned = forces.map(|(point, force)| force * self.turning(system.point(point).0));
         let mut turning = Turning {
+            forces: turned.collect(),
             pairing: &self.pairing,
-            forces,
-            factor,
+            factor: self.map.contact,
         };
-        let mut made = self.effective.renew(&system, &at, &turning, constant);
-        if made.is_err() && !turning.forces.is_empty() {
-            turning.forces.clear();
-            made = self.effective.renew(&system, &at, &turning, constant);
+        let mut made = self.effective.renew(&system, &at, &mut turning, constant);
+        if made.is_err() && turning.forces.iter().any(|force| *force != 0.0) {
+            turning.forces.fill(0.0);
+            made = self.effective.renew(&system, &at, &mut turning, constant);
         }
         self.phases.factorisation += begin.elapsed();
         made

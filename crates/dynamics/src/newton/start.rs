@@ -9,18 +9,32 @@ use crate::ledger::{Energies, Ledger, Resultant};
 use crate::operator::Operators;
 use crate::records::{ContactRecord, Records};
 use crate::scheme::EnergyIdentity;
+use crate::state::empty_state;
 use crate::system::System;
 
 impl Newton {
-    /// Completes the initial state.
-    pub(super) fn start(&mut self) -> Result<(), Error> {
+    /// Begins anew from another initial motion: displacement in m and velocity in m/s, one entry per unknown; those of
+    /// held unknowns are their prescribed ones whatever is given. With a static stage velocities are those of its end.
+    ///
+    /// # Errors
+    /// As [`Newton::new`].
+    pub fn restart(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
+        self.state = empty_state(&system);
         let motion = &mut self.state.motion;
-        motion.u.clone_from(&system.initial_displacement);
-        system.nonlinear.prescribe(0.0, &mut motion.u);
-        if system.nonlinear.preload.is_none() {
-            motion.v.clone_from(&system.initial_velocity);
+        for i in (0..system.unknowns()).filter(|&i| !system.fixed[i]) {
+            motion.u[i] = displacement[i];
+            if system.nonlinear.preload.is_none() {
+                motion.v[i] = velocity[i];
+            }
         }
+        system.nonlinear.prescribe(0.0, &mut motion.u);
+        self.start()
+    }
+
+    /// Completes the initial state.
+    fn start(&mut self) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
         self.size(system.dt);
         self.next.clone_from(&self.state);
         self.begin()?;
@@ -35,7 +49,8 @@ impl Newton {
         for point in 0..system.points() {
             self.state.interface.gap[point] = self.pairing.rows.gap(point);
             self.state.interface.rate[point] =
-                self.pairing.rows.product(point, &self.state.motion.v);
+                self.pairing.rows.product(point, &self.state.motion.v)
+                    + self.pairing.rows.rate(point);
         }
         self.next.clone_from(&self.state);
         self.tell(0.0);
@@ -95,6 +110,7 @@ impl Newton {
             reaction.collect(),
             inertia,
             internal.clone(),
+            vec![0.0; system.unknowns()],
             vec![0.0; system.unknowns()],
         ];
     }

@@ -5,9 +5,11 @@
 
 mod allocation;
 mod dense;
+mod initial;
 mod interface;
 mod momentum;
 mod monolithic;
+mod mortar;
 mod newton;
 mod quadrature;
 mod stability;

@@ -2,7 +2,7 @@
 
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::{
     Driver, Model, ModelBody, ModelContact, ModelTarget, Newton, Scheme, Stepper, System, scheme,
 };
@@ -43,7 +43,7 @@ pub(crate) fn square(scheme: Scheme, law: Law, material: Material, n: usize) -> 
         contacts: vec![ModelContact {
             name: "ground".into(),
             secondary: Surface::new(&mesh, &mesh.groups["a.bottom"], &cells).unwrap(),
-            primary: ModelTarget::Plane(Plane {
+            primary: ModelTarget::rigid(Plane {
                 point: [0.0, -0.01, 0.0],
                 normal: [0.0, 1.0, 0.0],
             }),
@@ -52,6 +52,8 @@ pub(crate) fn square(scheme: Scheme, law: Law, material: Material, n: usize) -> 
             integration: Integration::Node,
             massless: false,
             friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
         }],
         scheme,
         dt: 0.05,
@@ -127,5 +129,83 @@ fn a_linear_system_takes_the_steps_of_the_linear_driver() {
             "{}: momentum",
             scheme.get().name()
         );
+    }
+}
+
+fn newton(model: Model) -> Newton {
+    Newton::new(System::new(model).unwrap()).unwrap()
+}
+
+fn neo_hooke() -> Material {
+    Material::NeoHooke(carom_materials::NeoHooke { initial: SOFT })
+}
+
+/// Without contact and gravity, thrown and turning.
+fn thrown(scheme: Scheme, material: Material) -> Newton {
+    let mut model = square(scheme, VELOCITY, material, 3);
+    model.contacts.clear();
+    model.gravity = [0.0; 3];
+    model.nonlinear.iteration.tolerance = 1e-13;
+    let mut newton = newton(model);
+    let system = newton.system();
+    let mut v = vec![0.0; system.unknowns()];
+    for (node, x) in system.x.iter().enumerate() {
+        // a rotation and a stretch
+        v[2 * node] = 0.3 - 0.8 * (x[1] - 0.5) + 0.3 * x[0];
+        v[2 * node + 1] = 0.8 * (x[0] - 0.5);
+    }
+    let u = vec![0.0; system.unknowns()];
+    newton.restart(&u, &v).unwrap();
+    newton
+}
+
+#[test]
+fn energy_and_momentum_are_kept_by_the_scheme_of_that_name() {
+    let energy_momentum = Scheme::EnergyMomentum(scheme::EnergyMomentum);
+    let stvk = Material::StVenantKirchhoff(carom_materials::StVenantKirchhoff { initial: SOFT });
+    for material in [neo_hooke(), stvk] {
+        let mut newton = thrown(energy_momentum, material);
+        let start = newton.state().ledger.balance;
+        for _ in 0..200 {
+            newton.step().unwrap();
+            let balance = newton.state().ledger.balance;
+            // iterations end at 1e-13 of the momentum per step, 200 steps
+            assert!((balance.energy() - start.energy()).abs() < 1e-11 * start.energy());
+            for i in 0..3 {
+                let now = [balance.momentum.linear[i], balance.momentum.angular[i]];
+                let then = [start.momentum.linear[i], start.momentum.angular[i]];
+                assert!((now[0] - then[0]).abs() < 1e-12);
+                assert!((now[1] - then[1]).abs() < 1e-12, "{i}: {now:?} {then:?}");
+            }
+        }
+        assert!(newton.state().ledger.balance.strain > 1e-4 * start.energy());
+    }
+}
+
+#[test]
+fn a_nonlinear_step_costs_few_iterations_and_the_ledger_closes() {
+    for (scheme, law) in [
+        (Scheme::Newmark(scheme::Newmark { beta: 0.25, gamma: 0.5 }), DISPLACEMENT),
+        (Scheme::Theta(scheme::Theta { theta: 0.6 }), VELOCITY),
+        (Scheme::EnergyMomentum(scheme::EnergyMomentum), VELOCITY),
+        (Scheme::CentralDifference(scheme::CentralDifference), VELOCITY),
+    ] {
+        let mut newton = newton(square(scheme, law, neo_hooke(), 4));
+        let (mut touches, mut most) = (false, 0);
+        for _ in 0..60 {
+            newton.step().unwrap();
+            touches |= newton.report().contacts[0].force > 0.0;
+            most = most.max(newton.residuals().len());
+        }
+        let name = scheme.get().name();
+        assert!(touches, "{name}");
+        // the factor of the start of the step is kept while that is cheaper
+        assert!(most <= 12, "{name}: {most} iterations, {:?}", newton.residuals());
+        let ledger = &newton.state().ledger;
+        assert!(
+            ledger.largest_energy_residual < 1e-9 * ledger.largest_energy,
+            "{name}: {:e} of {:e}", ledger.largest_energy_residual, ledger.largest_energy
+        );
+        assert!(ledger.largest_momentum_residual < 1e-9 * ledger.largest_momentum, "{name}");
     }
 }

@@ -205,6 +205,43 @@ fn every_array_of_a_grid_is_read_back_bit_for_bit() {
     assert_eq!(arrays["types"].integers(), [12, 10, 5]);
 }
 
+/// Points of cells whose nodes VTK lists in another order: each point of the file lies where VTK has it.
+#[test]
+fn nodes_are_listed_in_the_order_of_vtk() {
+    let folder = tempfile::tempdir().unwrap();
+    for kind in Kind::ALL {
+        let table = kind.table();
+        let nodes: Vec<u32> = (0..2 * table.nodes as u32).collect();
+        let twice = [table.reference, table.reference].concat();
+        let path = folder.path().join(format!("{}.vtu", table.name));
+        let grid = Grid {
+            points: &twice,
+            cells: &[Cells {
+                kind,
+                nodes: &nodes,
+            }],
+            ..bare()
+        };
+        write(&path, &grid).unwrap();
+        let (_, arrays) = read(&path);
+        let listed = arrays["connectivity"].integers();
+        for (cell, listed) in listed.chunks_exact(table.nodes).enumerate() {
+            for (a, &place) in table.vtk_order.iter().enumerate() {
+                assert_eq!(
+                    listed[place],
+                    (cell * table.nodes + a) as i64,
+                    "{}",
+                    table.name
+                );
+            }
+        }
+        assert_eq!(arrays["types"].integers(), [i64::from(table.vtk); 2]);
+    }
+    // The first triangle of VTK's wedge turns outward, that of ours inward.
+    let (_, arrays) = read(&folder.path().join("wedge6.vtu"));
+    assert_eq!(arrays["connectivity"].integers()[..6], [0, 2, 1, 3, 5, 4]);
+}
+
 #[test]
 fn arrays_of_no_block_one_whole_block_and_many_blocks_are_read_back() {
     let folder = tempfile::tempdir().unwrap();

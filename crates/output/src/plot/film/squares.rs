@@ -40,7 +40,8 @@ pub(super) fn draw(flats: &[Flat], window: &Window, svg: &mut String) {
     for (tone, path) in paths {
         let _ = writeln!(
             svg,
-            "<path d=\"{path}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:.2}\"/>",
+            "<path d=\"{path}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:.2}\" \
+             shape-rendering=\"crispEdges\"/>",
             colour(tone),
             1.1 * side
         );

@@ -1,0 +1,127 @@
+//! Pairing of n points with n faces: time over n log2 n, and memory for a face.
+//!
+//! `cargo bench -p carom-benches --bench search`. The faces are a waved sheet of quadrilaterals with one secondary node over
+//! each. "first": tree and all; "fast": the sheet moves by a face per pairing, forth and back, boxes are refitted and all points searched;
+//! "slow": by a hundredth of a face, most points ask the faces that they have kept. The last lines print the best times,
+//! since other processes may be running.
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use carom_contact::law::Displacement;
+use carom_contact::{Contact, Integration, Law, Places, Point, Rows, Search, Sliding, Target};
+use carom_elements::Kind;
+use carom_mesh::{ElementId, Face, face_nodes};
+use criterion::{BenchmarkId, Criterion, SamplingMode};
+
+fn main() {
+    let mut criterion = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(1))
+        .measurement_time(Duration::from_secs(2))
+        .configure_from_args();
+    let mut lines = Vec::new();
+    for side in [100, 316, 1000] {
+        lines.extend(sheet(&mut criterion, side));
+    }
+    for line in lines {
+        println!("{line}");
+    }
+    criterion.final_summary();
+}
+
+fn sheet(criterion: &mut Criterion, side: u32) -> Vec<String> {
+    let (x, contact) = scene(side);
+    let n = f64::from(side * side);
+    let mut lines = Vec::new();
+    for (name, step) in [("first", 0.0), ("fast", 1.0), ("slow", 0.01)] {
+        let mut u = vec![0.0; 3 * x.len()];
+        let (mut search, mut rows) = (Search::default(), Rows::default());
+        let mut best = Duration::MAX;
+        let mut way = step;
+        let mut pair = |search: &mut Search| {
+            // the sheet moves forth and back, the points over it stay
+            let sheet = &mut u[..3 * ((side + 1) * (side + 1)) as usize];
+            sheet.iter_mut().step_by(3).for_each(|u| *u += way);
+            way = -way;
+            let places = Places {
+                dim: 3,
+                time: 0.0,
+                x: &x,
+                u: &u,
+            };
+            let begin = Instant::now();
+            rows.clear();
+            contact.pair(&places, search, &mut rows);
+            let elapsed = begin.elapsed();
+            black_box(&rows);
+            elapsed
+        };
+        for _ in 0..6 {
+            pair(&mut search);
+        }
+        let mut group = criterion.benchmark_group(name);
+        group.sampling_mode(SamplingMode::Flat);
+        group.bench_function(BenchmarkId::from_parameter(side * side), |bencher| {
+            bencher.iter_custom(|count| {
+                let mut sum = Duration::ZERO;
+                for _ in 0..count {
+                    if step == 0.0 {
+                        search = Search::default();
+                    }
+                    let elapsed = pair(&mut search);
+                    best = best.min(elapsed);
+                    sum += elapsed;
+                }
+                sum
+            });
+        });
+        group.finish();
+        let seconds = best.as_secs_f64();
+        lines.push(format!(
+            "{name} {n:.0}: {seconds:.4} s, {:.2} ns / (n log2 n), {:.2} projections a point, {:.0} bytes a face",
+            1e9 * seconds / (n * n.log2()),
+            search.projections() as f64 / n,
+            search.bytes() as f64 / n,
+        ));
+    }
+    lines
+}
+
+fn scene(side: u32) -> (Vec<[f64; 3]>, Contact) {
+    let n = side + 1;
+    let wave = |x: f64, y: f64| (0.1 * x).sin() * (0.13 * y).cos();
+    let node = |i: u32| {
+        let [x, y] = [f64::from(i % n), f64::from(i / n)];
+        [x, y, wave(x, y)]
+    };
+    let mut x: Vec<[f64; 3]> = (0..n * n).map(node).collect();
+    let face = |i: u32| {
+        let a = i % side + n * (i / side);
+        Face {
+            kind: Kind::Quad4,
+            nodes: face_nodes(&[a, a + 1, a + n + 1, a + n]),
+            parent: ElementId { block: 0, index: i },
+            axis: [0.0; 3],
+        }
+    };
+    let faces = (0..side * side).map(face).collect();
+    let over = |i: u32| {
+        let [x, y] = [f64::from(i % side) + 0.3, f64::from(i / side) + 0.6];
+        [x, y, wave(x, y) + 0.2]
+    };
+    x.extend((0..side * side).map(over));
+    let points = (n * n..n * n + side * side).map(|node| Point::at_node(node, 1.0, 1.0));
+    let contact = Contact {
+        name: "sheet".into(),
+        law: Law::Displacement(Displacement::default()),
+        sliding: Sliding::Finite,
+        integration: Integration::Node,
+        points: points.collect(),
+        mortar: None,
+        target: Target::Surface(faces),
+        sight: None,
+        offsets: Vec::new(),
+    };
+    (x, contact)
+}

@@ -1,0 +1,84 @@
+//! What a body assumes of the dimensions that its elements lack.
+
+use carom_materials::Plane;
+
+/// How the displacement of an element is restricted, and what its missing dimensions are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kinematics {
+    /// Axial strain only.
+    Bar {
+        /// Cross-section in m².
+        area: f64,
+    },
+    /// No strain out of the plane.
+    PlaneStrain {
+        /// Thickness in m.
+        thickness: f64,
+    },
+    /// No stress out of the plane.
+    PlaneStress {
+        /// Thickness in m.
+        thickness: f64,
+    },
+    /// Symmetry of revolution about the second axis: x is the radius, forces and masses are those of the full turn.
+    Axisymmetric,
+    /// Three dimensions, no restriction.
+    Solid,
+}
+
+impl Kinematics {
+    /// Dimension of the elements that this kinematics takes.
+    pub fn dim(self) -> usize {
+        match self {
+            Kinematics::Bar { .. } => 1,
+            Kinematics::PlaneStrain { .. }
+            | Kinematics::PlaneStress { .. }
+            | Kinematics::Axisymmetric => 2,
+            Kinematics::Solid => 3,
+        }
+    }
+
+    /// The state of stress beside the elements.
+    pub fn plane(self) -> Plane {
+        match self {
+            Kinematics::Bar { .. } => Plane::Uniaxial,
+            Kinematics::PlaneStress { .. } => Plane::Stress,
+            Kinematics::PlaneStrain { .. } | Kinematics::Axisymmetric | Kinematics::Solid => {
+                Plane::Full
+            }
+        }
+    }
+
+    /// Name as in the case file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kinematics::Bar { .. } => "bar",
+            Kinematics::PlaneStrain { .. } => "plane-strain",
+            Kinematics::PlaneStress { .. } => "plane-stress",
+            Kinematics::Axisymmetric => "axisymmetric",
+            Kinematics::Solid => "solid",
+        }
+    }
+
+    /// Area (m²) that a unit of surface measure at `x` stands for: the section of a bar (measure 1 at its end), the
+    /// thickness of a plane body per length, 2πr, or 1.
+    pub fn surface_factor(self, x: &[f64; 3]) -> f64 {
+        match self {
+            Kinematics::Bar { area } => area,
+            Kinematics::PlaneStrain { thickness } | Kinematics::PlaneStress { thickness } => {
+                thickness
+            }
+            Kinematics::Axisymmetric => std::f64::consts::TAU * x[0],
+            Kinematics::Solid => 1.0,
+        }
+    }
+}
+
+/// How the mass of an element is spread over its nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MassKind {
+    /// Row sums ∫ ρ N_a dV on the diagonal.
+    Lumped,
+    /// ∫ ρ N_a N_b dV.
+    Consistent,
+}

@@ -1,0 +1,200 @@
+//! Friction in an iteration: rows of the tangents, the interface problem with them, slips.
+//!
+//! The sliding quantity q of a point is its way over the primary in the step, T (u₊ - u), and where all laws with friction
+//! are laws in the rate, the velocity T v that they look at. T is that of the iteration, with the foot of the point there:
+//! in a closed contact a rigid rotation gives no slip.
+
+use std::sync::Arc;
+
+use carom_contact::law::{Level, Status};
+
+use super::Newton;
+use crate::coulomb::{FrictionFailure, Posed, Slip, Tangential};
+use crate::driver::on_row;
+use crate::error::Error;
+use crate::step_map::Row;
+use crate::system::System;
+
+impl System {
+    /// Tangents of a contact point in problems with friction: none where no contact has any.
+    pub(crate) fn tangents(&self) -> usize {
+        match self.friction.iter().any(|mu| *mu > 0.0) {
+            true => self.dim.saturating_sub(1),
+            false => 0,
+        }
+    }
+}
+
+impl Newton {
+    /// Whether a candidate has friction.
+    pub(super) fn rubs(&self) -> bool {
+        let mu = |&point: &u32| self.system.friction[self.system.contact_of(point as usize)];
+        self.system.tangents() > 0 && self.candidates.iter().any(|point| mu(point) > 0.0)
+    }
+
+    /// Points that carried friction are first thought to stick.
+    pub(super) fn guess_slips(&mut self) {
+        let points = self.system.points();
+        self.slips.clear();
+        if self.system.tangents() == 0 {
+            return;
+        }
+        let friction = &mut self.next.interface.friction;
+        friction.resize(points, [0.0; 2]);
+        self.slips
+            .extend(friction.iter().map(|t| match t == &[0.0; 2] {
+                true => Slip::Open,
+                false => Slip::Stick,
+            }));
+    }
+
+    /// Rows of all points, each with those of its tangents after it.
+    pub(super) fn stack(&mut self) {
+        let tangents = self.system.tangents();
+        if tangents == 0 {
+            return;
+        }
+        self.stacked.clear();
+        for point in 0..self.pairing.len() {
+            self.stacked.push_from(&self.pairing.rows, point);
+            for rows in &self.pairing.tangents[..tangents] {
+                self.stacked.push_from(rows, point);
+            }
+        }
+    }
+
+    /// The row of the step whose product with T is the sliding quantity, and the time that turns a rate into it.
+    fn sliding(&self) -> (Row, f64) {
+        let system = &*self.system;
+        let of_rate = |k: usize| system.contacts[k].law.get().level() == Level::Rate;
+        let rubbing = (0..system.contacts.len()).filter(|&k| system.friction[k] > 0.0);
+        if self.map.inertia.x != 0.0 && rubbing.into_iter().all(of_rate) {
+            return (self.map.rate, 1.0);
+        }
+        let now = Row {
+            u: 1.0,
+            ..Row::default()
+        };
+        (self.map.displacement.since(&now), self.dt)
+    }
+
+    /// Sliding quantity of a point along one tangent at the x of the iteration.
+    fn slid(&self, point: usize, tangent: usize, (row, time): (&Row, f64)) -> f64 {
+        let rows = &self.pairing.tangents[tangent];
+        let xc = [&self.vectors.x[..], &[]];
+        on_row(rows, point, row, &self.state.motion, xc) + time * rows.rate(point)
+    }
+
+    /// What friction adds to each candidate. `free`: the motion of the iteration without contact forces.
+    fn tangential(&self, free: &[f64]) -> Vec<Tangential> {
+        let (row, time) = self.sliding();
+        let tangents = self.system.tangents();
+        let of = |&point: &u32| {
+            let at = point as usize;
+            let mut q = [0.0; 2];
+            for (k, q) in q.iter_mut().enumerate().take(tangents) {
+                let step = row.x * self.pairing.tangents[k].product(at, free);
+                *q = self.slid(at, k, (&row, time)) + step;
+            }
+            Tangential {
+                mu: self.system.friction[self.system.contact_of(at)],
+                free: q,
+                slip: self.slips[at],
+                force: self.next.interface.friction[at],
+            }
+        };
+        self.candidates.iter().map(of).collect()
+    }
+
+    /// The interface problem of the candidates with friction.
+    pub(super) fn solve_with_friction(&mut self, free: &[f64]) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        let friction = self.tangential(free);
+        let tangents = system.tangents();
+        let width = 1 + tangents as u32;
+        let rows = |&point: &u32| point * width..(point + 1) * width;
+        let stacked: Vec<u32> = self.candidates.iter().flat_map(rows).collect();
+        let factor = self.map.contact;
+        let s = [self.map.gap.x, self.map.rate.x, self.sliding().0.x].map(|s| s * factor);
+        let Some((operators, compliance)) = self.effective.both() else {
+            return Ok(());
+        };
+        compliance.update(&stacked, &self.stacked, &system.fixed, operators);
+        let posed = Posed {
+            candidates: &self.candidate_data,
+            friction: &friction,
+            tangents,
+            d: &compliance.matrix,
+            s,
+        };
+        if let Err(failure) = self.coulomb.solve(&posed) {
+            return Err(self.friction_error(failure));
+        }
+        let interface = &mut self.next.interface;
+        interface.force.fill(0.0);
+        interface.friction.fill([0.0; 2]);
+        interface.status.fill(Status::Open);
+        self.slips.fill(Slip::Open);
+        for (k, &point) in self.candidates.iter().enumerate() {
+            let at = point as usize;
+            let (p, t) = (self.coulomb.forces[k], self.coulomb.tangential[k]);
+            interface.force[at] = p;
+            interface.friction[at] = t;
+            interface.status[at] = self.coulomb.statuses[k];
+            self.slips[at] = self.coulomb.slips[k];
+            let forces = [p, t[0], t[1]];
+            for (row, force) in rows(&point).zip(forces).filter(|(_, force)| *force != 0.0) {
+                compliance.add(row, factor * force, operators, &mut self.vectors.half);
+            }
+        }
+        self.end_iteration();
+        Ok(())
+    }
+
+    fn friction_error(&self, failure: FrictionFailure) -> Error {
+        Error::Friction {
+            step: self.state.step + 1,
+            point: self.name(self.candidates[failure.candidate] as usize),
+            cause: failure,
+        }
+    }
+
+    /// Adds Tᵀ t to the nodal contact forces, and keeps it apart.
+    pub(super) fn spread_friction(&mut self) {
+        let f = &mut self.vectors.friction;
+        f.fill(0.0);
+        for (point, t) in self.next.interface.friction.iter().enumerate() {
+            for (rows, &t) in self.pairing.tangents.iter().zip(t) {
+                if t != 0.0 {
+                    rows.add_force(point, t, f);
+                }
+            }
+        }
+        for (sum, f) in self.vectors.contact.iter_mut().zip(f) {
+            *sum += *f;
+        }
+    }
+
+    /// How far a point that sticks has slid at the x of the iteration, m.
+    pub(super) fn slip_defect(&self, point: usize) -> f64 {
+        if self.slips.get(point) != Some(&Slip::Stick) {
+            return 0.0;
+        }
+        let (row, time) = self.sliding();
+        let slid = |k: usize| self.slid(point, k, (&row, time)).powi(2);
+        let slid: f64 = (0..self.system.tangents()).map(slid).sum();
+        slid.sqrt() * self.dt / time
+    }
+
+    /// Work of the friction forces of the step on the sliding that it sees, J; not positive.
+    pub(super) fn friction_work(&self) -> f64 {
+        let (row, time) = self.sliding();
+        let mut work = 0.0;
+        for (point, t) in self.next.interface.friction.iter().enumerate() {
+            for (k, &t) in t.iter().enumerate().filter(|(_, t)| **t != 0.0) {
+                work += t * self.slid(point, k, (&row, time)) * self.dt / time;
+            }
+        }
+        self.map.contact * work
+    }
+}
