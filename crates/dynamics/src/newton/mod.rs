@@ -13,6 +13,7 @@ mod balance;
 mod contacts;
 mod effective;
 mod friction;
+mod linked;
 mod loads;
 mod solve;
 mod start;
@@ -62,6 +63,8 @@ pub struct Newton {
     vectors: Vectors,
     /// Energies of the iteration.
     stored: Stored,
+    /// Forces of links to other zones in the step, N; empty without links.
+    link_force: Vec<f64>,
     /// Internal forces in the balance of the step, N.
     balanced: Vec<f64>,
     phases: Phases,
@@ -141,6 +144,7 @@ impl Newton {
             next: state.clone(),
             state,
             stored: Stored::default(),
+            link_force: Vec::new(),
             balanced: zeros(),
             phases: Phases::default(),
             system,

@@ -30,7 +30,7 @@ struct Standing {
 
 impl Newton {
     /// The map of the step of this size from the present state.
-    pub(super) fn size(&mut self, dt: f64) {
+    pub(crate) fn size(&mut self, dt: f64) {
         self.dt = dt;
         self.map = match self.is_static() {
             true => StepMap::equilibrium(),
@@ -142,7 +142,10 @@ impl Newton {
             vectors.residual[i] = match self.system.fixed[i] {
                 true => 0.0,
                 false => {
-                    vectors.load[i] - vectors.inertia[i] - vectors.internal[i] - vectors.damping[i]
+                    vectors.load[i] + self.link_force.get(i).unwrap_or(&0.0)
+                        - vectors.inertia[i]
+                        - vectors.internal[i]
+                        - vectors.damping[i]
                 }
             };
         }
@@ -163,7 +166,7 @@ impl Newton {
             }
             contact += (factor * c).powi(2);
         }
-        let mut scale = f64::max(contact.sqrt(), norm(&vectors.load));
+        let mut scale = f64::max(contact.sqrt(), norm(&vectors.load)).max(norm(&self.link_force));
         scale = scale
             .max(norm(&vectors.internal))
             .max(norm(&vectors.inertia));
