@@ -82,13 +82,10 @@ fn march(
 fn print(summary: &Summary, folder: &Path) {
     println!("{}", summary.title);
     let time = &summary.time;
-    let sizes = match time.smallest_step == time.largest_step {
-        true => quantity(time.largest_step, "s"),
-        false => format!(
-            "{} to {}",
-            quantity(time.smallest_step, "s"),
-            quantity(time.largest_step, "s")
-        ),
+    let [smallest, largest] = [time.smallest_step, time.largest_step].map(|s| quantity(s, "s"));
+    let sizes = match smallest == largest {
+        true => largest,
+        false => format!("{smallest} to {largest}"),
     };
     let causes = [
         (time.rejected.closing, "a contact closed"),
