@@ -45,8 +45,8 @@ const LEVELS: usize = 24;
 /// Steps of shade of solids, the part of the colour that the darkest of them keeps, and where the light comes from: to the
 /// right, upward, towards the viewer.
 const SHADES: usize = 8;
-const DARK: f64 = 0.72;
-const LIGHT: [f64; 3] = [-0.35, 0.55, 0.76];
+const DARK: f64 = 0.84;
+const LIGHT: [f64; 3] = [-0.2, 0.6, 0.77];
 
 /// A face, or a plane cell, with its value.
 #[derive(Clone, Debug)]

@@ -10,7 +10,7 @@ use carom_dynamics::{State, System};
 
 use crate::Error;
 use crate::plot::{Frame, Patch, Scene, film_figure};
-use crate::results::fields::{cell_stresses, von_mises};
+use crate::results::cells::{cell_stresses, von_mises};
 
 /// Instants kept at most, and instants shown.
 const KEPT: usize = 24;

@@ -249,9 +249,6 @@ fn a_film_shows_six_instants_of_what_moves() {
         let (_, _, summary) = run(&system, models::settings(&folder), 0.05);
         assert!(summary.outputs.iter().any(|name| name == "plots/film.svg"));
         let film = read(&folder.join("plots/film.svg"));
-        if let Ok(keep) = std::env::var("CAROM_KEEP") {
-            fs::write(format!("{keep}/film{dim}.svg"), &film).unwrap();
-        }
         let frames: Vec<&str> = film.split("<g>").skip(1).collect();
         assert_eq!(frames.len(), 6);
         assert!(frames[0].contains("t = 0 s") && frames[5].contains("t = 50.0 ms"));
