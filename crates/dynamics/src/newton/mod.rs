@@ -33,6 +33,7 @@ use crate::state::{ContactReport, State, StepReport, empty_state};
 use crate::step_map::StepMap;
 use crate::system::System;
 use effective::Effective;
+use solve::Pace;
 
 /// Takes steps of systems that are not linear.
 pub struct Newton {
@@ -56,6 +57,7 @@ pub struct Newton {
     force_sweeps: usize,
     /// Residuals of the iterations of the last attempt, relative.
     residuals: Vec<f64>,
+    pace: Pace,
     failed: Option<InterfaceProblem>,
     state: State,
     next: State,
@@ -120,6 +122,7 @@ impl Newton {
             scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
             force_sweeps: 0,
             residuals: Vec::new(),
+            pace: Pace::default(),
             failed: None,
             report: StepReport {
                 contacts: vec![ContactReport::default(); system.contacts.len()],
