@@ -56,6 +56,7 @@ mod sdnl111;
 mod sdnl111_bars;
 mod shapes;
 mod supports;
+mod taylor_bar;
 mod threads;
 mod viability;
 
@@ -126,6 +127,7 @@ registry! {
     sdnl111_bars
     shapes
     supports
+    taylor_bar
     threads
     viability
 }

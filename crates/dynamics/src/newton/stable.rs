@@ -3,15 +3,15 @@
 use super::Newton;
 use crate::error::Error;
 
-/// Part of the critical step that is taken, for what elements shorten until they are looked at again.
+/// Part of the critical step that is taken, for what elements change until they are looked at again.
 const PART: f64 = 0.9;
 
-/// Parts of steps from one look at the elements to the next, which costs several of them.
-const EVERY: u64 = 16;
+/// Change of the lengths in an element, relative, after which its frequencies are looked at again: that costs several steps.
+const CHANGE: f64 = 0.1;
 
 impl Newton {
-    /// How many times a step of `dt` (s) is halved for its parts to be below the critical step, which is looked at anew
-    /// after every so many parts; what was found is kept in the state.
+    /// How many times a step of `dt` (s) is halved for its parts to be below the critical step. That is looked at anew
+    /// where elements have changed; what was found is kept in the state.
     ///
     /// # Errors
     /// A critical step below the smallest part, an element without tangent.
@@ -21,18 +21,48 @@ impl Newton {
         if !explicit || self.is_static() || system.bodies.iter().all(|body| body.is_linear()) {
             return Ok(0);
         }
-        let halvings = system.nonlinear.iteration.halvings;
-        let level = |largest: f64| (0..=halvings).find(|&level| dt <= largest * 2f64.powi(level as i32));
-        let found = level(self.state.control.dt).unwrap_or(halvings);
-        if self.state.step.is_multiple_of((EVERY >> found).max(1)) {
-            let critical = system.critical_step_at(&self.state.motion)?;
-            self.state.control.dt = (PART * critical).min(system.dt);
+        let change = self.state.control.changed + dt * self.largest_rate();
+        self.state.control.changed = change;
+        if self.state.step == 0 || change > CHANGE {
+            let critical = self.system.critical_step_at(&self.state.motion)?;
+            self.state.control.dt = PART * critical;
+            self.state.control.changed = 0.0;
         }
-        level(self.state.control.dt).ok_or_else(|| Error::Shortened {
+        let stable = self.state.control.dt;
+        let halvings = self.system.nonlinear.iteration.halvings;
+        let mut levels = 0..=halvings;
+        let level = levels.find(|&level| dt <= stable * (1u64 << level) as f64);
+        level.ok_or_else(|| Error::Shortened {
             step: self.state.step + 1,
             time: self.state.time,
-            dt: dt / 2f64.powi(halvings as i32),
-            critical: self.state.control.dt / PART,
+            dt: dt / (1u64 << halvings) as f64,
+            critical: stable / PART,
         })
+    }
+
+    /// Largest rate at which the distance of two nodes of an element changes, relative to it, 1/s.
+    fn largest_rate(&self) -> f64 {
+        let (system, motion) = (&*self.system, &self.state.motion);
+        let dim = system.dim;
+        let mut largest: f64 = 0.0;
+        let mut visit = |nodes: &[u32]| {
+            for (k, &a) in nodes.iter().enumerate() {
+                for &b in &nodes[..k] {
+                    let (a, b) = (a as usize, b as usize);
+                    let (mut square, mut product) = (0.0, 0.0);
+                    for i in 0..dim {
+                        let apart = |at: &[f64]| at[dim * a + i] - at[dim * b + i];
+                        let x = system.x[a][i] - system.x[b][i] + apart(&motion.u);
+                        square += x * x;
+                        product += x * apart(&motion.v);
+                    }
+                    largest = largest.max(product.abs() / square);
+                }
+            }
+        };
+        for body in system.bodies.iter().filter(|body| !body.is_linear()) {
+            body.each_element(&mut visit);
+        }
+        largest
     }
 }
