@@ -111,7 +111,6 @@ impl Newton {
             inertia,
             internal.clone(),
             vec![0.0; system.unknowns()],
-            vec![0.0; system.unknowns()],
         ];
     }
 
