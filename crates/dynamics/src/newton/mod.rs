@@ -86,8 +86,6 @@ struct Vectors {
     internal: Vec<f64>,
     damping: Vec<f64>,
     contact: Vec<f64>,
-    /// What friction has in `contact`.
-    friction: Vec<f64>,
     residual: Vec<f64>,
     half: Vec<f64>,
     /// A configuration or a velocity.
@@ -137,7 +135,6 @@ impl Newton {
                 internal: zeros(),
                 damping: zeros(),
                 contact: zeros(),
-                friction: zeros(),
                 residual: zeros(),
                 half: zeros(),
                 place: zeros(),
