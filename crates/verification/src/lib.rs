@@ -41,6 +41,7 @@ mod bars_theta;
 mod block_drop;
 mod blocks;
 mod closed_field_as_printed;
+mod contact_patch;
 mod crushed_stop;
 mod energy_identity;
 mod first_force;
@@ -111,6 +112,7 @@ registry! {
     block_drop
     blocks
     closed_field_as_printed
+    contact_patch
     crushed_stop
     energy_identity
     first_force
