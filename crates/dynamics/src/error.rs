@@ -2,6 +2,8 @@
 
 use thiserror::Error as ThisError;
 
+use crate::Refused;
+
 /// Errors of this crate.
 #[derive(Debug, ThisError)]
 pub enum Error {
@@ -264,7 +266,7 @@ pub enum Error {
     #[error("{what}: {why}")]
     Nonlinear {
         /// What is refused.
-        what: String,
+        what: Refused,
         /// Why, and what would do.
         why: &'static str,
     },

@@ -35,7 +35,7 @@ pub use ledger::{Balance, Ledger, Resultant};
 pub use march::{Observer, Outcome, Stepper, march, step_count};
 pub use newton::Newton;
 pub use nonlinear::{
-    Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed,
+    Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed, Refused,
 };
 pub use records::{ContactRecord, Impact, Records};
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};

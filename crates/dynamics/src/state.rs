@@ -164,6 +164,10 @@ pub struct ContactReport {
     pub force: f64,
     /// Force on the secondary body, N.
     pub resultant: [f64; 3],
+    /// Magnitude of the sum of the friction forces of its points, N.
+    pub friction: f64,
+    /// Points that slip with a friction force.
+    pub slipping: usize,
     /// Least gap at the end of the step, m; infinite where nothing faces anything.
     pub gap: f64,
     /// Gap rate at the point of the least gap, m/s.

@@ -293,6 +293,8 @@ fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut C
         for i in 0..3 {
             sum.resultant[i] += dt * part.resultant[i];
         }
+        sum.friction += dt * part.friction;
+        sum.slipping = sum.slipping.max(part.slipping);
         (sum.gap, sum.rate) = (part.gap, part.rate);
         sum.closed = sum.closed.max(part.closed);
         sum.mixed = sum.mixed.max(part.mixed);
@@ -303,6 +305,7 @@ fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut C
         *whole = ContactReport {
             force: sum.force / length,
             resultant: sum.resultant.map(|r| r / length),
+            friction: sum.friction / length,
             ..sum
         };
     }
