@@ -40,6 +40,7 @@ mod bars_stages;
 mod bars_theta;
 mod block_drop;
 mod blocks;
+mod blocks_as_bars;
 mod closed_field_as_printed;
 mod contact_patch;
 mod crushed_stop;
@@ -48,6 +49,7 @@ mod first_force;
 mod interface_problems;
 mod invariance;
 pub mod long_run;
+mod oblique_bar;
 mod order;
 mod quadrature;
 mod rejections;
@@ -111,6 +113,7 @@ registry! {
     bars_theta
     block_drop
     blocks
+    blocks_as_bars
     closed_field_as_printed
     contact_patch
     crushed_stop
@@ -119,6 +122,7 @@ registry! {
     interface_problems
     invariance
     long_run
+    oblique_bar
     order
     quadrature
     rejections
