@@ -20,7 +20,7 @@ pub struct State {
     /// Contact forces and statuses.
     pub interface: InterfaceState,
     /// Nodal forces of the last step as the nonlinear solver balances them, N: loads, contacts, supports, inertia, internal,
-    /// damping, friction, links; empty where the next step does not need them.
+    /// damping, links; empty where the next step does not need them.
     pub forces: Vec<Vec<f64>>,
     /// Step control.
     pub control: Control,

@@ -84,17 +84,17 @@ impl Newton {
     /// Energy and momentum of the step.
     pub(super) fn balance(&mut self) {
         let system = Arc::clone(&self.system);
-        let rubbed = self.friction_work();
-        let (old, new) = (&self.state.motion, &self.next.motion);
-        let map = &self.map;
-        let vectors = &mut self.vectors;
-        let energies = energies(&system, new, self.stored.strain, &mut vectors.work);
-        let impulse = &map.impulse;
-        let plain = impulse.gain == 1.0 && impulse.carry == 0.0 && map.inertia.x != 0.0;
+        let impulse = &self.map.impulse;
+        let plain = impulse.gain == 1.0 && impulse.carry == 0.0 && self.map.inertia.x != 0.0;
         let weights = match plain {
             true => [impulse.old, impulse.new],
             false => [0.0, 1.0],
         };
+        let friction = self.friction_work(weights);
+        let (old, new) = (&self.state.motion, &self.next.motion);
+        let map = &self.map;
+        let vectors = &mut self.vectors;
+        let energies = energies(&system, new, self.stored.strain, &mut vectors.work);
         let before = &self.state.forces;
         let mean = |k: usize, now: &[f64]| -> Vec<f64> {
             match before.get(k).filter(|_| weights[0] != 0.0) {
@@ -121,7 +121,6 @@ impl Newton {
             })
             .collect();
         let contact: Vec<f64> = vectors.contact.iter().map(|f| map.contact * f).collect();
-        let rubbing: Vec<f64> = vectors.friction.iter().map(|f| map.contact * f).collect();
         let now = [
             &vectors.load,
             &contact,
@@ -129,21 +128,15 @@ impl Newton {
             &vectors.inertia,
             &self.balanced,
             &vectors.damping,
-            &rubbing,
             &link,
         ];
         let way = |f: &[f64]| -> f64 { (0..f.len()).map(|i| f[i] * (new.u[i] - old.u[i])).sum() };
-        let means = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| mean(k, now[k]));
+        let means = [0, 1, 2, 3, 4, 5, 6].map(|k| mean(k, now[k]));
         let [load, touch, support, inertia, internal, damping] =
             [0, 1, 2, 3, 4, 5].map(|k| way(&means[k]));
         let start = &self.state.ledger.balance;
         let gained = energies.kinetic - start.kinetic;
         let stored = energies.strain - start.strain + self.stored.hardening - start.hardening;
-        let friction = weights[1] * rubbed
-            + match before.get(6) {
-                Some(f) => weights[0] * way(f),
-                None => 0.0,
-            };
         let scheme = inertia - gained + internal - stored - self.stored.dissipated;
         let places = [&old.u[..], &new.u[..]];
         let forces = [
@@ -151,7 +144,7 @@ impl Newton {
             Resultant::at(&system, &places, &means[1]),
             Resultant::at(&system, &places, &means[2]),
             Resultant::default(),
-            Resultant::at(&system, &places, &means[7])
+            Resultant::at(&system, &places, &means[6])
                 .plus(&Resultant::at(&system, &places, &means[5]).reversed()),
         ];
         self.next.forces = match weights[0] != 0.0 {
@@ -179,7 +172,7 @@ impl Newton {
         self.next.ledger.add(
             (dt, &EnergyIdentity::default(), impulses),
             &energies,
-            [load, touch - friction, way(&means[7])],
+            [load, touch - friction, way(&means[6])],
             &squares,
             forces,
         );

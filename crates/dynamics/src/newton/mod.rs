@@ -87,8 +87,6 @@ struct Vectors {
     internal: Vec<f64>,
     damping: Vec<f64>,
     contact: Vec<f64>,
-    /// What friction has in `contact`.
-    friction: Vec<f64>,
     residual: Vec<f64>,
     half: Vec<f64>,
     /// A configuration or a velocity.
@@ -138,7 +136,6 @@ impl Newton {
                 internal: zeros(),
                 damping: zeros(),
                 contact: zeros(),
-                friction: zeros(),
                 residual: zeros(),
                 half: zeros(),
                 place: zeros(),

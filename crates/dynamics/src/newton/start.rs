@@ -91,7 +91,7 @@ impl Newton {
             at(1),
             at(2),
             Resultant::default(),
-            at(7).plus(&at(5).reversed()),
+            at(6).plus(&at(5).reversed()),
         ];
         self.state.ledger = Ledger::start(&energies, &EnergyIdentity::default(), forces);
         self.state.ledger.store(stored.hardening);
@@ -120,7 +120,6 @@ impl Newton {
             reaction.collect(),
             inertia,
             internal.clone(),
-            vec![0.0; system.unknowns()],
             vec![0.0; system.unknowns()],
             (0..system.unknowns()).map(|i| motion.link_of(i)).collect(),
         ];
