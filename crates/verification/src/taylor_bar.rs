@@ -5,13 +5,19 @@
 //! 8-node hexahedra (a quarter of the bar between planes of symmetry), the velocity law at the nodes of the foot, theta's
 //! scheme and central differences, 80 µs.
 //! Closed solution: none. Reference: the spread of published results (length 21.2 to 21.6 mm, radius of the foot 6.8 to
-//! 7.3 mm, largest plastic strain 2.5 to 3.3), as the issue states it; it is of meshes of about 0.65 mm at the foot, and so
-//! are these: the strain at the centre of the foot grows as the mesh is refined (0.27 mm: 3.6 to 3.9). It is taken here as
-//! the mean over an element, whose integration points differ by a tenth.
-//! Tolerance: the spread itself. Closed facts beside it: the ledger closes, to round-off where the step is explicit and to
-//! 1e-9 where it is iterated; what it says of plastic work and of hardening is ∫ σ_y ε_p dV and ∫ ½ H ε_p² dV of the strains
-//! at the end, since both laws are linear; at the axis the strain is that of the change of shape, |ln λ_z - ln λ_r| 2/3, as
-//! there the axes do not turn.
+//! 7.3 mm, largest plastic strain 2.5 to 3.3), as the issue states it. The strain, taken as the mean over the element at the
+//! centre of the foot, depends on the mesh: it is 2.9 with elements of 0.8 mm there, 3.2 with the 0.64 mm of this check, 3.4
+//! with 0.53 mm and 3.9 with 0.27 mm, where the radius is 7.33 mm; the length is the same to 0.05 mm.
+//! Tolerance: the spread itself. Facts beside it, all but the last to round-off:
+//! - The ledger closes: where the step is explicit to round-off, where it is iterated to 1e-9, as the issue states.
+//! - The plastic work in it is ∫ σ_y ε_p dV of the strains at the end, and what hardening stores not below ½ H ε_p² of the
+//!   mean strains of the elements.
+//! - At the axis the principal axes do not turn, so that the plastic strain, the length of a path, is not below the change of
+//!   shape 2/3 (ln λ_r - ln λ_z) of the element there, its chord, but for the elastic strain of 0.005 and for what the mean
+//!   over the element leaves: 1 %. Under theta, which damps the waves of the impact, it is no longer either; under central
+//!   differences the foot yields to and fro in the first microseconds, which makes it 2 % longer.
+//!
+//! The scheme and the impact of the lumped masses of the foot (1 % of the bar) take 1 to 2 % of the energy each.
 //! Sizes: quick, axisymmetric: theta to the end, central differences for the first 20 µs; full, all four to the end.
 
 use std::path::Path;
@@ -152,19 +158,23 @@ impl Bar {
         let mut start = vec![0.0; body.history_len()];
         body.start_history(&mut start);
         let volumes = body.stresses(&vec![0.0; system.unknowns()], &start);
-        let strains = body.plastic_strains(&state.motion.history).unwrap_or_default();
+        let strains = body
+            .plastic_strains(&state.motion.history)
+            .unwrap_or_default();
         let pairs = strains.into_iter().zip(volumes);
-        pairs.map(|(strain, (volume, _))| (strain, volume)).collect()
+        pairs
+            .map(|(strain, (volume, _))| (strain, volume))
+            .collect()
     }
 
-    /// 2/3 |ln λ_z - ln λ_r| at the axis of the element at the centre of the foot, axisymmetric.
-    fn change_of_shape(&self) -> f64 {
+    /// Plastic strain of the element at the centre of the foot over its change of shape 2/3 (ln λ_r - ln λ_z), axisymmetric.
+    fn path(&self) -> f64 {
         let cell = self.newton.system().bodies[0].cells()[0];
         let nodes = self.newton.system().mesh.element_nodes(cell);
         let [one, two, three, four] = [0, 1, 2, 3].map(|k| self.place(nodes[k]));
         let radial = 0.5 * (two[0] + three[0]) / (RADIUS / 5.0);
         let axial = 0.5 * (four[1] - one[1] + three[1] - two[1]) / (LENGTH / 50.0);
-        2.0 / 3.0 * (radial / axial).ln()
+        self.strains()[0].0 / (2.0 / 3.0 * (radial / axial).ln())
     }
 }
 
@@ -176,21 +186,54 @@ fn balance(name: &str, bar: &Bar, closes: f64) -> Vec<Row> {
     let strains = bar.strains();
     let sum = |f: &dyn Fn(f64) -> f64| strains.iter().map(|(e, v)| v * f(*e)).sum::<f64>();
     let plastic = sum(&|strain| COPPER.yield_stress * strain);
+    let hardened = sum(&|strain| 0.5 * COPPER.hardening * strain * strain);
     vec![
-        Row::at_most(row("energy residual / E0"), ledger.largest_energy_residual / start, closes),
-        Row::near(row("plastic work / that of the strains"), now.dissipation_material / plastic, 1.0, 1e-10),
-        Row::near(row("dissipation of the scheme / E0"), now.dissipation_scheme / start, 0.0, 0.02),
-        Row::near(row("loss at the impact of the nodes / E0"), -now.work_contact / start, 0.015, 0.015),
+        Row::at_most(
+            row("energy residual / E0"),
+            ledger.largest_energy_residual / start,
+            closes,
+        ),
+        Row::near(
+            row("plastic work / that of the strains"),
+            now.dissipation_material / plastic,
+            1.0,
+            1e-10,
+        ),
+        Row::at_least(
+            row("stored by hardening / that of the mean strains"),
+            now.hardening / hardened,
+            1.0,
+        ),
+        Row::near(
+            row("dissipation of the scheme / E0"),
+            now.dissipation_scheme / start,
+            0.0,
+            0.02,
+        ),
+        Row::near(
+            row("loss at the impact of the nodes / E0"),
+            -now.work_contact / start,
+            0.015,
+            0.015,
+        ),
     ]
 }
 
 /// The bar at the end.
 fn shape(name: &str, bar: &Bar) -> Vec<Row> {
     let row = |what: &str| format!("{name}: {what}");
-    let strain = bar.strains().iter().fold(0.0, |m: f64, (strain, _)| m.max(*strain));
+    let strain = bar
+        .strains()
+        .iter()
+        .fold(0.0, |m: f64, (strain, _)| m.max(*strain));
     vec![
         Row::near(row("length, mm"), bar.length() * 1e3, 21.4, 0.2),
-        Row::near(row("radius of the foot, mm"), bar.radius() * 1e3, 7.05, 0.25),
+        Row::near(
+            row("radius of the foot, mm"),
+            bar.radius() * 1e3,
+            7.05,
+            0.25,
+        ),
         Row::near(row("largest plastic strain"), strain, 2.9, 0.4),
     ]
 }
@@ -206,7 +249,12 @@ pub(crate) const CHECK: Check = Check {
         let implicit = Bar::plane(theta(0.55), step)?.run(END)?;
         let mut rows = shape("quad4, theta", &implicit);
         rows.extend(balance("quad4, theta", &implicit, IMPLICIT));
-        println!("{} {}", implicit.strains()[0].0, implicit.change_of_shape());
+        rows.push(Row::near(
+            "quad4, theta: plastic strain at the centre of the foot / change of shape",
+            implicit.path(),
+            1.0,
+            0.01,
+        ));
         let explicit = Bar::plane(CENTRAL, 0.05e-6)?.run(match size {
             Size::Quick => 0.25 * END,
             Size::Full => END,
@@ -216,6 +264,11 @@ pub(crate) const CHECK: Check = Check {
             return Ok(rows);
         }
         rows.extend(shape("quad4, central differences", &explicit));
+        rows.push(Row::at_least(
+            "quad4, central differences: plastic strain at the centre of the foot / change of shape",
+            explicit.path(),
+            0.99,
+        ));
         let implicit = Bar::solid(theta(0.55), step)?.run(END)?;
         rows.extend(shape("hex8, theta", &implicit));
         rows.extend(balance("hex8, theta", &implicit, IMPLICIT));
