@@ -15,7 +15,7 @@
 //! - At the axis the principal axes do not turn, so that the plastic strain, the length of a path, is not below the change of
 //!   shape 2/3 (ln λ_r - ln λ_z) of the element there, its chord, but for the elastic strain of 0.005 and for what the mean
 //!   over the element leaves: 1 %. Under theta, which damps the waves of the impact, it is no longer either; under central
-//!   differences the foot yields to and fro in the first microseconds, which makes it 2 % longer.
+//!   differences the foot yields to and fro in the first 10 µs, which makes it 2 % longer.
 //!
 //! The scheme and the impact of the lumped masses of the foot (1 % of the bar) take 1 to 2 % of the energy each.
 //! Sizes: quick, axisymmetric: theta to the end, central differences for the first 20 µs; full, all four to the end.
