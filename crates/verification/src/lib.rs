@@ -164,24 +164,3 @@ fn assert_quick(check: &Check) {
     let failed = rows.iter().filter(|row| !row.holds()).count();
     assert_eq!(failed, 0, "{}: {}", check.name, check.fact);
 }
-
-#[test]
-fn tmp_full() {
-    for c in [
-        &contact_patch::CHECK,
-        &oblique_bar::CHECK,
-        &blocks_as_bars::CHECK,
-    ] {
-        let t = std::time::Instant::now();
-        match (c.run)(Size::Full) {
-            Ok(rows) => {
-                for r in rows {
-                    println!("{r}");
-                }
-            }
-            Err(e) => println!("DBG ERR {e}"),
-        }
-        println!("DBG TIME {} {:?}", c.name, t.elapsed());
-    }
-    panic!();
-}
