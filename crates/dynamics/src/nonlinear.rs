@@ -153,6 +153,9 @@ pub enum Refused {
     /// The damping of a body, by its name.
     #[error("damping of body '{0}'")]
     Damping(String),
+    /// A static stage.
+    #[error("a static stage")]
+    StaticStage,
     /// A prescribed motion.
     #[error("the motion of node {node} of the mesh in direction {direction}")]
     Motion {
