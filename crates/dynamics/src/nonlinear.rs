@@ -101,7 +101,8 @@ pub struct Damping {
     pub stiffness: f64,
 }
 
-/// A static stage before the dynamics: loads and contacts find their equilibrium, without inertia.
+/// A static stage before the dynamics: loads and contacts find their equilibrium, without inertia. Contact laws in the rate
+/// hold in the gap there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preload {
     /// End of the stage, s.
