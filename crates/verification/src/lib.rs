@@ -59,6 +59,7 @@ mod sdnl111;
 mod sdnl111_bars;
 mod shapes;
 mod supports;
+mod taylor_bar;
 mod threads;
 mod viability;
 
@@ -132,6 +133,7 @@ registry! {
     sdnl111_bars
     shapes
     supports
+    taylor_bar
     threads
     viability
 }

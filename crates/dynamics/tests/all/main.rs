@@ -8,6 +8,7 @@ mod dense;
 mod initial;
 mod interface;
 mod momentum;
+mod material_work;
 mod monolithic;
 mod mortar;
 mod newton;
