@@ -55,6 +55,8 @@ mod resume;
 mod sdnl111;
 mod sdnl111_bars;
 mod shapes;
+mod sliding_block;
+mod stick_slip;
 mod supports;
 mod threads;
 mod viability;
@@ -125,6 +127,8 @@ registry! {
     sdnl111
     sdnl111_bars
     shapes
+    sliding_block
+    stick_slip
     supports
     threads
     viability
