@@ -152,6 +152,9 @@ pub enum Refused {
     /// The damping of a body, by its name.
     #[error("damping of body '{0}'")]
     Damping(String),
+    /// A static stage.
+    #[error("a static stage")]
+    StaticStage,
     /// A prescribed motion.
     #[error("the motion of node {node} of the mesh in direction {direction}")]
     Motion {
@@ -352,6 +355,13 @@ impl System {
     }
 
     /// Histories of all materials where nothing has happened.
+    /// The part of the histories of all bodies ([`Motion::history`](crate::Motion::history)) that is a body's; empty of a law
+    /// without.
+    pub fn history<'a>(&self, body: usize, histories: &'a [f64]) -> &'a [f64] {
+        let range = self.nonlinear.histories.get(body).cloned();
+        range.and_then(|range| histories.get(range)).unwrap_or(&[])
+    }
+
     pub(crate) fn start_histories(&self) -> Vec<f64> {
         let ranges = &self.nonlinear.histories;
         let mut histories = vec![0.0; ranges.last().map_or(0, |range| range.end)];

@@ -10,7 +10,8 @@ use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting
 use carom_bodies::{CellWeights, Kinematics};
 use carom_contact::Sphere;
 use carom_dynamics::{
-    Driver, LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, System, Zoned, Zones,
+    Driver, LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, System, ZoneDriver,
+    Zoned, Zones,
 };
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
@@ -194,7 +195,7 @@ pub(crate) const CHECK: Check = Check {
         let balance = zones.balance();
         let kinetic = 0.5 * RUBBER.density * SPEED * SPEED;
         let passes = zones.all_passes() as f64 / zones.outer_step() as f64;
-        let bytes = |drivers: &[Driver]| -> f64 {
+        let bytes = |drivers: &[ZoneDriver]| -> f64 {
             let costs = drivers.iter().flat_map(|driver| driver.costs().factors);
             costs.map(|factor| factor.nnz_factor as f64).sum()
         };

@@ -47,6 +47,7 @@ impl Newton {
         new.internal_force.clone_from(&self.vectors.internal);
         new.history.clone_from(&self.vectors.history);
         new.contact_force.clone_from(&self.vectors.contact);
+        new.link_force.clone_from(&self.link_force);
         let interface = &mut self.next.interface;
         interface.carried.clone_from(&interface.force);
         for point in 0..system.points() {
@@ -103,12 +104,17 @@ impl Newton {
                 None => now.to_vec(),
             }
         };
+        let link: Vec<f64> = match self.link_force.is_empty() {
+            true => vec![0.0; system.unknowns()],
+            false => self.link_force.clone(),
+        };
         // supports hold what the balance leaves at their unknowns
         let reaction: Vec<f64> = (0..system.unknowns())
             .map(|i| match system.fixed[i] {
                 true => {
                     vectors.inertia[i] + self.balanced[i] + vectors.damping[i]
                         - vectors.load[i]
+                        - link[i]
                         - map.contact * vectors.contact[i]
                 }
                 false => 0.0,
@@ -122,9 +128,10 @@ impl Newton {
             &vectors.inertia,
             &self.balanced,
             &vectors.damping,
+            &link,
         ];
         let way = |f: &[f64]| -> f64 { (0..f.len()).map(|i| f[i] * (new.u[i] - old.u[i])).sum() };
-        let means = [0, 1, 2, 3, 4, 5].map(|k| mean(k, now[k]));
+        let means = [0, 1, 2, 3, 4, 5, 6].map(|k| mean(k, now[k]));
         let [load, touch, support, inertia, internal, damping] =
             [0, 1, 2, 3, 4, 5].map(|k| way(&means[k]));
         let start = &self.state.ledger.balance;
@@ -137,7 +144,8 @@ impl Newton {
             Resultant::at(&system, &places, &means[1]),
             Resultant::at(&system, &places, &means[2]),
             Resultant::default(),
-            Resultant::at(&system, &places, &means[5]).reversed(),
+            Resultant::at(&system, &places, &means[6])
+                .plus(&Resultant::at(&system, &places, &means[5]).reversed()),
         ];
         self.next.forces = match weights[0] != 0.0 {
             true => now.iter().map(|f| f.to_vec()).collect(),
@@ -164,7 +172,7 @@ impl Newton {
         self.next.ledger.add(
             (dt, &EnergyIdentity::default(), impulses),
             &energies,
-            [load, touch - friction, 0.0],
+            [load, touch - friction, way(&means[6])],
             &squares,
             forces,
         );
@@ -181,7 +189,8 @@ impl Newton {
         };
         for k in 0..system.contacts.len() {
             let (old, new) = (&self.state.interface, &self.next.interface);
-            let report = contact_report(&system, k, &self.pairing.rows, old, new, self.dt);
+            let mut report = contact_report(&system, k, &self.pairing.rows, old, new, self.dt);
+            self.report_friction(k, &mut report);
             let points = system.first_point[k]..system.first_point[k + 1];
             let work = points.map(|point| {
                 let force = impulse.old * old.carried[point] + impulse.new * new.force[point];

@@ -308,7 +308,11 @@ impl Newton {
                         + relation.compliance * force
                         + relation.offset;
                     let scale = relation.gap.abs() + relation.rate.abs() / self.dt;
-                    (left / scale / tolerance).abs()
+                    // a law that cuts tension off leaves a gap or a rate over where it would pull
+                    match law.clips() && force == 0.0 {
+                        true => (-left / scale / tolerance).max(0.0),
+                        false => (left / scale / tolerance).abs(),
+                    }
                 }
             };
             let defect = defect.max(self.slip_defect(point) / tolerance);

@@ -13,6 +13,7 @@ mod balance;
 mod contacts;
 mod effective;
 mod friction;
+mod linked;
 mod loads;
 mod solve;
 mod start;
@@ -32,6 +33,7 @@ use crate::state::{ContactReport, State, StepReport, empty_state};
 use crate::step_map::StepMap;
 use crate::system::System;
 use effective::Effective;
+use solve::Pace;
 
 /// Takes steps of systems that are not linear.
 pub struct Newton {
@@ -55,6 +57,7 @@ pub struct Newton {
     force_sweeps: usize,
     /// Residuals of the iterations of the last attempt, relative.
     residuals: Vec<f64>,
+    pace: Pace,
     failed: Option<InterfaceProblem>,
     state: State,
     next: State,
@@ -62,6 +65,8 @@ pub struct Newton {
     vectors: Vectors,
     /// Energies of the iteration.
     stored: Stored,
+    /// Forces of links to other zones in the step, N; empty without links.
+    link_force: Vec<f64>,
     /// Internal forces in the balance of the step, N.
     balanced: Vec<f64>,
     phases: Phases,
@@ -115,6 +120,7 @@ impl Newton {
             scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
             force_sweeps: 0,
             residuals: Vec::new(),
+            pace: Pace::default(),
             failed: None,
             report: StepReport {
                 contacts: vec![ContactReport::default(); system.contacts.len()],
@@ -138,6 +144,7 @@ impl Newton {
             next: state.clone(),
             state,
             stored: Stored::default(),
+            link_force: Vec::new(),
             balanced: zeros(),
             phases: Phases::default(),
             system,
