@@ -40,13 +40,16 @@ mod bars_stages;
 mod bars_theta;
 mod block_drop;
 mod blocks;
+mod blocks_as_bars;
 mod closed_field_as_printed;
+mod contact_patch;
 mod crushed_stop;
 mod energy_identity;
 mod first_force;
 mod interface_problems;
 mod invariance;
 pub mod long_run;
+mod oblique_bar;
 mod order;
 mod quadrature;
 mod rejections;
@@ -112,13 +115,16 @@ registry! {
     bars_theta
     block_drop
     blocks
+    blocks_as_bars
     closed_field_as_printed
+    contact_patch
     crushed_stop
     energy_identity
     first_force
     interface_problems
     invariance
     long_run
+    oblique_bar
     order
     quadrature
     rejections
