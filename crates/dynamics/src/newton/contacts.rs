@@ -323,7 +323,7 @@ impl Newton {
                         + relation.offset;
                     let scale = relation.gap.abs() + relation.rate.abs() / self.dt;
                     // a law that cuts tension off leaves a gap or a rate over where it would pull
-                    match law.clips() && force == 0.0 {
+                    match law.get().clips() && force == 0.0 {
                         true => (-left / scale / tolerance).max(0.0),
                         false => (left / scale / tolerance).abs(),
                     }
