@@ -48,6 +48,7 @@ mod energy_identity;
 mod first_force;
 mod interface_problems;
 mod invariance;
+mod ironing;
 pub mod long_run;
 mod oblique_bar;
 mod order;
@@ -123,6 +124,7 @@ registry! {
     first_force
     interface_problems
     invariance
+    ironing
     long_run
     oblique_bar
     order
