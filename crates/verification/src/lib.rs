@@ -48,6 +48,7 @@ mod energy_identity;
 mod first_force;
 mod interface_problems;
 mod invariance;
+mod ironing;
 pub mod long_run;
 mod oblique_bar;
 mod order;
@@ -58,6 +59,8 @@ mod resume;
 mod sdnl111;
 mod sdnl111_bars;
 mod shapes;
+mod sliding_block;
+mod stick_slip;
 mod supports;
 mod taylor_bar;
 mod threads;
@@ -122,6 +125,7 @@ registry! {
     first_force
     interface_problems
     invariance
+    ironing
     long_run
     oblique_bar
     order
@@ -132,6 +136,8 @@ registry! {
     sdnl111
     sdnl111_bars
     shapes
+    sliding_block
+    stick_slip
     supports
     taylor_bar
     threads
