@@ -17,9 +17,7 @@
 
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
-use carom_dynamics::{
-    LinkKind, Model, ModelLink, ModelZone, Support, ZoneDriver, Zoned, Zones,
-};
+use carom_dynamics::{LinkKind, Model, ModelLink, ModelZone, Support, ZoneDriver, Zoned, Zones};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
 

@@ -14,6 +14,7 @@ mod error;
 mod figures;
 mod glued;
 mod glued_bar;
+mod hertz;
 
 mod adaptive;
 mod arlequin_bars;
@@ -46,8 +47,12 @@ mod contact_patch;
 mod crushed_stop;
 mod energy_identity;
 mod first_force;
+mod hertz_cylinder;
+mod hertz_impact;
+mod hertz_spheres;
 mod interface_problems;
 mod invariance;
+mod ironing;
 pub mod long_run;
 mod oblique_bar;
 mod order;
@@ -58,6 +63,8 @@ mod resume;
 mod sdnl111;
 mod sdnl111_bars;
 mod shapes;
+mod sliding_block;
+mod stick_slip;
 mod supports;
 mod taylor_bar;
 mod threads;
@@ -120,8 +127,12 @@ registry! {
     crushed_stop
     energy_identity
     first_force
+    hertz_cylinder
+    hertz_impact
+    hertz_spheres
     interface_problems
     invariance
+    ironing
     long_run
     oblique_bar
     order
@@ -132,6 +143,8 @@ registry! {
     sdnl111
     sdnl111_bars
     shapes
+    sliding_block
+    stick_slip
     supports
     taylor_bar
     threads

@@ -12,6 +12,7 @@ use super::Newton;
 use crate::coulomb::{FrictionFailure, Posed, Slip, Tangential};
 use crate::driver::on_row;
 use crate::error::Error;
+use crate::state::ContactReport;
 use crate::step_map::Row;
 use crate::system::System;
 
@@ -184,7 +185,8 @@ impl Newton {
     /// Way that a point slides along one tangent in the step that was taken, m.
     fn way(&self, point: usize, tangent: usize) -> f64 {
         let rows = &self.pairing.tangents[tangent];
-        let [old, new] = [&self.state.motion.u, &self.next.motion.u].map(|u| rows.product(point, u));
+        let [old, new] =
+            [&self.state.motion.u, &self.next.motion.u].map(|u| rows.product(point, u));
         new - old + self.dt * rows.rate(point)
     }
 
@@ -203,5 +205,33 @@ impl Newton {
             }
         }
         self.map.contact * work
+    }
+
+    /// Writes the friction of a contact into its report, and adds it to the resultant.
+    pub(super) fn report_friction(&self, contact: usize, report: &mut ContactReport) {
+        let points = self.system.first_point[contact]..self.system.first_point[contact + 1];
+        let mut sum = [0.0; 3];
+        for point in points {
+            let Some(t) = self.next.interface.friction.get(point) else {
+                return;
+            };
+            for (rows, t) in self
+                .pairing
+                .tangents
+                .iter()
+                .zip(t)
+                .take(self.system.tangents())
+            {
+                for (sum, direction) in sum.iter_mut().zip(rows.normal(point)) {
+                    *sum += t * direction;
+                }
+            }
+            let slips = self.slips[point] == Slip::Slip && t != &[0.0; 2];
+            report.slipping += usize::from(slips);
+        }
+        report.friction = sum.iter().map(|f| f * f).sum::<f64>().sqrt();
+        for (resultant, f) in report.resultant.iter_mut().zip(sum) {
+            *resultant += f;
+        }
     }
 }

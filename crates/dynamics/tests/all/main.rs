@@ -13,6 +13,7 @@ mod monolithic;
 mod mortar;
 mod newton;
 mod quadrature;
+mod refusals;
 mod stability;
 mod weak_form;
 mod whole;
