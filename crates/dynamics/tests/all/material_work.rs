@@ -278,7 +278,7 @@ fn squeezed(halvings: u32) -> (Result<(), Error>, u32, Newton) {
         if let Err(error) = newton.step() {
             return (Err(error), most, newton);
         }
-        most = most.max(newton.report().attempts as u32);
+        most = most.max(newton.report().attempts);
     }
     (Ok(()), most, newton)
 }
