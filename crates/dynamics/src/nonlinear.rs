@@ -299,10 +299,10 @@ fn numbered_force(load: &Load, model: &Model, number: &[u32]) -> NumberedForce {
         }
         LoadKind::Traction(traction) => {
             let kinematics = model.bodies[body].spec.kinematics;
-            let areas = load.surface.node_areas(&model.mesh);
+            let factor = |x: &[f64; 3]| kinematics.surface_factor(x);
+            let areas = load.surface.weighted_node_areas(&model.mesh, factor);
             let mut forces = Vec::new();
             for (&node, area) in load.surface.nodes.iter().zip(areas) {
-                let area = area * kinematics.surface_factor(&model.mesh.nodes[node as usize]);
                 let node = number[node as usize] as usize;
                 let of = |i: usize| ((dim * node + i) as u32, area * traction[i]);
                 forces.extend((0..dim).map(of));

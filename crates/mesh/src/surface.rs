@@ -105,10 +105,17 @@ impl Surface {
     /// Of a quadratic face these are the weights of a pressure's nodal forces, and no areas: zero at the corners of a
     /// six-node triangle, negative at those of an eight-node quadrilateral. See [`Surface::tributary_areas`].
     pub fn node_areas(&self, mesh: &Mesh) -> Vec<f64> {
-        self.integrate(mesh, |kind| {
+        self.weighted_node_areas(mesh, |_| 1.0)
+    }
+
+    /// ∫ N_a w dΓ with a weight w of the place: as [`Surface::node_areas`], where a unit of the surface stands for
+    /// w units of area, such as 2πr.
+    pub fn weighted_node_areas(&self, mesh: &Mesh, weight: impl Fn(&[f64; 3]) -> f64) -> Vec<f64> {
+        let whole = |kind: Kind| {
             let places = (0..kind.table().nodes).collect();
             vec![Piece { kind, places }]
-        })
+        };
+        self.integrate(mesh, whole, weight)
     }
 
     /// Share of each node in the surface in the sense of an area, one value per entry of [`Surface::nodes`]: ∫ φ_a dΓ
@@ -116,17 +123,32 @@ impl Surface {
     /// cell. Always positive; the sum is the area. In the units of [`Surface::node_areas`], which it equals on linear
     /// faces.
     pub fn tributary_areas(&self, mesh: &Mesh) -> Vec<f64> {
-        self.integrate(mesh, pieces)
+        self.weighted_tributary_areas(mesh, |_| 1.0)
     }
 
-    /// ∫ φ_a dΓ with φ_a the shape functions of the pieces into which each face is cut.
-    fn integrate(&self, mesh: &Mesh, cut: impl Fn(Kind) -> Vec<Piece>) -> Vec<f64> {
+    /// ∫ φ_a w dΓ with a weight w of the place: as [`Surface::tributary_areas`], where a unit of the surface stands for w
+    /// units of area, such as 2πr.
+    pub fn weighted_tributary_areas(
+        &self,
+        mesh: &Mesh,
+        weight: impl Fn(&[f64; 3]) -> f64,
+    ) -> Vec<f64> {
+        self.integrate(mesh, pieces, weight)
+    }
+
+    /// ∫ φ_a w dΓ with φ_a the shape functions of the pieces into which each face is cut.
+    fn integrate(
+        &self,
+        mesh: &Mesh,
+        cut: impl Fn(Kind) -> Vec<Piece>,
+        weight: impl Fn(&[f64; 3]) -> f64,
+    ) -> Vec<f64> {
         let mut areas = vec![0.0; self.nodes.len()];
         let mut buffer = [[0.0; 3]; MAX_NODES];
         for face in &self.faces {
             let x = gather(&mesh.nodes, face.corners(), &mut buffer);
             for piece in cut(face.kind) {
-                for (place, area) in piece.areas(face.kind.table(), x) {
+                for (place, area) in piece.areas(face.kind.table(), x, &weight) {
                     if let Some(a) = self.index_of(face.nodes[place]) {
                         areas[a] += area;
                     }
@@ -171,8 +193,13 @@ pub fn pieces(kind: Kind) -> Vec<Piece> {
 }
 
 impl Piece {
-    /// ∫ φ dΓ of each of its corners over its part of a face with these node positions.
-    fn areas(&self, face: &Element, x: &[[f64; 3]]) -> impl Iterator<Item = (usize, f64)> + '_ {
+    /// ∫ φ w dΓ of each of its corners over its part of a face with these node positions; w: a weight of the place.
+    fn areas(
+        &self,
+        face: &Element,
+        x: &[[f64; 3]],
+        weight_at: impl Fn(&[f64; 3]) -> f64,
+    ) -> impl Iterator<Item = (usize, f64)> + '_ {
         let table = self.kind.table();
         let mut corners = [[0.0; 3]; MAX_FACE_NODES];
         for (corner, &place) in corners.iter_mut().zip(&self.places) {
@@ -181,6 +208,7 @@ impl Piece {
         let corners = &corners[..table.nodes];
         let mut areas = [0.0; MAX_FACE_NODES];
         let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);
+        let mut of_face = [0.0; MAX_NODES];
         let rule = table.mass_rule;
         for (xi, weight) in rule.points.iter().zip(rule.weights) {
             (table.shape)(xi, &mut n[..table.nodes]);
@@ -195,6 +223,8 @@ impl Piece {
             };
             (face.gradient)(&place, &mut dn[..face.nodes]);
             let (factor, _) = map::measure(x, &dn[..face.nodes], face.dim);
+            (face.shape)(&place, &mut of_face[..face.nodes]);
+            let weight = weight * weight_at(&map::point(x, &of_face[..face.nodes]));
             for (area, n) in areas.iter_mut().zip(&n[..table.nodes]) {
                 *area += n * (part * factor) * weight;
             }
@@ -294,6 +324,29 @@ mod tests {
         for face in &sound.faces {
             let nodes = mesh.element_nodes(face.parent);
             assert!(face.corners().iter().all(|node| nodes.contains(node)));
+        }
+    }
+
+    #[test]
+    fn node_areas_about_an_axis_are_those_of_the_shape_functions() {
+        let mesh = rectangle("a", [0.0; 2], [1.0; 2], [4, 1], false);
+        let bottom = surface(&mesh, "a", "a.bottom").unwrap();
+        let turn = |x: &[f64; 3]| std::f64::consts::TAU * x[0];
+        for areas in [
+            bottom.weighted_node_areas(&mesh, turn),
+            bottom.weighted_tributary_areas(&mesh, turn),
+        ] {
+            // ∫ N_a 2πr dr with h = 1/4: πh²/3 on the axis, 2πh r inside, the rest of π at the rim
+            let (pi, h) = (std::f64::consts::PI, 0.25);
+            for (&node, area) in bottom.nodes.iter().zip(areas) {
+                let r = mesh.nodes[node as usize][0];
+                let expected = match r {
+                    0.0 => pi * h * h / 3.0,
+                    1.0 => pi * h * (1.0 - h / 3.0),
+                    r => 2.0 * pi * h * r,
+                };
+                assert!((area - expected).abs() < 1e-15);
+            }
         }
     }
 
