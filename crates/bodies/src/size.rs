@@ -27,9 +27,9 @@ fn measure(kind: Kind, x: &[[f64; 3]]) -> f64 {
 }
 
 /// Size of a cell normal to one of its faces, in m: f V / A with f = 1 for bars, quadrilaterals and hexahedra, the
-/// dimension for simplices, whose altitude it is, and for wedges and pyramids what makes it the altitude of a right one: 1
-/// and 2 over the triangles and the sides of a wedge, 3 over the base of a pyramid, 3/2 over its sides (half of the
-/// altitude, as wide as the pyramid is on average). Nodes between corners do not count. `face`: nodes of the face.
+/// dimension for simplices, whose altitude it is. Over the sides of a wedge f = 2, the distance of the opposite edge, over
+/// its triangles 1; over the base of a pyramid 3, its altitude, over its sides 3/2, the distance of the opposite edge of a
+/// parallelogram. Quadratic kinds as the linear ones on their corners. `face`: nodes of the face.
 pub fn height(mesh: &Mesh, cell: ElementId, face: Kind, face_nodes: &[u32]) -> f64 {
     let kind = mesh.kind(cell);
     let gather = |nodes: &[u32]| {

@@ -58,9 +58,20 @@ pub fn facts(built: &Built) -> Vec<Fact> {
             contact_facts(system, k),
         ));
     }
+    let begin = built.stage.map_or(0.0, |(end, _)| end);
+    if let Some((end, steps)) = built.stage {
+        let value = format!(
+            "{steps} steps of {:.6e} s to {end:.4e} s",
+            end / f64::from(steps)
+        );
+        facts.push(fact("static stage", value));
+        if end == built.end {
+            return facts;
+        }
+    }
     let steps = format!(
         "{} steps of {:.6e} s{}",
-        step_count(built.end, system.dt),
+        step_count(built.end - begin, system.dt),
         system.dt,
         system.adaptive.map_or(String::new(), |rules| format!(
             " or less, down to {:.2e} s",

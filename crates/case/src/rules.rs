@@ -3,8 +3,9 @@
 use crate::error::Problem;
 use crate::schema::{
     Adaptive, Capture, Case, Contact, Count, Integration, IntegrationWith, LargestStep, Law, Line,
-    Obstacle, Part, Sign, Step, StepRule,
+    Obstacle, Part, Sign, Step, StepRule, Time,
 };
+use crate::units::with_article;
 
 /// Most nodes of a generated part: beyond it a case is a slip of the pen.
 const MOST_NODES: f64 = 1e8;
@@ -18,25 +19,48 @@ pub(crate) fn check(case: &Case) -> Vec<Problem> {
     for (name, contact) in case.contact.iter() {
         check_contact(&format!("contact.{name}"), contact, &mut problems);
     }
-    let given = match case.time.step {
-        Step::Fixed(step) => Some(("time.step", step)),
-        Step::Rule(StepRule::Adaptive(Adaptive {
+    check_time(&case.time, &mut problems);
+    problems
+}
+
+fn check_time(time: &Time, problems: &mut Vec<Problem>) {
+    let begin = time.stage.map_or(0.0, |stage| stage.end.0);
+    if begin > time.end.0 {
+        let message = "the static stage ends after the time to simulate";
+        let problem = Problem::new("time.static.end", message).found(format!("{begin} s"));
+        problems.push(problem.accepted([format!("at most `end`, {} s", time.end.0)]));
+        return;
+    }
+    if !time.is_static() {
+        let keys = [
+            ("step", time.step.is_none(), "step = { courant = 0.5 }"),
+            ("scheme", time.scheme.is_none(), "scheme.theta = {}"),
+        ];
+        for (key, _, example) in keys.into_iter().filter(|(_, missing, _)| *missing) {
+            let message = format!("`{key}` is missing in `time`");
+            let problem = Problem::new("time", message);
+            problems.push(problem.accepted([example, "a static stage up to `end`"]));
+        }
+    }
+    let given = match time.step {
+        Some(Step::Fixed(step)) => Some(("time.step", step)),
+        Some(Step::Rule(StepRule::Adaptive(Adaptive {
             largest: LargestStep::Fixed(step),
             ..
-        })) => Some(("time.step.adaptive.largest", step)),
-        Step::Rule(_) => None,
+        }))) => Some(("time.step.adaptive.largest", step)),
+        Some(Step::Rule(_)) | None => None,
     };
     if let Some((path, step)) = given
-        && step > case.time.end
+        && step.0 > time.end.0 - begin
+        && !time.is_static()
     {
         let problem = Problem::new(path, "the step is longer than the time to simulate");
         problems.push(
             problem
                 .found(format!("{} s", step.0))
-                .accepted([format!("at most `end`, {} s", case.time.end.0)]),
+                .accepted([format!("at most `end`, {} s", time.end.0 - begin)]),
         );
     }
-    problems
 }
 
 fn check_part(path: &str, part: &Part, problems: &mut Vec<Problem>) {
@@ -84,23 +108,37 @@ fn check_contact(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
             format!("{path}.primary"),
             "a surface cannot be its own partner in contact",
         );
-        problems.push(
-            problem
-                .found(&contact.secondary)
-                .accepted(["another group than `secondary`"]),
-        );
+        problems.push(problem.found(&contact.secondary).accepted([
+            "another group than `secondary`",
+            "`self = true` in its place",
+        ]));
     }
-    if let Some(Obstacle::Plane(plane)) = &contact.obstacle
-        && plane.normal.components() == [0.0; 3]
-    {
-        let problem = Problem::new(
-            format!("{path}.obstacle.plane.normal"),
-            "a normal of no length",
-        );
-        problems.push(problem.accepted(["a vector that is not zero"]));
-    }
+    check_vectors(path, contact, problems);
     check_capture(path, &contact.law, problems);
     check_r(path, contact, problems);
+}
+
+/// Normals and axes of no length.
+fn check_vectors(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
+    let Some(obstacle) = &contact.obstacle else {
+        return;
+    };
+    let (shape, vector, motion) = match obstacle {
+        Obstacle::Plane(plane) => ("plane", Some(("normal", &plane.normal)), &plane.motion),
+        Obstacle::Sphere(sphere) => ("sphere", None, &sphere.motion),
+        Obstacle::Cylinder(round) => ("cylinder", Some(("axis", &round.axis)), &round.motion),
+        Obstacle::Surface(surface) => ("surface", None, &surface.motion),
+    };
+    let turn = motion.as_ref().and_then(|motion| motion.turn.as_ref());
+    let turn = turn.map(|turn| ("motion.turn.axis", &turn.axis));
+    for (key, vector) in vector.into_iter().chain(turn) {
+        if vector.components() == [0.0; 3] {
+            let noun = key.rsplit('.').next().unwrap_or(key);
+            let path = format!("{path}.obstacle.{shape}.{key}");
+            let problem = Problem::new(path, format!("{} of no length", with_article(noun)));
+            problems.push(problem.accepted(["a vector that is not zero"]));
+        }
+    }
 }
 
 /// An r that is only given for another law.

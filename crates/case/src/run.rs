@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_dynamics::{Driver, ModelZone, Observer, Outcome, Stepper, Whole, march};
+use carom_dynamics::{Driver, ModelZone, Newton, Observer, Outcome, Stepper, Whole, march};
 use carom_output::summary::Zones;
 use carom_output::{Ending, Fields, Probe, Reference, Results, Settings, Summary, Zoning};
 use thiserror::Error as ThisError;
@@ -50,11 +50,14 @@ pub fn run(
     let system = || Arc::clone(&built.system);
     match &built.zoned {
         None => {
-            let mut driver = Driver::new(system()).map_err(Failed::Start)?;
+            let mut driver: Box<dyn Stepper> = match built.system.is_nonlinear() {
+                false => Box::new(Driver::new(system()).map_err(Failed::Start)?),
+                true => Box::new(Newton::new(system()).map_err(Failed::Start)?),
+            };
             let mut results = Results::create(settings(input, case, built, folder), system())?;
             let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
-            let outcome = march(&mut driver, built.end, observers, stop);
-            conclude(results, outcome, (&driver, None), begin)
+            let outcome = march(&mut *driver, built.end, observers, stop);
+            conclude(results, outcome, (&*driver, None), begin)
         }
         Some(zoned) => {
             let mut whole = Whole::new(zoned, system()).map_err(Failed::Start)?;
@@ -122,7 +125,8 @@ fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Setti
         case_text: overrides + &file,
         version: env!("CARGO_PKG_VERSION").to_string(),
         scheme: match &built.zoned {
-            None => scheme(&case.time.scheme),
+            None if case.time.is_static() => "static".to_string(),
+            None => scheme(&case.time.scheme()),
             Some(zoned) => zoned
                 .zones
                 .iter()
@@ -198,6 +202,7 @@ fn scheme(scheme: &Scheme) -> String {
         Scheme::Krenk(scheme) => format!("krenk, rho-inf = {}", scheme.rho_inf),
         Scheme::NonsmoothAlpha(scheme) => format!("nonsmooth-alpha, rho-inf = {}", scheme.rho_inf),
         Scheme::ContactStabilised(_) => "contact-stabilised".to_string(),
+        Scheme::EnergyMomentum(_) => "energy-momentum".to_string(),
         Scheme::Kane(kane) => format!("kane, beta = {}, gamma = {}", kane.beta, kane.gamma),
     }
 }

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use carom_case::{Built, Finished, Input, schema::Case};
 use carom_output::Summary;
 use carom_output::plot::quantity;
+use carom_output::summary::{NONLINEAR_WORKS, Newton};
 
 use crate::progress::Progress;
 use crate::{FAILED, INTERRUPTED, OUT_OF_BOUND};
@@ -81,13 +82,10 @@ fn march(
 fn print(summary: &Summary, folder: &Path) {
     println!("{}", summary.title);
     let time = &summary.time;
-    let sizes = match time.smallest_step == time.largest_step {
-        true => quantity(time.largest_step, "s"),
-        false => format!(
-            "{} to {}",
-            quantity(time.smallest_step, "s"),
-            quantity(time.largest_step, "s")
-        ),
+    let [smallest, largest] = [time.smallest_step, time.largest_step].map(|s| quantity(s, "s"));
+    let sizes = match smallest == largest {
+        true => largest,
+        false => format!("{smallest} to {largest}"),
     };
     let causes = [
         (time.rejected.closing, "a contact closed"),
@@ -145,6 +143,13 @@ fn print(summary: &Summary, folder: &Path) {
             (None, _) => ", never closed".to_string(),
         };
         println!("    impulse {}{times}", quantity(contact.impulse, "N s"));
+        if let Some(friction) = contact.friction {
+            println!(
+                "    friction {}, its largest force {}",
+                friction.coefficient,
+                quantity(friction.peak_force, "N")
+            );
+        }
         if let Some(mixed) = contact.mixed_supports {
             println!(
                 "    weak form: at most {mixed} nodes with partly closed supports, where the pressure depends on r"
@@ -164,8 +169,19 @@ fn print(summary: &Summary, folder: &Path) {
             percent(exact.displacement_error)
         );
     }
+    if let Some(newton) = &summary.newton {
+        println!("  {}", iterations(newton));
+    }
+    let terms = further(summary);
+    if !terms.is_empty() {
+        println!("  {}", terms.join(", "));
+    }
+    let angular = match &summary.momentum.angular {
+        Some(angular) => format!(", angular {:.1e}", angular.relative_residual),
+        None => String::new(),
+    };
     println!(
-        "  energy residual {:.1e}, momentum residual {:.1e} (relative)",
+        "  energy residual {:.1e}, momentum residual {:.1e}{angular} (relative)",
         summary.energy.relative_residual, summary.momentum.relative_residual
     );
     println!("  {}", cost(summary));
@@ -190,6 +206,29 @@ fn tell(error: &carom_case::Failed, folder: &Path) {
     if let carom_case::Failed::Step(_) = error {
         eprintln!("what was computed before is in {}", folder.display());
     }
+}
+
+/// What Newton's method took.
+fn iterations(newton: &Newton) -> String {
+    let halves = match newton.halvings {
+        0 => String::new(),
+        count => format!(", {count} times in halves"),
+    };
+    format!(
+        "{} Newton iterations, {:.2} a step, at most {}; {:.2} factorisations a step{halves}",
+        newton.iterations,
+        newton.iterations_per_step,
+        newton.most_iterations,
+        newton.factorisations_per_step
+    )
+}
+
+/// The terms of the energy balance that only runs have that are not linear; losses negative.
+fn further(summary: &Summary) -> Vec<String> {
+    let works = summary.energy.works.iter();
+    let own = works.filter(|(name, _)| NONLINEAR_WORKS.contains(&name.as_str()));
+    own.map(|(name, work)| format!("{name} {}", quantity(*work, "J")))
+        .collect()
 }
 
 /// Factorisations, memory, time per step.

@@ -2,6 +2,8 @@
 
 use thiserror::Error as ThisError;
 
+use crate::Refused;
+
 /// Errors of this crate.
 #[derive(Debug, ThisError)]
 pub enum Error {
@@ -97,6 +99,20 @@ pub enum Error {
     #[error("the step {dt:e} s is above the critical step {critical:e} s of the scheme")]
     Unstable {
         /// The step given, s.
+        dt: f64,
+        /// The critical step 2/ω, s.
+        critical: f64,
+    },
+    /// Elements have shortened so far that no part of an explicit step is stable.
+    #[error(
+        "step {step}, t = {time:e} s: elements have shortened, so that the critical step is now {critical:e} s, below the smallest part of a step, {dt:e} s"
+    )]
+    Shortened {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start, s.
+        time: f64,
+        /// The smallest part of it, s.
         dt: f64,
         /// The critical step 2/ω, s.
         critical: f64,
@@ -264,7 +280,7 @@ pub enum Error {
     #[error("{what}: {why}")]
     Nonlinear {
         /// What is refused.
-        what: String,
+        what: Refused,
         /// Why, and what would do.
         why: &'static str,
     },

@@ -89,6 +89,11 @@ impl Resultant {
         sum
     }
 
+    /// The sum of two.
+    pub(crate) fn plus(&self, other: &Resultant) -> Resultant {
+        self.combine(1.0, other, 1.0)
+    }
+
     /// The opposite.
     pub(crate) fn reversed(&self) -> Resultant {
         self.combine(-1.0, &Resultant::default(), 0.0)
@@ -105,6 +110,11 @@ impl Resultant {
     /// Largest absolute component of the linear part.
     pub fn largest(&self) -> f64 {
         self.linear.iter().fold(0.0, |m, x| m.max(x.abs()))
+    }
+
+    /// Largest absolute component of the angular part.
+    pub fn largest_moment(&self) -> f64 {
+        self.angular.iter().fold(0.0, |m, x| m.max(x.abs()))
     }
 }
 
@@ -195,10 +205,14 @@ pub struct Ledger {
     pub largest_energy: f64,
     /// Largest component of the momentum, or of the impulse of loads, contacts or supports so far, N s.
     pub largest_momentum: f64,
+    /// Largest component of the angular momentum, or of the moments' impulses so far, N m s.
+    pub largest_angular_momentum: f64,
     /// Largest absolute energy residual so far, J.
     pub largest_energy_residual: f64,
     /// Largest absolute component of the linear momentum residual so far, N s.
     pub largest_momentum_residual: f64,
+    /// Largest absolute component of the angular momentum residual so far, N m s.
+    pub largest_angular_residual: f64,
     work_loads: Sum,
     work_contact: Sum,
     work_links: Sum,
@@ -302,6 +316,7 @@ impl Ledger {
             balance,
             largest_energy: balance.energy(),
             largest_momentum: energies.momentum.largest(),
+            largest_angular_momentum: energies.momentum.largest_moment(),
             forces,
             ..Ledger::default()
         }
@@ -406,6 +421,13 @@ impl Ledger {
             .iter()
             .map(Resultant::largest)
             .fold(self.largest_momentum, f64::max);
+        self.largest_angular_momentum = impulses
+            .iter()
+            .map(Resultant::largest_moment)
+            .fold(self.largest_angular_momentum, f64::max);
+        self.largest_angular_residual = self
+            .largest_angular_residual
+            .max(balance.momentum_residual.largest_moment());
         self.largest_momentum_residual = self
             .largest_momentum_residual
             .max(balance.momentum_residual.largest());

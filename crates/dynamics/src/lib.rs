@@ -35,11 +35,13 @@ pub use ledger::{Balance, Ledger, Resultant};
 pub use march::{Observer, Outcome, Stepper, march, step_count};
 pub use newton::Newton;
 pub use nonlinear::{
-    Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed,
+    Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed, Refused,
 };
 pub use records::{ContactRecord, Impact, Records};
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, StepReport};
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::{Mass, Model, ModelBody, ModelContact, ModelTarget, Support, System};
-pub use zones::{LinkKind, ModelLink, ModelZone, Sample, Whole, Zoned, Zones, ZonesState};
+pub use zones::{
+    LinkKind, ModelLink, ModelZone, Sample, Whole, ZoneDriver, Zoned, Zones, ZonesState,
+};

@@ -7,6 +7,7 @@ use carom_bodies::{Body, FollowerPressure};
 use carom_contact::{Contact, Integration};
 use carom_mesh::Surface;
 use serde::{Deserialize, Serialize};
+use thiserror::Error as ThisError;
 
 use crate::Error;
 use crate::system::{Model, ModelBody, ModelContact, ModelTarget, System};
@@ -100,7 +101,8 @@ pub struct Damping {
     pub stiffness: f64,
 }
 
-/// A static stage before the dynamics: loads and contacts find their equilibrium, without inertia.
+/// A static stage before the dynamics: loads and contacts find their equilibrium, without inertia. Contact laws in the rate
+/// hold in the gap there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preload {
     /// End of the stage, s.
@@ -128,6 +130,40 @@ impl Default for Iteration {
             halvings: 6,
         }
     }
+}
+
+/// What of a model that needs the nonlinear solver is refused.
+#[derive(Clone, Debug, PartialEq, Eq, ThisError)]
+pub enum Refused {
+    /// The time scheme, by its name.
+    #[error("the scheme {0}")]
+    Scheme(&'static str),
+    /// An adaptive step.
+    #[error("an adaptive step")]
+    AdaptiveStep,
+    /// Contact nodes without mass.
+    #[error("contact nodes without mass")]
+    MasslessNodes,
+    /// Where the law of a contact, by its name, holds.
+    #[error("integration of contact '{0}'")]
+    Integration(String),
+    /// The projection at closure of a contact, by its name.
+    #[error("projection of contact '{0}'")]
+    Projection(String),
+    /// The damping of a body, by its name.
+    #[error("damping of body '{0}'")]
+    Damping(String),
+    /// A static stage.
+    #[error("a static stage")]
+    StaticStage,
+    /// A prescribed motion.
+    #[error("the motion of node {node} of the mesh in direction {direction}")]
+    Motion {
+        /// Node of the mesh.
+        node: u32,
+        /// Direction, from 0.
+        direction: usize,
+    },
 }
 
 /// What only the nonlinear solver takes.
@@ -217,7 +253,8 @@ impl NumberedNonlinear {
                 let Some(amplitude) = amplitude else { continue };
                 let place = numbered.amplitudes.len();
                 numbered.amplitudes.push(amplitude.clone());
-                for &node in &motion.nodes {
+                let of_bodies = |node: &&u32| number[**node as usize] != u32::MAX;
+                for &node in motion.nodes.iter().filter(of_bodies) {
                     let unknown = dim * number[node as usize] as usize + i;
                     if fixed[unknown]
                         || numbered
@@ -226,7 +263,7 @@ impl NumberedNonlinear {
                             .any(|f| f.unknown as usize == unknown)
                     {
                         return Err(Error::Nonlinear {
-                            what: format!("the motion of node {node} of the mesh in direction {i}"),
+                            what: Refused::Motion { node, direction: i },
                             why: "a support or another motion holds it already",
                         });
                     }
@@ -299,8 +336,8 @@ fn numbered_force(load: &Load, model: &Model, number: &[u32]) -> NumberedForce {
         }
         LoadKind::Traction(traction) => {
             let kinematics = model.bodies[body].spec.kinematics;
-            let factor = |x: &[f64; 3]| kinematics.surface_factor(x);
-            let areas = load.surface.weighted_node_areas(&model.mesh, factor);
+            let unit = |x: &[f64; 3]| kinematics.surface_factor(x);
+            let areas = load.surface.node_areas(&model.mesh, unit);
             let mut forces = Vec::new();
             for (&node, area) in load.surface.nodes.iter().zip(areas) {
                 let node = number[node as usize] as usize;
@@ -319,6 +356,13 @@ impl System {
     }
 
     /// Histories of all materials where nothing has happened.
+    /// The part of the histories of all bodies ([`Motion::history`](crate::Motion::history)) that is a body's; empty of a law
+    /// without.
+    pub fn history<'a>(&self, body: usize, histories: &'a [f64]) -> &'a [f64] {
+        let range = self.nonlinear.histories.get(body).cloned();
+        range.and_then(|range| histories.get(range)).unwrap_or(&[])
+    }
+
     pub(crate) fn start_histories(&self) -> Vec<f64> {
         let ranges = &self.nonlinear.histories;
         let mut histories = vec![0.0; ranges.last().map_or(0, |range| range.end)];
@@ -335,47 +379,47 @@ impl System {
         }
         let scheme = self.scheme.get();
         let map = scheme.step_map(self.dt);
-        let refuse = |what: String, why| Err(Error::Nonlinear { what, why });
+        let refuse = |what: Refused, why| Err(Error::Nonlinear { what, why });
         if map.has_memory()
             || map.uses_contact_acceleration()
             || scheme.projects_predictor()
             || scheme.restores_contact_work()
         {
             return refuse(
-                format!("the scheme {}", scheme.name()),
+                Refused::Scheme(scheme.name()),
                 "large transformations, friction, damping, loads in time and static stages take newmark, theta, \
                  generalised-alpha, hht, central-difference, tchamwa-wielgosz, laursen-chawla and energy-momentum",
             );
         }
         if self.adaptive.is_some() {
             return refuse(
-                "an adaptive step".into(),
+                Refused::AdaptiveStep,
                 "the nonlinear solver halves steps by itself where it finds no equilibrium; give a fixed step",
             );
         }
         if !self.massless.is_empty() {
             return refuse(
-                "contact nodes without mass".into(),
+                Refused::MasslessNodes,
                 "they follow a linear equilibrium; leave the mass of the nodes as it is",
             );
         }
         let weak = |contact: &&Contact| matches!(contact.integration, Integration::Weak { .. });
         if let Some(contact) = self.contacts.iter().find(weak) {
             return refuse(
-                format!("contact '{}'", contact.name),
+                Refused::Integration(contact.name.clone()),
                 "the weak form with signs at Gauss points is for the linear driver; take node or mortar",
             );
         }
         if let Some(contact) = self.contacts.iter().find(|contact| contact.law.projects()) {
             return refuse(
-                format!("contact '{}'", contact.name),
+                Refused::Projection(contact.name.clone()),
                 "the projection at closure is for the linear driver; take the velocity law, or no projection",
             );
         }
         for (damping, body) in self.nonlinear.damping.iter().zip(&self.bodies) {
             if damping.stiffness != 0.0 && !body.is_linear() {
                 return refuse(
-                    format!("body '{}'", body.name()),
+                    Refused::Damping(body.name().to_string()),
                     "damping proportional to the stiffness would brake rotations at finite strain; take a viscoelastic material",
                 );
             }

@@ -40,6 +40,9 @@ pub struct Summary {
     pub exact: Option<Exact>,
     /// Work done, in counts that do not depend on the machine.
     pub counts: Counts,
+    /// The iterations of a run that is not linear.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub newton: Option<Newton>,
     /// Seconds spent, by the name of the part.
     pub timings: BTreeMap<String, f64>,
     /// Warnings of the check and of the run.
@@ -246,12 +249,34 @@ pub struct Contact {
     /// Most nodes of the secondary surface in a step whose supports are partly closed: the pressure of the weak form
     /// depends on r there. `None` with another integration.
     pub mixed_supports: Option<u64>,
+    /// Coulomb friction, where there is some.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<Friction>,
     /// Impacts from closing to release.
     pub impacts: usize,
     /// Restitution of the last complete impact, from the mean velocities (momentum / mass); `None` where links join
     /// further bodies to one of the two.
     pub restitution: Option<f64>,
 }
+
+/// Coulomb friction of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Friction {
+    /// Its coefficient.
+    pub coefficient: f64,
+    /// Largest magnitude of the sum of the friction forces in a step, N.
+    pub peak_force: f64,
+}
+
+/// Names of the [`Energy::works`] that only runs have that are not linear: of moving supports, of what materials, damping and
+/// friction dissipate, and of what hardening stores.
+pub const NONLINEAR_WORKS: [&str; 5] = [
+    "work of supports",
+    "dissipation of the materials",
+    "dissipation of the damping",
+    "dissipation of friction",
+    "stored in hardening",
+];
 
 /// Balance of energy, J. Each term has its own formula; nothing is found by subtraction but the residual.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -266,7 +291,7 @@ pub struct Energy {
     pub strain_final: f64,
     /// Further work and stored or lost energies over the run, by name, positive when the bodies *gain*: `work of
     /// loads`, `work of contact`, `dissipation of the scheme`, `stored by the scheme` where its energy has a term
-    /// of its own, and in zones `work of links`.
+    /// of its own, and in zones `work of links`; where there is some, those of [`NONLINEAR_WORKS`].
     pub works: BTreeMap<String, f64>,
     /// Final - initial - Σ works.
     #[serde(with = "float")]
@@ -292,6 +317,26 @@ pub struct Momentum {
     pub residual: [f64; 3],
     /// Largest component of the residual over the run, relative to the largest momentum or impulse, or to sqrt(2 m E),
     /// the momentum that its largest energy could hold, if that is larger; what the check bounds.
+    #[serde(with = "float")]
+    pub relative_residual: f64,
+    /// Angular momentum, in the moving configuration, of a run that is not linear.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angular: Option<Angular>,
+}
+
+/// Balance of angular momentum about the origin, N m s.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Angular {
+    /// At the start.
+    pub initial: [f64; 3],
+    /// At the end.
+    pub r#final: [f64; 3],
+    /// Impulses of the moments from outside over the run, by name, as those of linear momentum.
+    pub impulses: BTreeMap<String, [f64; 3]>,
+    /// Final - initial - Σ impulses. Not checked: few schemes keep it in large rotations.
+    pub residual: [f64; 3],
+    /// Largest component of the residual over the run, relative to the largest angular momentum or impulse of a moment, or to
+    /// the size of the linear momentum times the largest distance of a node from the origin if that is larger.
     #[serde(with = "float")]
     pub relative_residual: f64,
 }
@@ -350,6 +395,21 @@ pub struct Counts {
     pub solves: u64,
     /// Iterations of the contact status over the run; in zones passes over the steps until the links held.
     pub status_iterations: u64,
+}
+
+/// Iterations of Newton's method.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Newton {
+    /// Over the run.
+    pub iterations: u64,
+    /// Mean of the steps.
+    pub iterations_per_step: f64,
+    /// Most in one step.
+    pub most_iterations: u64,
+    /// Numeric factorisations over the steps; below one where factors were kept.
+    pub factorisations_per_step: f64,
+    /// Times that a step or a part of one found no equilibrium, and was taken in halves.
+    pub halvings: u64,
 }
 
 impl Summary {

@@ -41,7 +41,9 @@ mod bars_stages;
 mod bars_theta;
 mod block_drop;
 mod blocks;
+mod blocks_as_bars;
 mod closed_field_as_printed;
+mod contact_patch;
 mod crushed_stop;
 mod energy_identity;
 mod first_force;
@@ -50,7 +52,9 @@ mod hertz_impact;
 mod hertz_spheres;
 mod interface_problems;
 mod invariance;
+mod ironing;
 pub mod long_run;
+mod oblique_bar;
 mod order;
 mod quadrature;
 mod rejections;
@@ -59,7 +63,10 @@ mod resume;
 mod sdnl111;
 mod sdnl111_bars;
 mod shapes;
+mod sliding_block;
+mod stick_slip;
 mod supports;
+mod taylor_bar;
 mod threads;
 mod viability;
 
@@ -114,7 +121,9 @@ registry! {
     bars_theta
     block_drop
     blocks
+    blocks_as_bars
     closed_field_as_printed
+    contact_patch
     crushed_stop
     energy_identity
     first_force
@@ -123,7 +132,9 @@ registry! {
     hertz_spheres
     interface_problems
     invariance
+    ironing
     long_run
+    oblique_bar
     order
     quadrature
     rejections
@@ -132,7 +143,10 @@ registry! {
     sdnl111
     sdnl111_bars
     shapes
+    sliding_block
+    stick_slip
     supports
+    taylor_bar
     threads
     viability
 }

@@ -64,6 +64,18 @@ fn overlaps_that_cannot_couple_are_refused_with_their_cells() {
 }
 
 #[test]
+fn cells_that_cannot_be_cut_are_refused_by_kind() {
+    let pair = bars();
+    let mesh = carom_mesh::raise(&pair.mesh, false).unwrap();
+    let models = Models {
+        mesh: &mesh,
+        ..pair.models()
+    };
+    let error = Overlap::new(models, &region(1.0, 9.0)).unwrap_err();
+    assert!(matches!(error, Error::Kind { kind: "bar3", .. }));
+}
+
+#[test]
 fn weights_that_reflect_or_have_no_border_are_refused() {
     let pair = bars();
     let overlap = Overlap::new(pair.models(), &region(1.0, 9.0)).unwrap();

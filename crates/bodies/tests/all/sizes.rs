@@ -62,6 +62,35 @@ pub fn highest_frequency(sample: &Sample) -> f64 {
     squared.sqrt()
 }
 
+/// A right wedge and a pyramid over a square: heights over each face from elementary geometry.
+#[test]
+fn heights_of_wedges_and_pyramids_are_distances_to_what_is_opposite() {
+    let half = 0.5f64.sqrt();
+    for (kind, expected) in [
+        // triangles 2 apart; sides 1, 1/√2 and 1 from the edges opposite
+        (Kind::Wedge6, [2.0, 2.0, 1.0, half, 1.0]),
+        (Kind::Wedge15, [2.0, 2.0, 1.0, half, 1.0]),
+        // the top 1 above a base of side 2: its sides lean at 45°
+        (
+            Kind::Pyramid5,
+            [1.0, 2.0 * half, 2.0 * half, 2.0 * half, 2.0 * half],
+        ),
+    ] {
+        let table = kind.table();
+        let mut mesh = Mesh::new(3);
+        mesh.nodes.extend(table.reference);
+        let cell = mesh.push(kind, &(0..table.nodes as u32).collect::<Vec<_>>());
+        for (face, expected) in table.faces.iter().zip(expected) {
+            let nodes: Vec<u32> = face.nodes.iter().map(|&a| a as u32).collect();
+            let found = height(&mesh, cell, face.kind, &nodes);
+            assert!(
+                (found - expected).abs() < 1e-13,
+                "{kind:?} {nodes:?}: {found}"
+            );
+        }
+    }
+}
+
 /// Irons: the elements alone ring at least as fast as the assembly.
 #[test]
 fn frequency_bound_is_above_the_highest_frequency() {

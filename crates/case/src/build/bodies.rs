@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_dynamics::ModelBody;
-use carom_materials::Elastic;
+use carom_materials::Law;
 use carom_mesh::{ElementId, Mesh};
 
 use super::Builder;
 use crate::error::Problem;
-use crate::schema::{Body, Mass, Section};
+use crate::schema::{self, Body, FormulationName, FormulationWith, Mass, Section};
 
 /// Defects of elements listed in one message; the others are counted.
 const LISTED: usize = 3;
@@ -18,7 +18,7 @@ impl Builder<'_> {
     pub(super) fn bodies(
         &mut self,
         mesh: &Mesh,
-        materials: &BTreeMap<String, Elastic>,
+        materials: &BTreeMap<String, Law>,
     ) -> Vec<ModelBody> {
         let mut bodies: Vec<ModelBody> = Vec::new();
         for (name, body) in self.case.body.iter() {
@@ -54,8 +54,8 @@ impl Builder<'_> {
                     name: name.to_string(),
                     cells,
                     kinematics,
-                    material: material.into(),
-                    formulation: Formulation::Full,
+                    material,
+                    formulation: formulation(body.formulation),
                     weights: None,
                 },
                 mass: match body.mass {
@@ -156,7 +156,7 @@ impl Builder<'_> {
         sound.then_some(kinematics)
     }
 
-    fn sound(&mut self, mesh: &Mesh, path: &str, cells: &[ElementId]) {
+    pub(super) fn sound(&mut self, mesh: &Mesh, path: &str, cells: &[ElementId]) {
         let defects = mesh.check(cells);
         if defects.is_empty() {
             return;
@@ -208,5 +208,15 @@ impl Builder<'_> {
                 );
             }
         }
+    }
+}
+
+fn formulation(given: schema::Formulation) -> Formulation {
+    match given {
+        schema::Formulation::Named(FormulationName::Full) => Formulation::Full,
+        schema::Formulation::Named(FormulationName::MeanDilatation) => Formulation::BBar,
+        schema::Formulation::With(FormulationWith::Reduced(reduced)) => Formulation::Reduced {
+            hourglass: reduced.hourglass,
+        },
     }
 }

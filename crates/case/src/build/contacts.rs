@@ -2,14 +2,14 @@
 
 use carom_contact::law::Level;
 use carom_contact::law::{Displacement, Reading, Restitution, Velocity};
-use carom_contact::{Initial, Integration, Law, Plane, Sliding, Sphere};
+use carom_contact::{Initial, Integration, Law, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{ElementId, Mesh, Surface};
 
 use super::Builder;
 use super::laws::{Side, sides};
 use crate::error::Problem;
-use crate::schema::{self, IntegrationName, IntegrationWith, Obstacle, Scheme};
+use crate::schema::{self, Basis, Friction, IntegrationName, IntegrationWith, Penetration, Scheme};
 
 impl Builder<'_> {
     /// The contacts. `of`: cells of each body.
@@ -33,18 +33,11 @@ impl Builder<'_> {
                 (Some(primary), _) => self
                     .surface(mesh, &cells, &format!("{path}.primary"), primary)
                     .map(ModelTarget::Surface),
-                (None, Some(Obstacle::Plane(plane))) => {
-                    self.plane(mesh, &path, plane).map(ModelTarget::rigid)
+                (None, Some(obstacle)) => {
+                    self.obstacle(mesh, &path, obstacle).map(ModelTarget::Rigid)
                 }
-                (None, Some(Obstacle::Sphere(sphere))) => {
-                    let path = format!("{path}.obstacle.sphere.centre");
-                    Some(ModelTarget::rigid(Sphere {
-                        centre: self.vector(mesh, &path, &sphere.centre),
-                        radius: sphere.radius.0,
-                        side: carom_contact::Side::Outside,
-                    }))
-                }
-                (None, None) => None,
+                // the schema lets pass nothing else than a surface that faces itself
+                (None, None) => secondary.clone().map(ModelTarget::Surface),
             };
             let (Some(secondary), Some(primary)) = (secondary, primary) else {
                 continue;
@@ -66,15 +59,22 @@ impl Builder<'_> {
                 sliding,
                 integration: integration(contact.integration, &law, &sides),
                 massless: contact.nodes == schema::Nodes::Massless,
-                friction: 0.0,
-                initial: Initial::Keep,
-                depth: None,
+                friction: contact
+                    .friction
+                    .map_or(0.0, |Friction::Coulomb(coefficient)| coefficient),
+                // a contact that may not penetrate is looked at here, where more can be said
+                initial: match contact.initial {
+                    Penetration::Refuse | Penetration::Keep => Initial::Keep,
+                    Penetration::Offset => Initial::Offset,
+                    Penetration::Remove => Initial::Remove,
+                },
+                depth: contact.depth.map(|depth| depth.0),
             });
         }
         contacts
     }
 
-    fn surface(
+    pub(super) fn surface(
         &mut self,
         mesh: &Mesh,
         cells: &[ElementId],
@@ -90,74 +90,6 @@ impl Builder<'_> {
                     .push(problem.accepted(["a group of outer sides of bodies"]));
                 None
             }
-        }
-    }
-
-    fn plane(&mut self, mesh: &Mesh, path: &str, plane: &schema::Plane) -> Option<Plane> {
-        let point = self.vector(mesh, &format!("{path}.obstacle.plane.point"), &plane.point);
-        let normal = plane.normal.components();
-        if normal[mesh.dim..].iter().any(|n| *n != 0.0) {
-            let message = format!(
-                "a normal beyond the {} of the mesh",
-                super::dimensions(mesh.dim)
-            );
-            let problem = Problem::new(format!("{path}.obstacle.plane.normal"), message);
-            self.problems.push(
-                problem
-                    .found(format!("{normal:?}"))
-                    .accepted(["a normal in the space of the mesh"]),
-            );
-            return None;
-        }
-        let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-        Some(Plane {
-            point,
-            normal: normal.map(|n| n / length),
-        })
-    }
-
-    /// Refuses contacts that penetrate at the start, in the initial displacement.
-    pub(super) fn penetration(&mut self, system: &System) {
-        let mut rows = carom_contact::Rows::default();
-        for contact in &system.contacts {
-            rows.clear();
-            let places = carom_contact::Places {
-                dim: system.dim,
-                time: 0.0,
-                x: &system.x,
-                u: &system.initial_displacement,
-            };
-            contact.pair(&places, &mut carom_contact::Search::default(), &mut rows);
-            let slack = system.tolerance.max(1e-9 * system.mesh.size());
-            let deep: Vec<usize> = (0..rows.len())
-                .filter(|&point| rows.gap(point) < -slack)
-                .collect();
-            let Some(&deepest) = deep
-                .iter()
-                .min_by(|&&a, &&b| rows.gap(a).total_cmp(&rows.gap(b)))
-            else {
-                continue;
-            };
-            let point = &contact.points[deepest];
-            let (node, x) = (point.node(), point.place(&places));
-            let path = format!("contact.{}", contact.name);
-            let verb = if deep.len() == 1 {
-                "penetrates"
-            } else {
-                "penetrate"
-            };
-            let message = format!("{} {verb} at the start", super::plural(deep.len(), "point"));
-            let problem = Problem::new(path, message)
-                .found(format!(
-                    "a gap of {:.4e} m at node {}, ({:.6}, {:.6}, {:.6}) m",
-                    rows.gap(deepest),
-                    system.mesh_node[node as usize],
-                    x[0],
-                    x[1],
-                    x[2]
-                ))
-                .accepted([format!("gaps of at least -{slack:.1e} m")]);
-            self.problems.push(problem);
         }
     }
 
@@ -185,7 +117,7 @@ impl Builder<'_> {
         for (contact, (secondary, _)) in system.contacts.iter().zip(&system.sides) {
             let name = &contact.name;
             let zone = self.plan.zone_of(*secondary);
-            let scheme = zone.map_or(self.case.time.scheme, |zone| self.plan.zones[zone].scheme);
+            let scheme = zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
             if let Law::Velocity(Velocity {
                 reading: Reading::AsPrinted,
                 ..
@@ -220,6 +152,10 @@ fn integration(given: schema::Integration, law: &Law, sides: &[Side]) -> Integra
         schema::Integration::Named(IntegrationName::Node) => return Integration::Node,
         schema::Integration::Named(IntegrationName::Quadrature) => None,
         schema::Integration::With(IntegrationWith::Quadrature(quadrature)) => Some(quadrature),
+        schema::Integration::Named(IntegrationName::Mortar) => return mortar(Basis::default()),
+        schema::Integration::With(IntegrationWith::Mortar(mortared)) => {
+            return mortar(mortared.basis);
+        }
     };
     if law.is_function() {
         return Integration::Points;
@@ -234,4 +170,13 @@ fn integration(given: schema::Integration, law: &Law, sides: &[Side]) -> Integra
             .map_or(soft.impedance, |r| r.0),
     };
     Integration::Weak { r }
+}
+
+fn mortar(basis: Basis) -> Integration {
+    Integration::Mortar {
+        basis: match basis {
+            Basis::Dual => carom_contact::Basis::Dual,
+            Basis::Standard => carom_contact::Basis::Standard,
+        },
+    }
 }

@@ -171,7 +171,8 @@ fn default_capture(scheme: &Scheme) -> Capture {
         | Scheme::NonsmoothAlpha(_)
         | Scheme::Krenk(_)
         | Scheme::Kane(_)
-        | Scheme::ContactStabilised(_) => Capture::Now,
+        | Scheme::ContactStabilised(_)
+        | Scheme::EnergyMomentum(_) => Capture::Now,
     }
 }
 

@@ -4,14 +4,20 @@ mod arlequin;
 mod bodies;
 mod contacts;
 mod laws;
+mod loads;
+mod materials;
 mod mesh;
+mod nonlinear;
+mod obstacles;
+mod penetration;
 mod reference;
+mod refused;
+mod supports;
 mod ties;
 mod time;
 mod unfit;
 mod zones;
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -38,6 +44,8 @@ pub struct Built {
     pub overlaps: Vec<BuiltOverlap>,
     /// Time at the end, s.
     pub end: f64,
+    /// End (s) and steps of the static stage before the dynamics, if there is one.
+    pub stage: Option<(f64, u32)>,
     /// Probes, in the order of their names.
     pub probes: Vec<BuiltProbe>,
     /// The exact solution that the case names.
@@ -102,13 +110,14 @@ impl Builder<'_> {
         let materials = self.materials();
         self.schemes();
         if self.plan.zones.is_empty() {
-            let one = |_: &str| self.case.time.scheme;
+            let one = |_: &str| self.case.time.scheme();
             self.laws(one);
         }
         let mesh = self.mesh(input)?;
         let mut bodies = self.bodies(&mesh, &materials);
-        let supports = self.supports(&mesh);
+        let (supports, motions) = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
+        let loads = self.loads(&mesh, &bodies);
         let probes = self.probes(&mesh);
         if !self.problems.is_empty() {
             return None;
@@ -117,6 +126,8 @@ impl Builder<'_> {
         let cells: Vec<Vec<carom_mesh::ElementId>> =
             bodies.iter().map(|body| body.spec.cells.clone()).collect();
         let contacts = self.contacts(&mesh, &bodies, &cells);
+        self.nonlinear_in_zones(&bodies);
+        self.stresses_between(&bodies);
         self.contacts_outside(&mesh, &contacts, &joints);
         self.zones_of_contacts(&contacts, &cells);
         self.within_bodies(&mesh, &probes, &cells);
@@ -132,8 +143,9 @@ impl Builder<'_> {
             scheme: self.outer_scheme(),
             dt: f64::MIN_POSITIVE,
             adaptive: None,
-            nonlinear: carom_dynamics::Nonlinear::default(),
+            nonlinear: self.nonlinear(loads, motions),
         };
+        let nodes = model.mesh.nodes.clone();
         let mut zoned = None;
         if self.plan.zones.is_empty() {
             model.dt = self.step(&model.mesh, &model.bodies, || {
@@ -166,6 +178,8 @@ impl Builder<'_> {
             }
         };
         self.penetration(&system);
+        self.moved(&system, &nodes);
+        self.startable(&system);
         self.advise(&system);
         let end = self.case.time.end.0;
         let reference = self.reference(&system, end);
@@ -174,6 +188,7 @@ impl Builder<'_> {
             zoned,
             overlaps: joints.overlaps,
             end,
+            stage: self.case.time.stage.map(|stage| (stage.end.0, stage.steps)),
             probes,
             reference,
             warnings: std::mem::take(&mut self.warnings),
@@ -221,45 +236,6 @@ impl Builder<'_> {
         components
     }
 
-    fn supports(&mut self, mesh: &Mesh) -> Vec<carom_dynamics::Support> {
-        let mut supports = Vec::new();
-        for (name, support) in self.case.support.iter() {
-            for (k, axis) in support
-                .fix
-                .iter()
-                .enumerate()
-                .filter(|(_, axis)| axis.index() >= mesh.dim)
-            {
-                let message = format!(
-                    "a direction beyond the {} of the mesh",
-                    dimensions(mesh.dim)
-                );
-                let problem = Problem::new(format!("support.{name}.fix[{k}]"), message);
-                self.problems.push(
-                    problem
-                        .found(["x", "y", "z"][axis.index()])
-                        .accepted(["x", "y", "z"][..mesh.dim].to_vec()),
-                );
-            }
-            if let Some(group) = self.group(mesh, &format!("support.{name}.on"), &support.on) {
-                let mut fix = [false; 3];
-                support.fix.iter().for_each(|axis| fix[axis.index()] = true);
-                supports.push(carom_dynamics::Support {
-                    nodes: mesh.group_nodes(group),
-                    fix,
-                });
-            }
-        }
-        supports
-    }
-
-    fn gravity(&mut self, mesh: &Mesh) -> [f64; 3] {
-        match &self.case.load.gravity {
-            None => [0.0; 3],
-            Some(gravity) => self.vector(mesh, "load.gravity.acceleration", &gravity.acceleration),
-        }
-    }
-
     fn probes(&mut self, mesh: &Mesh) -> Vec<BuiltProbe> {
         let mut probes = Vec::new();
         for (name, probe) in self.case.probe.iter() {
@@ -273,18 +249,6 @@ impl Builder<'_> {
             }
         }
         probes
-    }
-
-    fn materials(&mut self) -> BTreeMap<String, carom_materials::Elastic> {
-        let of = |(name, material): (&str, &crate::schema::Material)| {
-            let elastic = carom_materials::Elastic {
-                density: material.density.0,
-                young: material.elastic.young.0,
-                poisson: material.elastic.poisson,
-            };
-            (name.to_string(), elastic)
-        };
-        self.case.material.iter().map(of).collect()
     }
 }
 

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use carom_contact::law::Level;
 use carom_dynamics::scheme::{
-    CentralDifference, ContactStabilised, GeneralisedAlpha, Hht, Kane, Krenk, LaursenChawla,
-    LaursenLove, Newmark, NonsmoothAlpha, PaoliSchatzman, TchamwaWielgosz, Theta,
+    CentralDifference, ContactStabilised, EnergyMomentum, GeneralisedAlpha, Hht, Kane, Krenk,
+    LaursenChawla, LaursenLove, Newmark, NonsmoothAlpha, PaoliSchatzman, TchamwaWielgosz, Theta,
 };
 use carom_dynamics::{Adaptive, Closing, Error, ModelBody, Scheme, System, step_count};
 use carom_mesh::Mesh;
@@ -32,7 +32,7 @@ impl Builder<'_> {
     /// The scheme of the bodies that take the outer step; of the first such zone, if there are several.
     pub(super) fn outer_scheme(&self) -> Scheme {
         let outer = self.plan.zones.iter().find(|zone| zone.substeps == 1);
-        scheme(&outer.map_or(self.case.time.scheme, |zone| zone.scheme))
+        scheme(&outer.map_or(self.case.time.scheme(), |zone| zone.scheme))
     }
 
     /// Refuses a critical step of implicit schemes, and masses that a scheme cannot take.
@@ -40,7 +40,7 @@ impl Builder<'_> {
         let zones = self.plan.zones.iter().filter(|zone| zone.substeps == 1);
         let mut outer: Vec<Scheme> = zones.map(|zone| scheme(&zone.scheme)).collect();
         if self.plan.zones.is_empty() {
-            outer.push(scheme(&self.case.time.scheme));
+            outer.push(scheme(&self.case.time.scheme()));
         }
         if let (path, Size::Critical(_)) = self.size()
             && let Some(scheme) = outer.first().map(Scheme::get)
@@ -55,7 +55,7 @@ impl Builder<'_> {
         }
         for (number, (name, body)) in self.case.body.iter().enumerate() {
             let zone = self.plan.zone_of(number);
-            let given = zone.map_or(self.case.time.scheme, |zone| self.plan.zones[zone].scheme);
+            let given = zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
             let scheme = scheme(&given);
             if scheme.get().needs_lumped_mass() && body.mass == Mass::Consistent {
                 let message = "the scheme divides by the mass: it must be diagonal";
@@ -144,7 +144,7 @@ impl Builder<'_> {
 
     /// The step, or the largest, as the case says it, and its key.
     fn size(&self) -> (&'static str, Size) {
-        match self.case.time.step {
+        match self.case.time.step() {
             Step::Fixed(step) => ("time.step", Size::Fixed(step.0)),
             Step::Rule(StepRule::Courant(courant)) => ("time.step.courant", Size::Courant(courant)),
             Step::Rule(StepRule::Critical(part)) => ("time.step.critical", Size::Critical(part)),
@@ -162,7 +162,7 @@ impl Builder<'_> {
 
     /// The rules of an adaptive step, whose largest is `largest` (s).
     pub(super) fn adaptive(&mut self, largest: f64) -> Option<Adaptive> {
-        let Step::Rule(StepRule::Adaptive(rules)) = self.case.time.step else {
+        let Step::Rule(StepRule::Adaptive(rules)) = self.case.time.step() else {
             return None;
         };
         let smallest = rules.smallest.map_or(1e-3 * largest, |step| step.0);
@@ -209,77 +209,6 @@ impl Builder<'_> {
             }
         }
     }
-
-    /// The problem behind an error of the system.
-    pub(super) fn refused(&self, error: &Error) -> Problem {
-        match error {
-            Error::Body(cause) => {
-                let path = match cause {
-                    carom_bodies::Error::FiniteKinematics { body, .. }
-                    | carom_bodies::Error::LinearFormulation { body } => format!("body.{body}"),
-                    cause => format!("body.{}.region", cause.body()),
-                };
-                Problem::new(path, cause.to_string())
-            }
-            Error::Unstable { dt, critical } => {
-                let problem = Problem::new(
-                    "time.step",
-                    "the step is above the critical step of the explicit scheme",
-                );
-                problem.found(format!("{dt:.4e} s")).accepted([
-                    format!("at most {critical:.4e} s"),
-                    "step = { critical = 0.9 }".to_string(),
-                ])
-            }
-            Error::Projection { contact } => Problem::new(
-                format!("contact.{contact}.law.displacement.projection"),
-                error.to_string(),
-            ),
-            Error::MasslessContact { contact, .. } => {
-                Problem::new(format!("contact.{contact}.nodes"), error.to_string())
-            }
-            Error::Integration { contact, .. } | Error::WeakForm { contact, .. } => {
-                Problem::new(format!("contact.{contact}.integration"), error.to_string())
-            }
-            Error::Massless { body, .. } => {
-                Problem::new(format!("body.{body}.mass"), error.to_string())
-            }
-            Error::Zone { zone, cause } => self.refused_zone(zone, cause),
-            other => Problem::new("time", other.to_string()),
-        }
-    }
-}
-
-impl Builder<'_> {
-    /// The problem behind an error of a zone's system.
-    fn refused_zone(&self, name: &str, cause: &Error) -> Problem {
-        let zone = self.plan.zones.iter().find(|zone| zone.name == name);
-        match (cause, zone) {
-            (Error::Unstable { dt, critical }, Some(zone)) => {
-                let steps = f64::from(zone.substeps);
-                let enough = (steps * dt / critical).ceil();
-                let message = format!(
-                    "the step of the zone `{name}` is above the critical step of its explicit scheme, weights of overlaps included"
-                );
-                let path = match self
-                    .case
-                    .zone
-                    .get(name)
-                    .and_then(|zone| zone.substeps.as_ref())
-                {
-                    Some(schema::Substeps::Own(_)) => format!("zone.{name}.substeps"),
-                    _ => "time.step".to_string(),
-                };
-                Problem::new(path, message)
-                    .found(format!("{dt:.4e} s"))
-                    .accepted([
-                        format!("an outer step of at most {:.4e} s", steps * critical),
-                        format!("zone.{name}.substeps = {enough}"),
-                    ])
-            }
-            _ => self.refused(cause).note(format!("in the zone `{name}`")),
-        }
-    }
 }
 
 /// The scheme that the case names.
@@ -310,6 +239,7 @@ pub(super) fn scheme(given: &schema::Scheme) -> Scheme {
             rho_inf: alpha.rho_inf,
         }),
         schema::Scheme::ContactStabilised(_) => Scheme::ContactStabilised(ContactStabilised),
+        schema::Scheme::EnergyMomentum(_) => Scheme::EnergyMomentum(EnergyMomentum),
         schema::Scheme::Kane(kane) => Scheme::Kane(Kane {
             beta: kane.beta,
             gamma: kane.gamma,

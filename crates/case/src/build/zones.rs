@@ -66,7 +66,7 @@ impl Builder<'_> {
         let plan = Plan { zones, kind };
         self.joints(&plan);
         if !plan.zones.is_empty()
-            && let Step::Rule(StepRule::Adaptive(_)) = self.case.time.step
+            && let Step::Rule(StepRule::Adaptive(_)) = self.case.time.step()
         {
             let problem = Problem::new("time.step.adaptive", "zones take equal steps only");
             self.problems
@@ -107,7 +107,7 @@ impl Builder<'_> {
             zones.push(Zone {
                 name: name.to_string(),
                 bodies,
-                scheme: given.scheme.unwrap_or(case.time.scheme),
+                scheme: given.scheme.unwrap_or(case.time.scheme()),
                 scheme_path: match given.scheme {
                     Some(_) => format!("zone.{name}.scheme"),
                     None => "time.scheme".to_string(),
@@ -290,7 +290,7 @@ impl Builder<'_> {
     ) -> schema::Scheme {
         let body = cell.and_then(|cell| body_of(cell, of));
         let zone = body.and_then(|body| self.plan.zone_of(body));
-        zone.map_or(self.case.time.scheme, |zone| self.plan.zones[zone].scheme)
+        zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme)
     }
 
     /// Refuses contacts between zones, and laws that the schemes of zones cannot take.
@@ -327,7 +327,7 @@ impl Builder<'_> {
                 }
             }
         }
-        let default = self.case.time.scheme;
+        let default = self.case.time.scheme();
         self.laws(|name| schemes.get(name).copied().unwrap_or(default));
     }
 

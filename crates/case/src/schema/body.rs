@@ -1,30 +1,9 @@
-//! `[material]`, `[body]`, `[support]` and `[load]`: what moves, what holds it, what pulls it.
+//! `[body]` and `[support]`: what moves, and what holds it.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::quantity::{Acceleration, Area, Coordinate, Density, Length, Modulus, Vector, Velocity};
-
-/// A material.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Material {
-    /// Mass density.
-    pub density: Density,
-    /// Linear isotropic elasticity, small strain.
-    pub elastic: Elastic,
-}
-
-/// Linear isotropic elasticity.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Elastic {
-    /// Young's modulus.
-    pub young: Modulus,
-    /// Poisson's ratio. Bars and plane stress take what it makes of a free side.
-    #[schemars(extend("exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
-    pub poisson: f64,
-}
+use super::quantity::{Area, Coordinate, Delay, Length, Rate, Vector, Velocity};
 
 /// A body: cells of the mesh, with a material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -39,8 +18,72 @@ pub struct Body {
     /// Mass matrix.
     #[serde(default)]
     pub mass: Mass,
-    /// State at the beginning. Default: at rest, undeformed.
+    /// How its cells integrate the internal work.
+    #[serde(default)]
+    pub formulation: Formulation,
+    /// Rayleigh damping. Default: none.
+    pub damping: Option<Damping>,
+    /// State at the beginning; the velocity is that at the end of a static stage. Default: at rest, undeformed.
     pub initial: Option<Initial>,
+}
+
+/// How cells integrate the internal work.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Formulation {
+    /// By its name.
+    Named(FormulationName),
+    /// With parameters.
+    With(FormulationWith),
+}
+
+impl Default for Formulation {
+    fn default() -> Formulation {
+        Formulation::Named(FormulationName::Full)
+    }
+}
+
+/// How cells integrate the internal work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FormulationName {
+    /// At all points of the stiffness rule.
+    Full,
+    /// Against volumetric locking: the volume ratio of a cell is that of the whole cell. Materials at finite strain.
+    MeanDilatation,
+}
+
+/// How cells integrate the internal work, with parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FormulationWith {
+    /// At one point, with a stiffness against the hourglass modes that it does not see: 4-node quadrilaterals and 8-node
+    /// hexahedra of materials at finite strain.
+    Reduced(Reduced),
+}
+
+/// Reduced integration.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Reduced {
+    /// Factor of the stiffness against hourglass modes.
+    #[serde(default = "twentieth")]
+    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))]
+    pub hourglass: f64,
+}
+
+fn twentieth() -> f64 {
+    0.05
+}
+
+/// Rayleigh damping: a force of `mass` times the mass matrix and `stiffness` times the stiffness matrix, on the velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Damping {
+    /// Factor of the mass. It brakes rigid motion too. Default: 0.
+    pub mass: Option<Rate>,
+    /// Factor of the stiffness; for materials at small strain. Default: 0.
+    pub stiffness: Option<Delay>,
 }
 
 /// The section of a body of bars or plane cells.
@@ -99,15 +142,43 @@ pub struct Initial {
     pub displacement: Option<Vector<Coordinate>>,
 }
 
-/// A support: displacements held at zero.
+/// A support: displacements held at zero, or moved as prescribed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("anyOf" = [{ "required": ["fix"] }, { "required": ["move"] }]))]
 pub struct Support {
     /// Group whose nodes are held: a side, or the cells of a body.
     pub on: String,
     /// Directions held.
+    #[serde(default)]
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub fix: Vec<Axis>,
+    /// Directions in which the nodes move as prescribed.
+    #[serde(rename = "move")]
+    pub motion: Option<Movement>,
+}
+
+/// Displacements as functions of time: straight between the points given, constant before the first and after the last.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("anyOf" = [{ "required": ["x"] }, { "required": ["y"] }, { "required": ["z"] }]))]
+pub struct Movement {
+    /// Displacement along the first axis. Default: free.
+    pub x: Option<Vec<MovementPoint>>,
+    /// Displacement along the second axis. Default: free.
+    pub y: Option<Vec<MovementPoint>>,
+    /// Displacement along the third axis. Default: free.
+    pub z: Option<Vec<MovementPoint>>,
+}
+
+/// A point of a displacement as a function of time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct MovementPoint {
+    /// Time.
+    pub time: Delay,
+    /// Displacement at that time.
+    pub displacement: Coordinate,
 }
 
 /// A direction of the axes.
@@ -133,20 +204,4 @@ impl Axis {
             Axis::Z => 2,
         }
     }
-}
-
-/// Loads on all bodies.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Loads {
-    /// Gravity on every body.
-    pub gravity: Option<Gravity>,
-}
-
-/// A uniform field of acceleration.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Gravity {
-    /// Acceleration of free fall.
-    pub acceleration: Vector<Acceleration>,
 }

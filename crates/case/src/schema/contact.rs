@@ -3,14 +3,17 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::quantity::{
-    Clearance, Coordinate, Damping, Force, Length, SurfaceDamping, SurfaceStiffness, Vector,
-};
+use super::obstacle::Obstacle;
+use super::quantity::{Clearance, Damping, Force, Length, SurfaceDamping, SurfaceStiffness};
 
-/// Contact between two surfaces, or between a surface and a rigid obstacle; without friction.
+/// Contact between two surfaces, between a surface and a rigid obstacle, or of a surface with itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(extend("oneOf" = [{ "required": ["primary"] }, { "required": ["obstacle"] }]))]
+#[schemars(extend("oneOf" = [
+    { "required": ["primary"] },
+    { "required": ["obstacle"] },
+    { "required": ["self"] },
+]))]
 pub struct Contact {
     /// Group of the surface that carries the contact pressure at its nodes.
     pub secondary: String,
@@ -18,6 +21,10 @@ pub struct Contact {
     pub primary: Option<String>,
     /// A rigid obstacle in place of a primary surface.
     pub obstacle: Option<Obstacle>,
+    /// `true`: the secondary surface faces itself.
+    #[serde(rename = "self")]
+    #[schemars(extend("const" = true))]
+    pub itself: Option<bool>,
     /// Contact law.
     pub law: Law,
     /// Whether the pairing of the two surfaces follows their motion.
@@ -26,9 +33,40 @@ pub struct Contact {
     /// Where the contact condition is imposed.
     #[serde(default)]
     pub integration: Integration,
+    /// Friction. Default: none.
+    pub friction: Option<Friction>,
+    /// What is done where the surfaces penetrate at the start.
+    #[serde(default)]
+    pub initial: Penetration,
+    /// Depth beyond which a penetration is no contact: points see only faces that are turned against them and not further away inside
+    /// than this. For thin parts. Default: no bound; of a surface with itself, half its thickness.
+    pub depth: Option<Length>,
     /// Whether the nodes of the two surfaces keep their mass.
     #[serde(default)]
     pub nodes: Nodes,
+}
+
+/// Friction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Friction {
+    /// Coulomb's coefficient of friction.
+    Coulomb(#[schemars(extend("minimum" = 0.0))] f64),
+}
+
+/// What is done where surfaces penetrate at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Penetration {
+    /// The case is refused.
+    #[default]
+    Refuse,
+    /// Gaps count from where the points are: the overlap stays and carries no force.
+    Offset,
+    /// Secondary nodes are moved onto the other surface; the mesh changes, and no stress arises.
+    Remove,
+    /// Nothing: the law pushes the points out.
+    Keep,
 }
 
 /// Whether nodes in contact have a mass.
@@ -41,48 +79,6 @@ pub enum Nodes {
     /// Their mass goes to the other nodes of their bodies; mass and centre of mass stay, and as far as possible the
     /// moments of inertia. For the displacement law with implicit schemes and lumped mass.
     Massless,
-}
-
-/// A rigid obstacle that does not move.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Obstacle {
-    /// A half space behind a plane.
-    Plane(Plane),
-    /// A ball; a disc in the plane.
-    Sphere(Sphere),
-}
-
-/// A rigid plane.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Plane {
-    /// A point of the plane.
-    pub point: Vector<Coordinate>,
-    /// Normal of the plane out of the obstacle, towards the bodies; of any length but zero.
-    pub normal: NormalVector,
-}
-
-/// A rigid sphere.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Sphere {
-    /// Its centre.
-    pub centre: Vector<Coordinate>,
-    /// Its radius.
-    pub radius: Length,
-}
-
-/// One to three numbers, not all zero; those left out are zero.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(inline, extend("minItems" = 1, "maxItems" = 3))]
-pub struct NormalVector(pub Vec<f64>);
-
-impl NormalVector {
-    /// The three components as written, zeros added.
-    pub fn components(&self) -> [f64; 3] {
-        std::array::from_fn(|axis| self.0.get(axis).copied().unwrap_or(0.0))
-    }
 }
 
 /// A contact law. Gap g is positive when open, pressure p positive in compression, gap rate positive when opening.
@@ -302,6 +298,9 @@ pub enum IntegrationName {
     /// At the Gauss points of its faces: the exact laws in their weak form, with a pressure in the shape functions of the
     /// surface and a sign at each point; the compliance, and penalty and stop without damping, in each point by itself.
     Quadrature,
+    /// Segment to segment: in the mean around each node of the secondary surface, with multipliers of the dual basis. Passes
+    /// a constant pressure through meshes that do not match.
+    Mortar,
 }
 
 /// Where the contact condition is imposed, with parameters.
@@ -312,6 +311,28 @@ pub enum IntegrationWith {
     /// that of p - r g, or p - r-v times the gap rate. The result depends on it only around nodes between closed and open
     /// points; the summary counts them.
     Quadrature(Quadrature),
+    /// Segment to segment, with the basis of the multipliers.
+    Mortar(Mortar),
+}
+
+/// The multipliers of segment-to-segment contact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Mortar {
+    /// Their shape functions.
+    #[serde(default)]
+    pub basis: Basis,
+}
+
+/// Shape functions of multipliers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Basis {
+    /// Those biorthogonal to the shape functions of the faces: no two multipliers share a secondary node of linear faces.
+    #[default]
+    Dual,
+    /// The shape functions of the faces.
+    Standard,
 }
 
 /// The r of the weak form.

@@ -6,7 +6,10 @@
 
 mod body;
 mod contact;
+mod load;
+mod material;
 mod mesh;
+mod obstacle;
 mod output;
 mod quantity;
 mod time;
@@ -20,24 +23,33 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 pub use body::{
-    Axis, AxisymmetricSection, BarSection, Body, Elastic, Gravity, Initial, Loads, Mass, Material,
-    PlaneSection, Section, Support,
+    Axis, AxisymmetricSection, BarSection, Body, Damping as RayleighDamping, Formulation,
+    FormulationName, FormulationWith, Initial, Mass, Movement, MovementPoint, PlaneSection,
+    Reduced, Section, Support,
 };
 pub use contact::{
-    Adhesion, Capture, ComplianceLaw, Contact, Crush, CurvePoint, DampedLaw, DisplacementLaw,
-    Integration, IntegrationName, IntegrationWith, Law, Nodes, NormalVector, Obstacle, PenaltyLaw,
-    Plane, RestitutionLaw, Sign, Sliding, Sphere, StopLaw, VelocityLaw,
+    Adhesion, Basis, Capture, ComplianceLaw, Contact, Crush, CurvePoint, DampedLaw,
+    DisplacementLaw, Friction, Integration, IntegrationName, IntegrationWith, Law, Mortar, Nodes,
+    PenaltyLaw, Penetration, RestitutionLaw, Sign, Sliding, StopLaw, VelocityLaw,
 };
+pub use load::{AmplitudePoint, Load};
+pub use material::{Branch, Elastic, J2, Material, Maxwell, MooneyRivlin};
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
+pub use obstacle::{
+    Cylinder, NormalVector, Obstacle, ObstacleMotion, ObstaclePoint, Plane, Side, Sphere, Surface,
+    Turn,
+};
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};
 pub use quantity::{
-    Acceleration, Area, Clearance, Coordinate, Damping, Density, Duration, Force, Length, Modulus,
-    SurfaceDamping, SurfaceStiffness, Vector, Velocity,
+    Acceleration, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density, Duration,
+    Force, Length, Modulus, Rate, SignedStress, Stress, SurfaceDamping, SurfaceStiffness, Vector,
+    Velocity,
 };
 pub use time::{
-    Adaptive, CentralDifference, Closing, ContactStabilised, GeneralisedAlpha, Hht, Kane, Krenk,
-    LargestStep, LaursenChawla, LaursenLove, MeshStep, Newmark, NonsmoothAlpha, PaoliSchatzman,
-    Scheme, Step, StepRule, TchamwaWielgosz, Theta, Time,
+    Adaptive, CentralDifference, Closing, ContactStabilised, EnergyMomentum, GeneralisedAlpha, Hht,
+    Kane, Krenk, LargestStep, LaursenChawla, LaursenLove, MeshStep, Newmark, Newton,
+    NonsmoothAlpha, PaoliSchatzman, Scheme, StaticStage, Step, StepRule, TchamwaWielgosz, Theta,
+    Time,
 };
 pub use zone::{
     Arlequin, Bracket, BracketLength, BracketName, BracketWith, H1Bracket, InnerSteps, Interface,
@@ -64,9 +76,9 @@ pub struct Case {
     /// Supports, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub support: Named<Support>,
-    /// Loads.
-    #[serde(default)]
-    pub load: Loads,
+    /// Loads, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub load: Named<Load>,
     /// Contacts, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub contact: Named<Contact>,

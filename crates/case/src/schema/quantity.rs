@@ -178,6 +178,47 @@ quantity!(
     "A damping, zero or more, N s/m."
 );
 
+quantity!(
+    Stress,
+    "stress",
+    "Pa",
+    "100 MPa",
+    NOT_NEGATIVE,
+    "A stress, zero or more, Pa."
+);
+quantity!(
+    SignedStress,
+    "stress",
+    "Pa",
+    "2 MPa",
+    None,
+    "A stress of any sign, Pa."
+);
+quantity!(
+    Delay,
+    "time",
+    "s",
+    "1 ms",
+    NOT_NEGATIVE,
+    "A time, zero or more, s."
+);
+quantity!(
+    Rate,
+    "frequency",
+    "1/s",
+    "10 s^-1",
+    NOT_NEGATIVE,
+    "A rate, zero or more, 1/s."
+);
+quantity!(
+    AngularVelocity,
+    "frequency",
+    "rad/s",
+    "3 rad/s",
+    None,
+    "An angular velocity, rad/s."
+);
+
 /// One to three components of a vector; those left out are zero.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Vector<Q>(pub Vec<Q>);
@@ -216,4 +257,4 @@ macro_rules! into_si {
     };
 }
 
-into_si!(Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping);
+into_si!(Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);

@@ -11,10 +11,78 @@ use super::quantity::Duration;
 pub struct Time {
     /// Time at the end; the beginning is 0.
     pub end: Duration,
-    /// Time step. With zones: the outer one. Rules from the mesh then look at the zones that take it.
-    pub step: Step,
-    /// Time scheme. With zones: that of every zone without its own.
-    pub scheme: Scheme,
+    /// A static stage before the dynamics, which begin at its end with the initial velocities of the bodies. Default: none.
+    #[serde(rename = "static")]
+    pub stage: Option<StaticStage>,
+    /// Time step of the dynamics; required unless all is static. With zones: the outer one. Rules from the mesh then look at the zones that take it.
+    pub step: Option<Step>,
+    /// Time scheme of the dynamics; required unless all is static. With zones: that of every zone without its own.
+    pub scheme: Option<Scheme>,
+    /// How steps that are not linear are solved.
+    #[serde(default)]
+    pub newton: Newton,
+}
+
+impl Time {
+    /// The time step; of a case that is all static, that of its stage.
+    pub fn step(&self) -> Step {
+        match (self.stage, self.step) {
+            (Some(stage), _) if self.is_static() => {
+                Step::Fixed(Duration(stage.end.0 / f64::from(stage.steps)))
+            }
+            (_, Some(step)) => step,
+            (_, None) => Step::Fixed(self.end),
+        }
+    }
+
+    /// The time scheme; of a case that is all static one that is never asked.
+    pub fn scheme(&self) -> Scheme {
+        self.scheme.unwrap_or(Scheme::Theta(Theta { theta: 0.5 }))
+    }
+
+    /// Whether the case ends with its static stage.
+    pub fn is_static(&self) -> bool {
+        self.stage.is_some_and(|stage| stage.end.0 == self.end.0)
+    }
+}
+
+/// A static stage: loads, supports and contacts find their equilibrium, without inertia.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct StaticStage {
+    /// Time at its end, at most that of the case. A case that ends there needs no step and no scheme.
+    pub end: Duration,
+    /// Equal steps to it.
+    #[schemars(extend("minimum" = 1))]
+    pub steps: u32,
+}
+
+/// How the equations of a step that is not linear are solved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Newton {
+    /// Residual, over the largest of the forces that balance, at which a step is solved.
+    #[serde(default = "tolerance")]
+    #[schemars(extend("minimum" = 1e-14, "maximum" = 0.01))]
+    pub tolerance: f64,
+    /// Iterations after which a step has failed.
+    #[serde(default = "thirty")]
+    #[schemars(extend("minimum" = 1))]
+    pub passes: u32,
+    /// Times that a step that failed is halved before the run ends.
+    #[serde(default = "six")]
+    #[schemars(extend("minimum" = 0, "maximum" = 20))]
+    pub halvings: u32,
+}
+
+impl Default for Newton {
+    fn default() -> Newton {
+        Newton {
+            tolerance: tolerance(),
+            passes: thirty(),
+            halvings: six(),
+        }
+    }
 }
 
 /// The time step.
@@ -126,6 +194,9 @@ pub enum Scheme {
     /// The trapezoid with a predictor that is projected on the admissible displacements (contact-stabilised Newmark: Deuflhard,
     /// Krause, Ertel); displacement law only. Its energy never grows.
     ContactStabilised(ContactStabilised),
+    /// The mid-point rule with an algorithmic stress whose work is the change of the stored energy (Simo, Tarnow; Gonzalez): energy
+    /// and momenta to round-off in large transformations, for hyperelastic materials; made for the velocity law.
+    EnergyMomentum(EnergyMomentum),
 }
 
 /// Newmark's scheme.
@@ -247,6 +318,23 @@ pub struct Kane {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ContactStabilised {}
+
+/// The energy-momentum scheme: nothing to give.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct EnergyMomentum {}
+
+fn tolerance() -> f64 {
+    1e-10
+}
+
+fn thirty() -> u32 {
+    30
+}
+
+fn six() -> u32 {
+    6
+}
 
 fn hundredth() -> f64 {
     0.01

@@ -20,6 +20,17 @@ const FRESH: f64 = 2.0;
 /// Cost of a new tangent beside its factorisation, in iterations with the old one.
 const TANGENT: f64 = 3.0;
 
+/// How fast the iterations go.
+#[derive(Default)]
+pub(super) struct Pace {
+    /// Iterations of this attempt with the factor at hand.
+    age: usize,
+    /// The iteration in which it was made.
+    made: usize,
+    /// Contraction with a factor made within the iterations of a step, between two states; zero while unknown.
+    fresh: f64,
+}
+
 /// Where an iteration stands.
 struct Standing {
     /// Imbalance of the forces, relative.
@@ -30,7 +41,7 @@ struct Standing {
 
 impl Newton {
     /// The map of the step of this size from the present state.
-    pub(super) fn size(&mut self, dt: f64) {
+    pub(crate) fn size(&mut self, dt: f64) {
         self.dt = dt;
         self.map = match self.is_static() {
             true => StepMap::equilibrium(),
@@ -45,11 +56,12 @@ impl Newton {
     pub(super) fn solve(&mut self) -> Result<(), Error> {
         let limit = self.system.nonlinear.iteration.passes;
         self.residuals.clear();
+        self.pace.age = 0;
         self.predict();
         let interface = &mut self.next.interface;
         interface.clone_from(&self.state.interface);
         self.guess_slips();
-        self.evaluate()?;
+        self.evaluate(true)?;
         self.pair(true);
         let mut standing = self.standing();
         for pass in 0..limit {
@@ -60,7 +72,9 @@ impl Newton {
             }
             if self.wants_factor(pass) {
                 self.renew()?;
+                (self.pace.age, self.pace.made) = (0, pass);
             }
+            self.pace.age += 1;
             self.motion_of_iteration()?;
             standing = self.go(&standing, jumps)?;
             if self.is_affine() {
@@ -117,8 +131,8 @@ impl Newton {
         }
     }
 
-    /// Loads, inertia, internal and damping forces at x.
-    fn evaluate(&mut self) -> Result<(), Error> {
+    /// Loads, inertia, internal and damping forces at x. `first`: those that x does not change too.
+    fn evaluate(&mut self, first: bool) -> Result<(), Error> {
         let map = self.map;
         let motion = &self.state.motion;
         let vectors = &mut self.vectors;
@@ -127,22 +141,27 @@ impl Newton {
         self.system
             .mass
             .multiply(&vectors.place, &mut vectors.inertia);
-        self.evaluate_damping();
-        let vectors = &mut self.vectors;
-        map.force
-            .whole(&self.state.motion, &vectors.x, &[], &mut vectors.place);
-        let dt = match self.between() {
-            true => self.dt,
-            false => map.force_fraction.unwrap_or(1.0) * self.dt,
-        };
-        self.stored = self.internal((Which::Place, self.between()), dt)?;
-        self.evaluate_loads(self.instant());
+        if first || map.force.x != 0.0 {
+            self.evaluate_damping();
+            let vectors = &mut self.vectors;
+            map.force
+                .whole(&self.state.motion, &vectors.x, &[], &mut vectors.place);
+            let dt = match self.between() {
+                true => self.dt,
+                false => map.force_fraction.unwrap_or(1.0) * self.dt,
+            };
+            self.stored = self.internal((Which::Place, self.between()), dt)?;
+            self.evaluate_loads(self.instant());
+        }
         let vectors = &mut self.vectors;
         for i in 0..vectors.residual.len() {
             vectors.residual[i] = match self.system.fixed[i] {
                 true => 0.0,
                 false => {
-                    vectors.load[i] - vectors.inertia[i] - vectors.internal[i] - vectors.damping[i]
+                    vectors.load[i] + self.link_force.get(i).unwrap_or(&0.0)
+                        - vectors.inertia[i]
+                        - vectors.internal[i]
+                        - vectors.damping[i]
                 }
             };
         }
@@ -163,7 +182,7 @@ impl Newton {
             }
             contact += (factor * c).powi(2);
         }
-        let mut scale = f64::max(contact.sqrt(), norm(&vectors.load));
+        let mut scale = f64::max(contact.sqrt(), norm(&vectors.load)).max(norm(&self.link_force));
         scale = scale
             .max(norm(&vectors.internal))
             .max(norm(&vectors.inertia));
@@ -211,28 +230,49 @@ impl Newton {
         if let Some(key) = self.constant_key() {
             return !self.effective.stands(key);
         }
-        let [.., before, now] = self.residuals[..] else {
+        let (Some(&now), Some(price)) = (self.residuals.last(), self.effective.price()) else {
             return true;
         };
-        let Some(price) = self.effective.price() else {
-            return pass == 0;
+        let Some(ratio) = self.contraction() else {
+            return self.pace.age == 0;
         };
-        let tolerance = self.system.nonlinear.iteration.tolerance;
-        let ratio = now / before;
-        if ratio.is_nan() || ratio >= 0.5 {
+        let least = if self.between() { 1.0 } else { 0.5 };
+        if ratio.is_nan() || ratio >= least {
             return true;
         }
-        let needed = (tolerance / now).ln() / ratio.ln();
-        let keeps = needed <= FRESH + TANGENT + price;
+        let left = (self.system.nonlinear.iteration.tolerance / now).ln();
+        let needed = left / ratio.ln();
+        if self.between() && self.pace.age == 2 && self.pace.made > 0 {
+            self.pace.fresh = ratio;
+        }
+        let fresh = match self.pace.fresh > 0.0 {
+            true => (left / self.pace.fresh.ln()).max(FRESH),
+            false => FRESH,
+        };
+        let keeps = needed <= fresh + TANGENT + price;
         tracing::debug!(
             "step {}, iteration {pass}: residual {now:e}, {} times the one before; the factor is {}: \
-             {needed:.1} iterations with it against {FRESH} with a new one that costs {:.1}",
+             {needed:.1} iterations with it against {fresh:.1} with a new one that costs {:.1}",
             self.state.step + 1,
             ratio,
             if keeps { "kept" } else { "renewed" },
             TANGENT + price,
         );
         !keeps
+    }
+
+    /// Factor by which an iteration with the factor at hand shrinks the residual, if that is known. The matrix of forces
+    /// between two states is the symmetric part of their derivative, with which residuals fall by turns fast and slowly:
+    /// two iterations are looked at.
+    fn contraction(&self) -> Option<f64> {
+        match (&self.residuals[..], self.pace.age) {
+            (_, 0) => None,
+            ([.., before, now], 1) if !self.between() => Some(now / before),
+            (_, 1) => None,
+            ([.., before, _, now], _) if self.between() => Some((now / before).sqrt()),
+            ([.., before, now], _) => Some(now / before),
+            _ => None,
+        }
     }
 
     /// What a matrix that does not change in the run depends on; none where it changes.
@@ -318,7 +358,7 @@ impl Newton {
             for (i, x_i) in self.vectors.x.iter_mut().enumerate() {
                 *x_i = x[i] + share * self.vectors.dx[i];
             }
-            match self.evaluate() {
+            match self.evaluate(false) {
                 Ok(()) => {
                     self.pair(false);
                     let standing = self.standing();

@@ -8,9 +8,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::ZoneDriver;
 use super::{Zoned, Zones, ZonesState};
 use crate::control::Control;
-use crate::driver::{Costs, Driver};
+use crate::driver::Costs;
 use crate::error::Error;
 use crate::interface::InterfaceProblem;
 use crate::ledger::{Balance, Ledger};
@@ -293,6 +294,8 @@ fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut C
         for i in 0..3 {
             sum.resultant[i] += dt * part.resultant[i];
         }
+        sum.friction += dt * part.friction;
+        sum.slipping = sum.slipping.max(part.slipping);
         (sum.gap, sum.rate) = (part.gap, part.rate);
         sum.closed = sum.closed.max(part.closed);
         sum.mixed = sum.mixed.max(part.mixed);
@@ -303,6 +306,7 @@ fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut C
         *whole = ContactReport {
             force: sum.force / length,
             resultant: sum.resultant.map(|r| r / length),
+            friction: sum.friction / length,
             ..sum
         };
     }
@@ -388,6 +392,9 @@ impl Stepper for Whole {
     }
 
     fn failed_problem(&self) -> Option<&InterfaceProblem> {
-        self.zones.drivers.iter().find_map(Driver::failed_problem)
+        self.zones
+            .drivers
+            .iter()
+            .find_map(ZoneDriver::failed_problem)
     }
 }

@@ -185,10 +185,19 @@ fn energy_and_momentum_are_kept_by_the_scheme_of_that_name() {
 #[test]
 fn a_nonlinear_step_costs_few_iterations_and_the_ledger_closes() {
     for (scheme, law) in [
-        (Scheme::Newmark(scheme::Newmark { beta: 0.25, gamma: 0.5 }), DISPLACEMENT),
+        (
+            Scheme::Newmark(scheme::Newmark {
+                beta: 0.25,
+                gamma: 0.5,
+            }),
+            DISPLACEMENT,
+        ),
         (Scheme::Theta(scheme::Theta { theta: 0.6 }), VELOCITY),
         (Scheme::EnergyMomentum(scheme::EnergyMomentum), VELOCITY),
-        (Scheme::CentralDifference(scheme::CentralDifference), VELOCITY),
+        (
+            Scheme::CentralDifference(scheme::CentralDifference),
+            VELOCITY,
+        ),
     ] {
         let mut newton = newton(square(scheme, law, neo_hooke(), 4));
         let (mut touches, mut most) = (false, 0);
@@ -200,12 +209,21 @@ fn a_nonlinear_step_costs_few_iterations_and_the_ledger_closes() {
         let name = scheme.get().name();
         assert!(touches, "{name}");
         // the factor of the start of the step is kept while that is cheaper
-        assert!(most <= 12, "{name}: {most} iterations, {:?}", newton.residuals());
+        assert!(
+            most <= 12,
+            "{name}: {most} iterations, {:?}",
+            newton.residuals()
+        );
         let ledger = &newton.state().ledger;
         assert!(
             ledger.largest_energy_residual < 1e-9 * ledger.largest_energy,
-            "{name}: {:e} of {:e}", ledger.largest_energy_residual, ledger.largest_energy
+            "{name}: {:e} of {:e}",
+            ledger.largest_energy_residual,
+            ledger.largest_energy
         );
-        assert!(ledger.largest_momentum_residual < 1e-9 * ledger.largest_momentum, "{name}");
+        assert!(
+            ledger.largest_momentum_residual < 1e-9 * ledger.largest_momentum,
+            "{name}"
+        );
     }
 }

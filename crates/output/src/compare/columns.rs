@@ -56,7 +56,7 @@ const fn hidden(name: &'static str, unit: &'static str, value: fn(&Done) -> Opti
 
 /// All columns between the name of the variant and the verdict. Force positive in compression, energy change and work
 /// positive when the bodies gain, dissipation positive when lost, penetration positive.
-pub const COLUMNS: [Column; 23] = [
+pub const COLUMNS: [Column; 29] = [
     column("force_error", "force error", Form::Percent, |v| {
         v.errors.force
     }),
@@ -127,6 +127,24 @@ pub const COLUMNS: [Column; 23] = [
     hidden("energy_residual", "", |v| {
         Some(v.summary.energy.relative_residual)
     }),
+    hidden("momentum_residual", "", |v| {
+        Some(v.summary.momentum.relative_residual)
+    }),
+    hidden("angular_residual", "", |v| {
+        Some(v.summary.momentum.angular.as_ref()?.relative_residual)
+    }),
+    hidden("dissipation_material_j", "J", |v| {
+        lost(v, "dissipation of the materials")
+    }),
+    hidden("dissipation_damping_j", "J", |v| {
+        lost(v, "dissipation of the damping")
+    }),
+    hidden("dissipation_friction_j", "J", |v| {
+        lost(v, "dissipation of friction")
+    }),
+    hidden("newton_iterations", "", |v| {
+        v.summary.newton.map(|newton| newton.iterations as f64)
+    }),
 ];
 
 /// Kinetic and strain energy at the end over that at the start, less one.
@@ -142,6 +160,10 @@ fn dissipation(done: &Done) -> Option<f64> {
     let known = checks.iter().any(|check| check.quantity == ENERGY_CHECK);
     let gain = work(done, "dissipation of the scheme").filter(|_| known)?;
     Some(0.0 - gain)
+}
+
+fn lost(done: &Done, name: &str) -> Option<f64> {
+    work(done, name).map(|gain| 0.0 - gain)
 }
 
 fn work(done: &Done, name: &str) -> Option<f64> {

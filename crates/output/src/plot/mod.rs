@@ -6,6 +6,7 @@
 
 mod draw;
 mod figures;
+mod film;
 mod logarithmic;
 mod model;
 mod scale;
@@ -14,6 +15,7 @@ mod thin;
 use std::path::Path;
 
 pub use figures::{ContactCurves, EnergyCurves, contact_figure, energy_figure};
+pub(crate) use film::{Frame, Patch, Scene, film_figure};
 pub use logarithmic::{Logarithmic, Series};
 pub(crate) use model::{Shape, model_figure};
 pub use scale::{digits, quantity, scientific};

@@ -6,13 +6,13 @@ use carom_contact::{Contact as Pair, Integration};
 use carom_dynamics::{ContactRecord, Ledger, System};
 
 use crate::plot::model_figure;
-use crate::results::costs::{counts, timings};
+use crate::results::costs::{counts, newton, timings};
 use crate::results::exact;
 use crate::results::impacts::ContactTotals;
 use crate::results::{Comparison, Ending, Last, Results};
 use crate::summary::{
-    Check, Contact, ENERGY_CHECK, Energy, Exact, Model, Momentum, Rejected, Summary, Time, Verdict,
-    Zones, hash,
+    Angular, Check, Contact, ENERGY_CHECK, Energy, Exact, Friction, Model, Momentum,
+    NONLINEAR_WORKS, Rejected, Summary, Time, Verdict, Zones, hash,
 };
 use crate::{Error, Report, atomic};
 
@@ -74,7 +74,9 @@ fn draw(results: &mut Results, errors: &mut Vec<Error>) -> Vec<String> {
         ("plots/model.svg", svg)
     });
     let drawn = results.curves.draw(reference, results.last.time);
-    let drawn = model.into_iter().chain(drawn);
+    let film = results.film.draw(system);
+    let film = film.map(|figure| ("plots/film.svg", figure));
+    let drawn = model.into_iter().chain(drawn).chain(film);
     let mut figures = Vec::new();
     for (name, figure) in drawn {
         let Some(svg) = keep(figure, errors) else {
@@ -146,6 +148,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
             .as_ref()
             .map(|comparison| against_exact(results, comparison)),
         counts: counts(ending.costs, totals.passes),
+        newton: (system.is_nonlinear() && zones.is_none()).then(|| newton(results, ending)),
         timings: timings(results, ending),
         warnings,
         outputs: names.filter(there).collect(),
@@ -167,7 +170,7 @@ fn without_identity<'a>(system: &System, zones: Option<&'a Zones>) -> Option<&'a
     }
 }
 
-/// Kinetic and strain energy that the loads have not given, relative to the largest; zero for a loss.
+/// Kinetic and strain energy that loads and supports have not given, relative to the largest; zero for a loss.
 fn gained(last: &Last) -> f64 {
     let Ledger {
         initial,
@@ -175,7 +178,8 @@ fn gained(last: &Last) -> f64 {
         largest_energy,
         ..
     } = &last.ledger;
-    let gain = balance.energy() - initial.energy() - balance.work_loads;
+    let given = balance.work_loads + balance.work_supports;
+    let gain = balance.energy() - initial.energy() - given;
     gain.max(0.0) / largest_energy.max(f64::MIN_POSITIVE)
 }
 
@@ -268,6 +272,10 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                     0.0
                 },
                 impulse: record.impulse(),
+                friction: (system.friction[k] > 0.0).then_some(Friction {
+                    coefficient: system.friction[k],
+                    peak_force: totals.peak_friction,
+                }),
                 first_closing: record.first_closing,
                 last_release: record.last_force.filter(|_| !still_closed),
                 status_changes: record.status_changes,
@@ -301,6 +309,19 @@ fn energy(last: &Last, linked: bool) -> Energy {
     if linked {
         works.insert("work of links".to_owned(), end.work_links);
     }
+    // what linear runs have not is named only where there is some
+    let further = [
+        end.work_supports,
+        -end.dissipation_material,
+        -end.dissipation_damping,
+        -end.dissipation_friction,
+        start.hardening - end.hardening,
+    ];
+    let further = NONLINEAR_WORKS
+        .iter()
+        .zip(further)
+        .filter(|(_, work)| *work != 0.0);
+    works.extend(further.map(|(name, work)| ((*name).to_owned(), work)));
     let stored = end.scheme_energy - start.scheme_energy;
     if stored != 0.0 {
         works.insert("stored by the scheme".to_owned(), -stored);
@@ -339,7 +360,10 @@ fn momentum(system: &System, last: &Last, linked: bool) -> Momentum {
     ];
     let links = linked.then_some(("links", end.impulse_links.linear));
     let impulses = impulses.into_iter().chain(links);
+    let angular = (system.is_nonlinear() && !system.axisymmetric)
+        .then(|| angular(system, ledger, linked, size));
     Momentum {
+        angular,
         initial: start.momentum.linear,
         r#final: end.momentum.linear,
         impulses: impulses
@@ -347,6 +371,31 @@ fn momentum(system: &System, last: &Last, linked: bool) -> Momentum {
             .collect(),
         residual: end.momentum_residual.linear,
         relative_residual: relative(ledger.largest_momentum_residual, size),
+    }
+}
+
+/// `momentum`: size that linear momenta are compared with, N s. Times the largest distance of a node from the origin it is
+/// one for angular momenta: |Σ x × m v| ≤ max |x| Σ |m v|.
+fn angular(system: &System, ledger: &Ledger, linked: bool, momentum: f64) -> Angular {
+    let (start, end) = (&ledger.initial, &ledger.balance);
+    let distance = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let farthest = system.x.iter().map(distance).fold(0.0, f64::max);
+    let size = ledger.largest_angular_momentum.max(farthest * momentum);
+    let impulses = [
+        ("loads", end.impulse_loads.angular),
+        ("supports", end.impulse_supports.angular),
+        ("obstacles", end.impulse_contact.angular),
+    ];
+    let links = linked.then_some(("links", end.impulse_links.angular));
+    let impulses = impulses.into_iter().chain(links);
+    Angular {
+        initial: start.momentum.angular,
+        r#final: end.momentum.angular,
+        impulses: impulses
+            .map(|(name, impulse)| (name.to_owned(), impulse))
+            .collect(),
+        residual: end.momentum_residual.angular,
+        relative_residual: relative(ledger.largest_angular_residual, size),
     }
 }
 

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use carom_dynamics::{Costs, Driver, Stepper, System, Whole};
+use carom_dynamics::{Costs, Stepper, System, Whole, ZoneDriver};
 
 use crate::results::conclusion::courant;
 use crate::results::{Ending, Results};
-use crate::summary::{Counts, Link, Zone, Zones};
+use crate::summary::{Counts, Link, Newton, Zone, Zones};
 
 pub(super) fn counts(costs: &Costs, passes: u64) -> Counts {
     let factors = &costs.factors;
@@ -21,6 +21,21 @@ pub(super) fn counts(costs: &Costs, passes: u64) -> Counts {
         element_updates: costs.element_updates,
         solves: costs.solves(),
         status_iterations: passes,
+    }
+}
+
+pub(super) fn newton(results: &Results, ending: &Ending) -> Newton {
+    let (totals, last) = (&results.totals, &results.last);
+    let per_step = |count: u64| match last.step {
+        0 => 0.0,
+        steps => count as f64 / steps as f64,
+    };
+    Newton {
+        iterations: totals.passes,
+        iterations_per_step: per_step(totals.passes),
+        most_iterations: totals.most_passes,
+        factorisations_per_step: per_step(ending.costs.work.factorisations as u64),
+        halvings: last.control.failed,
     }
 }
 
@@ -51,7 +66,7 @@ impl Zones {
     pub fn of(run: &Whole) -> Zones {
         let zones = run.zones();
         let names = run.names();
-        let one = |(k, driver): (usize, &Driver)| {
+        let one = |(k, driver): (usize, &ZoneDriver)| {
             let (system, costs) = (driver.system(), driver.costs());
             let ledger = &driver.state().ledger;
             let scheme = system.scheme.get();

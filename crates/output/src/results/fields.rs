@@ -1,5 +1,6 @@
 //! Fields as VTU and PVD: copied by the run into one of two buffers, derived and written by the background thread.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -9,6 +10,7 @@ use carom_dynamics::{InterfaceState, State, System};
 use carom_elements::Kind;
 use carom_mesh::Face;
 
+use crate::results::cells::{cell_stresses, plastic_strains, von_mises};
 use crate::results::{Fields, Zoning};
 use crate::vtu::{Cells, Field, Grid, Values, write};
 use crate::writer::Writer;
@@ -23,6 +25,7 @@ struct Snapshot {
     u: Vec<f64>,
     v: Vec<f64>,
     a: Vec<f64>,
+    history: Vec<f64>,
     interface: InterfaceState,
 }
 
@@ -143,7 +146,9 @@ impl Snapshot {
         if fields.acceleration {
             copy(&mut self.a, &motion.a);
         }
+        copy(&mut self.history, &motion.history);
         copy(&mut self.interface.force, &interface.force);
+        copy(&mut self.interface.friction, &interface.friction);
         copy(&mut self.interface.gap, &interface.gap);
         copy(&mut self.interface.rate, &interface.rate);
         copy(&mut self.interface.status, &interface.status);
@@ -240,18 +245,19 @@ impl Volume {
             ("acceleration", fields.acceleration, &snapshot.a),
         ];
         let chosen = chosen.into_iter().filter(|(_, on, _)| *on);
-        let vectors: Vec<(&str, Vec<[f64; 3]>)> = chosen
+        let motions: Vec<(&str, Vec<[f64; 3]>)> = chosen
             .map(|(name, _, values)| (name, vectors(system.dim, values)))
             .collect();
-        let point_fields = vectors.iter().map(|(name, values)| Field {
+        let point_fields = motions.iter().map(|(name, values)| Field {
             name,
             values: Values::Vector(values),
         });
         let point_fields: Vec<Field> = point_fields.collect();
         let stress = match fields.stress {
-            true => stresses(system, &snapshot.u),
+            true => cell_stresses(system, &snapshot.u, &snapshot.history),
             false => Vec::new(),
         };
+        let plastic = plastic_strains(system, &snapshot.history);
         let mises: Vec<f64> = stress.iter().map(von_mises).collect();
         let mut cell_fields = vec![Field {
             name: "body",
@@ -285,16 +291,38 @@ impl Volume {
                 values: Values::Scalar(&mises),
             });
         }
+        if let Some(plastic) = &plastic {
+            cell_fields.push(Field {
+                name: "plastic_strain",
+                values: Values::Scalar(plastic),
+            });
+        }
         write(
             path,
             &Grid {
                 time: snapshot.time,
-                points: &system.x,
+                points: &places(system, &system.x, &vectors(system.dim, &snapshot.u)),
                 cells: &borrowed(&self.cells),
                 point_fields: &point_fields,
                 cell_fields: &cell_fields,
             },
         )
+    }
+}
+
+/// The places to draw points at: as they were, so that a viewer may add displacements of any scale, or, where
+/// displacements are large, as they are.
+fn places<'a>(
+    system: &System,
+    x: &'a [[f64; 3]],
+    displacement: &[[f64; 3]],
+) -> Cow<'a, [[f64; 3]]> {
+    match system.is_nonlinear() {
+        false => Cow::Borrowed(x),
+        true => {
+            let moved = x.iter().zip(displacement);
+            Cow::Owned(moved.map(|(x, u)| [0, 1, 2].map(|i| x[i] + u[i])).collect())
+        }
     }
 }
 
@@ -312,7 +340,7 @@ impl SurfaceGrid {
             integration,
             ..
         } = &system.contacts[contact];
-        if *integration != Integration::Node {
+        if let Integration::Points | Integration::Weak { .. } = integration {
             return SurfaceGrid::of_points(system, contact, points);
         }
         let nodes: Vec<u32> = points.iter().map(Point::node).collect();
@@ -325,8 +353,9 @@ impl SurfaceGrid {
         let mut cells = Vec::new();
         for kind in Kind::ALL {
             let faces = system.secondary_faces[contact].iter();
-            let of_kind = faces.filter(|face| face.kind == kind);
-            let nodes: Vec<u32> = of_kind.flat_map(Face::corners).filter_map(place).collect();
+            let of_kind = faces.filter_map(|face| shown(face, &place));
+            let of_kind = of_kind.filter(|(shown, _)| *shown == kind);
+            let nodes: Vec<u32> = of_kind.flat_map(|(_, nodes)| nodes).collect();
             if !nodes.is_empty() {
                 cells.push((kind, nodes));
             }
@@ -374,6 +403,13 @@ impl SurfaceGrid {
                 }
             })
             .collect();
+        let friction = interface.friction.get(range.clone()).unwrap_or(&[]);
+        let traction: Vec<f64> = contact
+            .points
+            .iter()
+            .zip(friction)
+            .map(|(point, [one, other])| one.hypot(*other) / point.area)
+            .collect();
         let sign = |on: bool| i32::from(on);
         let closed: Vec<i32> = status.iter().map(|s| sign(*s != Status::Open)).collect();
         let watched = interface.watched[range.clone()].iter();
@@ -403,6 +439,9 @@ impl SurfaceGrid {
                 values: Values::Vector(&displacement),
             },
         ];
+        if system.friction[self.contact] > 0.0 && !traction.is_empty() {
+            fields.push(scalar("friction_traction", &traction));
+        }
         fields.extend(signs.into_iter().map(|(name, values)| Field {
             name,
             values: Values::Integer(values),
@@ -411,7 +450,7 @@ impl SurfaceGrid {
             path,
             &Grid {
                 time: snapshot.time,
-                points: &self.points,
+                points: &places(system, &self.points, &displacement),
                 cells: &borrowed(&self.cells),
                 point_fields: &fields,
                 cell_fields: &[],
@@ -438,27 +477,13 @@ fn vectors(dim: usize, values: &[f64]) -> Vec<[f64; 3]> {
     nodes.map(vector).collect()
 }
 
-/// Mean stress of each cell in VTK's order xx, yy, zz, xy, yz, xz, Pa.
-fn stresses(system: &System, u: &[f64]) -> Vec<[f64; 6]> {
-    let of_bodies = system.bodies.iter().flat_map(|body| body.stresses(u, &[]));
-    of_bodies
-        .map(|(_, s)| {
-            [
-                s[(0, 0)],
-                s[(1, 1)],
-                s[(2, 2)],
-                s[(0, 1)],
-                s[(1, 2)],
-                s[(0, 2)],
-            ]
-        })
-        .collect()
-}
-
-/// Equivalent stress of von Mises, sqrt(3/2 s : s) with s the deviator, Pa.
-fn von_mises(stress: &[f64; 6]) -> f64 {
-    let [xx, yy, zz, xy, yz, xz] = *stress;
-    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
-    let shear = xy * xy + yz * yz + xz * xz;
-    (0.5 * normal + 3.0 * shear).sqrt()
+/// A face as it is drawn, with the places of its nodes: in full, or by its corners where only these are points of the
+/// contact.
+fn shown(face: &Face, place: &impl Fn(&u32) -> Option<u32>) -> Option<(Kind, Vec<u32>)> {
+    let linear = face.kind.table().linear;
+    [face.kind, linear].into_iter().find_map(|kind| {
+        let nodes = face.corners()[..kind.table().nodes].iter();
+        let places: Option<Vec<u32>> = nodes.map(place).collect();
+        Some((kind, places?))
+    })
 }

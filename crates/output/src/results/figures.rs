@@ -24,8 +24,13 @@ pub(crate) struct Curves {
     strain: Trace,
     total: Trace,
     dissipated: Trace,
+    /// Of runs that are not linear: what hardening stores, and what is dissipated in each way.
+    further: [Trace; 4],
     residual: Trace,
 }
+
+/// Names of [`Curves::further`].
+const FURTHER: [&str; 4] = ["hardening", "material", "damping", "friction"];
 
 impl Curves {
     /// Follows the contact point, or without a contact the first probe; `probes`: the sensors of each.
@@ -60,6 +65,7 @@ impl Curves {
             strain: Trace::default(),
             total: Trace::default(),
             dissipated: Trace::default(),
+            further: Default::default(),
             residual: Trace::default(),
         }
     }
@@ -82,6 +88,15 @@ impl Curves {
         self.total.push(t, balance.energy());
         let dissipated = balance.dissipation_scheme - balance.work_contact;
         self.dissipated.push(t, dissipated);
+        let further = [
+            balance.hardening,
+            balance.dissipation_material,
+            balance.dissipation_damping,
+            balance.dissipation_friction,
+        ];
+        for (trace, value) in self.further.iter_mut().zip(further) {
+            trace.push(t, value);
+        }
         self.residual.push(t, balance.energy_residual);
     }
 
@@ -156,10 +171,15 @@ impl Curves {
         .map(Trace::columns);
         let names = ["kinetic", "strain", "total", "dissipated", "residual"];
         let at = |k: usize| curve(names[k], &columns[k], Role::Computed);
+        let further = self.further.each_ref().map(Trace::columns);
+        let there =
+            |(_, (_, values)): &(&&'static str, &Polyline)| values.iter().any(|v| *v != 0.0);
+        let further = FURTHER.iter().zip(&further).filter(there);
+        let further = further.map(|(name, line)| curve(name, line, Role::Computed));
         let figure: Figure = energy_figure(
             "Energy balance",
             EnergyCurves {
-                energies: (0..4).map(at).collect(),
+                energies: (0..4).map(at).chain(further).collect(),
                 residual: vec![at(4)],
             },
         );

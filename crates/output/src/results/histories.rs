@@ -4,6 +4,8 @@
 //! the contacts' ones, every cell filled. The forces in `histories.csv` are then means over the step, so that in both
 //! files the sum of a column of forces times the step is the impulse. (One file with both would be half blank.)
 
+use std::ops::Range;
+
 use carom_dynamics::{ContactReport, State, StepReport, System};
 
 use crate::history::column;
@@ -46,8 +48,8 @@ impl Histories {
         let contact = match zoning.is_some_and(Zoning::has_parts) && !system.contacts.is_empty() {
             true => {
                 let mut names = vec![column(&["time"], "s")];
-                for contact in &system.contacts {
-                    names.extend(contact_columns(system, &contact.name));
+                for k in 0..system.contacts.len() {
+                    names.extend(contact_columns(system, k));
                 }
                 Some(History::create(&folder.file(CONTACT_FILE)?, &names)?)
             }
@@ -78,7 +80,7 @@ impl Histories {
         row.clear();
         row.push(report.time);
         for (k, contact) in report.contacts.iter().enumerate() {
-            put(contact, dim, row);
+            put((contact, system.friction[k] > 0.0), dim, row);
             if let Some(point) = point.filter(|point| point.contact == k) {
                 for (_, sensor) in &point.sides {
                     row.extend(vectors.map(|vector| sensor.of(vector)));
@@ -101,8 +103,19 @@ impl Histories {
             balance.energy_residual,
         ]);
         row.extend(self.links.then_some(balance.work_links));
+        if system.is_nonlinear() {
+            row.extend([
+                balance.hardening,
+                balance.work_supports,
+                balance.dissipation_material,
+                balance.dissipation_damping,
+                balance.dissipation_friction,
+            ]);
+        }
         row.extend(&balance.momentum.linear[..dim]);
         row.extend(&balance.momentum_residual.linear[..dim]);
+        row.extend(&balance.momentum.angular[turns(system)]);
+        row.extend(&balance.momentum_residual.angular[turns(system)]);
         row.push(report.passes as f64);
         file.push(row)?;
         let Some(file) = &mut self.contact else {
@@ -111,8 +124,8 @@ impl Histories {
         for (end, _, contacts) in report.parts() {
             row.clear();
             row.push(end);
-            for contact in contacts {
-                put(contact, dim, row);
+            for (k, contact) in contacts.iter().enumerate() {
+                put((contact, system.friction[k] > 0.0), dim, row);
             }
             file.push(row)?;
         }
@@ -128,14 +141,27 @@ impl Histories {
 }
 
 /// Adds what a contact did to a row, in the order of [`contact_columns`].
-fn put(contact: &ContactReport, dim: usize, row: &mut Vec<f64>) {
+fn put((contact, rubs): (&ContactReport, bool), dim: usize, row: &mut Vec<f64>) {
     row.push(contact.force);
     row.extend(&contact.resultant[..dim]);
     row.extend([contact.gap, contact.rate, contact.closed as f64]);
+    if rubs {
+        row.extend([contact.friction, contact.slipping as f64]);
+    }
+}
+
+/// The axes about which angular momentum is shown: of linear models none, as theirs is that of small displacements.
+fn turns(system: &System) -> Range<usize> {
+    match (system.is_nonlinear() && !system.axisymmetric, system.dim) {
+        (true, 2) => 2..3,
+        (true, 3) => 0..3,
+        _ => 0..0,
+    }
 }
 
 /// Names of the columns of what a contact did.
-fn contact_columns(system: &System, contact: &str) -> Vec<String> {
+fn contact_columns(system: &System, k: usize) -> Vec<String> {
+    let contact = &system.contacts[k].name;
     let add = |what: &str, unit| column(&["contact", contact, what], unit);
     let mut names = vec![add("force", "N")];
     let resultant = |i: &&str| add(&format!("resultant {i}"), "N");
@@ -145,6 +171,9 @@ fn contact_columns(system: &System, contact: &str) -> Vec<String> {
         add("gap rate", "m/s"),
         add("closed points", ""),
     ]);
+    if system.friction[k] > 0.0 {
+        names.extend([add("friction", "N"), add("slipping points", "")]);
+    }
     names
 }
 
@@ -160,7 +189,7 @@ pub(crate) fn columns(
     let components = &COMPONENTS[..system.dim];
     let mut names = vec![column(&["time"], "s")];
     for (k, contact) in system.contacts.iter().enumerate() {
-        names.extend(contact_columns(system, &contact.name));
+        names.extend(contact_columns(system, k));
         if let Some(point) = point.filter(|point| point.contact == k) {
             for side in &["secondary", "primary"][..point.sides.len()] {
                 for (motion, unit) in MOTIONS {
@@ -190,9 +219,27 @@ pub(crate) fn columns(
         .as_ref()
         .map(|_| column(&["work", "links"], "J"));
     names.extend(links);
+    if system.is_nonlinear() {
+        let further = [
+            ["energy", "hardening"],
+            ["work", "supports"],
+            ["dissipation", "material"],
+            ["dissipation", "damping"],
+            ["dissipation", "friction"],
+        ];
+        names.extend(further.map(|path| column(&path, "J")));
+    }
     names.extend(components.iter().map(|i| column(&["momentum", i], "N s")));
     let residual = |i: &&str| column(&["momentum", &format!("residual {i}")], "N s");
     names.extend(components.iter().map(residual));
+    let turns = &COMPONENTS[turns(system)];
+    names.extend(
+        turns
+            .iter()
+            .map(|i| column(&["angular momentum", i], "N m s")),
+    );
+    let residual = |i: &&str| column(&["angular momentum", &format!("residual {i}")], "N m s");
+    names.extend(turns.iter().map(residual));
     names.push(column(&["status", "passes"], ""));
     unique(&settings.folder.join(FILE), &names)?;
     Ok(names)

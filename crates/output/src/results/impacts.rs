@@ -35,6 +35,8 @@ pub(crate) struct ContactTotals {
     pub(crate) of_parts: bool,
     /// Time of the steps with a force, s.
     pub(crate) closed: f64,
+    /// Largest friction force of a step, N.
+    pub(crate) peak_friction: f64,
 }
 
 impl Impacts {
@@ -56,6 +58,7 @@ impl Impacts {
                     sides.iter().flatten().any(|body| zoning.is_part(*body))
                 }),
                 closed: 0.0,
+                peak_friction: 0.0,
             }
         };
         Ok(Impacts {
@@ -78,6 +81,7 @@ impl Impacts {
                 if report.step > 0 {
                     totals.mean.push(dt, contact.force);
                 }
+                totals.peak_friction = totals.peak_friction.max(contact.friction);
                 if contact.closed > 0 {
                     totals.closed += dt;
                 }

@@ -7,11 +7,13 @@
 //!
 //! What a run writes is complete whenever it is cut: tables grow by whole rows, all other files appear by one rename.
 
+mod cells;
 mod conclusion;
 mod costs;
 pub(crate) mod exact;
 mod fields;
 mod figures;
+mod film;
 mod histories;
 mod impacts;
 pub(crate) mod sensor;
@@ -32,6 +34,7 @@ use crate::{Error, Folder, atomic, checkpoint};
 use exact::Comparison;
 use fields::FieldOutput;
 use figures::Curves;
+use film::Film;
 use histories::Histories;
 use impacts::Impacts;
 use sensor::ContactPoint;
@@ -139,6 +142,7 @@ pub struct Results {
     impacts: Impacts,
     fields: Option<FieldOutput>,
     curves: Curves,
+    film: Film,
     comparison: Option<Comparison>,
     totals: Totals,
     /// Mean velocity of the bodies at the start, m/s.
@@ -151,6 +155,8 @@ pub struct Results {
 struct Totals {
     /// Passes of the status loop.
     passes: u64,
+    /// Most passes in a step.
+    most_passes: u64,
     /// Accepted states with an energy or a force that is not finite.
     not_finite: u64,
     /// Time spent in here by the run itself.
@@ -199,6 +205,7 @@ impl Results {
         };
         Ok(Results {
             curves,
+            film: Film::default(),
             comparison: settings.reference.clone().map(Comparison::new),
             totals: Totals::default(),
             start: velocities(&system, &system.initial_velocity),
@@ -215,6 +222,7 @@ impl Results {
 
     fn take(&mut self, state: &State, report: &StepReport) -> Result<(), Error> {
         self.totals.passes += report.passes as u64;
+        self.totals.most_passes = self.totals.most_passes.max(report.passes as u64);
         let force = |contact: &carom_dynamics::ContactReport| contact.force;
         let forces: f64 = report.contacts.iter().map(force).sum();
         let finite = (report.balance.energy_residual + forces).is_finite();
@@ -223,6 +231,7 @@ impl Results {
         self.histories.push(&self.system, (state, report), point)?;
         self.impacts.take(&self.system, state, report)?;
         self.curves.push(state, report);
+        self.film.push(&self.system, state);
         if let (Some(comparison), Some(point)) = (&mut self.comparison, point) {
             comparison.push(point, state, report);
         }
@@ -248,6 +257,7 @@ impl Results {
             velocities: velocities(&self.system, &state.motion.v),
             closed: (0..self.system.contacts.len()).map(forces).collect(),
         };
+        self.film.finish(&self.system, state);
         let outcomes = [
             self.histories.finish(),
             self.impacts.finish(&self.system, state),

@@ -6,6 +6,7 @@
 mod figures;
 mod files;
 mod grids;
+mod large;
 mod models;
 mod pages;
 mod runs;

@@ -52,6 +52,7 @@ fn sample(verdict: Verdict) -> Summary {
             ..Exact::default()
         }),
         counts: summary::Counts::default(),
+        newton: None,
         timings: BTreeMap::from([("solve".to_owned(), 0.1234)]),
         warnings: vec!["the step is long".to_owned()],
         outputs: vec!["summary.json".to_owned()],

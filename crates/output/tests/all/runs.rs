@@ -15,7 +15,7 @@ use crate::{grids, tables};
 
 /// What a run told its observers.
 #[derive(Default)]
-struct Reports(Vec<StepReport>);
+pub struct Reports(pub Vec<StepReport>);
 
 impl Observer for Reports {
     fn accepted(&mut self, _: &System, _: &State, report: &StepReport) -> Result<(), Error> {
@@ -61,7 +61,7 @@ fn run(system: &Arc<System>, settings: Settings, end: f64) -> (Vec<StepReport>, 
 }
 
 /// The columns of a table of numbers.
-fn columns(path: &Path) -> BTreeMap<String, Vec<f64>> {
+pub fn columns(path: &Path) -> BTreeMap<String, Vec<f64>> {
     let (names, rows) = tables::read(path);
     let column = |k: usize| rows.iter().map(|row| row[k].parse().unwrap()).collect();
     names
@@ -77,7 +77,7 @@ fn read_summary(folder: &Path) -> Summary {
 }
 
 /// Time and file of every entry of the collection, by part.
-fn collection(folder: &Path) -> Vec<(f64, u32, String)> {
+pub fn collection(folder: &Path) -> Vec<(f64, u32, String)> {
     let text = fs::read_to_string(folder.join("fields.pvd")).unwrap();
     let entries = text.lines().filter(|line| line.contains("<DataSet"));
     let value = |line: &str, name: &str| {

@@ -80,6 +80,16 @@ fn displacement(sample: &Sample, seed: u64) -> Vec<f64> {
         .collect()
 }
 
+/// About ten of `n` unknowns, of all components.
+fn probes(n: usize) -> impl Iterator<Item = usize> {
+    let step = (n / 10).max(1);
+    (0..n).step_by(if step.is_multiple_of(2) || step.is_multiple_of(3) {
+        step / 6 * 6 + 7
+    } else {
+        step
+    })
+}
+
 /// A body with its history at the start of a step of 0.1 s.
 struct Step<'a> {
     sample: &'a Sample,

@@ -1,0 +1,90 @@
+//! Loads: gravity, pressures, tractions.
+
+use carom_dynamics::{Amplitude, Load, LoadKind, ModelBody};
+use carom_mesh::{ElementId, Mesh, Surface};
+
+use super::Builder;
+use crate::error::Problem;
+use crate::schema;
+
+impl Builder<'_> {
+    /// The sum of all accelerations of free fall, m/s².
+    pub(super) fn gravity(&mut self, mesh: &Mesh) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (name, load) in self.case.load.iter() {
+            if let Some(acceleration) = &load.acceleration {
+                let path = format!("load.{name}.acceleration");
+                let of_load = self.vector(mesh, &path, acceleration);
+                sum.iter_mut().zip(of_load).for_each(|(sum, g)| *sum += g);
+            }
+        }
+        sum
+    }
+
+    /// Loads on surfaces.
+    pub(super) fn loads(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Vec<Load> {
+        let cells: Vec<ElementId> = bodies.iter().flat_map(|b| b.spec.cells.clone()).collect();
+        let mut loads = Vec::new();
+        for (name, load) in self.case.load.iter() {
+            let path = format!("load.{name}");
+            let Some(kind) = self.kind(mesh, &path, load) else {
+                continue;
+            };
+            let amplitude = match &load.amplitude {
+                None => Some(Amplitude::constant(1.0)),
+                Some(points) => {
+                    let points = points.iter();
+                    let points = points.map(|point| [point.time.0, point.factor]);
+                    self.amplitude(&format!("{path}.amplitude"), points.collect())
+                }
+            };
+            let on = load.on.as_deref().unwrap_or_default();
+            let Some(surface) = self.surface(mesh, &cells, &format!("{path}.on"), on) else {
+                continue;
+            };
+            self.of_one_body(&path, on, &surface, bodies);
+            if let Some(amplitude) = amplitude {
+                loads.push(Load {
+                    name: name.to_string(),
+                    surface,
+                    kind,
+                    amplitude,
+                });
+            }
+        }
+        loads
+    }
+
+    /// What acts on the surface; none for gravity.
+    fn kind(&mut self, mesh: &Mesh, path: &str, load: &schema::Load) -> Option<LoadKind> {
+        match (&load.pressure, &load.traction) {
+            (Some(pressure), _) => Some(LoadKind::Pressure(pressure.0)),
+            (None, Some(traction)) => {
+                let path = format!("{path}.traction");
+                Some(LoadKind::Traction(self.vector(mesh, &path, traction)))
+            }
+            (None, None) => None,
+        }
+    }
+
+    /// Refuses a loaded surface of several bodies.
+    fn of_one_body(&mut self, path: &str, on: &str, surface: &Surface, bodies: &[ModelBody]) {
+        let owns = |body: &&ModelBody| {
+            let cells = &body.spec.cells;
+            let mut faces = surface.faces.iter();
+            faces.any(|face| cells.binary_search(&face.parent).is_ok())
+        };
+        let owners: Vec<&str> = bodies
+            .iter()
+            .filter(owns)
+            .map(|body| body.spec.name.as_str())
+            .collect();
+        if owners.len() > 1 {
+            let message = "a load acts on one body";
+            let problem = Problem::new(format!("{path}.on"), message)
+                .found(format!("{on}, of the bodies {}", owners.join(", ")));
+            self.problems
+                .push(problem.accepted(["a group of sides of one body"]));
+        }
+    }
+}

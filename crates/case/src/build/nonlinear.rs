@@ -1,0 +1,127 @@
+//! What only the nonlinear solver takes, and where it may not stand.
+
+use std::sync::Arc;
+
+use carom_bodies::Formulation;
+use carom_dynamics::{
+    Damping, Iteration, Load, ModelBody, Newton, Nonlinear, Preload, Prescribed, System,
+};
+use carom_materials::Law;
+
+use super::Builder;
+use super::time::scheme;
+use crate::error::Problem;
+use crate::schema::Scheme;
+
+impl Builder<'_> {
+    /// Loads and motions with damping, static stage and the rules of the iteration.
+    pub(super) fn nonlinear(&self, loads: Vec<Load>, motions: Vec<Prescribed>) -> Nonlinear {
+        let time = &self.case.time;
+        let damping = |body: &crate::schema::Body| {
+            body.damping.map_or(Damping::default(), |damping| Damping {
+                mass: damping.mass.map_or(0.0, |rate| rate.0),
+                stiffness: damping.stiffness.map_or(0.0, |time| time.0),
+            })
+        };
+        Nonlinear {
+            loads,
+            motions,
+            damping: self.case.body.iter().map(|(_, b)| damping(b)).collect(),
+            preload: time.stage.map(|stage| Preload {
+                end: stage.end.0,
+                steps: u64::from(stage.steps),
+            }),
+            iteration: Iteration {
+                tolerance: time.newton.tolerance,
+                passes: time.newton.passes as usize,
+                halvings: time.newton.halvings,
+            },
+        }
+    }
+
+    /// Refuses in zones, whose solver is linear, all that is not.
+    pub(super) fn nonlinear_in_zones(&mut self, bodies: &[ModelBody]) {
+        if self.plan.zones.is_empty() {
+            return;
+        }
+        let case = self.case;
+        let mut found: Vec<(String, &str)> = Vec::new();
+        for body in bodies.iter().filter(|b| b.spec.material.finite().is_some()) {
+            let path = format!("body.{}.material", body.spec.name);
+            found.push((path, "a material at finite strain"));
+        }
+        for (name, _) in case.body.iter().filter(|(_, body)| body.damping.is_some()) {
+            found.push((format!("body.{name}.damping"), "damping"));
+        }
+        for (name, _) in case.support.iter().filter(|(_, s)| s.motion.is_some()) {
+            found.push((format!("support.{name}.move"), "a prescribed motion"));
+        }
+        for (name, _) in case.load.iter().filter(|(_, load)| load.on.is_some()) {
+            found.push((format!("load.{name}"), "a load on a surface"));
+        }
+        for (name, _) in case.contact.iter().filter(|(_, c)| c.friction.is_some()) {
+            found.push((format!("contact.{name}.friction"), "friction"));
+        }
+        if case.time.stage.is_some() {
+            found.push(("time.static".to_string(), "a static stage"));
+        }
+        for zone in &self.plan.zones {
+            if matches!(zone.scheme, Scheme::EnergyMomentum(_)) {
+                found.push((zone.scheme_path.clone(), "energy-momentum"));
+            }
+        }
+        for (path, what) in found {
+            let message = "zones are linear: small strain, no friction, no damping, no loads or motions in time, no static stage";
+            let problem = Problem::new(path, message).found(what);
+            self.problems
+                .push(problem.accepted(["a case without zones"]));
+        }
+    }
+
+    /// Refuses, of a scheme that takes stresses between two states, bodies that have none.
+    pub(super) fn stresses_between(&mut self, bodies: &[ModelBody]) {
+        let scheme = scheme(&self.case.time.scheme());
+        if !scheme.get().is_between() || self.case.time.is_static() {
+            return;
+        }
+        for body in bodies {
+            let stores_all = match body.spec.material {
+                Law::Elastic(_)
+                | Law::StVenantKirchhoff(_)
+                | Law::NeoHooke(_)
+                | Law::MooneyRivlin(_) => true,
+                Law::J2Plasticity(_) | Law::Maxwell(_) => false,
+            };
+            let path = format!("body.{}", body.spec.name);
+            let message = "the scheme conserves energy by a stress between the two ends of a step";
+            let name = scheme.get().name();
+            if !stores_all {
+                let problem = Problem::new(format!("{path}.material"), message);
+                self.problems.push(
+                    problem
+                        .found(format!("{name} with a material that dissipates"))
+                        .accepted(["st-venant-kirchhoff", "neo-hooke", "mooney-rivlin"]),
+                );
+            }
+            if body.spec.formulation == Formulation::BBar {
+                let problem = Problem::new(format!("{path}.formulation"), message);
+                self.problems.push(
+                    problem
+                        .found(format!("{name} with mean dilatation"))
+                        .accepted(["\"full\"", "{ reduced = {} }"]),
+                );
+            }
+        }
+    }
+
+    /// Refuses what the solver refuses to start with: a static stage of a body that nothing holds, cells without stress.
+    pub(super) fn startable(&mut self, system: &Arc<System>) {
+        if !self.problems.is_empty() || !self.plan.zones.is_empty() || !system.is_nonlinear() {
+            return;
+        }
+        if let Err(error) = Newton::new(Arc::clone(system)) {
+            let problem = self.refused(&error);
+            self.problems.push(problem);
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Contacts that penetrate at the start: refused, or told.
+
+use carom_contact::Places;
+use carom_dynamics::System;
+
+use super::Builder;
+use crate::error::Problem;
+use crate::schema;
+
+impl Builder<'_> {
+    /// Refuses contacts that penetrate at the start, in the initial displacement, or tells of them where the case lets them.
+    pub(super) fn penetration(&mut self, system: &System) {
+        let slack = system.tolerance.max(1e-9 * system.mesh.size());
+        let places = Places {
+            dim: system.dim,
+            time: 0.0,
+            x: &system.x,
+            u: &system.initial_displacement,
+        };
+        for contact in &system.contacts {
+            let name = &contact.name;
+            let way = self.case.contact.get(name).map(|contact| contact.initial);
+            if way == Some(schema::Penetration::Offset) {
+                let offsets = contact.offsets.iter().enumerate();
+                let deepest = offsets.min_by(|a, b| b.1.total_cmp(a.1));
+                if let Some((point, depth)) = deepest {
+                    let count = contact.offsets.iter().filter(|depth| **depth > 0.0).count();
+                    let node = system.mesh_node[contact.points[point].node() as usize];
+                    self.tell(name, count, (node, *depth), "offset");
+                }
+                continue;
+            }
+            let deep = contact.penetrations(&places, slack);
+            let Some(deepest) = deep.iter().min_by(|a, b| b.depth.total_cmp(&a.depth)) else {
+                continue;
+            };
+            let node = system.mesh_node[deepest.node as usize];
+            if way == Some(schema::Penetration::Keep) {
+                self.tell(name, deep.len(), (node, deepest.depth), "kept");
+                continue;
+            }
+            let x = contact.points[deepest.point].place(&places);
+            let verb = match deep.len() {
+                1 => "penetrates",
+                _ => "penetrate",
+            };
+            let message = format!("{} {verb} at the start", super::plural(deep.len(), "point"));
+            let problem = Problem::new(format!("contact.{name}"), message)
+                .found(format!(
+                    "a gap of {:.4e} m at node {node}, ({:.6}, {:.6}, {:.6}) m",
+                    -deepest.depth, x[0], x[1], x[2]
+                ))
+                .accepted([format!("gaps of at least -{slack:.1e} m")]);
+            self.problems.push(problem);
+        }
+    }
+
+    /// Tells which nodes contacts have moved away from the places `before`, and refuses cells that this has spoilt.
+    pub(super) fn moved(&mut self, system: &System, before: &[[f64; 3]]) {
+        let places = system.mesh.nodes.iter().zip(before);
+        let distance = |(now, then): (&[f64; 3], &[f64; 3])| {
+            let squares = now.iter().zip(then).map(|(a, b)| (a - b).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        let ways: Vec<f64> = places.map(distance).collect();
+        let furthest = ways.iter().enumerate().min_by(|a, b| b.1.total_cmp(a.1));
+        let Some((node, way)) = furthest.filter(|(_, way)| **way > 0.0) else {
+            return;
+        };
+        let count = ways.iter().filter(|way| **way > 0.0).count();
+        let remove = schema::Penetration::Remove;
+        let contacts = self.case.contact.iter();
+        let names: Vec<&str> = contacts
+            .filter(|(_, contact)| contact.initial == remove)
+            .map(|(name, _)| name)
+            .collect();
+        self.tell(&names.join("`, `"), count, (node as u32, *way), "removed");
+        for body in &system.bodies {
+            let path = format!("body.{}", body.name());
+            self.sound(&system.mesh, &path, body.cells());
+        }
+    }
+
+    fn tell(&mut self, contact: &str, count: usize, (node, depth): (u32, f64), done: &str) {
+        self.warnings.push(format!(
+            "contact `{contact}`: {} penetrated at the start, the deepest, at node {node}, by {depth:.4e} m; {done}, as asked",
+            super::plural(count, "point")
+        ));
+    }
+}

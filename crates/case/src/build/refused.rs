@@ -1,0 +1,116 @@
+//! Errors of the library as problems of the case, each at its key.
+
+use carom_dynamics::{Error, Refused};
+
+use super::Builder;
+use crate::error::Problem;
+use crate::schema::{self, Contact, Nodes};
+
+impl Builder<'_> {
+    /// The problem behind an error of the system.
+    pub(super) fn refused(&self, error: &Error) -> Problem {
+        match error {
+            Error::Body(cause) => {
+                let path = format!("body.{}.{}", cause.body(), key(cause));
+                Problem::new(path, cause.to_string())
+            }
+            Error::Unstable { dt, critical } => {
+                let problem = Problem::new(
+                    "time.step",
+                    "the step is above the critical step of the explicit scheme",
+                );
+                problem.found(format!("{dt:.4e} s")).accepted([
+                    format!("at most {critical:.4e} s"),
+                    "step = { critical = 0.9 }".to_string(),
+                ])
+            }
+            Error::Projection { contact } => Problem::new(
+                format!("contact.{contact}.law.displacement.projection"),
+                error.to_string(),
+            ),
+            Error::MasslessContact { contact, .. } => {
+                Problem::new(format!("contact.{contact}.nodes"), error.to_string())
+            }
+            Error::Integration { contact, .. } | Error::WeakForm { contact, .. } => {
+                Problem::new(format!("contact.{contact}.integration"), error.to_string())
+            }
+            Error::Massless { body, .. } => {
+                Problem::new(format!("body.{body}.mass"), error.to_string())
+            }
+            Error::Penetration { contact, .. } => {
+                Problem::new(format!("contact.{contact}.initial"), error.to_string())
+            }
+            Error::FreeMotion { body, motion } => {
+                let message =
+                    format!("in a static stage the body `{body}` can {motion} without any force");
+                Problem::new("time.static", message)
+                    .accepted(["supports that hold it", "no static stage"])
+            }
+            Error::Nonlinear { what, why } => self.refused_nonlinear(what, why),
+            Error::Zone { zone, cause } => self.refused_zone(zone, cause),
+            other => Problem::new("time", other.to_string()),
+        }
+    }
+
+    /// The problem behind what the nonlinear solver refuses.
+    fn refused_nonlinear(&self, what: &Refused, why: &str) -> Problem {
+        let path = match what {
+            Refused::Scheme(_) => "time.scheme".to_string(),
+            Refused::AdaptiveStep => "time.step.adaptive".to_string(),
+            Refused::StaticStage => "time.static".to_string(),
+            Refused::MasslessNodes => {
+                let massless = |(_, contact): &(&str, &Contact)| contact.nodes == Nodes::Massless;
+                let name = self.case.contact.iter().find(massless);
+                format!("contact.{}.nodes", name.map_or("", |(name, _)| name))
+            }
+            Refused::Integration(contact) => format!("contact.{contact}.integration"),
+            Refused::Projection(contact) => {
+                format!("contact.{contact}.law.displacement.projection")
+            }
+            Refused::Damping(body) => format!("body.{body}.damping.stiffness"),
+            Refused::Motion { .. } => "support".to_string(),
+        };
+        Problem::new(path, format!("{what}: {why}"))
+    }
+
+    /// The problem behind an error of a zone's system.
+    fn refused_zone(&self, name: &str, cause: &Error) -> Problem {
+        let zone = self.plan.zones.iter().find(|zone| zone.name == name);
+        match (cause, zone) {
+            (Error::Unstable { dt, critical }, Some(zone)) => {
+                let steps = f64::from(zone.substeps);
+                let enough = (steps * dt / critical).ceil();
+                let message = format!(
+                    "the step of the zone `{name}` is above the critical step of its explicit scheme, weights of overlaps included"
+                );
+                let path = match self
+                    .case
+                    .zone
+                    .get(name)
+                    .and_then(|zone| zone.substeps.as_ref())
+                {
+                    Some(schema::Substeps::Own(_)) => format!("zone.{name}.substeps"),
+                    _ => "time.step".to_string(),
+                };
+                Problem::new(path, message)
+                    .found(format!("{dt:.4e} s"))
+                    .accepted([
+                        format!("an outer step of at most {:.4e} s", steps * critical),
+                        format!("zone.{name}.substeps = {enough}"),
+                    ])
+            }
+            _ => self.refused(cause).note(format!("in the zone `{name}`")),
+        }
+    }
+}
+
+/// The key of a body that its error is about.
+fn key(error: &carom_bodies::Error) -> &'static str {
+    use carom_bodies::Error;
+    match error {
+        Error::FiniteKinematics { .. } => "section",
+        Error::LinearFormulation { .. } | Error::NotReduced { .. } => "formulation",
+        Error::NoBetween { .. } => "material",
+        _ => "region",
+    }
+}

@@ -1,0 +1,143 @@
+//! Rigid obstacles of `[contact]`, and how they move.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::quantity::{AngularVelocity, Coordinate, Delay, Length, Vector, Velocity};
+
+/// A rigid obstacle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Obstacle {
+    /// A half space behind a plane.
+    Plane(Plane),
+    /// A ball; a disc in the plane.
+    Sphere(Sphere),
+    /// A circular cylinder without ends.
+    Cylinder(Cylinder),
+    /// Faces of the mesh that belong to no body.
+    Surface(Surface),
+}
+
+/// A rigid plane.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Plane {
+    /// A point of the plane.
+    pub point: Vector<Coordinate>,
+    /// Normal of the plane out of the obstacle, towards the bodies; of any length but zero.
+    pub normal: NormalVector,
+    /// Its motion. Default: none.
+    pub motion: Option<ObstacleMotion>,
+}
+
+/// A rigid sphere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Sphere {
+    /// Its centre.
+    pub centre: Vector<Coordinate>,
+    /// Its radius.
+    pub radius: Length,
+    /// Where the bodies stay.
+    #[serde(default)]
+    pub side: Side,
+    /// Its motion. Default: none.
+    pub motion: Option<ObstacleMotion>,
+}
+
+/// A rigid cylinder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Cylinder {
+    /// A point of its axis.
+    pub point: Vector<Coordinate>,
+    /// Direction of its axis, of any length but zero. In the plane: [0, 0, 1].
+    pub axis: NormalVector,
+    /// Its radius.
+    pub radius: Length,
+    /// Where the bodies stay.
+    #[serde(default)]
+    pub side: Side,
+    /// Its motion. Default: none.
+    pub motion: Option<ObstacleMotion>,
+}
+
+/// A rigid surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Surface {
+    /// Group of its faces; the bodies stay where their normals point, as the order of the nodes of each face has them.
+    pub group: String,
+    /// Whether the normals point the other way.
+    #[serde(default)]
+    pub turned: bool,
+    /// Its motion. Default: none.
+    pub motion: Option<ObstacleMotion>,
+}
+
+/// The side of a round obstacle on which the bodies stay.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// Outside: a ball, a shaft.
+    #[default]
+    Outside,
+    /// Inside: a hollow, a bore.
+    Inside,
+}
+
+/// One to three numbers, not all zero; those left out are zero.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(inline, extend("minItems" = 1, "maxItems" = 3))]
+pub struct NormalVector(pub Vec<f64>);
+
+impl NormalVector {
+    /// The three components as written, zeros added.
+    pub fn components(&self) -> [f64; 3] {
+        std::array::from_fn(|axis| self.0.get(axis).copied().unwrap_or(0.0))
+    }
+}
+
+/// The motion of an obstacle: a translation, and a turn about an axis that takes part in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend(
+    "not" = { "required": ["velocity", "displacement"] },
+    "anyOf" = [
+        { "required": ["velocity"] },
+        { "required": ["displacement"] },
+        { "required": ["turn"] },
+    ],
+))]
+pub struct ObstacleMotion {
+    /// Constant velocity from time 0.
+    pub velocity: Option<Vector<Velocity>>,
+    /// Displacement as a function of time: straight between the points given, constant before the first and after the last.
+    #[schemars(extend("minItems" = 1))]
+    pub displacement: Option<Vec<ObstaclePoint>>,
+    /// Turn at constant rate from time 0.
+    pub turn: Option<Turn>,
+}
+
+/// A point of the displacement of an obstacle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ObstaclePoint {
+    /// Time.
+    pub time: Delay,
+    /// Displacement at that time.
+    pub displacement: Vector<Coordinate>,
+}
+
+/// A turn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Turn {
+    /// A point of the axis at time 0.
+    pub point: Vector<Coordinate>,
+    /// Direction of the axis, of any length but zero. In the plane: [0, 0, 1].
+    pub axis: NormalVector,
+    /// Angular velocity.
+    pub rate: AngularVelocity,
+}

@@ -1,0 +1,65 @@
+//! Two neo-Hookean bodies from a mesh file, one of which flies against the other.
+
+use std::path::Path;
+
+use carom_bodies::Kinematics;
+use carom_contact::{Integration, Law};
+use carom_dynamics::{Model, ModelBody, ModelTarget, Nonlinear, Scheme};
+use carom_materials::{Elastic, Law as Material, NeoHooke};
+use carom_mesh::{Mesh, read};
+
+use crate::Error;
+use crate::build::{body, contact, surface};
+
+/// What there is to say about such a collision.
+#[derive(Clone, Copy)]
+pub(crate) struct Collision {
+    /// Mesh file below `cases`.
+    pub(crate) mesh: &'static str,
+    /// Groups of the two bodies; their surfaces are the groups `.outer`.
+    pub(crate) bodies: [&'static str; 2],
+    pub(crate) kinematics: Kinematics,
+    pub(crate) material: Elastic,
+    /// Velocity of the first body, m/s; the second is at rest.
+    pub(crate) velocity: [f64; 3],
+    pub(crate) integration: Integration,
+    /// Largest penetration that is a contact, m.
+    pub(crate) depth: f64,
+}
+
+impl Collision {
+    /// The model, with iterations to `tolerance`.
+    ///
+    /// # Errors
+    /// A mesh file that cannot be read.
+    pub(crate) fn model(&self, scheme: Scheme, law: Law, dt: f64, tolerance: f64) -> Result<Model, Error> {
+        let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+        let mesh = read::read(&cases.join(self.mesh))?;
+        let mut moving = self.body(&mesh, 0)?;
+        moving.velocity = self.velocity;
+        let resting = self.body(&mesh, 1)?;
+        let outer = |k: usize, body: &ModelBody| surface(&mesh, &format!("{}.outer", self.bodies[k]), body);
+        let mut touch = contact(outer(1, &resting)?, ModelTarget::Surface(outer(0, &moving)?), law);
+        touch.integration = self.integration;
+        touch.depth = Some(self.depth);
+        let mut nonlinear = Nonlinear::default();
+        nonlinear.iteration.tolerance = tolerance;
+        Ok(Model {
+            bodies: vec![moving, resting],
+            supports: Vec::new(),
+            gravity: [0.0; 3],
+            contacts: vec![touch],
+            scheme,
+            dt,
+            adaptive: None,
+            nonlinear,
+            mesh,
+        })
+    }
+
+    fn body(&self, mesh: &Mesh, k: usize) -> Result<ModelBody, Error> {
+        let mut body = body(mesh, self.bodies[k], self.kinematics, self.material)?;
+        body.spec.material = Material::NeoHooke(NeoHooke { initial: self.material });
+        Ok(body)
+    }
+}
