@@ -105,7 +105,7 @@ impl Surface {
     /// Of a quadratic face these are the weights of a pressure's nodal forces, and no areas: zero at the corners of a
     /// six-node triangle, negative at those of an eight-node quadrilateral. See [`Surface::tributary_areas`].
     pub fn node_areas(&self, mesh: &Mesh, unit: impl Fn(&[f64; 3]) -> f64) -> Vec<f64> {
-        self.integrate((mesh, &unit), |kind| {
+        self.integrate(mesh, &unit, |kind| {
             let places = (0..kind.table().nodes).collect();
             vec![Piece { kind, places }]
         })
@@ -116,13 +116,14 @@ impl Surface {
     /// cell. Always positive; the sum is the area. In the units of [`Surface::node_areas`], which it equals on linear
     /// faces.
     pub fn tributary_areas(&self, mesh: &Mesh, unit: impl Fn(&[f64; 3]) -> f64) -> Vec<f64> {
-        self.integrate((mesh, &unit), pieces)
+        self.integrate(mesh, &unit, pieces)
     }
 
     /// ∫ φ_a dΓ with φ_a the shape functions of the pieces into which each face is cut.
     fn integrate(
         &self,
-        (mesh, unit): (&Mesh, &dyn Fn(&[f64; 3]) -> f64),
+        mesh: &Mesh,
+        unit: &dyn Fn(&[f64; 3]) -> f64,
         cut: impl Fn(Kind) -> Vec<Piece>,
     ) -> Vec<f64> {
         let mut areas = vec![0.0; self.nodes.len()];
@@ -352,7 +353,9 @@ mod tests {
         ];
         for (mesh, expected) in meshes {
             let side = if mesh.dim == 3 { "a.right" } else { "a.top" };
-            let areas = surface(&mesh, "a", side).unwrap().node_areas(&mesh, |_| 1.0);
+            let areas = surface(&mesh, "a", side)
+                .unwrap()
+                .node_areas(&mesh, |_| 1.0);
             assert!((areas.iter().sum::<f64>() - expected).abs() < 1e-14);
         }
     }
@@ -423,7 +426,10 @@ mod tests {
         }
         let mesh = box_("a", [0.0; 3], [1.0, 2.0, 1.5], [3, 2, 2], true);
         let side = surface(&mesh, "a", "a.right").unwrap();
-        assert_eq!(side.tributary_areas(&mesh, |_| 1.0), side.node_areas(&mesh, |_| 1.0));
+        assert_eq!(
+            side.tributary_areas(&mesh, |_| 1.0),
+            side.node_areas(&mesh, |_| 1.0)
+        );
     }
 
     #[test]
