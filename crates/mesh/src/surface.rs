@@ -105,7 +105,7 @@ impl Surface {
     /// Of a quadratic face these are the weights of a pressure's nodal forces, and no areas: zero at the corners of a
     /// six-node triangle, negative at those of an eight-node quadrilateral. See [`Surface::tributary_areas`].
     pub fn node_areas(&self, mesh: &Mesh, unit: impl Fn(&[f64; 3]) -> f64) -> Vec<f64> {
-        self.integrate((mesh, &unit), |kind| {
+        self.integrate(mesh, &unit, |kind| {
             let places = (0..kind.table().nodes).collect();
             vec![Piece { kind, places }]
         })
@@ -116,13 +116,14 @@ impl Surface {
     /// cell. Always positive; the sum is the area. In the units of [`Surface::node_areas`], which it equals on linear
     /// faces.
     pub fn tributary_areas(&self, mesh: &Mesh, unit: impl Fn(&[f64; 3]) -> f64) -> Vec<f64> {
-        self.integrate((mesh, &unit), pieces)
+        self.integrate(mesh, &unit, pieces)
     }
 
     /// ∫ φ_a dΓ with φ_a the shape functions of the pieces into which each face is cut.
     fn integrate(
         &self,
-        (mesh, unit): (&Mesh, &dyn Fn(&[f64; 3]) -> f64),
+        mesh: &Mesh,
+        unit: &dyn Fn(&[f64; 3]) -> f64,
         cut: impl Fn(Kind) -> Vec<Piece>,
     ) -> Vec<f64> {
         let mut areas = vec![0.0; self.nodes.len()];
@@ -310,6 +311,29 @@ mod tests {
     }
 
     #[test]
+    fn node_areas_about_an_axis_are_those_of_the_shape_functions() {
+        let mesh = rectangle("a", [0.0; 2], [1.0; 2], [4, 1], false);
+        let bottom = surface(&mesh, "a", "a.bottom").unwrap();
+        let turn = |x: &[f64; 3]| std::f64::consts::TAU * x[0];
+        for areas in [
+            bottom.node_areas(&mesh, turn),
+            bottom.tributary_areas(&mesh, turn),
+        ] {
+            // ∫ N_a 2πr dr with h = 1/4: πh²/3 on the axis, 2πh r inside, the rest of π at the rim
+            let (pi, h) = (std::f64::consts::PI, 0.25);
+            for (&node, area) in bottom.nodes.iter().zip(areas) {
+                let r = mesh.nodes[node as usize][0];
+                let expected = match r {
+                    0.0 => pi * h * h / 3.0,
+                    1.0 => pi * h * (1.0 - h / 3.0),
+                    r => 2.0 * pi * h * r,
+                };
+                assert!((area - expected).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
     fn node_areas_of_a_grid_are_halves_at_edges_and_quarters_at_corners() {
         let mesh = box_("a", [0.0; 3], [2.0, 2.0, 1.0], [2, 2, 1], false);
         let top = surface(&mesh, "a", "a.top").unwrap();
@@ -329,7 +353,9 @@ mod tests {
         ];
         for (mesh, expected) in meshes {
             let side = if mesh.dim == 3 { "a.right" } else { "a.top" };
-            let areas = surface(&mesh, "a", side).unwrap().node_areas(&mesh, |_| 1.0);
+            let areas = surface(&mesh, "a", side)
+                .unwrap()
+                .node_areas(&mesh, |_| 1.0);
             assert!((areas.iter().sum::<f64>() - expected).abs() < 1e-14);
         }
     }
@@ -400,7 +426,10 @@ mod tests {
         }
         let mesh = box_("a", [0.0; 3], [1.0, 2.0, 1.5], [3, 2, 2], true);
         let side = surface(&mesh, "a", "a.right").unwrap();
-        assert_eq!(side.tributary_areas(&mesh, |_| 1.0), side.node_areas(&mesh, |_| 1.0));
+        assert_eq!(
+            side.tributary_areas(&mesh, |_| 1.0),
+            side.node_areas(&mesh, |_| 1.0)
+        );
     }
 
     #[test]
