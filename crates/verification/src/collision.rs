@@ -42,8 +42,13 @@ impl Collision {
         let mut moving = self.body(&mesh, 0)?;
         moving.velocity = self.velocity;
         let resting = self.body(&mesh, 1)?;
-        let outer = |k: usize, body: &ModelBody| surface(&mesh, &format!("{}.outer", self.bodies[k]), body);
-        let mut touch = contact(outer(1, &resting)?, ModelTarget::Surface(outer(0, &moving)?), law);
+        let outer =
+            |k: usize, body: &ModelBody| surface(&mesh, &format!("{}.outer", self.bodies[k]), body);
+        let mut touch = contact(
+            outer(1, &resting)?,
+            ModelTarget::Surface(outer(0, &moving)?),
+            law,
+        );
         touch.integration = self.integration;
         let mut nonlinear = Nonlinear::default();
         nonlinear.iteration.tolerance = TOLERANCE;
@@ -62,7 +67,9 @@ impl Collision {
 
     fn body(&self, mesh: &Mesh, k: usize) -> Result<ModelBody, Error> {
         let mut body = body(mesh, self.bodies[k], self.kinematics, self.material)?;
-        body.spec.material = Material::NeoHooke(NeoHooke { initial: self.material });
+        body.spec.material = Material::NeoHooke(NeoHooke {
+            initial: self.material,
+        });
         Ok(body)
     }
 }

@@ -10,10 +10,12 @@ mod bars;
 mod battery;
 mod build;
 mod check;
+mod collision;
 mod error;
 mod figures;
 mod glued;
 mod glued_bar;
+mod kept;
 
 mod adaptive;
 mod arlequin_bars;
@@ -52,11 +54,14 @@ mod quadrature;
 mod rejections;
 mod restitution;
 mod resume;
+pub mod rings;
 mod sdnl111;
 mod sdnl111_bars;
 mod shapes;
+mod spinning_bar;
 mod supports;
 mod threads;
+mod tori;
 mod viability;
 
 use std::io::{self, Write};
@@ -122,11 +127,14 @@ registry! {
     rejections
     restitution
     resume
+    rings
     sdnl111
     sdnl111_bars
     shapes
+    spinning_bar
     supports
     threads
+    tori
     viability
 }
 

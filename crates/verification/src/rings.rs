@@ -9,7 +9,8 @@
 //! forces: 1e-12 is found). The ledger of every run closes to the iterations, 1e-10 of the energy. Displacement law: no
 //! gap beyond 1e-9 m, that of the iterations. Velocity law: the bound of its viability, with the speed of the approach. Damped law:
 //! its k_p = E / thickness gives way by a tenth of the thickness at most. Impulses agree to 3 %: schemes and laws differ
-//! by O(dt) in when a point closes. Under the displacement law the trapezoid gains energy, which is shown and not
+//! by O(dt) in when a point closes. The largest mean force over 0.1 s follows them with 15 %, a step being a tenth of the window in
+//! which the points of an element close one after the other. Under the displacement law the trapezoid gains energy, which is shown and not
 //! bounded from above.
 //! Sizes: quick 2 x 32 elements in each ring, the first 60 steps; full 3 x 96.
 
@@ -35,6 +36,10 @@ const RUBBER: Elastic = Elastic {
 const THICKNESS: f64 = 0.1;
 const SPEED: f64 = 1.5;
 const STEP: f64 = 0.01;
+/// Part of the impulse within which schemes and laws agree.
+const IMPULSE: f64 = 0.03;
+/// Part of the largest mean force within which they agree.
+const FORCE: f64 = 0.15;
 /// Steps of the window over which the force is averaged: 0.1 s.
 const WINDOW: usize = 10;
 
@@ -187,21 +192,35 @@ fn side_by_side(name: &str, law: Law, run: &Collided, reference: &Collided) -> V
     };
     let mut rows = vec![
         Row::at_most(row("ledger residual / energy"), run.residual(), 1e-10),
-        Row::at_most(
-            row("change of momentum, relative"),
-            run.kept.linear,
-            1e-10,
-        ),
+        Row::at_most(row("change of momentum, relative"), run.kept.linear, 1e-10),
         Row::at_most(row("penetration, m"), run.penetration(), largest),
-        Row::at_most(row("gap drift of closed points, m"), run.drift.largest, largest),
+        Row::at_most(
+            row("gap drift of closed points, m"),
+            run.drift.largest,
+            largest,
+        ),
     ];
     if name == "newmark, displacement" {
-        rows.push(Row::at_least(row("energy gained, relative"), run.gain(), 0.02));
+        rows.push(Row::at_least(
+            row("energy gained, relative"),
+            run.gain(),
+            0.02,
+        ));
     } else {
         let impulse = run.impulse() / reference.impulse();
-        rows.push(Row::near(row("impulse / that of energy-momentum"), impulse, 1.0, 0.03));
+        rows.push(Row::near(
+            row("impulse / that of energy-momentum"),
+            impulse,
+            1.0,
+            IMPULSE,
+        ));
         let force = run.mean_force() / reference.mean_force();
-        rows.push(Row::near(row("force over 0.1 s / that of energy-momentum"), force, 1.0, 0.1));
+        rows.push(Row::near(
+            row("force over 0.1 s / that of energy-momentum"),
+            force,
+            1.0,
+            FORCE,
+        ));
     }
     rows
 }
@@ -247,7 +266,11 @@ pub fn table() -> Result<String, Error> {
             run.residual(),
         );
     };
-    push("energy-momentum", "velocity", &energy_momentum(mesh, steps)?);
+    push(
+        "energy-momentum",
+        "velocity",
+        &energy_momentum(mesh, steps)?,
+    );
     for (scheme, law, run, of) in runs() {
         push(scheme, law, &collide(mesh, steps, run, of)?);
     }

@@ -97,19 +97,35 @@ pub(crate) const CHECK: Check = Check {
         let name = format!("energy-momentum, {revolutions} revolutions");
         let kept = spin(Scheme::EnergyMomentum(EnergyMomentum), revolutions)?;
         rows.push(Row::at_most(row(&name, "momentum"), kept.linear, 1e-10));
-        rows.push(Row::at_most(row(&name, "angular momentum"), kept.angular, 1e-10));
+        rows.push(Row::at_most(
+            row(&name, "angular momentum"),
+            kept.angular,
+            1e-10,
+        ));
         rows.push(Row::at_most(row(&name, "energy"), kept.energy, 1e-8));
         let name = format!("newmark, {few} revolutions");
         let kept = spin(newmark(0.25, 0.5), few)?;
-        rows.push(Row::at_least(row(&name, "angular momentum"), kept.angular, 5e-3));
+        rows.push(Row::at_least(
+            row(&name, "angular momentum"),
+            kept.angular,
+            5e-3,
+        ));
         rows.push(Row::at_least(row(&name, "energy"), kept.energy, 1e-2));
         let name = format!("theta 0.5, {few} revolutions");
         let kept = spin(theta(0.5), few)?;
-        rows.push(Row::at_most(row(&name, "angular momentum"), kept.angular, 1e-10));
+        rows.push(Row::at_most(
+            row(&name, "angular momentum"),
+            kept.angular,
+            1e-10,
+        ));
         rows.push(Row::at_least(row(&name, "energy"), kept.energy, 5e-2));
         let name = format!("theta 0.6, {few} revolutions");
         let kept = spin(theta(0.6), few)?;
-        rows.push(Row::at_least(row(&name, "angular momentum"), kept.angular, 0.2));
+        rows.push(Row::at_least(
+            row(&name, "angular momentum"),
+            kept.angular,
+            0.2,
+        ));
         rows.push(Row::at_least(row(&name, "energy"), kept.energy, 0.3));
         Ok(rows)
     },
