@@ -91,6 +91,11 @@ impl Csr {
         self.val.fill(0.0);
     }
 
+    /// A ← s A.
+    pub fn scale(&mut self, s: f64) {
+        self.val.iter_mut().for_each(|value| *value *= s);
+    }
+
     /// Product y = A x.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         for (i, y) in y[..self.n].iter_mut().enumerate() {

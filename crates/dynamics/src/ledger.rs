@@ -89,6 +89,11 @@ impl Resultant {
         sum
     }
 
+    /// The sum of two.
+    pub(crate) fn plus(&self, other: &Resultant) -> Resultant {
+        self.combine(1.0, other, 1.0)
+    }
+
     /// The opposite.
     pub(crate) fn reversed(&self) -> Resultant {
         self.combine(-1.0, &Resultant::default(), 0.0)

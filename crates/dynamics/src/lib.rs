@@ -42,4 +42,6 @@ pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, StepReport};
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::{Mass, Model, ModelBody, ModelContact, ModelTarget, Support, System};
-pub use zones::{LinkKind, ModelLink, ModelZone, Sample, Whole, Zoned, Zones, ZonesState};
+pub use zones::{
+    LinkKind, ModelLink, ModelZone, Sample, Whole, ZoneDriver, Zoned, Zones, ZonesState,
+};

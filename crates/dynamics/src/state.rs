@@ -20,7 +20,7 @@ pub struct State {
     /// Contact forces and statuses.
     pub interface: InterfaceState,
     /// Nodal forces of the last step as the nonlinear solver balances them, N: loads, contacts, supports, inertia, internal,
-    /// damping, friction; empty where the next step does not need them.
+    /// damping, links; empty where the next step does not need them.
     pub forces: Vec<Vec<f64>>,
     /// Step control.
     pub control: Control,
@@ -73,6 +73,13 @@ pub struct InterfaceState {
     pub crush: Vec<f64>,
 }
 
+impl Motion {
+    /// Force of the links on one unknown, N.
+    pub(crate) fn link_of(&self, unknown: usize) -> f64 {
+        self.link_force.get(unknown).copied().unwrap_or(0.0)
+    }
+}
+
 impl State {
     /// Bytes from which [`State::from_bytes`] makes the same state.
     ///
@@ -94,6 +101,17 @@ impl State {
         })?;
         state.check(system)?;
         Ok(state)
+    }
+
+    /// Whether a contact point carries a force or may do so within `dt` (s), at twice its present rate. `tolerance`: gap
+    /// that counts as closed, m.
+    pub(crate) fn may_touch(&self, dt: f64, tolerance: f64) -> bool {
+        let interface = &self.interface;
+        let points = interface.gap.iter().zip(&interface.rate);
+        let touches = |((gap, rate), force): ((&f64, &f64), &f64)| {
+            *force != 0.0 || gap + 2.0 * dt * rate.min(0.0) <= tolerance
+        };
+        points.zip(&interface.force).any(touches)
     }
 
     /// Refuses a state of another size than the system's.

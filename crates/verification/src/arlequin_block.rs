@@ -10,7 +10,8 @@ use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting
 use carom_bodies::{CellWeights, Kinematics};
 use carom_contact::Sphere;
 use carom_dynamics::{
-    Driver, LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, System, Zoned, Zones,
+    Costs, Driver, LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, System, Zoned,
+    Zones,
 };
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
@@ -194,10 +195,11 @@ pub(crate) const CHECK: Check = Check {
         let balance = zones.balance();
         let kinetic = 0.5 * RUBBER.density * SPEED * SPEED;
         let passes = zones.all_passes() as f64 / zones.outer_step() as f64;
-        let bytes = |drivers: &[Driver]| -> f64 {
-            let costs = drivers.iter().flat_map(|driver| driver.costs().factors);
-            costs.map(|factor| factor.nnz_factor as f64).sum()
+        let entries = |costs: Costs| -> f64 {
+            let factors = costs.factors.iter();
+            factors.map(|factor| factor.nnz_factor as f64).sum()
         };
+        let of_zones = zones.drivers().iter().map(|zone| entries(zone.costs()));
         Ok(vec![
             Row::at_most(
                 "force history, relative L2 difference",
@@ -223,7 +225,7 @@ pub(crate) const CHECK: Check = Check {
             Row::at_most("passes to a step", passes, 4.0),
             Row::at_least(
                 "entries of the factors: fine mesh / zone",
-                bytes(std::slice::from_ref(&driver)) / bytes(zones.drivers()),
+                entries(driver.costs()) / of_zones.sum::<f64>(),
                 match size {
                     Size::Quick => 2.0,
                     Size::Full => 20.0,

@@ -17,7 +17,7 @@
 
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
-use carom_dynamics::{Driver, LinkKind, Model, ModelLink, ModelZone, Support, Zoned, Zones};
+use carom_dynamics::{LinkKind, Model, ModelLink, ModelZone, Support, ZoneDriver, Zoned, Zones};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
 
@@ -224,7 +224,7 @@ impl Strip {
 
     /// ∫ ((v ± u')/2)² over the fine elements outside the overlap, from the values in their middles. Their first sides lie
     /// along x.
-    fn energies(&self, driver: &Driver) -> [f64; 2] {
+    fn energies(&self, driver: &ZoneDriver) -> [f64; 2] {
         let (x, motion) = (&driver.system().x, &driver.state().motion);
         let mut energies = [0.0; 2];
         driver.system().bodies[0].each_element(&mut |nodes| {
@@ -250,8 +250,9 @@ impl Strip {
 
 /// Displacement and velocity of each zone from those at a place.
 fn fields(zones: &Zones, of: impl Fn(&[f64; 3]) -> [[f64; 2]; 2]) -> Vec<[Vec<f64>; 2]> {
-    let vectors =
-        |driver: &Driver| [0, 1].map(|k| driver.system().x.iter().flat_map(|x| of(x)[k]).collect());
+    let vectors = |driver: &ZoneDriver| {
+        [0, 1].map(|k| driver.system().x.iter().flat_map(|x| of(x)[k]).collect())
+    };
     zones.drivers().iter().map(vectors).collect()
 }
 

@@ -15,6 +15,7 @@ mod error;
 mod figures;
 mod glued;
 mod glued_bar;
+mod hertz;
 mod kept;
 
 mod adaptive;
@@ -42,13 +43,20 @@ mod bars_stages;
 mod bars_theta;
 mod block_drop;
 mod blocks;
+mod blocks_as_bars;
 mod closed_field_as_printed;
+mod contact_patch;
 mod crushed_stop;
 mod energy_identity;
 mod first_force;
+mod hertz_cylinder;
+mod hertz_impact;
+mod hertz_spheres;
 mod interface_problems;
 mod invariance;
+mod ironing;
 pub mod long_run;
+mod oblique_bar;
 mod order;
 mod quadrature;
 mod rejections;
@@ -58,8 +66,11 @@ pub mod rings;
 mod sdnl111;
 mod sdnl111_bars;
 mod shapes;
+mod sliding_block;
 mod spinning_bar;
+mod stick_slip;
 mod supports;
+mod taylor_bar;
 mod threads;
 mod tori;
 mod viability;
@@ -115,13 +126,20 @@ registry! {
     bars_theta
     block_drop
     blocks
+    blocks_as_bars
     closed_field_as_printed
+    contact_patch
     crushed_stop
     energy_identity
     first_force
+    hertz_cylinder
+    hertz_impact
+    hertz_spheres
     interface_problems
     invariance
+    ironing
     long_run
+    oblique_bar
     order
     quadrature
     rejections
@@ -131,8 +149,11 @@ registry! {
     sdnl111
     sdnl111_bars
     shapes
+    sliding_block
     spinning_bar
+    stick_slip
     supports
+    taylor_bar
     threads
     tori
     viability

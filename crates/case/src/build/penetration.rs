@@ -22,7 +22,7 @@ impl Builder<'_> {
             let way = self.case.contact.get(name).map(|contact| contact.initial);
             if way == Some(schema::Penetration::Offset) {
                 let offsets = contact.offsets.iter().enumerate();
-                let deepest = offsets.max_by(|a, b| a.1.total_cmp(b.1));
+                let deepest = offsets.min_by(|a, b| b.1.total_cmp(a.1));
                 if let Some((point, depth)) = deepest {
                     let count = contact.offsets.iter().filter(|depth| **depth > 0.0).count();
                     let node = system.mesh_node[contact.points[point].node() as usize];
@@ -63,7 +63,7 @@ impl Builder<'_> {
             squares.sum::<f64>().sqrt()
         };
         let ways: Vec<f64> = places.map(distance).collect();
-        let furthest = ways.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        let furthest = ways.iter().enumerate().min_by(|a, b| b.1.total_cmp(a.1));
         let Some((node, way)) = furthest.filter(|(_, way)| **way > 0.0) else {
             return;
         };

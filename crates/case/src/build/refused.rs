@@ -57,6 +57,7 @@ impl Builder<'_> {
         let path = match what {
             Refused::Scheme(_) => "time.scheme".to_string(),
             Refused::AdaptiveStep => "time.step.adaptive".to_string(),
+            Refused::StaticStage => "time.static".to_string(),
             Refused::MasslessNodes => {
                 let massless = |(_, contact): &(&str, &Contact)| contact.nodes == Nodes::Massless;
                 let name = self.case.contact.iter().find(massless);

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod compare;
+mod large;
 mod quadrature;
 mod stage_one;
 mod warnings;

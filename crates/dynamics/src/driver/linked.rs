@@ -4,8 +4,13 @@
 //! step the balance sees `Cᵀ Λ` with `Λ = w₀ L_k + w₁ L_{k+1}`, (1 - θ, θ) in the theta scheme and (0, 1) where the balance
 //! holds at the end of the step.
 
+use std::sync::Arc;
+
 use super::Driver;
+use crate::operator::Operators;
 use crate::state::{Motion, State};
+use crate::step_map::StepMap;
+use crate::system::System;
 
 /// One row of C: unknowns of the zone and coefficients, with the sign of the zone's side.
 pub(crate) type LinkRow = Vec<(u32, f64)>;
@@ -35,16 +40,6 @@ impl Driver {
             force: force.to_vec(),
             fresh: false,
         });
-    }
-
-    /// Whether a contact point carries a force or may do so within `dt` (s), at twice its present rate.
-    pub(crate) fn may_touch(&self, dt: f64) -> bool {
-        let interface = &self.state.interface;
-        let points = interface.gap.iter().zip(&interface.rate);
-        let touches = |((gap, rate), force): ((&f64, &f64), &f64)| {
-            *force != 0.0 || gap + 2.0 * dt * rate.min(0.0) <= self.system.tolerance
-        };
-        points.zip(&interface.force).any(touches)
     }
 
     /// Makes the driver forget links until its next `link`.
@@ -126,10 +121,47 @@ impl Driver {
     /// Velocity that multipliers growing linearly from 0 to 1 in `steps` steps leave in the rows, without contact: the
     /// dense matrix `C V`, row-major over the rows given.
     pub(crate) fn ramp(&mut self, rows: &[(u32, LinkRow)], steps: u32) -> Vec<f64> {
+        let system = Arc::clone(&self.system);
+        let weights = self.link_weights();
+        let forces = &mut self.forces;
+        let mut ramp = Ramp {
+            system: &system,
+            map: &self.map,
+            operators: &mut self.operators,
+            forces: &mut |u, f| {
+                forces.evaluate(&system, u, f);
+            },
+        };
+        ramp.matrix(rows, steps, weights)
+    }
+}
+
+/// How a zone answers to multipliers that grow, without contact and linearised.
+pub(crate) struct Ramp<'a> {
+    pub(crate) system: &'a System,
+    pub(crate) map: &'a StepMap,
+    pub(crate) operators: &'a mut Operators,
+    /// K u.
+    pub(crate) forces: &'a mut dyn FnMut(&[f64], &mut [f64]),
+}
+
+impl Ramp<'_> {
+    /// See [`Driver::ramp`]; `weights`: of L at the start and the end of a step.
+    pub(crate) fn matrix(
+        &mut self,
+        rows: &[(u32, LinkRow)],
+        steps: u32,
+        weights: [f64; 2],
+    ) -> Vec<f64> {
         let n = rows.len();
         let mut matrix = vec![0.0; n * n];
-        let weights = self.link_weights();
-        let mut motion = self.state.motion.clone();
+        let zeros = || vec![0.0; self.system.unknowns()];
+        let mut motion = Motion {
+            u: zeros(),
+            v: zeros(),
+            a: zeros(),
+            ..Motion::default()
+        };
         let mut ended = motion.clone();
         for (column, (_, terms)) in rows.iter().enumerate() {
             for vector in [&mut motion.u, &mut motion.v, &mut motion.a] {
@@ -138,7 +170,7 @@ impl Driver {
             for step in 0..steps {
                 let part = |k: u32| f64::from(k) / f64::from(steps);
                 let force = weights[0] * part(step) + weights[1] * part(step + 1);
-                self.ramp_step(step == 0, &motion, (terms, force), &mut ended);
+                self.step(step == 0, &motion, (terms, force), &mut ended);
                 std::mem::swap(&mut motion, &mut ended);
             }
             for (row, (_, terms)) in rows.iter().enumerate() {
@@ -149,40 +181,41 @@ impl Driver {
     }
 
     /// One step under the force of one row alone.
-    fn ramp_step(
+    fn step(
         &mut self,
         at_rest: bool,
         motion: &Motion,
         (terms, force): (&LinkRow, f64),
         end: &mut Motion,
     ) {
-        let (system, vectors) = (&*self.system, &mut self.vectors);
-        let r = &mut vectors.residual;
-        r.fill(0.0);
+        let n = self.system.unknowns();
+        let mut r = vec![0.0; n];
+        let mut x = vec![0.0; n];
         if !at_rest {
-            self.map.force.known(motion, &mut vectors.known);
-            self.forces.evaluate(system, &vectors.known, r);
-            self.map.inertia.known(motion, &mut vectors.known);
-            system.mass.multiply(&vectors.known, &mut vectors.work);
+            let (mut known, mut inertia) = (vec![0.0; n], vec![0.0; n]);
+            self.map.force.known(motion, &mut known);
+            (self.forces)(&known, &mut r);
+            self.map.inertia.known(motion, &mut known);
+            self.system.mass.multiply(&known, &mut inertia);
             for (i, r) in r.iter_mut().enumerate() {
-                *r = match system.fixed[i] {
+                *r = match self.system.fixed[i] {
                     true => 0.0,
-                    false => -*r - vectors.work[i],
+                    false => -*r - inertia[i],
                 };
             }
         }
         for &(dof, c) in terms {
-            if !system.fixed[dof as usize] {
+            if !self.system.fixed[dof as usize] {
                 r[dof as usize] += c * force;
             }
         }
-        self.operators.begin(r, &mut vectors.half);
-        self.operators.end(&mut vectors.half, &mut vectors.x);
-        let none = &vectors.contact_acceleration;
-        let x = &vectors.x;
-        self.map.displacement.whole(motion, x, none, &mut end.u);
-        self.map.velocity.whole(motion, x, none, &mut end.v);
-        self.map.acceleration.whole(motion, x, none, &mut end.a);
+        let mut half = vec![0.0; n];
+        self.operators.begin(&r, &mut half);
+        self.operators.end(&mut half, &mut x);
+        let none = vec![0.0; n];
+        self.map.displacement.whole(motion, &x, &none, &mut end.u);
+        self.map.velocity.whole(motion, &x, &none, &mut end.v);
+        self.map.acceleration.whole(motion, &x, &none, &mut end.a);
     }
 }
 

@@ -47,6 +47,7 @@ impl Newton {
         new.internal_force.clone_from(&self.vectors.internal);
         new.history.clone_from(&self.vectors.history);
         new.contact_force.clone_from(&self.vectors.contact);
+        new.link_force.clone_from(&self.link_force);
         let interface = &mut self.next.interface;
         interface.carried.clone_from(&interface.force);
         for point in 0..system.points() {
@@ -83,17 +84,17 @@ impl Newton {
     /// Energy and momentum of the step.
     pub(super) fn balance(&mut self) {
         let system = Arc::clone(&self.system);
-        let rubbed = self.friction_work();
-        let (old, new) = (&self.state.motion, &self.next.motion);
-        let map = &self.map;
-        let vectors = &mut self.vectors;
-        let energies = energies(&system, new, self.stored.strain, &mut vectors.work);
-        let impulse = &map.impulse;
-        let plain = impulse.gain == 1.0 && impulse.carry == 0.0 && map.inertia.x != 0.0;
+        let impulse = &self.map.impulse;
+        let plain = impulse.gain == 1.0 && impulse.carry == 0.0 && self.map.inertia.x != 0.0;
         let weights = match plain {
             true => [impulse.old, impulse.new],
             false => [0.0, 1.0],
         };
+        let friction = self.friction_work(weights);
+        let (old, new) = (&self.state.motion, &self.next.motion);
+        let map = &self.map;
+        let vectors = &mut self.vectors;
+        let energies = energies(&system, new, self.stored.strain, &mut vectors.work);
         let before = &self.state.forces;
         let mean = |k: usize, now: &[f64]| -> Vec<f64> {
             match before.get(k).filter(|_| weights[0] != 0.0) {
@@ -103,19 +104,23 @@ impl Newton {
                 None => now.to_vec(),
             }
         };
+        let link: Vec<f64> = match self.link_force.is_empty() {
+            true => vec![0.0; system.unknowns()],
+            false => self.link_force.clone(),
+        };
         // supports hold what the balance leaves at their unknowns
         let reaction: Vec<f64> = (0..system.unknowns())
             .map(|i| match system.fixed[i] {
                 true => {
                     vectors.inertia[i] + self.balanced[i] + vectors.damping[i]
                         - vectors.load[i]
+                        - link[i]
                         - map.contact * vectors.contact[i]
                 }
                 false => 0.0,
             })
             .collect();
         let contact: Vec<f64> = vectors.contact.iter().map(|f| map.contact * f).collect();
-        let rubbing: Vec<f64> = vectors.friction.iter().map(|f| map.contact * f).collect();
         let now = [
             &vectors.load,
             &contact,
@@ -123,20 +128,15 @@ impl Newton {
             &vectors.inertia,
             &self.balanced,
             &vectors.damping,
-            &rubbing,
+            &link,
         ];
         let way = |f: &[f64]| -> f64 { (0..f.len()).map(|i| f[i] * (new.u[i] - old.u[i])).sum() };
-        let means = [0, 1, 2, 3, 4, 5].map(|k| mean(k, now[k]));
+        let means = [0, 1, 2, 3, 4, 5, 6].map(|k| mean(k, now[k]));
         let [load, touch, support, inertia, internal, damping] =
             [0, 1, 2, 3, 4, 5].map(|k| way(&means[k]));
         let start = &self.state.ledger.balance;
         let gained = energies.kinetic - start.kinetic;
         let stored = energies.strain - start.strain + self.stored.hardening - start.hardening;
-        let friction = weights[1] * rubbed
-            + match before.get(6) {
-                Some(f) => weights[0] * way(f),
-                None => 0.0,
-            };
         let scheme = inertia - gained + internal - stored - self.stored.dissipated;
         let places = [&old.u[..], &new.u[..]];
         let forces = [
@@ -144,7 +144,8 @@ impl Newton {
             Resultant::at(&system, &places, &means[1]),
             Resultant::at(&system, &places, &means[2]),
             Resultant::default(),
-            Resultant::at(&system, &places, &means[5]).reversed(),
+            Resultant::at(&system, &places, &means[6])
+                .plus(&Resultant::at(&system, &places, &means[5]).reversed()),
         ];
         self.next.forces = match weights[0] != 0.0 {
             true => now.iter().map(|f| f.to_vec()).collect(),
@@ -171,7 +172,7 @@ impl Newton {
         self.next.ledger.add(
             (dt, &EnergyIdentity::default(), impulses),
             &energies,
-            [load, touch - friction, 0.0],
+            [load, touch - friction, way(&means[6])],
             &squares,
             forces,
         );
@@ -188,7 +189,8 @@ impl Newton {
         };
         for k in 0..system.contacts.len() {
             let (old, new) = (&self.state.interface, &self.next.interface);
-            let report = contact_report(&system, k, &self.pairing.rows, old, new, self.dt);
+            let mut report = contact_report(&system, k, &self.pairing.rows, old, new, self.dt);
+            self.report_friction(k, &mut report);
             let points = system.first_point[k]..system.first_point[k + 1];
             let work = points.map(|point| {
                 let force = impulse.old * old.carried[point] + impulse.new * new.force[point];

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use carom_contact::law::{End, Level, Local, Status};
-use carom_contact::{Contact, Places};
+use carom_contact::law::{Displacement, End, Level, Local, Status};
+use carom_contact::{Contact, Law, Places};
 
 use super::Newton;
 use crate::coulomb::Slip;
@@ -16,11 +16,22 @@ use crate::step_map::Row;
 const ADDITIONS: usize = 10;
 
 impl Newton {
+    /// The law of a contact in the attempt under way. In a static stage nothing has a rate: a law in the rate holds in the
+    /// gap there, as the displacement law.
+    fn law(&self, contact: &Contact) -> Law {
+        match contact.law.get().level() {
+            Level::Rate if self.map.inertia.x == 0.0 => {
+                Law::Displacement(Displacement { projection: false })
+            }
+            _ => contact.law,
+        }
+    }
+
     /// The configuration in which a contact is paired: of a law in the gap the one that it constrains, of a law in the rate
     /// the captured one, which is known; of a scheme between two states their middle.
     pub(super) fn paired_at(&self, contact: &Contact) -> Row {
         let map = &self.map;
-        let law = contact.law.get();
+        let law = self.law(contact);
         if self.between() {
             let end = &map.displacement;
             return Row {
@@ -31,9 +42,9 @@ impl Newton {
                 ..Row::default()
             };
         }
-        match law.level() {
+        match law.get().level() {
             Level::Rate => Row {
-                v: map.placed.v + law.capture() * self.dt,
+                v: map.placed.v + law.get().capture() * self.dt,
                 ..map.placed
             },
             Level::Gap | Level::GapAndRate => map.gap,
@@ -79,10 +90,10 @@ impl Newton {
 
     /// How long after the start of the step a contact is paired, s.
     fn paired_after(&self, contact: &Contact) -> f64 {
-        let law = contact.law.get();
-        match law.level() {
+        let law = self.law(contact);
+        match law.get().level() {
             _ if self.between() => 0.5 * self.dt,
-            Level::Rate => law.capture() * self.dt,
+            Level::Rate => law.get().capture() * self.dt,
             Level::Gap | Level::GapAndRate => self.dt,
         }
     }
@@ -136,8 +147,8 @@ impl Newton {
             true => self.state.interface.gap[point],
             false => gap,
         };
-        let law = self.system.point(point).0.law.get();
-        law.watches(gap, self.system.tolerance)
+        let law = self.law(self.system.point(point).0);
+        law.get().watches(gap, self.system.tolerance)
     }
 
     /// Solves the interface problem of the iteration, whose motion without contact forces is in `dx` and whose begun solve
@@ -185,7 +196,7 @@ impl Newton {
             let step = self.pairing.rows.product(at, free);
             let (gap, rate) = self.now(at);
             Candidate {
-                law: system.point(at).0.law,
+                law: self.law(system.point(at).0),
                 local: self.local(at, gap + self.map.gap.x * step),
                 rate_free: rate + self.map.rate.x * step,
                 status: self.next.interface.status[at],
@@ -273,9 +284,12 @@ impl Newton {
             rate,
             force: 0.0,
         };
-        let law = self.system.point(point).0.law.get();
+        let law = self.law(self.system.point(point).0);
         gap < -self.gap_tolerance()
-            && law.status(Status::Open, &end, &self.local(point, gap), 0) != Status::Open
+            && law
+                .get()
+                .status(Status::Open, &end, &self.local(point, gap), 0)
+                != Status::Open
     }
 
     /// Gap that counts as none where a step ends, m.
@@ -294,7 +308,7 @@ impl Newton {
             let (gap, rate) = self.now(point);
             let status = self.next.interface.status[point];
             let force = self.next.interface.force[point];
-            let law = self.system.point(point).0.law.get();
+            let law = self.law(self.system.point(point).0);
             let defect = match status {
                 Status::Open if self.told(point).is_none() => match self.asks(point, gap, rate) {
                     true => -gap / tolerance,
@@ -302,14 +316,14 @@ impl Newton {
                 },
                 Status::Open => (-rate * self.dt / tolerance).max(0.0),
                 _ => {
-                    let relation = law.relation(status, &self.local(point, gap));
+                    let relation = law.get().relation(status, &self.local(point, gap));
                     let left = relation.gap * gap
                         + relation.rate * rate
                         + relation.compliance * force
                         + relation.offset;
                     let scale = relation.gap.abs() + relation.rate.abs() / self.dt;
                     // a law that cuts tension off leaves a gap or a rate over where it would pull
-                    match law.clips() && force == 0.0 {
+                    match law.get().clips() && force == 0.0 {
                         true => (-left / scale / tolerance).max(0.0),
                         false => (left / scale / tolerance).abs(),
                     }

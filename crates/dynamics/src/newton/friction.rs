@@ -12,6 +12,7 @@ use super::Newton;
 use crate::coulomb::{FrictionFailure, Posed, Slip, Tangential};
 use crate::driver::on_row;
 use crate::error::Error;
+use crate::state::ContactReport;
 use crate::step_map::Row;
 use crate::system::System;
 
@@ -159,19 +160,14 @@ impl Newton {
         }
     }
 
-    /// Adds Tᵀ t to the nodal contact forces, and keeps it apart.
+    /// Adds Tᵀ t to the nodal contact forces.
     pub(super) fn spread_friction(&mut self) {
-        let f = &mut self.vectors.friction;
-        f.fill(0.0);
         for (point, t) in self.next.interface.friction.iter().enumerate() {
             for (rows, &t) in self.pairing.tangents.iter().zip(t) {
                 if t != 0.0 {
-                    rows.add_force(point, t, f);
+                    rows.add_force(point, t, &mut self.vectors.contact);
                 }
             }
-        }
-        for (sum, f) in self.vectors.contact.iter_mut().zip(f) {
-            *sum += *f;
         }
     }
 
@@ -186,15 +182,56 @@ impl Newton {
         slid.sqrt() * self.dt / time
     }
 
-    /// Work of the friction forces of the step on the sliding that it sees, J; not positive.
-    pub(super) fn friction_work(&self) -> f64 {
-        let (row, time) = self.sliding();
+    /// Way that a point slides along one tangent in the step that was taken, m.
+    fn way(&self, point: usize, tangent: usize) -> f64 {
+        let rows = &self.pairing.tangents[tangent];
+        let [old, new] =
+            [&self.state.motion.u, &self.next.motion.u].map(|u| rows.product(point, u));
+        new - old + self.dt * rows.rate(point)
+    }
+
+    /// Work in J of the friction forces of the step, old and new with these weights, on the way that their points slide
+    /// over the primary.
+    pub(super) fn friction_work(&self, weights: [f64; 2]) -> f64 {
+        let (old, new) = (&self.state.interface, &self.next.interface);
         let mut work = 0.0;
-        for (point, t) in self.next.interface.friction.iter().enumerate() {
-            for (k, &t) in t.iter().enumerate().filter(|(_, t)| **t != 0.0) {
-                work += t * self.slid(point, k, (&row, time)) * self.dt / time;
+        for (point, t) in new.friction.iter().enumerate() {
+            let before = old.friction.get(point).copied().unwrap_or_default();
+            for k in 0..self.system.tangents() {
+                let mean = weights[0] * before[k] + weights[1] * t[k];
+                if mean != 0.0 {
+                    work += mean * self.way(point, k);
+                }
             }
         }
         self.map.contact * work
+    }
+
+    /// Writes the friction of a contact into its report, and adds it to the resultant.
+    pub(super) fn report_friction(&self, contact: usize, report: &mut ContactReport) {
+        let points = self.system.first_point[contact]..self.system.first_point[contact + 1];
+        let mut sum = [0.0; 3];
+        for point in points {
+            let Some(t) = self.next.interface.friction.get(point) else {
+                return;
+            };
+            for (rows, t) in self
+                .pairing
+                .tangents
+                .iter()
+                .zip(t)
+                .take(self.system.tangents())
+            {
+                for (sum, direction) in sum.iter_mut().zip(rows.normal(point)) {
+                    *sum += t * direction;
+                }
+            }
+            let slips = self.slips[point] == Slip::Slip && t != &[0.0; 2];
+            report.slipping += usize::from(slips);
+        }
+        report.friction = sum.iter().map(|f| f * f).sum::<f64>().sqrt();
+        for (resultant, f) in report.resultant.iter_mut().zip(sum) {
+            *resultant += f;
+        }
     }
 }

@@ -13,8 +13,10 @@ mod balance;
 mod contacts;
 mod effective;
 mod friction;
+mod linked;
 mod loads;
 mod solve;
+mod stable;
 mod start;
 
 use std::sync::Arc;
@@ -64,6 +66,8 @@ pub struct Newton {
     vectors: Vectors,
     /// Energies of the iteration.
     stored: Stored,
+    /// Forces of links to other zones in the step, N; empty without links.
+    link_force: Vec<f64>,
     /// Internal forces in the balance of the step, N.
     balanced: Vec<f64>,
     phases: Phases,
@@ -83,8 +87,6 @@ struct Vectors {
     internal: Vec<f64>,
     damping: Vec<f64>,
     contact: Vec<f64>,
-    /// What friction has in `contact`.
-    friction: Vec<f64>,
     residual: Vec<f64>,
     half: Vec<f64>,
     /// A configuration or a velocity.
@@ -134,7 +136,6 @@ impl Newton {
                 internal: zeros(),
                 damping: zeros(),
                 contact: zeros(),
-                friction: zeros(),
                 residual: zeros(),
                 half: zeros(),
                 place: zeros(),
@@ -144,6 +145,7 @@ impl Newton {
             next: state.clone(),
             state,
             stored: Stored::default(),
+            link_force: Vec::new(),
             balanced: zeros(),
             phases: Phases::default(),
             system,
@@ -198,15 +200,17 @@ impl Newton {
         }
     }
 
-    /// Takes one step: whole, or in halves of halves where it finds no equilibrium.
+    /// Takes one step: whole, or in halves of halves where it finds no equilibrium, and of an explicit scheme where elements
+    /// have become too small for it.
     ///
     /// # Errors
-    /// No equilibrium with the smallest part of the step; the state is then the one before the step.
+    /// No equilibrium with the smallest part of the step, or one that is not stable; the state is then the one before the step.
     pub fn step(&mut self) -> Result<(), Error> {
         let start = self.state.clone();
         let (first, end) = (self.state.time, self.end_of_step());
+        let whole = self.stable_level(end - first)?;
         let mut control = self.state.control;
-        let (mut done, mut level) = (0u64, 0u32);
+        let (mut done, mut level) = (0u64, whole);
         let parts = 1u64 << self.system.nonlinear.iteration.halvings;
         self.report.attempts = 0;
         while done < parts {
@@ -220,7 +224,7 @@ impl Newton {
                         std::mem::swap(&mut self.state, &mut self.next);
                         self.state.time = to;
                     }
-                    while level > 0
+                    while level > whole
                         && done.is_multiple_of(2 * part)
                         && done.is_multiple_of(parts >> (level - 1))
                     {

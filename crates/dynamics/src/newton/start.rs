@@ -21,6 +21,7 @@ impl Newton {
     pub fn restart(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
         self.state = empty_state(&system);
+        self.state.motion.link_force.clone_from(&self.link_force);
         let motion = &mut self.state.motion;
         for i in (0..system.unknowns()).filter(|&i| !system.fixed[i]) {
             motion.u[i] = displacement[i];
@@ -71,7 +72,8 @@ impl Newton {
             let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
             let (vectors, motion) = (&mut self.vectors, &mut self.state.motion);
             for i in 0..system.unknowns() {
-                let balance = vectors.load[i] - vectors.internal[i] + motion.contact_force[i];
+                let outside = vectors.load[i] + motion.contact_force[i] + motion.link_of(i);
+                let balance = outside - vectors.internal[i];
                 vectors.residual[i] = if system.fixed[i] { 0.0 } else { balance };
             }
             mass.begin(&vectors.residual, &mut vectors.half);
@@ -84,7 +86,13 @@ impl Newton {
             Some(f) => Resultant::at(&system, &[&motion.u], f),
             None => Resultant::default(),
         };
-        let forces = [at(0), at(1), at(2), Resultant::default(), at(5)];
+        let forces = [
+            at(0),
+            at(1),
+            at(2),
+            Resultant::default(),
+            at(6).plus(&at(5).reversed()),
+        ];
         self.state.ledger = Ledger::start(&energies, &EnergyIdentity::default(), forces);
         self.state.ledger.store(stored.hardening);
         Ok(())
@@ -101,7 +109,9 @@ impl Newton {
         system.mass.multiply(&motion.a, &mut inertia);
         let (load, internal) = (&self.vectors.load, &motion.internal_force);
         let reaction = (0..system.unknowns()).map(|i| match system.fixed[i] {
-            true => inertia[i] + internal[i] - load[i] - motion.contact_force[i],
+            true => {
+                inertia[i] + internal[i] - load[i] - motion.contact_force[i] - motion.link_of(i)
+            }
             false => 0.0,
         });
         self.state.forces = vec![
@@ -111,7 +121,7 @@ impl Newton {
             inertia,
             internal.clone(),
             vec![0.0; system.unknowns()],
-            vec![0.0; system.unknowns()],
+            (0..system.unknowns()).map(|i| motion.link_of(i)).collect(),
         ];
     }
 

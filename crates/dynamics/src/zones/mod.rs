@@ -9,6 +9,7 @@
 //! for any pair of schemes with weights of the multipliers in time is this project's.
 
 mod condensed;
+mod driver;
 mod model;
 mod moves;
 mod start;
@@ -16,13 +17,13 @@ mod whole;
 
 use serde::{Deserialize, Serialize};
 
-use crate::driver::Driver;
 use crate::driver::linked::{LinkRow, on};
 use crate::error::Error;
 use crate::ledger::Balance;
 use crate::state::{ContactReport, State};
 
 use condensed::Condensed;
+pub use driver::ZoneDriver;
 pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
 use moves::Moves;
 pub use whole::Whole;
@@ -74,7 +75,7 @@ pub struct ZonesState {
 
 /// The drivers of all zones, and the links between them.
 pub struct Zones {
-    drivers: Vec<Driver>,
+    drivers: Vec<ZoneDriver>,
     /// Inner steps of each zone to the outer step that is taken.
     substeps: Vec<u32>,
     /// The same where contacts may close, and where they cannot.
@@ -118,7 +119,7 @@ pub struct Zones {
 
 impl Zones {
     /// Drivers of the zones, in the order of the model.
-    pub fn drivers(&self) -> &[Driver] {
+    pub fn drivers(&self) -> &[ZoneDriver] {
         &self.drivers
     }
 
@@ -384,7 +385,7 @@ impl Zones {
 
     /// Largest velocity of all zones, at the end of the step or at its start.
     fn speed(&self) -> f64 {
-        let of = |driver: &Driver| {
+        let of = |driver: &ZoneDriver| {
             largest(driver.next_velocity()).max(largest(&driver.state().motion.v))
         };
         self.drivers.iter().map(of).fold(0.0, f64::max)
@@ -519,7 +520,7 @@ fn dot_row(matrix: &[f64], row: usize, x: &[f64]) -> f64 {
 
 /// Adds the work of the links in the step of a zone just completed.
 fn record(
-    driver: &Driver,
+    driver: &ZoneDriver,
     rows: &[(u32, LinkRow)],
     [now, last, _]: &mut [Vec<f64>; 3],
     (links, works): (&[(String, std::ops::Range<usize>)], &mut [f64]),
@@ -532,7 +533,7 @@ fn record(
     last.copy_from_slice(now);
 }
 
-fn sample(zone: usize, driver: &Driver, samples: &mut Vec<Sample>) {
+fn sample(zone: usize, driver: &ZoneDriver, samples: &mut Vec<Sample>) {
     let report = driver.report();
     samples.push(Sample {
         zone,

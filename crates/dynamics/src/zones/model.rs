@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contacts::sides;
 use crate::error::Error;
-use crate::nonlinear::Nonlinear;
+use crate::nonlinear::{Nonlinear, Refused};
 use crate::scheme::Scheme;
 use crate::system::{Model, System};
 
@@ -124,13 +124,52 @@ impl Zoned {
             scheme: part.scheme,
             dt: whole.dt / f64::from(part.substeps),
             adaptive: None,
-            nonlinear: Nonlinear::default(),
+            nonlinear: self.nonlinear(part),
+        }
+    }
+
+    /// What the nonlinear solver of one zone takes: the loads on its bodies, their damping, the motions of its nodes.
+    fn nonlinear(&self, zone: &ModelZone) -> Nonlinear {
+        let whole = &self.model.nonlinear;
+        let bodies = || {
+            zone.bodies
+                .iter()
+                .map(|&body| &self.model.bodies[body].spec)
+        };
+        let loads = whole.loads.iter().filter(|load| {
+            let first = load.surface.faces.first();
+            first.is_some_and(|face| bodies().any(|body| body.cells.contains(&face.parent)))
+        });
+        let mut used = vec![false; self.model.mesh.nodes.len()];
+        for &cell in bodies().flat_map(|body| &body.cells) {
+            for &node in self.model.mesh.element_nodes(cell) {
+                used[node as usize] = true;
+            }
+        }
+        let motions = whole.motions.iter().map(|motion| {
+            let mut motion = motion.clone();
+            motion.nodes.retain(|&node| used[node as usize]);
+            motion
+        });
+        let damping = |&body: &usize| whole.damping.get(body).copied().unwrap_or_default();
+        Nonlinear {
+            loads: loads.cloned().collect(),
+            motions: motions.filter(|motion| !motion.nodes.is_empty()).collect(),
+            damping: zone.bodies.iter().map(damping).collect(),
+            preload: None,
+            iteration: whole.iteration,
         }
     }
 
     /// Refuses schemes that no link takes, and numbers of inner steps that do not go together.
     pub(super) fn check(&self) -> Result<(), Error> {
         let linked = |zone: &usize| self.links.iter().any(|link| link.zones.contains(zone));
+        if self.model.nonlinear.preload.is_some() {
+            return Err(Error::Nonlinear {
+                what: Refused::StaticStage,
+                why: "links between zones join velocities, which it has none of; leave out the stage or the zones",
+            });
+        }
         let mut many = None;
         for (k, zone) in self.zones.iter().enumerate() {
             let refuse = |accepted| {

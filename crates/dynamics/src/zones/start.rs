@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use carom_algebra::dense::DenseCholesky;
 
+use super::ZoneDriver;
 use super::condensed::{Answer, Condensed, DENSE, Joined};
 use super::moves::Moves;
 use super::{LinkKind, Zoned, Zones, ZonesState};
-use crate::driver::Driver;
 use crate::driver::linked::{LinkRow, on};
 use crate::error::Error;
 use crate::operator::Operators;
@@ -38,7 +38,7 @@ impl Zones {
         let links = links.collect();
         let mut drivers = systems
             .iter()
-            .map(|system| Driver::new(Arc::clone(system)))
+            .map(|system| ZoneDriver::new(system))
             .collect::<Result<Vec<_>, Error>>()?;
         let multipliers = start(&mut drivers, &rows, count)?;
         let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
@@ -149,7 +149,7 @@ impl Zones {
                 LinkKind::GravouilCombescure => 1,
                 LinkKind::PrakashHjelmstad => self.substeps[k],
             };
-            let own = driver.ramp(rows, steps);
+            let own = driver.ramp(rows, steps)?;
             for (i, (row, _)) in rows.iter().enumerate() {
                 for (j, (column, _)) in rows.iter().enumerate() {
                     let place = *row as usize * n + *column as usize;
@@ -230,7 +230,7 @@ fn rows(zoned: &Zoned, systems: &[Arc<System>]) -> Vec<Vec<(u32, LinkRow)>> {
 
 /// Starts the drivers with velocities that satisfy the rows; returns the first multipliers.
 fn start(
-    drivers: &mut [Driver],
+    drivers: &mut [ZoneDriver],
     rows: &[Vec<(u32, LinkRow)>],
     count: usize,
 ) -> Result<Vec<f64>, Error> {
@@ -298,9 +298,9 @@ fn forces(rows: &[(u32, LinkRow)], multipliers: &[f64], unknowns: usize) -> Vec<
 
 fn add(
     rows: &[Vec<(u32, LinkRow)>],
-    drivers: &[Driver],
+    drivers: &[ZoneDriver],
     sums: &mut [f64],
-    vector: impl Fn(&Driver) -> &Vec<f64>,
+    vector: impl Fn(&ZoneDriver) -> &Vec<f64>,
 ) {
     for (rows, driver) in rows.iter().zip(drivers) {
         for (row, terms) in rows {
@@ -336,7 +336,7 @@ impl MassLinks<'_> {
     }
 
     /// The factor of Σ C M⁻¹ Cᵀ.
-    fn factor(&mut self, drivers: &[Driver], count: usize) -> Result<Condensed, Error> {
+    fn factor(&mut self, drivers: &[ZoneDriver], count: usize) -> Result<Condensed, Error> {
         if count > DENSE {
             let zones = drivers.iter().zip(self.rows);
             let answers: Vec<Answer> = zones

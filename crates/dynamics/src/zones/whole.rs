@@ -8,9 +8,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::ZoneDriver;
 use super::{Zoned, Zones, ZonesState};
 use crate::control::Control;
-use crate::driver::{Costs, Driver};
+use crate::driver::Costs;
 use crate::error::Error;
 use crate::interface::InterfaceProblem;
 use crate::ledger::{Balance, Ledger};
@@ -391,6 +392,9 @@ impl Stepper for Whole {
     }
 
     fn failed_problem(&self) -> Option<&InterfaceProblem> {
-        self.zones.drivers.iter().find_map(Driver::failed_problem)
+        self.zones
+            .drivers
+            .iter()
+            .find_map(ZoneDriver::failed_problem)
     }
 }

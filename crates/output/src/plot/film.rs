@@ -45,8 +45,8 @@ const LEVELS: usize = 24;
 /// Steps of shade of solids, the part of the colour that the darkest of them keeps, and where the light comes from: to the
 /// right, upward, towards the viewer.
 const SHADES: usize = 8;
-const DARK: f64 = 0.72;
-const LIGHT: [f64; 3] = [-0.35, 0.55, 0.76];
+const DARK: f64 = 0.84;
+const LIGHT: [f64; 3] = [-0.2, 0.6, 0.77];
 
 /// A face, or a plane cell, with its value.
 #[derive(Clone, Debug)]
@@ -133,9 +133,15 @@ pub(crate) fn film_figure(scene: &Scene, frames: &[Frame]) -> Result<String, Err
         .map(|frame| flatten(scene.dim, frame, largest))
         .collect();
     let points = drawn.iter().flatten().flat_map(|flat| &flat.points);
-    let bounds = points.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], x| {
-        [[0, 1].map(|i| low[i].min(x[i])), [0, 1].map(|i| high[i].max(x[i]))]
-    });
+    let bounds = points.fold(
+        [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
+        |[low, high], x| {
+            [
+                [0, 1].map(|i| low[i].min(x[i])),
+                [0, 1].map(|i| high[i].max(x[i])),
+            ]
+        },
+    );
     let finite = bounds.iter().flatten().all(|bound| bound.is_finite());
     if !finite {
         return Err(Error::EmptyPanel {
@@ -159,7 +165,10 @@ pub(crate) fn film_figure(scene: &Scene, frames: &[Frame]) -> Result<String, Err
 /// The value that has the darkest colour: the 98th percentile, lest a single cell make all others pale.
 fn shown_largest(frames: &[Frame]) -> f64 {
     let all = frames.iter().flat_map(|frame| &frame.patches);
-    let mut values: Vec<f64> = all.map(|patch| patch.value).filter(|v| v.is_finite()).collect();
+    let mut values: Vec<f64> = all
+        .map(|patch| patch.value)
+        .filter(|v| v.is_finite())
+        .collect();
     values.sort_unstable_by(f64::total_cmp);
     let at = (0.98 * values.len() as f64) as usize;
     values.get(at).copied().unwrap_or(0.0)
@@ -231,7 +240,10 @@ fn project(dim: usize, x: &[f64; 3]) -> ([f64; 2], f64) {
 /// Area of a polygon, positive if it turns counter-clockwise.
 fn area(points: &[[f64; 2]]) -> f64 {
     let next = points.iter().cycle().skip(1);
-    let twice = points.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]);
+    let twice = points
+        .iter()
+        .zip(next)
+        .map(|(a, b)| a[0] * b[1] - a[1] * b[0]);
     0.5 * twice.sum::<f64>()
 }
 
@@ -302,7 +314,10 @@ fn draw_head(scene: &Scene, window: &Window, largest: f64, frames: &[Frame], svg
     write_text(svg, [x, y], &quantity(length, "m"));
     if frames.iter().any(|frame| !frame.marks.is_empty()) {
         x += 84.0;
-        let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y}\" r=\"3\" fill=\"{MARK}\"/>");
+        let _ = writeln!(
+            svg,
+            "<circle cx=\"{x:.1}\" cy=\"{y}\" r=\"3\" fill=\"{MARK}\"/>"
+        );
         write_text(svg, [x + 8.0, y], "contact force");
     }
 }
@@ -337,7 +352,10 @@ fn draw_frame(scene: &Scene, frame: &Frame, flats: &[Flat], window: &Window, svg
     }
     let mut rims = String::new();
     for rim in &frame.rims {
-        trace(rim.iter().map(|x| window.at(project(scene.dim, x).0)), &mut rims);
+        trace(
+            rim.iter().map(|x| window.at(project(scene.dim, x).0)),
+            &mut rims,
+        );
     }
     if !rims.is_empty() {
         let _ = writeln!(
@@ -347,7 +365,10 @@ fn draw_frame(scene: &Scene, frame: &Frame, flats: &[Flat], window: &Window, svg
     }
     for mark in &frame.marks {
         let [x, y] = window.at(project(scene.dim, mark).0);
-        let _ = write!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\" fill=\"{MARK}\"/>");
+        let _ = write!(
+            svg,
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\" fill=\"{MARK}\"/>"
+        );
     }
     let _ = writeln!(
         svg,
@@ -360,7 +381,11 @@ fn draw_frame(scene: &Scene, frame: &Frame, flats: &[Flat], window: &Window, svg
 
 /// The faces one after the other, with their edges where these can be told apart.
 fn draw_faces(flats: &[Flat], window: &Window, svg: &mut String) {
-    let mean = flats.iter().map(|flat| area(&flat.points).abs()).sum::<f64>() / flats.len() as f64;
+    let mean = flats
+        .iter()
+        .map(|flat| area(&flat.points).abs())
+        .sum::<f64>()
+        / flats.len() as f64;
     let edges = mean.sqrt() * window.scale > FINE;
     for flat in flats {
         let mut path = String::new();
@@ -393,7 +418,10 @@ fn draw_obstacles(scene: &Scene, time: f64, window: &Window, svg: &mut String) {
         let height = window.low[1] + (corner[1] + size[1] - y) / window.scale;
         let gap = |k: usize| {
             let x = size[0] * k as f64 / columns as f64;
-            (x, (scene.gap)(time, [window.low[0] + x / window.scale, height, 0.0]))
+            (
+                x,
+                (scene.gap)(time, [window.low[0] + x / window.scale, height, 0.0]),
+            )
         };
         let mut from = None;
         let mut last = gap(0);

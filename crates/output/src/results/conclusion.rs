@@ -11,8 +11,8 @@ use crate::results::exact;
 use crate::results::impacts::ContactTotals;
 use crate::results::{Comparison, Ending, Last, Results};
 use crate::summary::{
-    Angular, Check, Contact, ENERGY_CHECK, Energy, Exact, Friction, Model, Momentum, NONLINEAR_WORKS, Rejected, Summary, Time, Verdict,
-    Zones, hash,
+    Angular, Check, Contact, ENERGY_CHECK, Energy, Exact, Friction, Model, Momentum,
+    NONLINEAR_WORKS, Rejected, Summary, Time, Verdict, Zones, hash,
 };
 use crate::{Error, Report, atomic};
 
@@ -317,7 +317,10 @@ fn energy(last: &Last, linked: bool) -> Energy {
         -end.dissipation_friction,
         start.hardening - end.hardening,
     ];
-    let further = NONLINEAR_WORKS.iter().zip(further).filter(|(_, work)| *work != 0.0);
+    let further = NONLINEAR_WORKS
+        .iter()
+        .zip(further)
+        .filter(|(_, work)| *work != 0.0);
     works.extend(further.map(|(name, work)| ((*name).to_owned(), work)));
     let stored = end.scheme_energy - start.scheme_energy;
     if stored != 0.0 {

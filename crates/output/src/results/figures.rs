@@ -172,7 +172,8 @@ impl Curves {
         let names = ["kinetic", "strain", "total", "dissipated", "residual"];
         let at = |k: usize| curve(names[k], &columns[k], Role::Computed);
         let further = self.further.each_ref().map(Trace::columns);
-        let there = |(_, (_, values)): &(&&'static str, &Polyline)| values.iter().any(|v| *v != 0.0);
+        let there =
+            |(_, (_, values)): &(&&'static str, &Polyline)| values.iter().any(|v| *v != 0.0);
         let further = FURTHER.iter().zip(&further).filter(there);
         let further = further.map(|(name, line)| curve(name, line, Role::Computed));
         let figure: Figure = energy_figure(

@@ -10,7 +10,7 @@ use carom_dynamics::{State, System};
 
 use crate::Error;
 use crate::plot::{Frame, Patch, Scene, film_figure};
-use crate::results::fields::{cell_stresses, von_mises};
+use crate::results::cells::{cell_stresses, von_mises};
 
 /// Instants kept at most, and instants shown.
 const KEPT: usize = 24;
@@ -73,7 +73,11 @@ impl Film {
         if system.dim == 2 {
             for (k, contact) in system.contacts.iter().enumerate() {
                 let forces = &interface.force[system.first_point[k]..];
-                let closed = contact.points.iter().zip(forces).filter(|(_, f)| **f != 0.0);
+                let closed = contact
+                    .points
+                    .iter()
+                    .zip(forces)
+                    .filter(|(_, f)| **f != 0.0);
                 marks.extend(closed.map(|(point, _)| point.place(&places)));
             }
         }
@@ -96,16 +100,22 @@ impl Film {
         }
         let outlines = Outlines::new(system);
         let shown = self.shown();
-        let frames: Vec<Frame> = shown.iter().map(|still| outlines.frame(system, still)).collect();
+        let frames: Vec<Frame> = shown
+            .iter()
+            .map(|still| outlines.frame(system, still))
+            .collect();
         let gap = |time: f64, place: [f64; 3]| {
             let place = match system.axisymmetric {
                 true => [place[0].abs(), place[1], place[2]],
                 false => place,
             };
-            let obstacles = system.contacts.iter().filter_map(|contact| match &contact.target {
-                Target::Rigid(obstacle) => Some(obstacle.at(time).distance(&place).gap),
-                Target::Surface(_) => None,
-            });
+            let obstacles = system
+                .contacts
+                .iter()
+                .filter_map(|contact| match &contact.target {
+                    Target::Rigid(obstacle) => Some(obstacle.at(time).distance(&place).gap),
+                    Target::Surface(_) => None,
+                });
             obstacles.fold(f64::INFINITY, f64::min)
         };
         let scene = Scene {
@@ -177,7 +187,9 @@ impl Outlines {
                         _ => ring(face.kind.table().faces.iter().map(|f| f.nodes), &own),
                     };
                     let entry = outer.entry(key);
-                    entry.and_modify(|twice| *twice = None).or_insert(Some((around, cell)));
+                    entry
+                        .and_modify(|twice| *twice = None)
+                        .or_insert(Some((around, cell)));
                 }
                 if system.dim == 2 {
                     let all: Vec<u32> = (0..nodes.len()).map(|local| number(&local)).collect();
@@ -211,7 +223,11 @@ impl Outlines {
         let mut frame = Frame {
             time: still.time,
             patches: self.patches.iter().map(patch).collect(),
-            rims: self.rims.iter().map(|rim| rim.iter().map(place).collect()).collect(),
+            rims: self
+                .rims
+                .iter()
+                .map(|rim| rim.iter().map(place).collect())
+                .collect(),
             marks: still.marks.clone(),
         };
         if system.axisymmetric {

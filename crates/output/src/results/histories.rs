@@ -233,7 +233,11 @@ pub(crate) fn columns(
     let residual = |i: &&str| column(&["momentum", &format!("residual {i}")], "N s");
     names.extend(components.iter().map(residual));
     let turns = &COMPONENTS[turns(system)];
-    names.extend(turns.iter().map(|i| column(&["angular momentum", i], "N m s")));
+    names.extend(
+        turns
+            .iter()
+            .map(|i| column(&["angular momentum", i], "N m s")),
+    );
     let residual = |i: &&str| column(&["angular momentum", &format!("residual {i}")], "N m s");
     names.extend(turns.iter().map(residual));
     names.push(column(&["status", "passes"], ""));

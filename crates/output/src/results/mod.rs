@@ -7,12 +7,13 @@
 //!
 //! What a run writes is complete whenever it is cut: tables grow by whole rows, all other files appear by one rename.
 
+mod cells;
 mod conclusion;
 mod costs;
 pub(crate) mod exact;
 mod fields;
-mod film;
 mod figures;
+mod film;
 mod histories;
 mod impacts;
 pub(crate) mod sensor;

@@ -16,9 +16,9 @@ use carom_materials::{Elastic, J2Plasticity, Law as Material, NeoHooke};
 use carom_mesh::{Surface, generate};
 use carom_output::{Ending, Results, Settings, Summary};
 
+use crate::grids;
 use crate::models;
 use crate::runs::{Reports, collection, columns};
-use crate::grids;
 
 const RUBBER: Elastic = Elastic {
     density: 1000.0,
@@ -92,7 +92,11 @@ fn block(dim: usize, material: Material, velocity: [f64; 3], floor: bool) -> Arc
 fn turning(system: Arc<System>, rate: f64) -> Arc<System> {
     let mut system = Arc::into_inner(system).unwrap();
     let dim = system.dim;
-    for (x, v) in system.x.iter().zip(system.initial_velocity.chunks_exact_mut(dim)) {
+    for (x, v) in system
+        .x
+        .iter()
+        .zip(system.initial_velocity.chunks_exact_mut(dim))
+    {
         v[0] -= rate * x[1];
         v[1] += rate * x[0];
     }
@@ -103,7 +107,10 @@ fn run(system: &Arc<System>, settings: Settings, end: f64) -> (Reports, Newton, 
     let mut newton = Newton::new(Arc::clone(system)).unwrap();
     let mut results = Results::create(settings, Arc::clone(system)).unwrap();
     let mut reports = Reports::default();
-    march(&mut newton, end, &mut [&mut reports, &mut results], &|| false).unwrap();
+    march(&mut newton, end, &mut [&mut reports, &mut results], &|| {
+        false
+    })
+    .unwrap();
     let ending = Ending {
         unfinished: None,
         costs: &newton.costs(),
@@ -139,19 +146,31 @@ fn a_turning_body_shows_its_angular_momentum_and_the_iterations() {
         assert!((z / exact - 1.0).abs() < 1e-9, "{z} {exact}");
     }
     assert!((shown.initial[2] / exact - 1.0).abs() < 1e-14);
-    assert_eq!(shown.r#final[2], *table["angular_momentum.z_n_m_s"].last().unwrap());
-    assert_eq!(shown.residual[2], *table["angular_momentum.residual_z_n_m_s"].last().unwrap());
+    assert_eq!(
+        shown.r#final[2],
+        *table["angular_momentum.z_n_m_s"].last().unwrap()
+    );
+    assert_eq!(
+        shown.residual[2],
+        *table["angular_momentum.residual_z_n_m_s"].last().unwrap()
+    );
     assert!(shown.relative_residual < 1e-9);
     let counted = summary.newton.unwrap();
     let passes: usize = reports.iter().map(|report| report.passes).sum();
     let most = reports.iter().map(|report| report.passes).max().unwrap();
-    assert_eq!((counted.iterations, counted.most_iterations), (passes as u64, most as u64));
+    assert_eq!(
+        (counted.iterations, counted.most_iterations),
+        (passes as u64, most as u64)
+    );
     assert_eq!(counted.iterations_per_step, passes as f64 / 50.0);
     let factorisations = newton.costs().work.factorisations as f64;
     assert_eq!(counted.factorisations_per_step, factorisations / 50.0);
     assert_eq!(counted.halvings, 0);
     let report = read(&folder.join("report.html"));
-    assert!(report.contains("Angular momentum about the origin") && report.contains("Newton iterations"));
+    assert!(
+        report.contains("Angular momentum about the origin")
+            && report.contains("Newton iterations")
+    );
     assert!(!report.contains("Status iterations"));
 }
 
@@ -171,9 +190,15 @@ fn plastic_work_has_a_row_a_column_a_curve_and_a_field() {
     let balance = reports.last().unwrap().balance;
     assert!(balance.dissipation_material > 0.0 && balance.hardening > 0.0);
     let works = &summary.energy.works;
-    assert_eq!(works["dissipation of the materials"], -balance.dissipation_material);
+    assert_eq!(
+        works["dissipation of the materials"],
+        -balance.dissipation_material
+    );
     assert_eq!(works["stored in hardening"], -balance.hardening);
-    assert!(!works.contains_key("dissipation of friction"), "there is none");
+    assert!(
+        !works.contains_key("dissipation of friction"),
+        "there is none"
+    );
     // what the summary names is the whole balance
     let energy = &summary.energy;
     let change = energy.kinetic_final + energy.strain_final - energy.kinetic_initial;
@@ -189,7 +214,10 @@ fn plastic_work_has_a_row_a_column_a_curve_and_a_field() {
     assert!(!figure.contains("friction") && !figure.contains("damping"));
 
     // the fields at the end: deformed places, stress and plastic strain of the history
-    let (_, _, file) = collection(&folder).into_iter().rfind(|entry| entry.1 == 0).unwrap();
+    let (_, _, file) = collection(&folder)
+        .into_iter()
+        .rfind(|entry| entry.1 == 0)
+        .unwrap();
     let (_, arrays) = grids::read(&folder.join(file));
     let (x, u) = (arrays["Points"].floats(), arrays["displacement"].floats());
     for (k, place) in x.chunks_exact(3).enumerate() {
@@ -204,7 +232,10 @@ fn plastic_work_has_a_row_a_column_a_curve_and_a_field() {
     let stress = system.bodies[0].stresses(&newton.state().motion.u, history);
     let written = arrays["stress"].floats();
     for ((_, stress), written) in stress.iter().zip(written.chunks_exact(6)) {
-        assert_eq!([stress[(0, 0)], stress[(1, 1)], stress[(0, 1)]], [written[0], written[1], written[3]]);
+        assert_eq!(
+            [stress[(0, 0)], stress[(1, 1)], stress[(0, 1)]],
+            [written[0], written[1], written[3]]
+        );
     }
 }
 
@@ -218,9 +249,6 @@ fn a_film_shows_six_instants_of_what_moves() {
         let (_, _, summary) = run(&system, models::settings(&folder), 0.05);
         assert!(summary.outputs.iter().any(|name| name == "plots/film.svg"));
         let film = read(&folder.join("plots/film.svg"));
-        if let Ok(keep) = std::env::var("CAROM_KEEP") {
-            fs::write(format!("{keep}/film{dim}.svg"), &film).unwrap();
-        }
         let frames: Vec<&str> = film.split("<g>").skip(1).collect();
         assert_eq!(frames.len(), 6);
         assert!(frames[0].contains("t = 0 s") && frames[5].contains("t = 50.0 ms"));
@@ -232,7 +260,11 @@ fn a_film_shows_six_instants_of_what_moves() {
         // it falls 4 m/s through 20 mm: no contact at first, then at the four nodes of the bottom
         if dim == 2 {
             assert_eq!(frames[0].matches("<circle").count(), 0);
-            assert!(frames.iter().any(|frame| frame.matches("<circle").count() == 4));
+            assert!(
+                frames
+                    .iter()
+                    .any(|frame| frame.matches("<circle").count() == 4)
+            );
         }
         assert!(read(&folder.join("report.html")).contains("aria-label=\"Motion\""));
     }
@@ -241,17 +273,30 @@ fn a_film_shows_six_instants_of_what_moves() {
 #[test]
 fn a_linear_run_that_hardly_moves_has_no_film_and_no_further_columns() {
     let parent = tempfile::tempdir().unwrap();
-    let (still, falling) = (parent.path().join("still.carom"), parent.path().join("fall.carom"));
+    let (still, falling) = (
+        parent.path().join("still.carom"),
+        parent.path().join("fall.carom"),
+    );
     let system = models::block(2, false);
     let (_, _, summary) = run(&system, models::settings(&still), 1e-3);
     assert!(!still.join("plots/film.svg").exists());
     assert!(summary.newton.is_none() && summary.momentum.angular.is_none());
     let text = read(&still.join("summary.json"));
-    for key in ["newton", "angular", "friction", "work of supports", "stored in hardening"] {
+    for key in [
+        "newton",
+        "angular",
+        "friction",
+        "work of supports",
+        "stored in hardening",
+    ] {
         assert!(!text.contains(&format!("\"{key}\"")), "{key}");
     }
     let table = columns(&still.join("histories.csv"));
-    assert!(table.keys().all(|name| !name.contains("hardening") && !name.contains("angular")));
+    assert!(
+        table
+            .keys()
+            .all(|name| !name.contains("hardening") && !name.contains("angular"))
+    );
     // 5 m/s over 5 ms: 2.5 % of its side
     run(&system, models::settings(&falling), 5e-3);
     assert!(falling.join("plots/film.svg").exists());

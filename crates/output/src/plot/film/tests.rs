@@ -56,7 +56,11 @@ fn of_a_cube_three_faces_are_seen_top_right_side_and_front() {
     let shade = |k: usize| flats[k].tone.shade;
     let top = (0..3).max_by_key(|k| shade(*k)).unwrap();
     let highest = |flat: &Flat| flat.points.iter().map(|x| x[1]).fold(f64::MIN, f64::max);
-    assert!(flats.iter().all(|flat| highest(flat) <= highest(&flats[top])));
+    assert!(
+        flats
+            .iter()
+            .all(|flat| highest(flat) <= highest(&flats[top]))
+    );
     // z goes upward, x to the right
     let ([x, _], _) = project(3, &[1.0, 0.0, 0.0]);
     let ([_, y], _) = project(3, &[0.0, 0.0, 1.0]);
@@ -87,7 +91,10 @@ fn many_faces_are_drawn_in_squares_over_the_same_area() {
     let svg = film_figure(&scene(2), &[many]).unwrap();
     assert!(!svg.contains("Z\"") && svg.len() < 20_000, "{}", svg.len());
     // one run in each row of squares, of the length of the model: 1/(1 + 2 MARGIN) of the frame
-    let path = svg.split(&format!("stroke=\"{}\"", colour(Tone::bright(LEVELS - 1)))).next().unwrap();
+    let path = svg
+        .split(&format!("stroke=\"{}\"", colour(Tone::bright(LEVELS - 1))))
+        .next()
+        .unwrap();
     let path = path.rsplit("<path d=\"").next().unwrap();
     let runs: Vec<f64> = path
         .split('h')
@@ -116,11 +123,19 @@ fn an_obstacle_is_grey_where_its_gap_is_negative() {
     };
     let svg = film_figure(&scene, &[frame(vec![square])]).unwrap();
     let path = svg.split("stroke=\"#d5d2cb\"").next().unwrap();
-    let stripes = path.rsplit("<path d=\"").next().unwrap().matches('h').count() as f64;
+    let stripes = path
+        .rsplit("<path d=\"")
+        .next()
+        .unwrap()
+        .matches('h')
+        .count() as f64;
     // a quarter of the square and the margin under it, one stripe to a pixel
     let size = HEIGHT - CAPTION - SPACE;
     let height = size * (0.25 + MARGIN) / (1.0 + 2.0 * MARGIN);
-    assert!((stripes * STRIPE - height).abs() <= 1.5, "{stripes} {height}");
+    assert!(
+        (stripes * STRIPE - height).abs() <= 1.5,
+        "{stripes} {height}"
+    );
 }
 
 #[test]
