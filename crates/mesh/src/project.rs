@@ -179,9 +179,7 @@ impl Patch {
 
     /// The tangents t_i = ∂y/∂ξ_i, and r.
     fn tangents(&self, xi: &[f64; 3]) -> ([[f64; 3]; 2], [f64; 3]) {
-        let t = [0, 1].map(|a| {
-            [0, 1, 2].map(|i| self.sides[a][i] + xi[1 - a] * self.twist[i])
-        });
+        let t = [0, 1].map(|a| [0, 1, 2].map(|i| self.sides[a][i] + xi[1 - a] * self.twist[i]));
         (t, self.to_point(xi))
     }
 

@@ -10,11 +10,13 @@ mod bars;
 mod battery;
 mod build;
 mod check;
+mod collision;
 mod error;
 mod figures;
 mod glued;
 mod glued_bar;
 mod hertz;
+mod kept;
 
 mod adaptive;
 mod arlequin_bars;
@@ -60,14 +62,17 @@ mod quadrature;
 mod rejections;
 mod restitution;
 mod resume;
+pub mod rings;
 mod sdnl111;
 mod sdnl111_bars;
 mod shapes;
 mod sliding_block;
+mod spinning_bar;
 mod stick_slip;
 mod supports;
 mod taylor_bar;
 mod threads;
+mod tori;
 mod viability;
 
 use std::io::{self, Write};
@@ -140,14 +145,17 @@ registry! {
     rejections
     restitution
     resume
+    rings
     sdnl111
     sdnl111_bars
     shapes
     sliding_block
+    spinning_bar
     stick_slip
     supports
     taylor_bar
     threads
+    tori
     viability
 }
 

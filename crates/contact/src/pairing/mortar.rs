@@ -33,7 +33,7 @@ use crate::{Contact, Places, Point, Search, Target};
 const CORNERS: usize = 4;
 
 /// Part of its area that a multiplier must have opposite it to face anything.
-const LEAST: f64 = 1e-12;
+const LEAST: f64 = 1e-6;
 
 /// Distance of the closest point of the other side from the middle of a face, in radii of the face, beyond which the face
 /// counts as facing nothing. In a step parts must come closer by less.
