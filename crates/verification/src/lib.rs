@@ -14,6 +14,7 @@ mod error;
 mod figures;
 mod glued;
 mod glued_bar;
+mod hertz;
 
 mod adaptive;
 mod arlequin_bars;
@@ -46,6 +47,9 @@ mod contact_patch;
 mod crushed_stop;
 mod energy_identity;
 mod first_force;
+mod hertz_cylinder;
+mod hertz_impact;
+mod hertz_spheres;
 mod interface_problems;
 mod invariance;
 mod ironing;
@@ -62,6 +66,7 @@ mod shapes;
 mod sliding_block;
 mod stick_slip;
 mod supports;
+mod taylor_bar;
 mod threads;
 mod viability;
 
@@ -122,6 +127,9 @@ registry! {
     crushed_stop
     energy_identity
     first_force
+    hertz_cylinder
+    hertz_impact
+    hertz_spheres
     interface_problems
     invariance
     ironing
@@ -138,6 +146,7 @@ registry! {
     sliding_block
     stick_slip
     supports
+    taylor_bar
     threads
     viability
 }
