@@ -198,10 +198,11 @@ fn without_cubic(values: &[f64]) -> Vec<f64> {
 
 /// Mortar and node-to-face on one mesh: rows, and the waves of both.
 fn beside(name: &str, file: &str, mu: f64, slides: u64) -> Result<(Vec<Row>, [f64; 2]), Error> {
-    let [mortar, node] = [
-        iron(file, mu, MORTAR, slides)?,
-        iron(file, mu, Integration::Node, slides)?,
-    ];
+    let (mortar, node) = rayon::join(
+        || iron(file, mu, MORTAR, slides),
+        || iron(file, mu, Integration::Node, slides),
+    );
+    let (mortar, node) = (mortar?, node?);
     let row = |what: &str| format!("{name}: {what}");
     let later = TURNED.min(slides as usize / 2);
     let mut rows = vec![
