@@ -6,13 +6,14 @@
 //! forces depend on their mesh. Closed solution: none; facts that the issue states, and two of mechanics.
 //!
 //! Jump: the largest change of the force on the indenter from one step of the sliding to the next, as a vector, over the
-//! mean force; at most 2 % (the issue). Wave: what the force differs from the cubic polynomial of the way that fits it
-//! best, after 2 mm, when friction has turned everywhere: the passage of the facets. It must fall to less than half when
-//! the mesh is halved, the least for an error of first order. Node-to-face: its jump is at least twice that of mortar, the
-//! reason for mortar; no bound of the issue. Without friction nothing dissipates and the block is long, so the mean drag
-//! vanishes: 1 % of the force, for the wave and the ends of the way. With friction the dissipation is μ times normal force
-//! times the way of the indenter, but for the stretch of the surfaces along it: 5 %. The energy balance closes to the
-//! tolerance of the iterations, 1e-7 of the forces.
+//! mean force; at most 2 % (the issue). With friction it includes the first 2 mm, in which friction turns into the direction
+//! of the sliding. Wave: what the force differs from the cubic polynomial of the way that fits it best, after these 2 mm:
+//! the passage of the facets. It must fall to less than half when the mesh is halved, the least for an error of first order.
+//! Node-to-face: its jump, after the 2 mm or in the second half of a shorter way, is at least twice that of mortar, the reason for
+//! mortar; no bound of the issue. Without friction nothing dissipates and the block is long, so the mean drag vanishes: 1 %
+//! of the force, for the wave and the ends of the way. With friction the dissipation is μ times normal force times the way
+//! of the indenter, but for the stretch of the surfaces along it: 5 %. Energy balance: a step leaves at most the tolerance
+//! times force times way, over all steps 1e-6 · 900 N · 11 mm, that is 3e-5 of the largest energy.
 //! Sizes: quick 40 steps of the sliding on the coarse mesh; full all 500, on the coarse and the middle one.
 
 use std::path::Path;
@@ -36,7 +37,9 @@ const ALONG: u64 = 500;
 /// Steps of the sliding after which friction has turned everywhere.
 const TURNED: usize = 100;
 const MU: f64 = 0.3;
-const TOLERANCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-6;
+/// Σ of force times way over the largest energy.
+const WORK: f64 = 30.0;
 const MORTAR: Integration = Integration::Mortar { basis: Basis::Dual };
 
 /// What is left of a run.
@@ -195,25 +198,27 @@ fn without_cubic(values: &[f64]) -> Vec<f64> {
 
 /// Mortar and node-to-face on one mesh: rows, and the waves of both.
 fn beside(name: &str, file: &str, mu: f64, slides: u64) -> Result<(Vec<Row>, [f64; 2]), Error> {
-    let [mortar, node] = [
-        iron(file, mu, MORTAR, slides)?,
-        iron(file, mu, Integration::Node, slides)?,
-    ];
+    let (mortar, node) = rayon::join(
+        || iron(file, mu, MORTAR, slides),
+        || iron(file, mu, Integration::Node, slides),
+    );
+    let (mortar, node) = (mortar?, node?);
     let row = |what: &str| format!("{name}: {what}");
+    let later = TURNED.min(slides as usize / 2);
     let mut rows = vec![
         Row::at_most(row("jump / mean force"), mortar.jump(0), 0.02),
         Row::at_least(
             row(&format!(
                 "jump of node-to-face, {:.2e}, / that of mortar",
-                node.jump(0)
+                node.jump(later)
             )),
-            node.jump(0) / mortar.jump(0),
+            node.jump(later) / mortar.jump(later),
             2.0,
         ),
         Row::at_most(
             row("energy residual / largest"),
             mortar.residual,
-            TOLERANCE * 10.0,
+            WORK * TOLERANCE,
         ),
     ];
     if slides < ALONG {

@@ -171,6 +171,7 @@ impl Mortar {
                 mortar: self,
                 index,
                 places,
+                span: pairing.span,
                 stencils: &mut pairing.stencils,
                 quadrature: &mut work.quadrature,
             };
@@ -236,6 +237,7 @@ struct Sweep<'a> {
     mortar: &'a Mortar,
     index: usize,
     places: &'a Places<'a>,
+    span: [f64; 2],
     stencils: &'a mut Vec<Stencil>,
     quadrature: &'a mut Vec<Quadrature>,
 }
@@ -250,7 +252,9 @@ impl<'a> Sweep<'a> {
         let rule = self.face().kind.table().mass_rule;
         for (xi, &weight) in rule.points.iter().zip(rule.weights) {
             let point = self.point(xi);
-            if let Some(stencil) = Stencil::new(contact, self.places, search, (&point, None)) {
+            if let Some(stencil) =
+                Stencil::new(contact, self.places, search, (&point, None, self.span))
+            {
                 self.push(&Sample { xi: *xi, weight }, stencil);
             }
         }

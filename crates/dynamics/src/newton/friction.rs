@@ -6,6 +6,7 @@
 
 use std::sync::Arc;
 
+use carom_contact::Contact;
 use carom_contact::law::{Level, Status};
 
 use super::Newton;
@@ -64,12 +65,26 @@ impl Newton {
         }
     }
 
-    /// The row of the step whose product with T is the sliding quantity, and the time that turns a rate into it.
-    fn sliding(&self) -> (Row, f64) {
+    /// Whether sliding is a velocity at the end of the step, or the way in it.
+    fn slides_by_rate(&self) -> bool {
         let system = &*self.system;
         let of_rate = |k: usize| system.contacts[k].law.get().level() == Level::Rate;
-        let rubbing = (0..system.contacts.len()).filter(|&k| system.friction[k] > 0.0);
-        if self.map.inertia.x != 0.0 && rubbing.into_iter().all(of_rate) {
+        let mut rubbing = (0..system.contacts.len()).filter(|&k| system.friction[k] > 0.0);
+        self.map.inertia.x != 0.0 && rubbing.all(of_rate)
+    }
+
+    /// The times, from that at which the places of a contact are taken, over which its sliding is looked at, s.
+    pub(super) fn span(&self, contact: &Contact) -> [f64; 2] {
+        let after = self.paired_after(contact);
+        match self.slides_by_rate() {
+            true => [self.dt - after; 2],
+            false => [-after, self.dt - after],
+        }
+    }
+
+    /// The row of the step whose product with T is the sliding quantity, and the time that turns a rate into it.
+    fn sliding(&self) -> (Row, f64) {
+        if self.slides_by_rate() {
             return (self.map.rate, 1.0);
         }
         let now = Row {

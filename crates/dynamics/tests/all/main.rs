@@ -5,6 +5,7 @@
 
 mod allocation;
 mod dense;
+mod friction;
 mod initial;
 mod interface;
 mod material_work;
