@@ -3,7 +3,8 @@
 use carom_bodies::Kinematics;
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_dynamics::{
-    Amplitude, Damping, Error, Load, LoadKind, Model, Newton, Prescribed, Scheme, Support, System, scheme,
+    Amplitude, Damping, Error, Load, LoadKind, Model, Newton, Prescribed, Scheme, Support, System,
+    scheme,
 };
 use carom_materials::{Elastic, J2Plasticity, Law as Material, NeoHooke};
 use carom_mesh::{Surface, generate};
@@ -67,20 +68,39 @@ fn a_plastic_cycle_has_the_work_of_its_closed_form_under_any_theta() {
             let now = &ledger.balance;
             // the return is exact however many steps make the way; a history of the middle of a step would add slip at each
             for (found, exact) in [
-                (now.dissipation_material, volume * metal.yield_stress * strain),
-                (now.hardening, volume * 0.5 * metal.hardening * strain * strain),
+                (
+                    now.dissipation_material,
+                    volume * metal.yield_stress * strain,
+                ),
+                (
+                    now.hardening,
+                    volume * 0.5 * metal.hardening * strain * strain,
+                ),
                 (now.strain, stored),
             ] {
-                assert!((found - exact).abs() < 1e-12, "theta {value}: {found} {exact}");
+                assert!(
+                    (found - exact).abs() < 1e-12,
+                    "theta {value}: {found} {exact}"
+                );
             }
             assert!(ledger.largest_energy_residual < 1e-14);
             now.dissipation_scheme / now.dissipation_material
         };
         // the supports work along the path of the stress, which the steps follow at one place each: first order, less at θ = ½
         let [coarse, fine] = [160, 320].map(scheme_term);
-        let (least, largest) = if value == 0.5 { (-0.01, 0.01) } else { (0.0, 0.3) };
-        assert!(coarse > least && coarse < largest, "theta {value}: {coarse}");
-        assert!(fine.abs() < 0.55 * coarse.abs(), "theta {value}: {coarse} {fine}");
+        let (least, largest) = if value == 0.5 {
+            (-0.01, 0.01)
+        } else {
+            (0.0, 0.3)
+        };
+        assert!(
+            coarse > least && coarse < largest,
+            "theta {value}: {coarse}"
+        );
+        assert!(
+            fine.abs() < 0.55 * coarse.abs(),
+            "theta {value}: {coarse} {fine}"
+        );
     }
     assert!(strain > 0.1);
 }
@@ -134,7 +154,12 @@ fn damped_bar(scheme: Scheme, damping: Damping, steps: usize) -> (f64, Newton) {
     let turned = omega * (1.0 - ratio * ratio).sqrt();
     let swing = (turned * end).cos() + ratio * omega / turned * (turned * end).sin();
     let exact = 0.1 * (-ratio * omega * end).exp() * swing;
-    let u = newton.state().motion.u.iter().fold(0.0, |m: f64, u| if u.abs() > m.abs() { *u } else { m });
+    let u = newton
+        .state()
+        .motion
+        .u
+        .iter()
+        .fold(0.0, |m: f64, u| if u.abs() > m.abs() { *u } else { m });
     (u - exact, newton)
 }
 
@@ -153,13 +178,19 @@ fn rayleigh_damping_takes_a_mode_down_as_its_closed_form_says() {
             let name = scheme.get().name();
             let [(coarse, _), (fine, newton)] = [100, 200].map(|n| damped_bar(scheme, damping, n));
             // second order: the error of half the step is a fourth, with the next terms of (ω dt)² = 0.003 beside it
-            assert!((coarse / fine - 4.0).abs() < 0.1, "{name}, {damping:?}: {coarse:e} {fine:e}");
+            assert!(
+                (coarse / fine - 4.0).abs() < 0.1,
+                "{name}, {damping:?}: {coarse:e} {fine:e}"
+            );
             assert!(fine.abs() < 1e-3 * 0.1, "{name}, {damping:?}: {fine:e}");
             let ledger = &newton.state().ledger;
             let lost = ledger.initial.energy() - ledger.balance.energy();
             assert!(lost > 0.3 * ledger.initial.energy());
             // neither rule takes energy of its own from a linear system
-            assert!((ledger.balance.dissipation_damping - lost).abs() < 1e-12 * lost, "{name}");
+            assert!(
+                (ledger.balance.dissipation_damping - lost).abs() < 1e-12 * lost,
+                "{name}"
+            );
         }
     }
 }
@@ -167,7 +198,11 @@ fn rayleigh_damping_takes_a_mode_down_as_its_closed_form_says() {
 /// Relative error of the work of a pressure on all sides against -p ΔV, and the relative change of the volume.
 fn work_of_pressure(kinematics: Kinematics, steps: usize) -> (f64, f64) {
     let pressure = 0.4;
-    let mut model = alone(theta(0.5), Material::NeoHooke(NeoHooke { initial: SOFT }), 3);
+    let mut model = alone(
+        theta(0.5),
+        Material::NeoHooke(NeoHooke { initial: SOFT }),
+        3,
+    );
     let mesh = generate::rectangle("a", [1.0, 0.0], [1.0, 1.0], [3, 3], false);
     model.bodies[0].spec.kinematics = kinematics;
     let cells = model.bodies[0].spec.cells.clone();
@@ -184,7 +219,11 @@ fn work_of_pressure(kinematics: Kinematics, steps: usize) -> (f64, f64) {
     let mut newton = newton(model);
     let system = newton.system();
     // a shear and a stretch, so that the sides turn
-    let v = system.x.iter().flat_map(|x| [0.4 * x[1], 0.5 * x[1] + 0.3 * x[0]]).collect::<Vec<_>>();
+    let v = system
+        .x
+        .iter()
+        .flat_map(|x| [0.4 * x[1], 0.5 * x[1] + 0.3 * x[0]])
+        .collect::<Vec<_>>();
     newton.restart(&vec![0.0; v.len()], &v).unwrap();
     let volume = |newton: &Newton| -> f64 {
         let motion = &newton.state().motion;
@@ -199,7 +238,10 @@ fn work_of_pressure(kinematics: Kinematics, steps: usize) -> (f64, f64) {
     let work = newton.state().ledger.balance.work_loads;
     let ledger = &newton.state().ledger;
     assert!(ledger.largest_energy_residual < 1e-11 * ledger.largest_energy);
-    ((work + pressure * change) / (pressure * start), change / start)
+    (
+        (work + pressure * change) / (pressure * start),
+        change / start,
+    )
 }
 
 #[test]
@@ -209,7 +251,8 @@ fn pressure_that_follows_does_p_dv() {
     assert!(change.abs() > 0.01, "{change}");
     assert!(error.abs() < 1e-13, "{error:e}");
     // a volume of revolution is cubic: second order
-    let [(coarse, change), (fine, _)] = [12, 24].map(|n| work_of_pressure(Kinematics::Axisymmetric, n));
+    let [(coarse, change), (fine, _)] =
+        [12, 24].map(|n| work_of_pressure(Kinematics::Axisymmetric, n));
     assert!(change.abs() > 0.01, "{change}");
     assert!((coarse / fine - 4.0).abs() < 0.3, "{coarse:e} {fine:e}");
     assert!(fine.abs() < 1e-4, "{fine:e}");
@@ -248,11 +291,17 @@ fn an_explicit_step_is_split_where_elements_have_shortened() {
     let ledger = &newton.state().ledger;
     // the scheme's own term is of the order of (ω dt)² of the smallest element, and no energy has appeared
     let start = ledger.initial.energy();
-    assert!(ledger.largest_energy < 1.05 * start, "{} of {start}", ledger.largest_energy);
+    assert!(
+        ledger.largest_energy < 1.05 * start,
+        "{} of {start}",
+        ledger.largest_energy
+    );
     assert!(ledger.largest_energy_residual < 1e-13 * start);
     let (run, _, newton) = squeezed(0);
     match run {
-        Err(Error::Shortened { dt, critical, .. }) => assert!(critical < dt && dt == newton.system().dt),
+        Err(Error::Shortened { dt, critical, .. }) => {
+            assert!(critical < dt && dt == newton.system().dt)
+        }
         other => panic!("{other:?}"),
     }
 }
