@@ -299,7 +299,8 @@ pub enum Error {
     /// The equations of a step were not solved.
     #[error(
         "step {step}, t = {time:e} s: no equilibrium in {passes} iterations with a step of {dt:e} s; \
-         the residual is largest at node {node} of the mesh, in body '{body}'{contact}; residuals relative to the forces: {history}"
+         the residual is largest at node {node} of the mesh, in body '{body}', cell {} of block {}{contact}; residuals relative to the forces: {history}",
+        cell.index, cell.block
     )]
     Equilibrium {
         /// Number of the step.
@@ -314,6 +315,8 @@ pub enum Error {
         node: u32,
         /// Its body.
         body: String,
+        /// The first cell of the body at the node.
+        cell: carom_mesh::ElementId,
         /// The contact point that agrees least, as a text; empty without contact.
         contact: String,
         /// Residuals of the last iterations.

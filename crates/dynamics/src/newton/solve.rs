@@ -3,6 +3,9 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use carom_bodies::Body;
+use carom_mesh::ElementId;
+
 use super::effective::{At, Turning};
 use super::{Newton, Which};
 use crate::error::Error;
@@ -416,8 +419,21 @@ impl Newton {
             passes,
             node: system.mesh_node[node],
             body: system.bodies[body].name().to_string(),
+            cell: first_cell(&system.bodies[body], node as u32),
             contact,
             history: history.collect::<Vec<_>>().join(", "),
         }
     }
+}
+
+/// The first cell of a body that has this node (system number).
+fn first_cell(body: &Body, node: u32) -> ElementId {
+    let (mut place, mut first) = (0, None);
+    body.each_element(&mut |nodes| {
+        if nodes.contains(&node) {
+            first.get_or_insert(place);
+        }
+        place += 1;
+    });
+    body.cells()[first.unwrap_or(0)]
 }

@@ -276,3 +276,51 @@ fn the_weak_form_takes_the_steps_of_the_linear_driver_and_closes_at_finite_strai
         );
     }
 }
+
+#[test]
+fn dynamics_begin_at_the_equilibrium_of_the_static_stage_with_the_velocities_given() {
+    let trapezoid = Scheme::Newmark(scheme::Newmark {
+        beta: 0.25,
+        gamma: 0.5,
+    });
+    let run = |velocity: f64| {
+        let mut model = square(trapezoid, DISPLACEMENT, neo_hooke(), 3);
+        model.contacts.clear();
+        model.bodies[0].velocity = [velocity, 0.0, 0.0];
+        let group = &model.mesh.groups["a.bottom"];
+        model.supports.push(carom_dynamics::Support {
+            nodes: model.mesh.group_nodes(group),
+            fix: [true; 3],
+        });
+        model.nonlinear.preload = Some(carom_dynamics::Preload { end: 1.0, steps: 2 });
+        let mut newton = newton(model);
+        for _ in 0..2 {
+            newton.step().unwrap();
+        }
+        assert_eq!(newton.state().time, 1.0);
+        newton
+    };
+    let mut rest = run(0.0);
+    let sunk = rest.state().motion.u.clone();
+    let depth = sunk.iter().fold(0.0_f64, |m, u| m.max(-u));
+    assert!(depth > 1e-3, "gravity has moved nothing");
+    for _ in 0..20 {
+        rest.step().unwrap();
+    }
+    // the stage ends at 1e-10 of its forces, so what follows is rest to that
+    for (now, then) in rest.state().motion.u.iter().zip(&sunk) {
+        assert!((now - then).abs() < 1e-8 * depth);
+    }
+    let mut thrown = run(0.1);
+    assert_eq!(
+        thrown.state().motion.u,
+        sunk,
+        "the velocity comes after the stage"
+    );
+    thrown.step().unwrap();
+    let system = thrown.system();
+    let kinetic = 0.5 * system.body_mass(0) * 0.1 * 0.1;
+    // the balance begins with the dynamics: all free nodes have the velocity, the held row has none
+    let started = thrown.state().ledger.initial.kinetic;
+    assert!((started - kinetic * 5.0 / 6.0).abs() < 1e-12 * kinetic);
+}
