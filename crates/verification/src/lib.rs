@@ -46,6 +46,7 @@ mod contact_patch;
 mod crushed_stop;
 mod energy_identity;
 mod first_force;
+mod glued_rotating;
 mod interface_problems;
 mod invariance;
 pub mod long_run;
@@ -55,6 +56,7 @@ mod quadrature;
 mod rejections;
 mod restitution;
 mod resume;
+mod ring_sector;
 mod sdnl111;
 mod sdnl111_bars;
 mod shapes;
@@ -119,6 +121,7 @@ registry! {
     crushed_stop
     energy_identity
     first_force
+    glued_rotating
     interface_problems
     invariance
     long_run
@@ -128,6 +131,7 @@ registry! {
     rejections
     restitution
     resume
+    ring_sector
     sdnl111
     sdnl111_bars
     shapes

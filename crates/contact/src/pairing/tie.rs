@@ -98,8 +98,8 @@ mod tests {
 
     /// Faces of two blocks of 2 and 3 elements along a side that meet at z = 1, and the nodes.
     fn blocks() -> (Vec<[f64; 3]>, Vec<Face>, Vec<Face>) {
-        let mut mesh = generate::cuboid("low", [0.0; 3], [1.0; 3], [2, 2, 1], false);
-        let high = generate::cuboid("high", [0.0, 0.0, 1.0], [1.0; 3], [3, 3, 1], false);
+        let mut mesh = generate::box_("low", [0.0; 3], [1.0; 3], [2, 2, 1], false);
+        let high = generate::box_("high", [0.0, 0.0, 1.0], [1.0; 3], [3, 3, 1], false);
         mesh.merge("two", high).unwrap();
         let faces = |body: &str, side: &str| {
             let cells = &mesh.groups[body].elements;

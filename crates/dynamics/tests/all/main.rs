@@ -18,3 +18,4 @@ mod whole;
 
 #[global_allocator]
 static COUNTER: carom_testing::Counter = carom_testing::Counter;
+mod zones_nonlinear;
