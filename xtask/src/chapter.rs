@@ -63,18 +63,16 @@ pub fn write(root: &Path) -> Result<(), String> {
     let picture = fs::read_to_string(work.join("picture/plots/force.svg"))
         .map_err(|cause| cause.to_string())?;
     save(&root.join("docs/src/pictures/schemes-force.svg"), &picture)?;
-    let long = output(
-        root,
-        &[
-            "run",
-            "--release",
-            "--package",
-            "carom-verification",
-            "--example",
-            "long_run",
-        ],
-    )?;
-    save(&tables.join("long-run.md"), &long)
+    for (example, file) in [("long_run", "long-run.md"), ("rings", "rings.md")] {
+        save(&tables.join(file), &printed(root, example)?)?;
+    }
+    Ok(())
+}
+
+/// What an example of the verification crate prints.
+fn printed(root: &Path, example: &str) -> Result<String, String> {
+    let package = ["--package", "carom-verification", "--example", example];
+    output(root, &[&["run", "--release"], &package[..]].concat())
 }
 
 fn save(path: &Path, text: &str) -> Result<(), String> {

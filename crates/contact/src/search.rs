@@ -151,20 +151,20 @@ impl Search {
         view: Option<View>,
         x: &[f64; 3],
     ) -> Option<(Projection, &'a Face)> {
-        self.closest(places, faces, view, x)
+        self.closest((places, faces), view, x, f64::INFINITY)
             .filter(|(foot, face)| faces_point(foot, face))
     }
 
     /// The closest point of a surface, on the first of the faces that are closest; with a view, on the first of those that
-    /// are in view and that the point faces.
+    /// are in view and that the point faces. None further away than `within`, m.
     ///
     /// Queries keep their memory by their order after a renewal.
     pub(crate) fn closest<'a>(
         &mut self,
-        places: &Places,
-        faces: &'a [Face],
+        (places, faces): (&Places, &'a [Face]),
         view: Option<View>,
         x: &[f64; 3],
+        within: f64,
     ) -> Option<(Projection, &'a Face)> {
         let slot = self.next;
         self.next += 1;
@@ -186,7 +186,7 @@ impl Search {
             });
             if seen { foot.distance } else { f64::INFINITY }
         };
-        let within = view.map_or(f64::INFINITY, |view| view.reach());
+        let within = view.map_or(within, |view| view.reach().min(within));
         let found = self.tree.as_ref().and_then(|tree| {
             let query = Query {
                 tree,

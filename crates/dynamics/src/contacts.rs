@@ -115,13 +115,8 @@ fn nodes(
     number: &[u32],
     factor: impl Fn(&[f64; 3]) -> f64,
 ) -> Vec<Point> {
-    let areas = surface.tributary_areas(mesh);
-    let area = |(&node, area): (&u32, f64)| {
-        (
-            number[node as usize],
-            area * factor(&mesh.nodes[node as usize]),
-        )
-    };
+    let areas = surface.tributary_areas(mesh, factor);
+    let area = |(&node, area): (&u32, f64)| (number[node as usize], area);
     let areas: Vec<(u32, f64)> = surface.nodes.iter().zip(areas).map(area).collect();
     let total: f64 = areas.iter().map(|(_, area)| area).sum();
     let points = areas.iter();

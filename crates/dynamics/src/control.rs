@@ -55,6 +55,9 @@ pub struct Control {
     pub grown: u64,
     /// Attempts dropped because they had no solution.
     pub failed: u64,
+    /// Relative change of lengths in the elements since an explicit step at finite strain was last compared with the
+    /// critical one.
+    pub(crate) changed: f64,
     /// Steps since the last event.
     quiet: u32,
     /// Step and time from which steps of the size `taken` are counted: the instants of equal steps are products, not sums.

@@ -103,6 +103,20 @@ pub enum Error {
         /// The critical step 2/ω, s.
         critical: f64,
     },
+    /// Elements have shortened so far that no part of an explicit step is stable.
+    #[error(
+        "step {step}, t = {time:e} s: elements have shortened, so that the critical step is now {critical:e} s, below the smallest part of a step, {dt:e} s"
+    )]
+    Shortened {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start, s.
+        time: f64,
+        /// The smallest part of it, s.
+        dt: f64,
+        /// The critical step 2/ω, s.
+        critical: f64,
+    },
     /// A scheme that needs a diagonal mass meets a consistent one.
     #[error("the scheme {scheme} needs lumped mass, but body '{body}' has consistent mass")]
     ConsistentMass {

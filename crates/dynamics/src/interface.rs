@@ -148,8 +148,7 @@ impl Interface {
             self.equalities(candidates, compliance, s)?;
             self.disagreements(candidates, compliance.0, s);
             let Some(&last) = self.changes.last() else {
-                self.clip(candidates, compliance.0);
-                return Ok(());
+                return self.clip(candidates, compliance, s);
             };
             if self.changes.len() < fewest {
                 (fewest, patience) = (self.changes.len(), PATIENCE);
@@ -280,17 +279,47 @@ impl Interface {
         }
     }
 
-    fn clip(&mut self, candidates: &[Candidate], d: &[f64]) {
-        let mut clipped = false;
+    /// Cuts off the tension of laws that do not take it: the force is then zero, and the other points are solved for anew
+    /// without it. A point comes back where its law presses after all.
+    fn clip(
+        &mut self,
+        candidates: &[Candidate],
+        compliance: (&[f64], u64),
+        s: [f64; 2],
+    ) -> Result<(), Failure> {
+        let mut cut: Vec<(usize, Status)> = Vec::new();
+        for _ in 0..2 * candidates.len() {
+            let before = cut.len();
+            for (i, candidate) in candidates.iter().enumerate() {
+                if self.forces[i] < 0.0 && candidate.law.get().clips() {
+                    cut.push((i, self.statuses[i]));
+                    self.statuses[i] = Status::Open;
+                }
+            }
+            if cut.len() == before {
+                let presses = |&(i, status): &(usize, Status)| {
+                    let candidate = &candidates[i];
+                    let end = end(candidate, i, compliance.0, s, &self.forces, &self.product);
+                    let relation = candidate.law.get().relation(status, &candidate.local);
+                    relation.gap * end.gap + relation.rate * end.rate + relation.offset < 0.0
+                };
+                let Some(back) = cut.iter().position(presses) else {
+                    break;
+                };
+                let (i, status) = cut.remove(back);
+                self.statuses[i] = status;
+            }
+            self.equalities(candidates, compliance, s)?;
+        }
+        for (i, status) in cut {
+            self.statuses[i] = status;
+        }
         for (force, candidate) in self.forces.iter_mut().zip(candidates) {
-            if *force < 0.0 && candidate.law.get().clips() {
-                *force = 0.0;
-                clipped = true;
+            if candidate.law.get().clips() {
+                *force = force.max(0.0);
             }
         }
-        if clipped {
-            self.multiply(d);
-        }
+        Ok(())
     }
 }
 

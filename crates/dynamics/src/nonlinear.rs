@@ -101,7 +101,8 @@ pub struct Damping {
     pub stiffness: f64,
 }
 
-/// A static stage before the dynamics: loads and contacts find their equilibrium, without inertia.
+/// A static stage before the dynamics: loads and contacts find their equilibrium, without inertia. Contact laws in the rate
+/// hold in the gap there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preload {
     /// End of the stage, s.
@@ -335,10 +336,10 @@ fn numbered_force(load: &Load, model: &Model, number: &[u32]) -> NumberedForce {
         }
         LoadKind::Traction(traction) => {
             let kinematics = model.bodies[body].spec.kinematics;
-            let areas = load.surface.node_areas(&model.mesh);
+            let unit = |x: &[f64; 3]| kinematics.surface_factor(x);
+            let areas = load.surface.node_areas(&model.mesh, unit);
             let mut forces = Vec::new();
             for (&node, area) in load.surface.nodes.iter().zip(areas) {
-                let area = area * kinematics.surface_factor(&model.mesh.nodes[node as usize]);
                 let node = number[node as usize] as usize;
                 let of = |i: usize| ((dim * node + i) as u32, area * traction[i]);
                 forces.extend((0..dim).map(of));

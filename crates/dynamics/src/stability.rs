@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use carom_bodies::Body;
+use carom_bodies::{Body, Placement};
 use carom_contact::law::{Local, Status};
 use carom_contact::{Contact, Places, Rows, Search};
 
+use crate::error::Error;
+use crate::state::Motion;
 use crate::system::System;
 
 impl System {
@@ -15,11 +17,30 @@ impl System {
     /// laws against the lumped mass, which is bounded by the largest row sum of `sqrt(k_i k_j) n_i · M⁻¹ n_j` over points
     /// i, j, paired as at the start. Points that face nothing then count with the lightest node of the system.
     pub fn critical_step(&self) -> f64 {
-        let bodies = self
-            .bodies
-            .iter()
-            .map(Body::frequency_bound)
-            .fold(0.0, f64::max);
+        let bodies = self.bodies.iter().map(Body::frequency_bound);
+        self.critical_with(bodies.fold(0.0, f64::max))
+    }
+
+    /// Critical step about a motion, s, with the tangents there; a body at small strain has always the same.
+    ///
+    /// # Errors
+    /// An element without tangent.
+    pub(crate) fn critical_step_at(&self, motion: &Motion) -> Result<f64, Error> {
+        let mut bodies: f64 = 0.0;
+        for (body, history) in self.bodies.iter().zip(&self.nonlinear.histories) {
+            let at = Placement {
+                u: &motion.u,
+                from: None,
+                dt: self.dt,
+                old: &motion.history[history.clone()],
+            };
+            bodies = bodies.max(body.frequency_bound_at(&at)?);
+        }
+        Ok(self.critical_with(bodies))
+    }
+
+    /// `bodies`: bound of the frequencies of the bodies, rad/s.
+    fn critical_with(&self, bodies: f64) -> f64 {
         let contacts = self
             .contacts
             .iter()

@@ -259,7 +259,7 @@ mod tests {
             for (axis, expected) in surface.faces[0].axis.iter().zip([1.0, 2.0, 2.0]) {
                 assert_close(*axis, sign * expected / 3.0);
             }
-            assert_eq!(surface.node_areas(&mesh), [1.0]);
+            assert_eq!(surface.node_areas(&mesh, |_| 1.0), [1.0]);
         }
     }
 

@@ -4,7 +4,7 @@
 //! the normal m of a face points away from its own body, and the gap of a point x over its projection y is
 //! g = m·(x - y), positive when open.
 
-use carom_elements::{Element, Kind, MAX_FACE_NODES, MAX_NODES, map};
+use carom_elements::{Kind, MAX_FACE_NODES, MAX_NODES, map};
 
 use crate::{Face, curved};
 
@@ -49,7 +49,7 @@ pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Project
         Kind::Point1 => ([0.0; 3], [0.0; 3]),
         Kind::Bar2 => on_segment(positions, point),
         Kind::Tri3 => on_triangle(positions, point),
-        Kind::Quad4 => on_patch(element, local, origin),
+        Kind::Quad4 => on_patch(local),
         Kind::Bar3 => curved::on_curve(element, local, origin),
         Kind::Tri6 | Kind::Quad8 | Kind::Quad9 => curved::on_patch(element, local, origin),
         Kind::Tet4
@@ -115,13 +115,13 @@ fn on_triangle(x: &[[f64; 3]], point: &[f64; 3]) -> ([f64; 3], [f64; 3]) {
     (best.1, free)
 }
 
-/// Closest point of a bilinear patch, and where Newton's step from there would go if the patch went on.
+/// Closest point of a bilinear patch to the origin, and where Newton's step from there would go if the patch went on.
 ///
 /// f = |x - y(ξ, η)|²/2 is a parabola along each coordinate line. Newton's step is kept if it does not raise f, then
 /// f is minimised along each coordinate line in turn: what no longer moves is a minimum in the square, its edges
 /// included.
-fn on_patch(element: &Element, x: &[[f64; 3]], point: &[f64; 3]) -> ([f64; 3], [f64; 3]) {
-    let patch = Patch { element, x, point };
+fn on_patch(corners: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
+    let patch = Patch::new(corners);
     let mut xi = [0.0; 3];
     for _ in 0..MAX_PASSES {
         let before = xi;
@@ -146,19 +146,29 @@ fn on_patch(element: &Element, x: &[[f64; 3]], point: &[f64; 3]) -> ([f64; 3], [
 /// Bound on the passes of [`on_patch`]; Newton's method takes about five.
 const MAX_PASSES: usize = 100;
 
-/// A bilinear quadrilateral and the point to project on it.
-struct Patch<'a> {
-    element: &'a Element,
-    x: &'a [[f64; 3]],
-    point: &'a [f64; 3],
+/// A bilinear quadrilateral `y = m + ξ s + η t + ξη w`, m.
+struct Patch {
+    middle: [f64; 3],
+    sides: [[f64; 3]; 2],
+    twist: [f64; 3],
 }
 
-impl Patch<'_> {
-    /// r = x - y(ξ).
+impl Patch {
+    fn new(corners: &[[f64; 3]]) -> Patch {
+        let sum = |signs: [f64; 4]| map::point(corners, &signs.map(|sign| 0.25 * sign));
+        Patch {
+            middle: sum([1.0; 4]),
+            sides: [sum([-1.0, 1.0, 1.0, -1.0]), sum([-1.0, -1.0, 1.0, 1.0])],
+            twist: sum([1.0, -1.0, 1.0, -1.0]),
+        }
+    }
+
+    /// r = -y(ξ), the way to the origin.
     fn to_point(&self, xi: &[f64; 3]) -> [f64; 3] {
-        let mut n = [0.0; 4];
-        (self.element.shape)(xi, &mut n);
-        difference(self.point, &map::point(self.x, &n))
+        let [s, t] = &self.sides;
+        [0, 1, 2].map(|i| {
+            -(self.middle[i] + xi[0] * s[i] + xi[1] * t[i] + xi[0] * xi[1] * self.twist[i])
+        })
     }
 
     /// f = |r|²/2.
@@ -169,9 +179,7 @@ impl Patch<'_> {
 
     /// The tangents t_i = ∂y/∂ξ_i, and r.
     fn tangents(&self, xi: &[f64; 3]) -> ([[f64; 3]; 2], [f64; 3]) {
-        let mut dn = [[0.0; 3]; 4];
-        (self.element.gradient)(xi, &mut dn);
-        let t = [0, 1].map(|i| map::point(self.x, &dn.map(|dn| dn[i])));
+        let t = [0, 1].map(|a| [0, 1, 2].map(|i| self.sides[a][i] + xi[1 - a] * self.twist[i]));
         (t, self.to_point(xi))
     }
 
@@ -180,9 +188,9 @@ impl Patch<'_> {
     fn newton(&self, xi: &[f64; 3]) -> [f64; 3] {
         let ([s, t], r) = self.tangents(xi);
         // ∂²y/∂ξ∂η of the bilinear map; the other second derivatives are zero.
-        let twist = map::point(self.x, &[0.25, -0.25, 0.25, -0.25]);
+        let twist = &self.twist;
         let (ss, tt, st) = (dot(&s, &s), dot(&t, &t), dot(&s, &t));
-        let full = st - dot(&r, &twist);
+        let full = st - dot(&r, twist);
         let mixed = if ss * tt > full * full { full } else { st };
         let det = ss * tt - mixed * mixed;
         let (sr, tr) = (dot(&s, &r), dot(&t, &r));

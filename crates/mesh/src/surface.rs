@@ -99,13 +99,13 @@ impl Surface {
 
     /// Share of each node in the surface, ∫ N_a dΓ, one value per entry of [`Surface::nodes`].
     ///
-    /// In the reference position: a length in m in the plane, an area in m² in space; 1 for the end of a bar, whose
-    /// section is not the mesh's business.
+    /// In the reference position: a length in m in the plane, an area in m² in space, 1 for the end of a bar, each times
+    /// `unit` at the place: the area that a unit of the measure stands for.
     ///
     /// Of a quadratic face these are the weights of a pressure's nodal forces, and no areas: zero at the corners of a
     /// six-node triangle, negative at those of an eight-node quadrilateral. See [`Surface::tributary_areas`].
-    pub fn node_areas(&self, mesh: &Mesh) -> Vec<f64> {
-        self.integrate(mesh, |kind| {
+    pub fn node_areas(&self, mesh: &Mesh, unit: impl Fn(&[f64; 3]) -> f64) -> Vec<f64> {
+        self.integrate(mesh, &unit, |kind| {
             let places = (0..kind.table().nodes).collect();
             vec![Piece { kind, places }]
         })
@@ -115,18 +115,23 @@ impl Surface {
     /// with φ_a linear on each of the linear faces that join the nodes of a face ([`pieces`]), taken in the reference
     /// cell. Always positive; the sum is the area. In the units of [`Surface::node_areas`], which it equals on linear
     /// faces.
-    pub fn tributary_areas(&self, mesh: &Mesh) -> Vec<f64> {
-        self.integrate(mesh, pieces)
+    pub fn tributary_areas(&self, mesh: &Mesh, unit: impl Fn(&[f64; 3]) -> f64) -> Vec<f64> {
+        self.integrate(mesh, &unit, pieces)
     }
 
     /// ∫ φ_a dΓ with φ_a the shape functions of the pieces into which each face is cut.
-    fn integrate(&self, mesh: &Mesh, cut: impl Fn(Kind) -> Vec<Piece>) -> Vec<f64> {
+    fn integrate(
+        &self,
+        mesh: &Mesh,
+        unit: &dyn Fn(&[f64; 3]) -> f64,
+        cut: impl Fn(Kind) -> Vec<Piece>,
+    ) -> Vec<f64> {
         let mut areas = vec![0.0; self.nodes.len()];
         let mut buffer = [[0.0; 3]; MAX_NODES];
         for face in &self.faces {
             let x = gather(&mesh.nodes, face.corners(), &mut buffer);
             for piece in cut(face.kind) {
-                for (place, area) in piece.areas(face.kind.table(), x) {
+                for (place, area) in piece.areas(face.kind.table(), x, unit) {
                     if let Some(a) = self.index_of(face.nodes[place]) {
                         areas[a] += area;
                     }
@@ -172,7 +177,12 @@ pub fn pieces(kind: Kind) -> Vec<Piece> {
 
 impl Piece {
     /// ∫ φ dΓ of each of its corners over its part of a face with these node positions.
-    fn areas(&self, face: &Element, x: &[[f64; 3]]) -> impl Iterator<Item = (usize, f64)> + '_ {
+    fn areas(
+        &self,
+        face: &Element,
+        x: &[[f64; 3]],
+        unit: &dyn Fn(&[f64; 3]) -> f64,
+    ) -> impl Iterator<Item = (usize, f64)> + '_ {
         let table = self.kind.table();
         let mut corners = [[0.0; 3]; MAX_FACE_NODES];
         for (corner, &place) in corners.iter_mut().zip(&self.places) {
@@ -195,8 +205,11 @@ impl Piece {
             };
             (face.gradient)(&place, &mut dn[..face.nodes]);
             let (factor, _) = map::measure(x, &dn[..face.nodes], face.dim);
+            let mut shape = [0.0; MAX_NODES];
+            (face.shape)(&place, &mut shape[..face.nodes]);
+            let unit = unit(&map::point(x, &shape[..face.nodes]));
             for (area, n) in areas.iter_mut().zip(&n[..table.nodes]) {
-                *area += n * (part * factor) * weight;
+                *area += n * (part * factor) * weight * unit;
             }
         }
         self.places.iter().copied().zip(areas)
@@ -298,11 +311,34 @@ mod tests {
     }
 
     #[test]
+    fn node_areas_about_an_axis_are_those_of_the_shape_functions() {
+        let mesh = rectangle("a", [0.0; 2], [1.0; 2], [4, 1], false);
+        let bottom = surface(&mesh, "a", "a.bottom").unwrap();
+        let turn = |x: &[f64; 3]| std::f64::consts::TAU * x[0];
+        for areas in [
+            bottom.node_areas(&mesh, turn),
+            bottom.tributary_areas(&mesh, turn),
+        ] {
+            // ∫ N_a 2πr dr with h = 1/4: πh²/3 on the axis, 2πh r inside, the rest of π at the rim
+            let (pi, h) = (std::f64::consts::PI, 0.25);
+            for (&node, area) in bottom.nodes.iter().zip(areas) {
+                let r = mesh.nodes[node as usize][0];
+                let expected = match r {
+                    0.0 => pi * h * h / 3.0,
+                    1.0 => pi * h * (1.0 - h / 3.0),
+                    r => 2.0 * pi * h * r,
+                };
+                assert!((area - expected).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
     fn node_areas_of_a_grid_are_halves_at_edges_and_quarters_at_corners() {
         let mesh = box_("a", [0.0; 3], [2.0, 2.0, 1.0], [2, 2, 1], false);
         let top = surface(&mesh, "a", "a.top").unwrap();
         let expected = [0.25, 0.5, 0.25, 0.5, 1.0, 0.5, 0.25, 0.5, 0.25];
-        for (area, expected) in top.node_areas(&mesh).iter().zip(expected) {
+        for (area, expected) in top.node_areas(&mesh, |_| 1.0).iter().zip(expected) {
             assert!((area - expected).abs() < 1e-15);
         }
         assert_eq!(top.index_of(top.nodes[4]), Some(4));
@@ -317,7 +353,9 @@ mod tests {
         ];
         for (mesh, expected) in meshes {
             let side = if mesh.dim == 3 { "a.right" } else { "a.top" };
-            let areas = surface(&mesh, "a", side).unwrap().node_areas(&mesh);
+            let areas = surface(&mesh, "a", side)
+                .unwrap()
+                .node_areas(&mesh, |_| 1.0);
             assert!((areas.iter().sum::<f64>() - expected).abs() < 1e-14);
         }
     }
@@ -357,7 +395,7 @@ mod tests {
         for ((kind, area), shares) in QUADRATIC.into_iter().zip(shares) {
             let (mesh, surface) = one_face(kind, |xi| *xi);
             let corners = kind.table().linear.table().nodes;
-            for (a, found) in surface.node_areas(&mesh).into_iter().enumerate() {
+            for (a, found) in surface.node_areas(&mesh, |_| 1.0).into_iter().enumerate() {
                 let share = match a {
                     a if a < corners => shares[0],
                     a if a < 2 * corners && kind != Kind::Bar3 => shares[1],
@@ -372,14 +410,14 @@ mod tests {
     fn tributary_areas_are_positive_and_add_up_to_the_area() {
         for (kind, area) in QUADRATIC {
             let (mesh, surface) = one_face(kind, |xi| *xi);
-            let areas = surface.tributary_areas(&mesh);
+            let areas = surface.tributary_areas(&mesh, |_| 1.0);
             assert!((areas.iter().sum::<f64>() - area).abs() < 1e-14);
             assert!(areas.iter().all(|&a| a > 0.04 * area), "{kind:?}");
             // Curved like a parabola: both sums approach the area, with rules of different points.
             let bend = |x: &[f64; 3]| [x[0], x[1], 0.1 * (x[0] * x[0] + x[0] * x[1])];
             let (mesh, surface) = one_face(kind, bend);
-            let areas = surface.tributary_areas(&mesh);
-            let sum: f64 = surface.node_areas(&mesh).iter().sum();
+            let areas = surface.tributary_areas(&mesh, |_| 1.0);
+            let sum: f64 = surface.node_areas(&mesh, |_| 1.0).iter().sum();
             assert!(areas.iter().all(|&a| a > 0.0));
             assert!(
                 (areas.iter().sum::<f64>() / sum - 1.0).abs() < 1e-4,
@@ -388,7 +426,10 @@ mod tests {
         }
         let mesh = box_("a", [0.0; 3], [1.0, 2.0, 1.5], [3, 2, 2], true);
         let side = surface(&mesh, "a", "a.right").unwrap();
-        assert_eq!(side.tributary_areas(&mesh), side.node_areas(&mesh));
+        assert_eq!(
+            side.tributary_areas(&mesh, |_| 1.0),
+            side.node_areas(&mesh, |_| 1.0)
+        );
     }
 
     #[test]

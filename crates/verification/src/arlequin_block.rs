@@ -10,8 +10,8 @@ use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting
 use carom_bodies::{CellWeights, Kinematics};
 use carom_contact::Sphere;
 use carom_dynamics::{
-    Driver, LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, System, Costs,
-    Zoned, Zones,
+    Costs, Driver, LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, System, Zoned,
+    Zones,
 };
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;

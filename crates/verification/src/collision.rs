@@ -11,6 +11,9 @@ use carom_mesh::{Mesh, read};
 use crate::Error;
 use crate::build::{body, contact, surface};
 
+/// Residual at which iterations end, of the forces.
+const TOLERANCE: f64 = 1e-11;
+
 /// What there is to say about such a collision.
 #[derive(Clone, Copy)]
 pub(crate) struct Collision {
@@ -18,32 +21,37 @@ pub(crate) struct Collision {
     pub(crate) mesh: &'static str,
     /// Groups of the two bodies; their surfaces are the groups `.outer`.
     pub(crate) bodies: [&'static str; 2],
+    /// Kinematics of both.
     pub(crate) kinematics: Kinematics,
+    /// Neo-Hookean at small strain, of both.
     pub(crate) material: Elastic,
     /// Velocity of the first body, m/s; the second is at rest.
     pub(crate) velocity: [f64; 3],
+    /// Integration of the contact: the second body's surface carries it.
     pub(crate) integration: Integration,
-    /// Largest penetration that is a contact, m.
-    pub(crate) depth: f64,
 }
 
 impl Collision {
-    /// The model, with iterations to `tolerance`.
+    /// The model, with iterations to [`TOLERANCE`].
     ///
     /// # Errors
     /// A mesh file that cannot be read.
-    pub(crate) fn model(&self, scheme: Scheme, law: Law, dt: f64, tolerance: f64) -> Result<Model, Error> {
+    pub(crate) fn model(&self, scheme: Scheme, law: Law, dt: f64) -> Result<Model, Error> {
         let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
         let mesh = read::read(&cases.join(self.mesh))?;
         let mut moving = self.body(&mesh, 0)?;
         moving.velocity = self.velocity;
         let resting = self.body(&mesh, 1)?;
-        let outer = |k: usize, body: &ModelBody| surface(&mesh, &format!("{}.outer", self.bodies[k]), body);
-        let mut touch = contact(outer(1, &resting)?, ModelTarget::Surface(outer(0, &moving)?), law);
+        let outer =
+            |k: usize, body: &ModelBody| surface(&mesh, &format!("{}.outer", self.bodies[k]), body);
+        let mut touch = contact(
+            outer(1, &resting)?,
+            ModelTarget::Surface(outer(0, &moving)?),
+            law,
+        );
         touch.integration = self.integration;
-        touch.depth = Some(self.depth);
         let mut nonlinear = Nonlinear::default();
-        nonlinear.iteration.tolerance = tolerance;
+        nonlinear.iteration.tolerance = TOLERANCE;
         Ok(Model {
             bodies: vec![moving, resting],
             supports: Vec::new(),
@@ -59,7 +67,9 @@ impl Collision {
 
     fn body(&self, mesh: &Mesh, k: usize) -> Result<ModelBody, Error> {
         let mut body = body(mesh, self.bodies[k], self.kinematics, self.material)?;
-        body.spec.material = Material::NeoHooke(NeoHooke { initial: self.material });
+        body.spec.material = Material::NeoHooke(NeoHooke {
+            initial: self.material,
+        });
         Ok(body)
     }
 }

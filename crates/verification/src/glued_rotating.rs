@@ -1,4 +1,16 @@
 //! A rotating bar of two zones glued by an oblique overlap.
+//!
+//! Problem: a free bar of 9 h by 2 h in plane strain, neo-Hookean with E = ρ = 1 and ν = 0.3, in two zones whose meshes do not
+//! match (h / 1.5 and h), sheared by 30 degrees and with them the borders of the overlap; linear weights, coarse L2 mediator.
+//! (1) It flies and spins at 0.08 c / h, where the centrifugal strain is a twentieth, with steps of h / c, for one revolution or
+//! five. (2) Turned by a radian as it lies, it goes on turning at 10⁻⁵ c / L for 50 steps.
+//!
+//! Closed solution: (1) linear and angular momentum stay; with the energy-momentum scheme the energy, too. The rows hold for
+//! velocities at both ends of each step, hence for displacements where a zone moves by dt times the mean of the two, and
+//! with them the moment of the multipliers vanishes in the middle of the step. There energy-momentum and theta ½ have all
+//! their forces: 10⁻¹⁰ is the rounding of 400 steps against rows that hold to 10⁻¹². The trapezoid has its forces at the
+//! ends and keeps no angular momentum, glued or not: 0.2 % were found; a tenth of it is asked for, as proof that the check sees it.
+//! (2) No stress but the centrifugal one, (10⁻⁵)²/8 E = 1.2·10⁻¹¹ E: 10⁻⁹ E is the figure of the requirement.
 
 use std::f64::consts::PI;
 
@@ -9,7 +21,7 @@ use carom_materials::{Elastic, Law, NeoHooke};
 use carom_mesh::{Mesh, generate};
 
 use crate::Error;
-use crate::build::{CENTRAL, glued, newmark, plane_motion, theta};
+use crate::build::{glued, newmark, plane_motion, theta};
 use crate::check::{Check, Row, Size};
 
 const BETWEEN: Scheme = Scheme::EnergyMomentum(EnergyMomentum);
@@ -23,6 +35,9 @@ const MATERIAL: Elastic = Elastic {
 /// Length of the bar in sizes of the coarse elements, which is 1.
 const LENGTH: f64 = 9.0;
 const HEIGHT: f64 = 2.0;
+/// Angular velocity, 1/s, and velocity along the bar, m/s.
+const SPIN: f64 = 0.08;
+const FLIGHT: f64 = 0.1;
 /// tan 30°.
 const SHEAR: f64 = 0.577_350_269_189_625_8;
 
@@ -34,26 +49,29 @@ pub(crate) const CHECK: Check = Check {
             Size::Quick => 1.0,
             Size::Full => 5.0,
         };
-        let dt: f64 = std::env::var("DT").ok().and_then(|s| s.parse().ok()).unwrap_or(1.0);
+        let mut rows = Vec::new();
         for (name, schemes) in [
-            ("em", [BETWEEN; 2]),
-            ("theta", [theta(0.5); 2]),
-            ("em theta", [BETWEEN, theta(0.5)]),
-            ("trapezoid", [newmark(0.25, 0.5); 2]),
-            ("theta trapezoid", [theta(0.5), newmark(0.25, 0.5)]),
-            ("theta .6", [theta(0.6), newmark(0.25, 0.5)]),
+            ("energy-momentum", [BETWEEN; 2]),
+            ("theta 0.5", [theta(0.5); 2]),
+            ("energy-momentum and theta 0.5", [BETWEEN, theta(0.5)]),
         ] {
-            let begin = std::time::Instant::now();
-            let spin = Spin { speed: 0.08, schemes, dt };
-            match spin.run(revolutions) {
-                Ok(kept) => println!("{name}: {kept:?} {:?}", begin.elapsed()),
-                Err(error) => println!("{name}: {error}"),
+            let kept = spin(schemes, revolutions)?;
+            rows.push(Row::at_most(format!("{name}: momentum"), kept.linear, 1e-10));
+            let angular = format!("{name}: angular momentum");
+            rows.push(Row::at_most(angular, kept.angular, 1e-10));
+            if schemes == [BETWEEN; 2] {
+                rows.push(Row::at_most(format!("{name}: energy"), kept.energy, 1e-9));
             }
+            let [multiplier, force] = patch(schemes)?;
+            let patch = format!("{name}: turned, L h / E");
+            rows.push(Row::at_most(patch, multiplier, 1e-9));
+            rows.push(Row::at_most(format!("{name}: turned, f / (E h)"), force, 1e-9));
         }
-        println!("{:?}", patch([theta(0.5); 2])?);
-        println!("{:?}", patch([BETWEEN; 2])?);
-        println!("{:?}", patch([theta(0.6), CENTRAL])?);
-        Ok(Vec::<Row>::new())
+        let kept = spin([newmark(0.25, 0.5); 2], revolutions)?;
+        rows.push(Row::at_most("trapezoid: momentum", kept.linear, 1e-10));
+        let lost = kept.angular;
+        rows.push(Row::at_least("trapezoid: angular momentum", lost, 2e-4));
+        Ok(rows)
     },
 };
 
@@ -108,51 +126,35 @@ fn zones(schemes: [Scheme; 2], dt: f64) -> Result<Zones, Error> {
     })?)
 }
 
-/// A free rotation, started without the stretch that goes with it.
-struct Spin {
-    /// 1/s.
-    speed: f64,
-    schemes: [Scheme; 2],
-    dt: f64,
-}
-
 /// Largest changes of what a spin keeps, relative.
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct Kept {
     linear: f64,
     angular: f64,
     energy: f64,
-    /// Work of the link over the energy.
-    link: f64,
-    passes: f64,
-    most: usize,
 }
 
-impl Spin {
-    fn run(&self, revolutions: f64) -> Result<Kept, Error> {
-        let mut zones = zones(self.schemes, self.dt)?;
-        let flight = 0.1;
-        let start = plane_motion(&zones, |x| {
-            [[0.0; 2], [flight - self.speed * x[1], self.speed * x[0]]]
-        });
-        zones.restart(&start)?;
-        let start = zones.balance();
-        let mut kept = Kept::default();
-        let size = |a: [f64; 3]| a.iter().map(|a| a * a).sum::<f64>().sqrt();
-        let change = |a: [f64; 3], b: [f64; 3]| size([0, 1, 2].map(|i| a[i] - b[i])) / size(b);
-        while zones.time() < 2.0 * PI / self.speed * revolutions {
-            zones.step()?;
-            let now = zones.balance();
-            let [p, q] = [&now.momentum, &start.momentum];
-            kept.linear = kept.linear.max(change(p.linear, q.linear));
-            kept.angular = kept.angular.max(change(p.angular, q.angular));
-            kept.energy = kept.energy.max((now.energy() / start.energy() - 1.0).abs());
-            kept.link = kept.link.max(now.work_links.abs() / start.energy());
-            kept.most = kept.most.max(zones.passes());
-        }
-        kept.passes = zones.all_passes() as f64 / zones.outer_step() as f64;
-        Ok(kept)
+/// Flies and turns, started without the stretch that goes with it.
+fn spin(schemes: [Scheme; 2], revolutions: f64) -> Result<Kept, Error> {
+    let mut zones = zones(schemes, 1.0)?;
+    let start = plane_motion(&zones, |x| {
+        [[0.0; 2], [FLIGHT - SPIN * x[1], SPIN * x[0]]]
+    });
+    zones.restart(&start)?;
+    let start = zones.balance();
+    let mut kept = Kept::default();
+    let size = |a: [f64; 3]| a.iter().map(|a| a * a).sum::<f64>().sqrt();
+    let change = |a: [f64; 3], b: [f64; 3]| size([0, 1, 2].map(|i| a[i] - b[i])) / size(b);
+    while zones.time() < 2.0 * PI / SPIN * revolutions {
+        zones.step()?;
+        let now = zones.balance();
+        let [p, q] = [&now.momentum, &start.momentum];
+        kept.linear = kept.linear.max(change(p.linear, q.linear));
+        kept.angular = kept.angular.max(change(p.angular, q.angular));
+        let energy = (now.energy() / start.energy() - 1.0).abs();
+        kept.energy = kept.energy.max(energy);
     }
+    Ok(kept)
 }
 
 /// Largest multiplier times h over E, and internal force over E h, of a bar turned by a radian that goes on turning

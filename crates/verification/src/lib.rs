@@ -10,10 +10,13 @@ mod bars;
 mod battery;
 mod build;
 mod check;
+mod collision;
 mod error;
 mod figures;
 mod glued;
 mod glued_bar;
+mod hertz;
+mod kept;
 
 mod adaptive;
 mod arlequin_bars;
@@ -47,8 +50,12 @@ mod crushed_stop;
 mod energy_identity;
 mod first_force;
 mod glued_rotating;
+mod hertz_cylinder;
+mod hertz_impact;
+mod hertz_spheres;
 mod interface_problems;
 mod invariance;
+mod ironing;
 pub mod long_run;
 mod oblique_bar;
 mod order;
@@ -57,11 +64,17 @@ mod rejections;
 mod restitution;
 mod resume;
 mod ring_sector;
+pub mod rings;
 mod sdnl111;
 mod sdnl111_bars;
 mod shapes;
+mod sliding_block;
+mod spinning_bar;
+mod stick_slip;
 mod supports;
+mod taylor_bar;
 mod threads;
+mod tori;
 mod viability;
 
 use std::io::{self, Write};
@@ -122,8 +135,12 @@ registry! {
     energy_identity
     first_force
     glued_rotating
+    hertz_cylinder
+    hertz_impact
+    hertz_spheres
     interface_problems
     invariance
+    ironing
     long_run
     oblique_bar
     order
@@ -132,11 +149,17 @@ registry! {
     restitution
     resume
     ring_sector
+    rings
     sdnl111
     sdnl111_bars
     shapes
+    sliding_block
+    spinning_bar
+    stick_slip
     supports
+    taylor_bar
     threads
+    tori
     viability
 }
 

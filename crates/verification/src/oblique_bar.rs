@@ -1,17 +1,20 @@
 //! A bar meets a frictionless wall with a corner.
 //!
-//! Problem: a bar of 100 mm by 20 mm in plane strain (1 m thick), turned by 60° against the wall y = 0 that its lower corner touches,
-//! comes with 3 m/s along the wall and 5 m/s towards it; neo-Hooke, E = 1e7 Pa, ν = 0.3, ρ = 1000 kg/m³ (bar waves of
-//! 100 m/s); it leaves the wall turning. Meshes of Gmsh in `cases/oblique-bar`; Courant number 0.8.
+//! Problem: a bar of 100 mm by 20 mm in plane strain, 1 m thick, turned by 60° against the wall y = 0 that its lower corner
+//! touches, comes with 1.2 m/s along the wall and 2 m/s towards it; neo-Hooke, E = 1e7 Pa, ν = 0.3, ρ = 1000 kg/m³ (bar waves
+//! of 100 m/s); it leaves the wall turning. Meshes of Gmsh in `cases/oblique-bar`; Courant number 0.8.
 //!
 //! Closed solution: none for the motion; facts instead. The wall pushes along its normal only, so the momentum along it
 //! stays, and the ledgers of energy and momentum close: 1e-9, Newton's tolerance of 1e-11 over the steps. The angular
-//! momentum about a point of the wall changes by the moment of the wall's impulse, to 1e-9 with the energy-momentum scheme;
-//! the other schemes take internal forces and their lever arms at different instants, and what that leaves is bounded from
-//! both sides. A rigid bar with the wall's impulse J in its lowest corner, at r = 21.16 mm (along the wall) from the centre
-//! of mass, turns by ΔL = -r J about it and has the ratio of restitution e = J (1/m + r²/I)/v_n - 1; the corner of the
-//! elastic bar goes along with the body, and with its turning rate of some 100 1/s in 2 ms by a tenth of its lever: r within
-//! 10 %, and 0 < e < 1, since vibration keeps energy. Nodes and mortar see the same wall: the impulses agree within 2 %.
+//! momentum about a point of the wall changes by the moment of the wall's impulse: to 1e-9 with the energy-momentum scheme
+//! and with theta ½, whose internal forces are those of the configuration that gives their lever arms; Newmark takes means
+//! of the forces of both ends, and what that leaves is bounded from both sides. A rigid bar with the wall's impulse J in its
+//! lowest corner, at r = 16.34 mm along the wall from the centre of mass, turns by ΔL = -r J about it and has the ratio of
+//! restitution e = J (1/m + r²/I)/v_n - 1; the contact spreads from the corner over a few millimetres: r within 10 %, and
+//! 0 < e < 1, since vibration keeps energy. Nodes and mortar see the same wall, but the multiplier of the corner looks at
+//! the mean of the gap over the elements beside it, so that it meets the wall later: the impulses agree within 10 % on the
+//! coarse mesh and 5 % on the fine one. The trapezoid with the displacement law gains energy without bound (its ledger
+//! closes: contact works); that is shown on the coarse mesh.
 //! Sizes: quick 20 x 4 elements, full 50 x 10.
 
 use std::path::Path;
@@ -35,7 +38,7 @@ const RUBBER: Elastic = Elastic {
 /// Length and height, m.
 const SIDES: [f64; 2] = [0.1, 0.02];
 /// Along the wall and towards it, m/s.
-const VELOCITY: [f64; 2] = [3.0, 5.0];
+const VELOCITY: [f64; 2] = [1.2, 2.0];
 /// Four times the way of a wave along the bar.
 const END: f64 = 4e-3;
 const BALANCE: f64 = 1e-9;
@@ -188,43 +191,80 @@ impl Impact {
     }
 }
 
+/// Rows of one scheme and law, and the gain of energy with nodes. `angular`: bounds of the residual of the angular momentum.
+fn rows(
+    size: Size,
+    name: &str,
+    (scheme, law): (Scheme, Law),
+    angular: [f64; 2],
+) -> Result<Vec<Row>, Error> {
+    let nodes = strike(size, scheme, law, Integration::Node)?;
+    let basis = Basis::Standard;
+    let mortar = strike(size, scheme, law, Integration::Mortar { basis })?;
+    let mut rows = Vec::new();
+    for (points, impact) in [("nodes", &nodes), ("mortar", &mortar)] {
+        rows.extend(impact.rows(&format!("{name}, {points}"), angular));
+        rows.push(Row::at_most(
+            format!("{name}, {points}: energy at the end / initial - 1"),
+            impact.gain,
+            BALANCE,
+        ));
+    }
+    rows.push(Row::near(
+        format!("{name}: impulse, mortar / nodes"),
+        mortar.impulse[1] / nodes.impulse[1],
+        1.0,
+        match size {
+            Size::Quick => 0.1,
+            Size::Full => 0.05,
+        },
+    ));
+    Ok(rows)
+}
+
 pub(crate) const CHECK: Check = Check {
     name: "oblique-bar",
     fact: "a frictionless wall takes no momentum along it from a bar that meets it with a corner, and all ledgers close",
     run: |size| {
-        let mut rows = Vec::new();
+        let mut all = Vec::new();
         let exact = [0.0, BALANCE];
-        let energy_momentum = Scheme::EnergyMomentum(EnergyMomentum);
         for (name, scheme, law, angular) in [
-            ("energy-momentum, velocity law", energy_momentum, NOW, exact),
-            ("theta 0.5, velocity law", theta(0.5), NOW, [1e-6, 1e-2]),
             (
-                "Newmark (0.25, 0.5), displacement law",
-                newmark(0.25, 0.5),
+                "energy-momentum, velocity law",
+                Scheme::EnergyMomentum(EnergyMomentum),
+                NOW,
+                exact,
+            ),
+            ("theta 0.5, velocity law", theta(0.5), NOW, exact),
+            (
+                "Newmark (0.49, 0.9), displacement law",
+                newmark(0.49, 0.9),
                 DISPLACEMENT,
-                [1e-6, 1e-2],
+                [1e-3, 0.1],
             ),
         ] {
-            let nodes = strike(size, scheme, law, Integration::Node)?;
-            rows.extend(nodes.rows(&format!("{name}, nodes"), angular));
-            let basis = Basis::Standard;
-            let mortar = strike(size, scheme, law, Integration::Mortar { basis })?;
-            rows.extend(mortar.rows(&format!("{name}, mortar"), angular));
-            rows.push(Row::relative(
-                format!("{name}: impulse, mortar / nodes"),
-                mortar.impulse[1] / nodes.impulse[1],
-                1.0,
-                0.02,
-            ));
-            rows.push(Row::at_most(
-                format!("{name}: energy at the end / initial - 1"),
-                nodes.gain,
-                match scheme {
-                    Scheme::EnergyMomentum(_) => BALANCE,
-                    _ => 1e-2,
-                },
-            ));
+            all.extend(rows(size, name, (scheme, law), angular)?);
         }
-        Ok(rows)
+        let set = newmark(0.25, 0.5);
+        let trapezoid = strike(Size::Quick, set, DISPLACEMENT, Integration::Node)?;
+        let name = "Newmark (0.25, 0.5), displacement law, nodes";
+        let [energy, ..] = trapezoid.residuals;
+        all.push(Row::at_most(
+            format!("{name}: energy residual / largest"),
+            energy,
+            BALANCE,
+        ));
+        all.push(Row::near(
+            format!("{name}: change of momentum along the wall / initial"),
+            trapezoid.along,
+            0.0,
+            BALANCE,
+        ));
+        all.push(Row::at_least(
+            format!("{name}: energy at the end / initial - 1"),
+            trapezoid.gain,
+            0.1,
+        ));
+        Ok(all)
     },
 };

@@ -1,4 +1,17 @@
 //! A ring whose impact sector is a finer zone, against the ring in one mesh.
+//!
+//! Problem: a neo-Hookean ring (E = 1 MPa, ν = 0.3, ρ = 1000, outer radius 1 m, wall 0.1 m) flies at 0.2 m/s against a rigid wall
+//! that it touches. In one mesh it has 4 x 144 elements, theta 0.55 and the velocity law. In two, the sector within 30 degrees
+//! of the point of impact is that mesh, with four inner steps, and the rest has 2 x 120 elements with steps four times as
+//! long; the ends are tied by mortar rows, since nodes do not match across the wall, with the link of Prakash and
+//! Hjelmstad. The run ends before the contact parts in two places (0.3 s), after which nothing can be compared point by point: the
+//! ring bounces between them.
+//!
+//! Reference: the single mesh. Forces are means over the outer steps. 3 % are the figure of the requirement, for the L2 norm
+//! of the difference, the impulse and the peak; found were 1.4, 0.5 and 0.05 % with the trapezoid in the rest, REPLACE with
+//! central differences. Elements round the rest are as long as those of the single mesh: quadrilaterals with all integration
+//! points bend too stiffly by the square of their length over the wall's thickness, and with 60 of them (24 % too
+//! stiff against 6 %) the L2 norm is REPLACE60 %, glued or not.
 
 use std::f64::consts::PI;
 
@@ -21,115 +34,87 @@ const RUBBER: Elastic = Elastic {
     poisson: 0.3,
 };
 const THICKNESS: f64 = 0.1;
+/// Half the angle of the sector.
 const SECTOR: f64 = PI / 6.0;
-
-fn env<T: std::str::FromStr>(name: &str, default: T) -> T {
-    std::env::var(name).ok().and_then(|s| s.parse().ok()).unwrap_or(default)
-}
+/// Elements across and round of the sector and of the rest.
+const FINE: [usize; 2] = [4, 24];
+const REST: [usize; 2] = [2, 120];
+const SUBSTEPS: u32 = 4;
+const THETA: f64 = 0.55;
 
 pub(crate) const CHECK: Check = Check {
     name: "ring-sector",
     fact: "a finer zone at the impact gives the contact force of the single mesh",
     run: |size| {
-        let ring = Ring {
-            rest: [env("RR", 2), env("RA", 60)],
-            sector: [env("SR", 4), env("SA", 24)],
-            outer: match env("CENTRAL", 0) { 1 => CENTRAL, _ => newmark(0.25, 0.5) },
-            dt: env("DT", 4e-3),
-            end: env("END", match size { Size::Quick => 0.1, Size::Full => 1.2 }),
+        let end = match size {
+            Size::Quick => 0.06,
+            Size::Full => 0.28,
         };
-        let begin = std::time::Instant::now();
-        let one = ring.single()?;
-        println!("single {:?}", begin.elapsed());
-        let begin = std::time::Instant::now();
-        let (two, passes) = ring.glued()?;
-        println!("glued {:?} passes {passes}", begin.elapsed());
-        let (mut gap, mut norm, mut impulse) = (0.0, 0.0, [0.0; 2]);
-        let mut peak = [0.0_f64; 2];
-        for (k, (a, b)) in one.iter().zip(&two).enumerate() {
-            if env("SHOW", 0) == 1 { println!("{:.4} {:.5} {:.5}", ring.dt * (k + 1) as f64, a, b); }
-            gap += (a - b).powi(2);
-            norm += a * a;
-            impulse = [impulse[0] + a, impulse[1] + b];
-            peak = [peak[0].max(*a), peak[1].max(*b)];
+        let mut rows = Vec::new();
+        for (name, outer, dt) in [
+            ("trapezoid", newmark(0.25, 0.5), 4e-3),
+            ("central differences", CENTRAL, 0.8e-3),
+        ] {
+            if outer == CENTRAL && size == Size::Quick {
+                continue;
+            }
+            let ring = Ring { outer, dt, end };
+            let (one, two) = (ring.single()?, ring.glued()?);
+            let square = |f: &[f64]| f.iter().map(|f| f * f).sum::<f64>();
+            let gap: Vec<f64> = one.iter().zip(&two).map(|(a, b)| a - b).collect();
+            let error = (square(&gap) / square(&one)).sqrt();
+            rows.push(Row::at_most(format!("{name}: L2 norm"), error, 0.03));
+            let sum = |f: &[f64]| f.iter().sum::<f64>();
+            let peak = |f: &[f64]| f.iter().fold(0.0, |m: f64, f| m.max(*f));
+            for (what, of) in [
+                ("impulse", sum as fn(&[f64]) -> f64),
+                ("peak", peak),
+            ] {
+                let name = format!("{name}: {what}");
+                rows.push(Row::near(name, of(&two) / of(&one), 1.0, 0.03));
+            }
         }
-        println!("L2 {} impulse {} peak {}", f64::sqrt(gap / norm), impulse[1] / impulse[0] - 1.0, peak[1] / peak[0] - 1.0);
-        for window in [2, 5, 10, 20] {
-            let mean = |force: &[f64]| force.chunks(window).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect::<Vec<_>>();
-            let [a, b] = [&one, &two].map(|f| mean(f));
-            let gap: f64 = a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum();
-            let norm: f64 = a.iter().map(|a| a * a).sum();
-            let peak = [&a, &b].map(|f| f.iter().fold(0.0, |m: f64, f| m.max(*f)));
-            println!("window {window}: L2 {} peak {}", (gap / norm).sqrt(), peak[1] / peak[0] - 1.0);
-        }
-        Ok(Vec::<Row>::new())
+        Ok(rows)
     },
 };
 
 /// A ring about the origin that flies against the wall x = 1.
 struct Ring {
-    /// Elements across and round of the rest.
-    rest: [usize; 2],
-    /// The same of the sector.
-    sector: [usize; 2],
     /// Scheme of the rest.
     outer: Scheme,
     /// Outer step, s.
     dt: f64,
+    /// End of the run, s.
     end: f64,
 }
 
-const SUBSTEPS: u32 = 4;
-
 impl Ring {
-    /// A part of the ring from one angle to another.
-    fn part(&self, name: &str, [from, to]: [f64; 2], n: [usize; 2]) -> Mesh {
-        let mut mesh =
-            generate::rectangle(name, [1.0 - THICKNESS, from], [THICKNESS, to - from], n, false);
-        for x in &mut mesh.nodes {
-            let [r, angle, _] = *x;
-            *x = [r * angle.cos(), r * angle.sin(), 0.0];
-        }
-        mesh
-    }
-
-    fn body(&self, mesh: &Mesh, name: &str) -> Result<ModelBody, Error> {
-        let kinematics = Kinematics::PlaneStrain { thickness: 1.0 };
-        let mut body = body(mesh, name, kinematics, RUBBER)?;
-        body.spec.material = Law::NeoHooke(NeoHooke { initial: RUBBER });
-        body.velocity = [env("V", 0.5), 0.0, 0.0];
-        Ok(body)
-    }
-
     fn model(&self, mesh: Mesh, bodies: Vec<ModelBody>, dt: f64) -> Result<Model, Error> {
         let wall = ModelTarget::rigid(Plane {
             point: [1.0, 0.0, 0.0],
             normal: [-1.0, 0.0, 0.0],
         });
         let touch = contact(surface(&mesh, "sector.right", &bodies[0])?, wall, NOW);
-        let mut nonlinear = Nonlinear::default();
-        nonlinear.iteration.tolerance = env("TOL", 1e-10);
         Ok(Model {
             mesh,
             bodies,
             supports: Vec::new(),
             gravity: [0.0; 3],
             contacts: vec![touch],
-            scheme: theta(env("THETA", 0.55)),
+            scheme: theta(THETA),
             dt,
             adaptive: None,
-            nonlinear,
+            nonlinear: Nonlinear::default(),
         })
     }
 
     /// Mean contact force of each outer step in one mesh as fine as the sector.
     fn single(&self) -> Result<Vec<f64>, Error> {
-        let [across, round] = self.sector;
-        let n = [across, 5 * round];
-        let mut mesh = self.part("sector", [-SECTOR, SECTOR], self.sector);
-        mesh.merge("ring", self.part("rest", [SECTOR, 2.0 * PI - SECTOR], n))?;
+        let n = [FINE[0], 5 * FINE[1]];
+        let mut mesh = part("sector", [-SECTOR, SECTOR], FINE);
+        mesh.merge("ring", part("rest", [SECTOR, 2.0 * PI - SECTOR], n))?;
         let mesh = welded(mesh);
-        let mut body = self.body(&mesh, "sector")?;
+        let mut body = ring_body(&mesh, "sector")?;
         body.spec.cells.extend(&mesh.groups["rest"].elements);
         let dt = self.dt / f64::from(SUBSTEPS);
         let mut newton = Newton::new(System::new(self.model(mesh, vec![body], dt)?)?)?;
@@ -146,10 +131,10 @@ impl Ring {
     }
 
     /// The same in two zones.
-    fn glued(&self) -> Result<(Vec<f64>, f64), Error> {
-        let mut mesh = self.part("sector", [-SECTOR, SECTOR], self.sector);
-        mesh.merge("ring", self.part("rest", [SECTOR, 2.0 * PI - SECTOR], self.rest))?;
-        let bodies = vec![self.body(&mesh, "sector")?, self.body(&mesh, "rest")?];
+    fn glued(&self) -> Result<Vec<f64>, Error> {
+        let mut mesh = part("sector", [-SECTOR, SECTOR], FINE);
+        mesh.merge("ring", part("rest", [SECTOR, 2.0 * PI - SECTOR], REST))?;
+        let bodies = vec![ring_body(&mesh, "sector")?, ring_body(&mesh, "rest")?];
         let link = |name: &str, sides: [&str; 2]| {
             let inner = surface(&mesh, sides[0], &bodies[0])?;
             let outer = surface(&mesh, sides[1], &bodies[1])?;
@@ -172,7 +157,7 @@ impl Ring {
         };
         let mut zones = Zones::new(&Zoned {
             zones: vec![
-                zone(0, theta(env("THETA", 0.55)), SUBSTEPS),
+                zone(0, theta(THETA), SUBSTEPS),
                 zone(1, self.outer, 1),
             ],
             links,
@@ -186,8 +171,27 @@ impl Ring {
             let sum: f64 = samples.map(|s| s.contacts[0].force).sum();
             forces.push(sum / f64::from(SUBSTEPS));
         }
-        Ok((forces, zones.all_passes() as f64 / zones.outer_step() as f64))
+        Ok(forces)
     }
+}
+
+/// A part of the ring from one angle to another.
+fn part(name: &str, [from, to]: [f64; 2], n: [usize; 2]) -> Mesh {
+    let mut mesh =
+        generate::rectangle(name, [1.0 - THICKNESS, from], [THICKNESS, to - from], n, false);
+    for x in &mut mesh.nodes {
+        let [r, angle, _] = *x;
+        *x = [r * angle.cos(), r * angle.sin(), 0.0];
+    }
+    mesh
+}
+
+fn ring_body(mesh: &Mesh, name: &str) -> Result<ModelBody, Error> {
+    let kinematics = Kinematics::PlaneStrain { thickness: 1.0 };
+    let mut body = body(mesh, name, kinematics, RUBBER)?;
+    body.spec.material = Law::NeoHooke(NeoHooke { initial: RUBBER });
+    body.velocity = [0.2, 0.0, 0.0];
+    Ok(body)
 }
 
 /// The mesh with nodes at the same place as one.

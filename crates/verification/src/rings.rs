@@ -1,9 +1,25 @@
 //! Two elastic rings that collide.
+//!
+//! Problem: `cases/rings`: two rings in the plane, outer radius 1 m, thickness 0.1 m, plane strain, neo-Hooke, E = 1 MPa, ν = 0.3,
+//! ρ = 1000 kg/m³; the first flies at 1.5 m/s along x against the second, which is free, at rest, and 0.5 m off the line. They flatten
+//! by a third of their radius, slide over each other and leave turning. Mortar, standard basis, dt = 0.01 s, 300 steps.
+//! Closed facts: linear momentum, angular momentum, energy. Reference: none beyond these; with another scheme and another
+//! law, the impulse of the run that keeps them.
+//! Tolerances: momenta 1e-10 and energy 1e-8 with energy-momentum, as the issue states (iterations end at 1e-11 of the
+//! forces: 1e-12 is found). The ledger of every run closes to the iterations, 1e-10 of the energy. Displacement law: no
+//! gap beyond 1e-9 m, that of the iterations. Velocity law: the bound of its viability, with the speed of the approach. Damped law:
+//! its k_p = E / thickness gives way by a tenth of the thickness at most. Impulses agree to 3 %: schemes and laws differ
+//! by O(dt) in when a point closes. The largest mean force over 0.1 s follows them with 15 %, a step being a tenth of the window in
+//! which the points of an element close one after the other. Under the displacement law the trapezoid gains energy, which is shown and not
+//! bounded from above.
+//! Sizes: quick 2 x 32 elements in each ring, the first 60 steps; full 3 x 96.
 
 use carom_bodies::Kinematics;
-use carom_contact::{Integration, Law};
+use carom_contact::law::Adhesion;
+use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Newton, Scheme, System};
+use carom_dynamics::{Newton, Scheme, State, System};
+use carom_exact::closed_forms::{penetration_bound_half, penetration_bound_now};
 use carom_materials::Elastic;
 
 use crate::Error;
@@ -17,61 +33,246 @@ const RUBBER: Elastic = Elastic {
     young: 1e6,
     poisson: 0.3,
 };
+const THICKNESS: f64 = 0.1;
+const SPEED: f64 = 1.5;
+const STEP: f64 = 0.01;
+/// Part of the impulse within which schemes and laws agree.
+const IMPULSE: f64 = 0.03;
+/// Part of the largest mean force within which they agree.
+const FORCE: f64 = 0.15;
+/// Steps of the window over which the force is averaged: 0.1 s.
+const WINDOW: usize = 10;
 
-fn env<T: std::str::FromStr>(name: &str, default: T) -> T { std::env::var(name).ok().and_then(|s| s.parse().ok()).unwrap_or(default) }
+/// What a collision did.
+struct Collided {
+    kept: Kept,
+    /// Total force of each step, N.
+    forces: Vec<f64>,
+    drift: GapDrift,
+    /// Largest strain energy over the energy at the start.
+    strained: f64,
+    /// Iterations a step.
+    iterations: f64,
+    end: State,
+}
+
+impl Collided {
+    /// Largest mean of the force over the window, N.
+    fn mean_force(&self) -> f64 {
+        let means = self.forces.windows(WINDOW);
+        let means = means.map(|forces| forces.iter().sum::<f64>() / WINDOW as f64);
+        means.fold(0.0, f64::max)
+    }
+
+    fn impulse(&self) -> f64 {
+        self.end.records.contacts[0].impulse()
+    }
+
+    fn penetration(&self) -> f64 {
+        self.end.records.contacts[0].penetration
+    }
+
+    /// Largest residual of the energy balance over the energy at the start.
+    fn residual(&self) -> f64 {
+        let ledger = &self.end.ledger;
+        ledger.largest_energy_residual / ledger.initial.energy()
+    }
+
+    /// Energy at the end over that at the start, less one.
+    fn gain(&self) -> f64 {
+        let ledger = &self.end.ledger;
+        ledger.balance.energy() / ledger.initial.energy() - 1.0
+    }
+}
+
+/// How far the gap of a point moves while it carries a force without a pause.
+struct GapDrift {
+    /// Least and largest gap of each point since its force began, m.
+    range: Vec<Option<[f64; 2]>>,
+    /// Largest difference of the two so far, m.
+    largest: f64,
+}
+
+impl GapDrift {
+    fn follow(&mut self, state: &State) {
+        let interface = &state.interface;
+        let points = interface.force.iter().zip(&interface.gap);
+        for (range, (&force, &gap)) in self.range.iter_mut().zip(points) {
+            *range = (force > 0.0).then(|| {
+                let [least, most] = range.unwrap_or([gap; 2]);
+                [least.min(gap), most.max(gap)]
+            });
+            if let Some([least, most]) = range {
+                self.largest = self.largest.max(*most - *least);
+            }
+        }
+    }
+}
+
+fn collide(mesh: &'static str, steps: usize, scheme: Scheme, law: Law) -> Result<Collided, Error> {
+    let rings = Collision {
+        mesh,
+        bodies: ["ring1", "ring2"],
+        kinematics: Kinematics::PlaneStrain { thickness: 1.0 },
+        material: RUBBER,
+        velocity: [SPEED, 0.0, 0.0],
+        integration: Integration::Mortar {
+            basis: Basis::Standard,
+        },
+    };
+    let mut newton = Newton::new(System::new(rings.model(scheme, law, STEP)?)?)?;
+    let mut kept = Kept::new(newton.system(), newton.state());
+    let mut drift = GapDrift {
+        range: vec![None; newton.system().points()],
+        largest: 0.0,
+    };
+    let (mut forces, mut strained, mut iterations) = (Vec::new(), 0.0_f64, 0);
+    let energy = newton.state().ledger.initial.energy();
+    for _ in 0..steps {
+        newton.step()?;
+        kept.follow(newton.state());
+        drift.follow(newton.state());
+        let report = newton.report();
+        forces.push(report.contacts[0].force);
+        strained = strained.max(report.balance.strain / energy);
+        iterations += newton.residuals().len();
+    }
+    Ok(Collided {
+        kept,
+        forces,
+        drift,
+        strained,
+        iterations: iterations as f64 / steps as f64,
+        end: newton.state().clone(),
+    })
+}
+
+/// The laws 1, 2 and 3 with the schemes beside energy-momentum.
+fn runs() -> [(&'static str, &'static str, Scheme, Law); 6] {
+    let soft = damped(&RUBBER, THICKNESS, 0.5, Adhesion::Clip);
+    let (trapezoid, middle) = (newmark(0.25, 0.5), theta(0.5));
+    [
+        ("newmark", "displacement", trapezoid, DISPLACEMENT),
+        ("newmark", "damped", trapezoid, soft),
+        ("newmark", "velocity", trapezoid, NOW),
+        ("theta", "displacement", middle, DISPLACEMENT),
+        ("theta", "damped", middle, soft),
+        ("theta", "velocity", middle, HALF),
+    ]
+}
+
+fn energy_momentum(mesh: &'static str, steps: usize) -> Result<Collided, Error> {
+    collide(mesh, steps, Scheme::EnergyMomentum(EnergyMomentum), NOW)
+}
+
+/// Facts of the run that keeps everything.
+fn conserved(run: &Collided) -> Vec<Row> {
+    let row = |what: &str| format!("energy-momentum, velocity: {what}");
+    vec![
+        Row::at_most(row("change of momentum, relative"), run.kept.linear, 1e-10),
+        Row::at_most(
+            row("change of angular momentum, relative"),
+            run.kept.angular,
+            1e-10,
+        ),
+        Row::at_most(row("change of energy, relative"), run.kept.energy, 1e-8),
+        Row::at_least(row("largest strain energy / energy"), run.strained, 0.1),
+        Row::at_most(row("iterations a step"), run.iterations, 15.0),
+    ]
+}
+
+/// Facts of a law under another scheme.
+fn side_by_side(name: &str, law: Law, run: &Collided, reference: &Collided) -> Vec<Row> {
+    let row = |what: &str| format!("{name}: {what}");
+    let largest = match law {
+        Law::Displacement(_) => 1e-9,
+        Law::Damped(_) => 0.1 * THICKNESS,
+        _ if law == HALF => penetration_bound_half(0.5, SPEED, STEP),
+        _ => penetration_bound_now(0.5, SPEED, STEP),
+    };
+    let mut rows = vec![
+        Row::at_most(row("ledger residual / energy"), run.residual(), 1e-10),
+        Row::at_most(row("change of momentum, relative"), run.kept.linear, 1e-10),
+        Row::at_most(row("penetration, m"), run.penetration(), largest),
+        Row::at_most(
+            row("gap drift of closed points, m"),
+            run.drift.largest,
+            largest,
+        ),
+    ];
+    if name == "newmark, displacement" {
+        rows.push(Row::at_least(
+            row("energy gained, relative"),
+            run.gain(),
+            0.02,
+        ));
+    } else {
+        let impulse = run.impulse() / reference.impulse();
+        rows.push(Row::near(
+            row("impulse / that of energy-momentum"),
+            impulse,
+            1.0,
+            IMPULSE,
+        ));
+        let force = run.mean_force() / reference.mean_force();
+        rows.push(Row::near(
+            row("force over 0.1 s / that of energy-momentum"),
+            force,
+            1.0,
+            FORCE,
+        ));
+    }
+    rows
+}
 
 pub(crate) const CHECK: Check = Check {
     name: "rings",
-    fact: "",
+    fact: "two rings that collide keep momenta and energy with energy-momentum, and other laws and schemes give the same impulse",
     run: |size| {
-        let collision = Collision {
-            mesh: match size { Size::Quick => "rings/rings-coarse.msh", Size::Full => "rings/rings.msh" },
-            bodies: ["ring1", "ring2"],
-            kinematics: Kinematics::PlaneStrain { thickness: 1.0 },
-            material: RUBBER,
-            velocity: [env("V", 1.5), 0.0, 0.0],
-            integration: if env("MORTAR", 1) == 1 { Integration::Mortar { basis: carom_contact::Basis::Standard } } else { Integration::Node },
-            depth: 0.1,
+        let (mesh, steps) = match size {
+            Size::Quick => ("rings/rings-coarse.msh", 60),
+            Size::Full => ("rings/rings.msh", 300),
         };
-        let dt = env("DT", 0.01);
-        let steps = env("STEPS", 300usize);
-        let size_h = 0.1;
-        let law2 = damped(&RUBBER, size_h, 0.5, carom_contact::law::Adhesion::Clip);
-        let all = [
-            ("em velocity now", Scheme::EnergyMomentum(EnergyMomentum), NOW),
-            ("em velocity half", Scheme::EnergyMomentum(EnergyMomentum), HALF),
-            ("newmark d", newmark(0.25, 0.5), DISPLACEMENT),
-            ("newmark damped", newmark(0.25, 0.5), law2),
-            ("newmark v", newmark(0.25, 0.5), NOW),
-            ("theta d", theta(0.5), DISPLACEMENT),
-            ("theta damped", theta(0.5), law2),
-            ("theta v", theta(0.5), HALF),
-        ];
-        for (name, scheme, law) in all {
-            if !name.contains(&env("ONLY", String::new())) { continue; }
-            let begin = std::time::Instant::now();
-            let system = System::new(collision.model(scheme, law, dt, env("TOL", 1e-11))?)?;
-            let mut newton = Newton::new(system)?;
-            let mut kept = Kept::new(newton.system(), newton.state());
-            let (mut passes, mut halved, mut most) = (0, 0, 0);
-            let mut result = Ok(());
-            for _ in 0..steps {
-                result = newton.step();
-                if result.is_err() { break; }
-                kept.follow(newton.state());
-                passes += newton.residuals().len();
-                most = most.max(newton.residuals().len());
-                halved += (newton.report().attempts > 1) as usize;
-                if env("SHOW", 0) == 1 {
-                    let r = &newton.report().contacts[0];
-                    println!("{} t {:.4} f {:.4e} gap {:.3e} closed {} changes {} passes {:?} kin {:.6} E {:.10}", newton.state().step, newton.state().time, r.force, r.gap, r.closed, r.status_changes, newton.residuals().iter().map(|r| format!("{r:.0e}")).collect::<Vec<_>>(), newton.report().balance.kinetic, newton.report().balance.energy());
-                }
-            }
-            let state = newton.state();
-            let rec = &state.records.contacts[0];
-            println!("{name}: steps {} lin {:.1e} ang {:.1e} energy {:.1e} ledger {:.1e} | passes {passes} most {most} halved {halved} | peak {:.4e} impulse {:.5e} pen {:.3e} changes {} strain {:.3} {:?} {:?}", state.step, kept.linear, kept.angular, kept.energy, state.ledger.largest_energy_residual / state.ledger.initial.energy(), rec.peak_force, rec.impulse(), rec.penetration, rec.status_changes, state.ledger.balance.strain / state.ledger.initial.energy(), begin.elapsed(), result.map_err(|e| e.to_string()));
-            println!("   {:?}", newton.costs().phases);
+        let reference = energy_momentum(mesh, steps)?;
+        let mut rows = conserved(&reference);
+        for (scheme, law, run, of) in runs() {
+            let run = collide(mesh, steps, run, of)?;
+            let name = format!("{scheme}, {law}");
+            rows.extend(side_by_side(&name, of, &run, &reference));
         }
-        Ok(vec![])
+        Ok(rows)
     },
 };
+
+/// The table of the manual: force, penetration, gap drift and ledger of the laws side by side, as Markdown.
+///
+/// # Errors
+/// A mesh file that cannot be read, a step that fails.
+pub fn table() -> Result<String, Error> {
+    let (mesh, steps) = ("rings/rings.msh", 300);
+    let mut text = String::from(
+        "| scheme | law | force over 0.1 s, N | largest force, N | impulse, N s | penetration, mm | gap drift, mm | energy, % | ledger residual |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    let mut push = |scheme: &str, law: &str, run: &Collided| {
+        text += &format!(
+            "| {scheme} | {law} | {:.0} | {:.0} | {:.1} | {:.3} | {:.3} | {:+.2} | {:.0e} |\n",
+            run.mean_force(),
+            run.end.records.contacts[0].peak_force,
+            run.impulse(),
+            1e3 * run.penetration(),
+            1e3 * run.drift.largest,
+            100.0 * run.gain(),
+            run.residual(),
+        );
+    };
+    push(
+        "energy-momentum",
+        "velocity",
+        &energy_momentum(mesh, steps)?,
+    );
+    for (scheme, law, run, of) in runs() {
+        push(scheme, law, &collide(mesh, steps, run, of)?);
+    }
+    Ok(text)
+}

@@ -149,7 +149,11 @@ impl Body {
             let masses = &masses[first..first + nodes.len()];
             first += nodes.len();
             stability::scale(dim, k, masses, &mut scaled);
-            largest = largest.max(stability::largest_magnitude(&mut scaled));
+            let norm = scaled.iter().map(|b| b * b).sum::<f64>().sqrt();
+            // no eigenvalue is beyond the norm
+            if norm > largest {
+                largest = largest.max(stability::largest_magnitude(&mut scaled));
+            }
         });
         visited.map_err(|failed| self.failed(failed))?;
         Ok(largest.sqrt())

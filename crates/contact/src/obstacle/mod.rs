@@ -76,6 +76,21 @@ impl Obstacle {
             pose: self.motion.at(t),
         }
     }
+
+    /// Mean velocity in m/s, from one time to another, of the particle that is at x (m) at time `t`; its velocity then
+    /// where both are the same. Times in s.
+    pub fn mean_velocity(&self, x: &[f64; 3], t: f64, [from, to]: [f64; 2]) -> [f64; 3] {
+        let poses = [t, from, to].map(|t| self.motion.at(t));
+        let [Some(now), Some(first), Some(last)] = poses else {
+            return [0.0; 3];
+        };
+        let particle = now.back(x);
+        let (first, end) = (first.forth(&particle), last.forth(&particle));
+        match to == from {
+            true => last.velocity(&end),
+            false => [0, 1, 2].map(|i| (end[i] - first[i]) / (to - from)),
+        }
+    }
 }
 
 impl From<Shape> for Obstacle {
@@ -262,6 +277,30 @@ pub(crate) mod tests {
             fastest = fastest.max(rate.abs());
         }
         assert!(fastest > 0.1);
+    }
+
+    #[test]
+    fn the_mean_velocity_of_a_particle_is_its_way_over_the_time() {
+        let plane = Plane {
+            point: [0.0; 3],
+            normal: [0.0, 0.0, 1.0],
+        };
+        let obstacle = moving(Shape::Plane(plane));
+        let x = [1.1, 0.4, 0.2];
+        let now = obstacle.mean_velocity(&x, 0.3, [0.3, 0.3]);
+        let straight = obstacle.at(0.3).velocity(&x);
+        let (before, after) = (
+            obstacle.mean_velocity(&x, 0.3, [0.0, 0.3]),
+            obstacle.mean_velocity(&x, 0.3, [0.3, 0.5]),
+        );
+        let whole = obstacle.mean_velocity(&x, 0.3, [0.0, 0.5]);
+        for i in 0..3 {
+            assert!((now[i] - straight[i]).abs() < 1e-14);
+            // ways add up
+            assert!((0.3 * before[i] + 0.2 * after[i] - 0.5 * whole[i]).abs() < 1e-14);
+        }
+        // a quarter turn and more in half a second: far from the velocity
+        assert!((0..3).any(|i| (before[i] - now[i]).abs() > 0.1));
     }
 
     #[test]

@@ -102,6 +102,12 @@ impl Pose {
         })
     }
 
+    /// Place of particle X: p + d + R (X - p).
+    pub(super) fn forth(&self, particle: &[f64; 3]) -> [f64; 3] {
+        let r = self.turned(&[0, 1, 2].map(|i| particle[i] - self.point[i]));
+        [0, 1, 2].map(|i| self.point[i] + self.displacement[i] + r[i])
+    }
+
     /// R n.
     pub(super) fn turned(&self, n: &[f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|i| (0..3).map(|k| self.rotation[i][k] * n[k]).sum())

@@ -34,8 +34,9 @@ impl Merge {
         self.gap += weight * gap;
         self.normal += Vec3::from(normal) * weight;
         let frame = tangent_vectors(&normal, dim);
-        for (rate, vector) in self.rates.iter_mut().zip([normal, frame[0], frame[1]]) {
-            *rate += weight * stencil.rate(&vector);
+        self.rates[0] += weight * stencil.rate(&normal);
+        for (rate, tangent) in self.rates[1..].iter_mut().zip(&frame) {
+            *rate += weight * stencil.slide(tangent);
         }
         let vectors = [normal, frame[0], frame[1]].map(|v| Vec3::from(v) * weight);
         let turning = stencil.turning();

@@ -44,6 +44,10 @@ pub struct Pairing {
     /// Reference area that each point stands for, m²: [`Point::area`](crate::Point::area), for a multiplier of the mortar
     /// method ∫ φ_A dΓ over what faces the primary surface now, if any does.
     pub areas: Vec<f64>,
+    /// Over which times, from that of the places on, the rates of the tangents are means of the motion of an obstacle, s:
+    /// over the step a point that sticks goes where the obstacle's particle goes, however far that turns. Where both are
+    /// the same they are its velocity at that time. It stays until it is set.
+    pub span: [f64; 2],
     stencils: Vec<Stencil>,
     /// Stencils of all points and their weights, point after point.
     terms: Vec<(u32, f64)>,
@@ -237,7 +241,7 @@ impl Contact {
             return mortar.pair(self, basis, places, search, pairing);
         }
         for (k, point) in self.points.iter().enumerate() {
-            let stencil = Stencil::new(self, places, search, (point, self.view(k)));
+            let stencil = Stencil::new(self, places, search, (point, self.view(k), pairing.span));
             pairing.push(point.area, stencil);
         }
     }

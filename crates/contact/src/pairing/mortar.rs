@@ -33,7 +33,11 @@ use crate::{Contact, Places, Point, Search, Target};
 const CORNERS: usize = 4;
 
 /// Part of its area that a multiplier must have opposite it to face anything.
-const LEAST: f64 = 1e-12;
+const LEAST: f64 = 1e-6;
+
+/// Distance of the closest point of the other side from the middle of a face, in radii of the face, beyond which the face
+/// counts as facing nothing. In a step parts must come closer by less.
+const FAR: f64 = 4.0;
 
 /// Shape functions of the multipliers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -167,6 +171,7 @@ impl Mortar {
                 mortar: self,
                 index,
                 places,
+                span: pairing.span,
                 stencils: &mut pairing.stencils,
                 quadrature: &mut work.quadrature,
             };
@@ -232,6 +237,7 @@ struct Sweep<'a> {
     mortar: &'a Mortar,
     index: usize,
     places: &'a Places<'a>,
+    span: [f64; 2],
     stencils: &'a mut Vec<Stencil>,
     quadrature: &'a mut Vec<Quadrature>,
 }
@@ -246,7 +252,9 @@ impl<'a> Sweep<'a> {
         let rule = self.face().kind.table().mass_rule;
         for (xi, &weight) in rule.points.iter().zip(rule.weights) {
             let point = self.point(xi);
-            if let Some(stencil) = Stencil::new(contact, self.places, search, (&point, None)) {
+            if let Some(stencil) =
+                Stencil::new(contact, self.places, search, (&point, None, self.span))
+            {
                 self.push(&Sample { xi: *xi, weight }, stencil);
             }
         }
@@ -266,11 +274,12 @@ impl<'a> Sweep<'a> {
         // a face sees what its first corner sees
         let view = contact.view(self.mortar.multipliers[self.index][0] as usize);
         for cell in cells(element, &x[..element.nodes]) {
-            let Some((closest, _)) = search.closest(self.places, faces, view, &cell.middle())
-            else {
-                return;
+            let target = (self.places, faces);
+            let within = FAR * radius(&cell);
+            let Some((closest, _)) = search.closest(target, view, &cell.middle(), within) else {
+                continue;
             };
-            search.overlapping((self.places, faces), &shade(&cell, &closest), found);
+            search.overlapping(target, &shade(&cell, &closest), found);
             for &item in found.iter() {
                 let face = &faces[item as usize];
                 let low = is_linear(element) && is_linear(face.kind.table());
@@ -323,14 +332,18 @@ fn is_linear(element: &Element) -> bool {
 /// The box that a cell sweeps along its normal, both ways, as far as a face at the distance of the closest point and
 /// turned by 60 degrees could be.
 fn shade(cell: &Cell, closest: &Projection) -> Bounds {
-    let middle = cell.middle();
-    let square = |x: &[f64; 3]| (0..3).map(|i| (x[i] - middle[i]).powi(2)).sum::<f64>();
-    let radius = cell.corners().iter().map(square).fold(0.0, f64::max).sqrt();
-    let reach = cell.normal() * (2.0 * (closest.distance + radius));
+    let reach = cell.normal() * (2.0 * (closest.distance + radius(cell)));
     let moved = |x: &[f64; 3], sign: f64| [0, 1, 2].map(|i| x[i] + sign * reach[i]);
     cell.corners().iter().fold(Bounds::EMPTY, |bounds, x| {
         bounds.union(&Bounds::of(&[moved(x, 1.0), moved(x, -1.0)]))
     })
+}
+
+/// Largest distance of a corner from the middle of a cell, m.
+fn radius(cell: &Cell) -> f64 {
+    let middle = cell.middle();
+    let square = |x: &[f64; 3]| (0..3).map(|i| (x[i] - middle[i]).powi(2)).sum::<f64>();
+    cell.corners().iter().map(square).fold(0.0, f64::max).sqrt()
 }
 
 /// D M⁻¹ with `M_ab = Σ w φ_a φ_b` and `D_a = Σ w φ_a`; none where M is singular to 1e-10.

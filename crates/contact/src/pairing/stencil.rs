@@ -33,6 +33,8 @@ enum Foot {
         hessian: [[f64; 3]; 3],
         /// Velocity of the obstacle's particle there, m/s.
         velocity: [f64; 3],
+        /// Its mean velocity over the span of the pairing, m/s.
+        carried: [f64; 3],
     },
 }
 
@@ -54,12 +56,12 @@ pub(super) struct Foothold {
 
 impl Stencil {
     /// The stencil of a point of a contact, `None` where it faces nothing. `search` is that of these places; `view`:
-    /// what it sees of a surface.
+    /// what it sees of a surface; `span`: [`Pairing::span`](super::Pairing::span).
     pub fn new(
         contact: &Contact,
         places: &Places,
         search: &mut Search,
-        (point, view): (&Point, Option<View>),
+        (point, view, span): (&Point, Option<View>, [f64; 2]),
     ) -> Option<Stencil> {
         let x = point.place(places);
         match &contact.target {
@@ -76,6 +78,11 @@ impl Stencil {
                     foot: Foot::Obstacle {
                         hessian: found.hessian,
                         velocity: placed.velocity(&x),
+                        carried: obstacle.mean_velocity(
+                            &x,
+                            places.time,
+                            span.map(|after| places.time + after),
+                        ),
                     },
                 })
             }
@@ -121,7 +128,7 @@ impl Stencil {
         let frame = tangent_vectors(&self.normal, dim);
         for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
             rows.push(0.0, *t);
-            rows.set_rate(self.rate(t));
+            rows.set_rate(self.slide(t));
         }
         let turning = self.turning();
         for (i, (node, c)) in self.relative().enumerate() {
@@ -143,6 +150,14 @@ impl Stencil {
             Foot::Obstacle { velocity, .. } => {
                 -(0..3).map(|i| direction[i] * velocity[i]).sum::<f64>()
             }
+        }
+    }
+
+    /// Rate at which it does so along a tangent in the mean over the span, m/s.
+    pub fn slide(&self, tangent: &[f64; 3]) -> f64 {
+        match &self.foot {
+            Foot::Face(_) => 0.0,
+            Foot::Obstacle { carried, .. } => -(0..3).map(|i| tangent[i] * carried[i]).sum::<f64>(),
         }
     }
 

@@ -83,13 +83,14 @@ impl Newton {
                 x: &system.x,
                 u: &self.vectors.place,
             };
+            self.pairing.span = self.span(contact);
             contact.pair_fully(&places, &mut self.search[k], &mut self.pairing);
         }
         self.stack();
     }
 
     /// How long after the start of the step a contact is paired, s.
-    fn paired_after(&self, contact: &Contact) -> f64 {
+    pub(super) fn paired_after(&self, contact: &Contact) -> f64 {
         let law = self.law(contact);
         match law.get().level() {
             _ if self.between() => 0.5 * self.dt,

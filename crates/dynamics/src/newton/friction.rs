@@ -6,12 +6,14 @@
 
 use std::sync::Arc;
 
+use carom_contact::Contact;
 use carom_contact::law::{Level, Status};
 
 use super::Newton;
 use crate::coulomb::{FrictionFailure, Posed, Slip, Tangential};
 use crate::driver::on_row;
 use crate::error::Error;
+use crate::state::ContactReport;
 use crate::step_map::Row;
 use crate::system::System;
 
@@ -63,12 +65,26 @@ impl Newton {
         }
     }
 
-    /// The row of the step whose product with T is the sliding quantity, and the time that turns a rate into it.
-    fn sliding(&self) -> (Row, f64) {
+    /// Whether sliding is a velocity at the end of the step, or the way in it.
+    fn slides_by_rate(&self) -> bool {
         let system = &*self.system;
         let of_rate = |k: usize| system.contacts[k].law.get().level() == Level::Rate;
-        let rubbing = (0..system.contacts.len()).filter(|&k| system.friction[k] > 0.0);
-        if self.map.inertia.x != 0.0 && rubbing.into_iter().all(of_rate) {
+        let mut rubbing = (0..system.contacts.len()).filter(|&k| system.friction[k] > 0.0);
+        self.map.inertia.x != 0.0 && rubbing.all(of_rate)
+    }
+
+    /// The times, from that at which the places of a contact are taken, over which its sliding is looked at, s.
+    pub(super) fn span(&self, contact: &Contact) -> [f64; 2] {
+        let after = self.paired_after(contact);
+        match self.slides_by_rate() {
+            true => [self.dt - after; 2],
+            false => [-after, self.dt - after],
+        }
+    }
+
+    /// The row of the step whose product with T is the sliding quantity, and the time that turns a rate into it.
+    fn sliding(&self) -> (Row, f64) {
+        if self.slides_by_rate() {
             return (self.map.rate, 1.0);
         }
         let now = Row {
@@ -184,7 +200,8 @@ impl Newton {
     /// Way that a point slides along one tangent in the step that was taken, m.
     fn way(&self, point: usize, tangent: usize) -> f64 {
         let rows = &self.pairing.tangents[tangent];
-        let [old, new] = [&self.state.motion.u, &self.next.motion.u].map(|u| rows.product(point, u));
+        let [old, new] =
+            [&self.state.motion.u, &self.next.motion.u].map(|u| rows.product(point, u));
         new - old + self.dt * rows.rate(point)
     }
 
@@ -203,5 +220,33 @@ impl Newton {
             }
         }
         self.map.contact * work
+    }
+
+    /// Writes the friction of a contact into its report, and adds it to the resultant.
+    pub(super) fn report_friction(&self, contact: usize, report: &mut ContactReport) {
+        let points = self.system.first_point[contact]..self.system.first_point[contact + 1];
+        let mut sum = [0.0; 3];
+        for point in points {
+            let Some(t) = self.next.interface.friction.get(point) else {
+                return;
+            };
+            for (rows, t) in self
+                .pairing
+                .tangents
+                .iter()
+                .zip(t)
+                .take(self.system.tangents())
+            {
+                for (sum, direction) in sum.iter_mut().zip(rows.normal(point)) {
+                    *sum += t * direction;
+                }
+            }
+            let slips = self.slips[point] == Slip::Slip && t != &[0.0; 2];
+            report.slipping += usize::from(slips);
+        }
+        report.friction = sum.iter().map(|f| f * f).sum::<f64>().sqrt();
+        for (resultant, f) in report.resultant.iter_mut().zip(sum) {
+            *resultant += f;
+        }
     }
 }

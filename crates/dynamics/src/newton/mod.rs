@@ -16,6 +16,7 @@ mod friction;
 mod linked;
 mod loads;
 mod solve;
+mod stable;
 mod start;
 
 use std::sync::Arc;
@@ -199,15 +200,17 @@ impl Newton {
         }
     }
 
-    /// Takes one step: whole, or in halves of halves where it finds no equilibrium.
+    /// Takes one step: whole, or in halves of halves where it finds no equilibrium, and of an explicit scheme where elements
+    /// have become too small for it.
     ///
     /// # Errors
-    /// No equilibrium with the smallest part of the step; the state is then the one before the step.
+    /// No equilibrium with the smallest part of the step, or one that is not stable; the state is then the one before the step.
     pub fn step(&mut self) -> Result<(), Error> {
         let start = self.state.clone();
         let (first, end) = (self.state.time, self.end_of_step());
+        let whole = self.stable_level(end - first)?;
         let mut control = self.state.control;
-        let (mut done, mut level) = (0u64, 0u32);
+        let (mut done, mut level) = (0u64, whole);
         let parts = 1u64 << self.system.nonlinear.iteration.halvings;
         self.report.attempts = 0;
         while done < parts {
@@ -221,7 +224,7 @@ impl Newton {
                         std::mem::swap(&mut self.state, &mut self.next);
                         self.state.time = to;
                     }
-                    while level > 0
+                    while level > whole
                         && done.is_multiple_of(2 * part)
                         && done.is_multiple_of(parts >> (level - 1))
                     {

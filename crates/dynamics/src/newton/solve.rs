@@ -61,7 +61,7 @@ impl Newton {
         let interface = &mut self.next.interface;
         interface.clone_from(&self.state.interface);
         self.guess_slips();
-        self.evaluate()?;
+        self.evaluate(true)?;
         self.pair(true);
         let mut standing = self.standing();
         for pass in 0..limit {
@@ -131,8 +131,8 @@ impl Newton {
         }
     }
 
-    /// Loads, inertia, internal and damping forces at x.
-    fn evaluate(&mut self) -> Result<(), Error> {
+    /// Loads, inertia, internal and damping forces at x. `first`: those that x does not change too.
+    fn evaluate(&mut self, first: bool) -> Result<(), Error> {
         let map = self.map;
         let motion = &self.state.motion;
         let vectors = &mut self.vectors;
@@ -141,16 +141,18 @@ impl Newton {
         self.system
             .mass
             .multiply(&vectors.place, &mut vectors.inertia);
-        self.evaluate_damping();
-        let vectors = &mut self.vectors;
-        map.force
-            .whole(&self.state.motion, &vectors.x, &[], &mut vectors.place);
-        let dt = match self.between() {
-            true => self.dt,
-            false => map.force_fraction.unwrap_or(1.0) * self.dt,
-        };
-        self.stored = self.internal((Which::Place, self.between()), dt)?;
-        self.evaluate_loads(self.instant());
+        if first || map.force.x != 0.0 {
+            self.evaluate_damping();
+            let vectors = &mut self.vectors;
+            map.force
+                .whole(&self.state.motion, &vectors.x, &[], &mut vectors.place);
+            let dt = match self.between() {
+                true => self.dt,
+                false => map.force_fraction.unwrap_or(1.0) * self.dt,
+            };
+            self.stored = self.internal((Which::Place, self.between()), dt)?;
+            self.evaluate_loads(self.instant());
+        }
         let vectors = &mut self.vectors;
         for i in 0..vectors.residual.len() {
             vectors.residual[i] = match self.system.fixed[i] {
@@ -356,7 +358,7 @@ impl Newton {
             for (i, x_i) in self.vectors.x.iter_mut().enumerate() {
                 *x_i = x[i] + share * self.vectors.dx[i];
             }
-            match self.evaluate() {
+            match self.evaluate(false) {
                 Ok(()) => {
                     self.pair(false);
                     let standing = self.standing();

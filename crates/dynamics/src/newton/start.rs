@@ -144,6 +144,7 @@ impl Newton {
     fn pair_now(&mut self) {
         let system = Arc::clone(&self.system);
         self.pairing.clear();
+        self.pairing.span = [0.0; 2];
         for (k, contact) in system.contacts.iter().enumerate() {
             let places = carom_contact::Places {
                 dim: system.dim,

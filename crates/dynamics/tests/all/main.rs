@@ -5,13 +5,16 @@
 
 mod allocation;
 mod dense;
+mod friction;
 mod initial;
 mod interface;
+mod material_work;
 mod momentum;
 mod monolithic;
 mod mortar;
 mod newton;
 mod quadrature;
+mod refusals;
 mod stability;
 mod weak_form;
 mod whole;

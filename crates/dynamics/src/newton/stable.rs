@@ -1,0 +1,68 @@
+//! Explicit steps at finite strain: elements that shorten take the critical step down as they deform.
+
+use super::Newton;
+use crate::error::Error;
+
+/// Part of the critical step that is taken, for what elements change until they are looked at again.
+const PART: f64 = 0.9;
+
+/// Change of the lengths in an element, relative, after which its frequencies are looked at again: that costs several steps.
+const CHANGE: f64 = 0.1;
+
+impl Newton {
+    /// How many times a step of `dt` (s) is halved for its parts to be below the critical step. That is looked at anew
+    /// where elements have changed; what was found is kept in the state.
+    ///
+    /// # Errors
+    /// A critical step below the smallest part, an element without tangent.
+    pub(super) fn stable_level(&mut self, dt: f64) -> Result<u32, Error> {
+        let system = &*self.system;
+        let explicit = system.scheme.get().step_map(dt).force.x == 0.0;
+        if !explicit || self.is_static() || system.bodies.iter().all(|body| body.is_linear()) {
+            return Ok(0);
+        }
+        let change = self.state.control.changed + dt * self.largest_rate();
+        self.state.control.changed = change;
+        if self.state.step == 0 || change > CHANGE {
+            let critical = self.system.critical_step_at(&self.state.motion)?;
+            self.state.control.dt = PART * critical;
+            self.state.control.changed = 0.0;
+        }
+        let stable = self.state.control.dt;
+        let halvings = self.system.nonlinear.iteration.halvings;
+        let mut levels = 0..=halvings;
+        let level = levels.find(|&level| dt <= stable * (1u64 << level) as f64);
+        level.ok_or_else(|| Error::Shortened {
+            step: self.state.step + 1,
+            time: self.state.time,
+            dt: dt / (1u64 << halvings) as f64,
+            critical: stable / PART,
+        })
+    }
+
+    /// Largest rate at which the distance of two nodes of an element changes, relative to it, 1/s.
+    fn largest_rate(&self) -> f64 {
+        let (system, motion) = (&*self.system, &self.state.motion);
+        let dim = system.dim;
+        let mut largest: f64 = 0.0;
+        let mut visit = |nodes: &[u32]| {
+            for (k, &a) in nodes.iter().enumerate() {
+                for &b in &nodes[..k] {
+                    let (a, b) = (a as usize, b as usize);
+                    let (mut square, mut product) = (0.0, 0.0);
+                    for i in 0..dim {
+                        let apart = |at: &[f64]| at[dim * a + i] - at[dim * b + i];
+                        let x = system.x[a][i] - system.x[b][i] + apart(&motion.u);
+                        square += x * x;
+                        product += x * apart(&motion.v);
+                    }
+                    largest = largest.max(product.abs() / square);
+                }
+            }
+        };
+        for body in system.bodies.iter().filter(|body| !body.is_linear()) {
+            body.each_element(&mut visit);
+        }
+        largest
+    }
+}

@@ -1,0 +1,187 @@
+//! Two elastic spheres that collide.
+//!
+//! Problem: two whole spheres of R = 50 mm, E = 2e10 Pa, ν = 0.3, ρ = 7800 kg/m³ meet head-on at 0.5 m/s; axisymmetric
+//! quadrilaterals (cases/hertz/spheres-whole.msh), 8 elements over the largest contact radius, lumped mass, 200 steps over
+//! the time in contact (quick 100). Closed solution: Hertz, T = 2.868 (m*²/(R E*² v))^(1/5) = 0.883 ms with R, E*, m* of
+//! the pair, F = 4255 N; 8.2 times as long as a wave takes through a sphere and back, and a/R = 0.039. Under the velocity
+//! law with closure as it stands, by nodes and by mortar, in the linear driver; under the displacement law and the trapezoid
+//! with Newton's method; neo-Hookean under the energy-momentum scheme. At 0.1 m/s (a/R = 0.020, 11.3 transits) once more.
+//!
+//! Tolerance: 3 % of the time, as the issue has it (1.4 % less than Hertz at any step: spheres that are not half-spaces are
+//! stiffer, here by 2 % in force at equal approach, and vibrate); a step at either end is 1 % of it. Force 3 %.
+//! Impulse: the spheres keep less than 1 % of it as vibration. Energy: its residual 1e-9; the velocity law loses what an
+//! impact of each node's mass takes, less than 2e-3 here, the trapezoid swings by as much, energy-momentum keeps all to the
+//! tolerance of its iterations, 1e-8.
+//!
+//! The velocity law with closure half a step ahead is left out: with pairing anew its rows belong to places that are half a
+//! step ahead too, and where a step takes waves across many elements, as here, that drives nodes which face each other
+//! along the surface, until motion breaks up. Eight times as many steps, or small sliding, cure it.
+
+use carom_bodies::Kinematics;
+use carom_contact::{Integration, Law};
+use carom_dynamics::scheme::EnergyMomentum;
+use carom_dynamics::{Driver, Model, ModelTarget, Newton, Scheme, Stepper, System};
+use carom_exact::hertz::{Collision, reduced_mass};
+use carom_materials::{Law as Material, NeoHooke};
+
+use crate::Error;
+use crate::build::{DISPLACEMENT, NOW, body, contact, newmark, support, surface, theta};
+use crate::check::{Check, Row, Size};
+use crate::hertz::{DUAL, MATERIAL, RADIUS, mesh, pair};
+
+const WHOLE: &[u8] = include_bytes!("../../../cases/hertz/spheres-whole.msh");
+
+/// One run.
+#[derive(Clone, Copy)]
+struct Spheres {
+    name: &'static str,
+    scheme: Scheme,
+    law: Law,
+    integration: Integration,
+    material: Material,
+    /// Speed of approach, m/s.
+    speed: f64,
+    /// Largest change of energy, relative.
+    energy: f64,
+}
+
+/// Mass of a sphere, kg.
+fn mass() -> f64 {
+    4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3) * MATERIAL.density
+}
+
+impl Spheres {
+    fn exact(&self) -> Collision {
+        pair().collision(reduced_mass([mass(); 2]), self.speed)
+    }
+
+    fn model(&self, steps: f64) -> Result<Model, Error> {
+        let mesh = mesh("spheres-whole.msh", WHOLE)?;
+        let mut bodies = Vec::new();
+        for (name, sign) in [("upper", -0.5), ("lower", 0.5)] {
+            let mut ball = body(&mesh, name, Kinematics::Axisymmetric, MATERIAL)?;
+            ball.velocity = [0.0, sign * self.speed, 0.0];
+            ball.spec.material = self.material;
+            bodies.push(ball);
+        }
+        let supports = vec![
+            support(&mesh, "upper.axis", [true, false, false])?,
+            support(&mesh, "lower.axis", [true, false, false])?,
+        ];
+        let secondary = surface(&mesh, "upper.contact", &bodies[0])?;
+        let primary = surface(&mesh, "lower.contact", &bodies[1])?;
+        let mut touch = contact(secondary, ModelTarget::Surface(primary), self.law);
+        touch.integration = self.integration;
+        Ok(Model {
+            contacts: vec![touch],
+            bodies,
+            supports,
+            gravity: [0.0; 3],
+            scheme: self.scheme,
+            dt: self.exact().duration / steps,
+            adaptive: None,
+            nonlinear: carom_dynamics::Nonlinear::default(),
+            mesh,
+        })
+    }
+
+    fn rows(&self, steps: f64) -> Result<Vec<Row>, Error> {
+        let exact = self.exact();
+        let system = System::new(self.model(steps)?)?;
+        let linear = self.law == NOW && !system.is_nonlinear();
+        let mut run: Box<dyn Stepper> = match linear {
+            true => Box::new(Driver::new(system)?),
+            false => Box::new(Newton::new(system)?),
+        };
+        while run.state().time < 1.1 * exact.duration {
+            run.step()?;
+        }
+        let record = &run.state().records.contacts[0];
+        let ledger = &run.state().ledger;
+        let span = [record.first_closing, record.last_force].map(|time| time.unwrap_or(f64::NAN));
+        let energy = ledger.initial.energy();
+        let row = |what: &str| format!("{}: {what}", self.name);
+        Ok(vec![
+            Row::relative(
+                row("time in contact, s"),
+                span[1] - span[0],
+                exact.duration,
+                0.03,
+            ),
+            Row::relative(
+                row("largest force, N"),
+                record.peak_force,
+                exact.largest.force,
+                0.03,
+            ),
+            Row::near(
+                row("impulse / (m v)"),
+                record.impulse() / (mass() * self.speed),
+                1.0,
+                0.01,
+            ),
+            Row::at_most(
+                row("energy residual / E0"),
+                ledger.largest_energy_residual / energy,
+                1e-9,
+            ),
+            Row::near(
+                row("energy / E0"),
+                ledger.balance.energy() / energy,
+                1.0,
+                self.energy,
+            ),
+        ])
+    }
+}
+
+pub(crate) const CHECK: Check = Check {
+    name: "hertz-impact",
+    fact: "two colliding spheres stay in contact as long as Hertz says",
+    run: |size| {
+        let dual = Spheres {
+            name: "velocity, mortar",
+            scheme: theta(0.5),
+            law: NOW,
+            integration: DUAL,
+            material: MATERIAL.into(),
+            speed: 0.5,
+            energy: 2e-3,
+        };
+        let node = Spheres {
+            name: "velocity, node-to-face",
+            integration: Integration::Node,
+            ..dual
+        };
+        if size == Size::Quick {
+            return Ok([dual.rows(100.0)?, node.rows(100.0)?].concat());
+        }
+        let runs = [
+            dual,
+            node,
+            Spheres {
+                name: "velocity, mortar, 0.1 m/s",
+                speed: 0.1,
+                ..dual
+            },
+            Spheres {
+                name: "displacement, mortar",
+                scheme: newmark(0.25, 0.5),
+                law: DISPLACEMENT,
+                ..dual
+            },
+            Spheres {
+                name: "neo-Hooke, energy-momentum, mortar",
+                scheme: Scheme::EnergyMomentum(EnergyMomentum),
+                material: Material::NeoHooke(NeoHooke { initial: MATERIAL }),
+                energy: 1e-8,
+                ..dual
+            },
+        ];
+        let mut all = Vec::new();
+        for run in runs {
+            all.extend(run.rows(200.0)?);
+        }
+        Ok(all)
+    },
+};

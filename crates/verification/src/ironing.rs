@@ -1,0 +1,272 @@
+//! Ironing: an indenter with a round foot is pressed into a block and moved along it.
+//!
+//! Problem: the meshes of cases/ironing, plane strain, neo-Hooke, ν = 0.32, indenter E = 68.96e8 Pa, block 68.96e7 Pa; a
+//! static stage with the indenter's top prescribed, 1 mm down in 10 steps, then 10 mm along the block in 500; the block is
+//! the secondary side, dual mortar, displacement law; frictionless, and with μ = 0.3. After Puso and Laursen (2004), whose
+//! forces depend on their mesh. Closed solution: none; facts that the issue states, and two of mechanics.
+//!
+//! Jump: the largest change of the force on the indenter from one step of the sliding to the next, as a vector, over the
+//! mean force; at most 2 % (the issue). With friction it includes the first 2 mm, in which friction turns into the direction
+//! of the sliding. Wave: what the force differs from the cubic polynomial of the way that fits it best, after these 2 mm:
+//! the passage of the facets. It must fall to less than half when the mesh is halved, the least for an error of first order.
+//! Node-to-face: its jump, after the 2 mm or in the second half of a shorter way, is at least twice that of mortar, the reason for
+//! mortar; no bound of the issue. Without friction nothing dissipates and the block is long, so the mean drag vanishes: 1 %
+//! of the force, for the wave and the ends of the way. With friction the dissipation is μ times normal force times the way
+//! of the indenter, but for the stretch of the surfaces along it: 5 %. Energy balance: a step leaves at most the tolerance
+//! times force times way, over all steps 1e-6 · 900 N · 11 mm, that is 3e-5 of the largest energy.
+//! Sizes: quick 40 steps of the sliding on the coarse mesh; full all 500, on the coarse and the middle one.
+
+use std::path::Path;
+
+use carom_bodies::Kinematics;
+use carom_contact::{Basis, Integration};
+use carom_dynamics::{
+    Amplitude, Iteration, Model, ModelBody, ModelTarget, Newton, Nonlinear, Preload, Prescribed,
+    System,
+};
+use carom_materials::{Elastic, Law as Material, NeoHooke};
+use carom_mesh::{Mesh, read};
+
+use crate::Error;
+use crate::build::{DISPLACEMENT, body, contact, group, newmark, support, surface};
+use crate::check::{Check, Row, Size};
+
+const MM: f64 = 1e-3;
+const DOWN: u64 = 10;
+const ALONG: u64 = 500;
+/// Steps of the sliding after which friction has turned everywhere.
+const TURNED: usize = 100;
+const MU: f64 = 0.3;
+const TOLERANCE: f64 = 1e-6;
+/// Σ of force times way over the largest energy.
+const WORK: f64 = 30.0;
+const MORTAR: Integration = Integration::Mortar { basis: Basis::Dual };
+
+/// What is left of a run.
+struct Run {
+    /// Force on the indenter in the steps of the sliding, N.
+    forces: Vec<[f64; 2]>,
+    /// Σ of the normal forces times the way of the indenter in the sliding, J.
+    pressed: f64,
+    dissipated: f64,
+    residual: f64,
+}
+
+fn neo_hooke(mesh: &Mesh, name: &str, young: f64) -> Result<ModelBody, Error> {
+    let elastic = Elastic {
+        density: 1000.0,
+        young,
+        poisson: 0.32,
+    };
+    let mut made = body(
+        mesh,
+        name,
+        Kinematics::PlaneStrain { thickness: MM },
+        elastic,
+    )?;
+    made.spec.material = Material::NeoHooke(NeoHooke { initial: elastic });
+    Ok(made)
+}
+
+/// The model, one second to a step.
+fn model(file: &str, friction: f64, integration: Integration, slides: u64) -> Result<Model, Error> {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/ironing");
+    let mut mesh = read::read(&cases.join(file))?;
+    mesh.scale(MM);
+    let bodies = vec![
+        neo_hooke(&mesh, "block", 68.96e7)?,
+        neo_hooke(&mesh, "indenter", 68.96e8)?,
+    ];
+    let foot = surface(&mesh, "indenter.contact", &bodies[1])?;
+    let mut iron = contact(
+        surface(&mesh, "block.contact", &bodies[0])?,
+        ModelTarget::Surface(foot),
+        DISPLACEMENT,
+    );
+    (iron.integration, iron.friction) = (integration, friction);
+    let steps = DOWN + slides;
+    let (pressed, end) = (DOWN as f64, steps as f64);
+    let way = 10.0 * MM * slides as f64 / ALONG as f64;
+    let along = Amplitude::new(vec![[pressed, 0.0], [end, way]])?;
+    let down = Amplitude::new(vec![[0.0, 0.0], [pressed, -MM]])?;
+    Ok(Model {
+        supports: vec![support(&mesh, "block.bottom", [true, true, false])?],
+        contacts: vec![iron],
+        gravity: [0.0; 3],
+        scheme: newmark(0.25, 0.5),
+        dt: 1.0,
+        adaptive: None,
+        nonlinear: Nonlinear {
+            motions: vec![Prescribed {
+                nodes: mesh.group_nodes(group(&mesh, "indenter.top")?),
+                displacement: [Some(along), Some(down), None],
+            }],
+            preload: Some(Preload { end, steps }),
+            iteration: Iteration {
+                tolerance: TOLERANCE,
+                ..Iteration::default()
+            },
+            ..Nonlinear::default()
+        },
+        bodies,
+        mesh,
+    })
+}
+
+fn iron(file: &str, friction: f64, integration: Integration, slides: u64) -> Result<Run, Error> {
+    let model = model(file, friction, integration, slides)?;
+    let top = model.nonlinear.motions[0].nodes.clone();
+    let mut newton = Newton::new(System::new(model)?)?;
+    let (mut forces, mut pressed) = (Vec::new(), 0.0);
+    for step in 0..DOWN + slides {
+        newton.step()?;
+        if step < DOWN {
+            continue;
+        }
+        pressed += newton.report().contacts[0].force * 10.0 * MM / ALONG as f64;
+        let (system, inside) = (newton.system(), &newton.state().motion.internal_force);
+        let mut force = [0.0; 2];
+        for &node in &top {
+            let first = 2 * system.number[node as usize] as usize;
+            for (sum, f) in force.iter_mut().zip(&inside[first..]) {
+                *sum += f;
+            }
+        }
+        forces.push(force);
+    }
+    let ledger = &newton.state().ledger;
+    Ok(Run {
+        forces,
+        pressed,
+        dissipated: ledger.balance.dissipation_friction,
+        residual: ledger.largest_energy_residual / ledger.largest_energy,
+    })
+}
+
+impl Run {
+    /// Mean of the force from a step on, N.
+    fn mean(&self, from: usize) -> [f64; 2] {
+        let forces = &self.forces[from..];
+        [0, 1].map(|i| forces.iter().map(|f| f[i]).sum::<f64>() / forces.len() as f64)
+    }
+
+    /// Size of the mean force, N.
+    fn size(&self) -> f64 {
+        let [x, y] = self.mean(0);
+        x.hypot(y)
+    }
+
+    /// Largest step-to-step change from a step on, over the mean.
+    fn jump(&self, from: usize) -> f64 {
+        let change = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
+        let changes = self.forces[from..].windows(2).map(change);
+        changes.fold(0.0, f64::max) / self.size()
+    }
+
+    /// Largest distance from the best cubic, over the mean.
+    fn wave(&self) -> f64 {
+        let [x, y] = [0, 1].map(|i| {
+            let values: Vec<f64> = self.forces[TURNED..].iter().map(|f| f[i]).collect();
+            without_cubic(&values)
+        });
+        let sizes = x.iter().zip(&y).map(|(x, y)| x.hypot(*y));
+        sizes.fold(0.0, f64::max) / self.size()
+    }
+}
+
+/// Values at equal distances less the cubic polynomial of least squares: less their parts along orthogonal polynomials,
+/// which Gram and Schmidt's method makes of the powers.
+fn without_cubic(values: &[f64]) -> Vec<f64> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let remove = |from: &mut [f64], along: &[f64]| {
+        let part = dot(from, along) / dot(along, along);
+        from.iter_mut().zip(along).for_each(|(f, a)| *f -= part * a);
+    };
+    let mut rest = values.to_vec();
+    let mut polynomials: Vec<Vec<f64>> = Vec::new();
+    for power in 0..=3 {
+        let place = |k: usize| 2.0 * k as f64 / values.len() as f64 - 1.0;
+        let mut polynomial: Vec<f64> = (0..values.len()).map(|k| place(k).powi(power)).collect();
+        for before in &polynomials {
+            remove(&mut polynomial, before);
+        }
+        remove(&mut rest, &polynomial);
+        polynomials.push(polynomial);
+    }
+    rest
+}
+
+/// Mortar and node-to-face on one mesh: rows, and the waves of both.
+fn beside(name: &str, file: &str, mu: f64, slides: u64) -> Result<(Vec<Row>, [f64; 2]), Error> {
+    let (mortar, node) = rayon::join(
+        || iron(file, mu, MORTAR, slides),
+        || iron(file, mu, Integration::Node, slides),
+    );
+    let (mortar, node) = (mortar?, node?);
+    let row = |what: &str| format!("{name}: {what}");
+    let later = TURNED.min(slides as usize / 2);
+    let mut rows = vec![
+        Row::at_most(row("jump / mean force"), mortar.jump(0), 0.02),
+        Row::at_least(
+            row(&format!(
+                "jump of node-to-face, {:.2e}, / that of mortar",
+                node.jump(later)
+            )),
+            node.jump(later) / mortar.jump(later),
+            2.0,
+        ),
+        Row::at_most(
+            row("energy residual / largest"),
+            mortar.residual,
+            WORK * TOLERANCE,
+        ),
+    ];
+    if slides < ALONG {
+        return Ok((rows, [0.0; 2]));
+    }
+    if mu == 0.0 {
+        let [drag, press] = mortar.mean(0);
+        rows.push(Row::near(
+            row("mean drag / mean force"),
+            drag / press.abs(),
+            0.0,
+            0.01,
+        ));
+    } else {
+        rows.push(Row::near(
+            row("dissipated / (μ Σ P Δx)"),
+            mortar.dissipated / (mu * mortar.pressed),
+            1.0,
+            0.05,
+        ));
+    }
+    Ok((rows, [mortar.wave(), node.wave()]))
+}
+
+pub(crate) const CHECK: Check = Check {
+    name: "ironing",
+    fact: "the force of an indenter that slides over facets does not jump with mortar, and its wave falls with the mesh",
+    run: |size| {
+        let mut rows = Vec::new();
+        for mu in [0.0, MU] {
+            let name = |mesh: &str| format!("{mesh} mesh, μ = {mu}");
+            let coarse = "ironing-coarse.msh";
+            if size == Size::Quick {
+                rows.extend(beside(&name("coarse"), coarse, mu, 40)?.0);
+                continue;
+            }
+            let (found, wide) = beside(&name("coarse"), coarse, mu, ALONG)?;
+            rows.extend(found);
+            let (found, narrow) = beside(&name("middle"), "ironing.msh", mu, ALONG)?;
+            rows.extend(found);
+            for (k, means) in ["mortar", "node-to-face"].into_iter().enumerate() {
+                let what = format!(
+                    "μ = {mu}, {means}: wave, {:.2e} on the coarse mesh, middle / coarse",
+                    wide[k]
+                );
+                rows.push(Row::at_most(what, narrow[k] / wide[k], 0.5));
+            }
+        }
+        Ok(rows)
+    },
+};
