@@ -93,7 +93,10 @@ mod tests {
                 let surface = Surface::new(&raised, group, cells).unwrap();
                 let old = Surface::new(&mesh, group, cells).unwrap();
                 let sum = |areas: Vec<f64>| areas.iter().sum::<f64>();
-                let (area, expected) = (surface.tributary_areas(&raised, |_| 1.0), old.node_areas(&mesh, |_| 1.0));
+                let (area, expected) = (
+                    surface.tributary_areas(&raised, |_| 1.0),
+                    old.node_areas(&mesh, |_| 1.0),
+                );
                 assert!((sum(area) - sum(expected)).abs() < 1e-14, "{name}");
             }
         }

@@ -15,16 +15,8 @@
 //!
 //! No published numbers are known for this problem; those above are this program's.
 
-<<<<<<< HEAD
 use carom_bodies::Kinematics;
-use carom_dynamics::{
-    LinkKind, Model, ModelLink, ModelZone, Support, ZoneDriver, Zoned, Zones,
-};
-=======
-use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
-use carom_bodies::{CellWeights, Kinematics};
 use carom_dynamics::{LinkKind, Model, ModelLink, ModelZone, Support, ZoneDriver, Zoned, Zones};
->>>>>>> main
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
 

@@ -56,7 +56,11 @@ pub(crate) const CHECK: Check = Check {
             ("energy-momentum and theta 0.5", [BETWEEN, theta(0.5)]),
         ] {
             let kept = spin(schemes, revolutions)?;
-            rows.push(Row::at_most(format!("{name}: momentum"), kept.linear, 1e-10));
+            rows.push(Row::at_most(
+                format!("{name}: momentum"),
+                kept.linear,
+                1e-10,
+            ));
             let angular = format!("{name}: angular momentum");
             rows.push(Row::at_most(angular, kept.angular, 1e-10));
             if schemes == [BETWEEN; 2] {
@@ -65,7 +69,11 @@ pub(crate) const CHECK: Check = Check {
             let [multiplier, force] = patch(schemes)?;
             let patch = format!("{name}: turned, L h / E");
             rows.push(Row::at_most(patch, multiplier, 1e-9));
-            rows.push(Row::at_most(format!("{name}: turned, f / (E h)"), force, 1e-9));
+            rows.push(Row::at_most(
+                format!("{name}: turned, f / (E h)"),
+                force,
+                1e-9,
+            ));
         }
         let kept = spin([newmark(0.25, 0.5); 2], revolutions)?;
         rows.push(Row::at_most("trapezoid: momentum", kept.linear, 1e-10));
@@ -137,9 +145,7 @@ struct Kept {
 /// Flies and turns, started without the stretch that goes with it.
 fn spin(schemes: [Scheme; 2], revolutions: f64) -> Result<Kept, Error> {
     let mut zones = zones(schemes, 1.0)?;
-    let start = plane_motion(&zones, |x| {
-        [[0.0; 2], [FLIGHT - SPIN * x[1], SPIN * x[0]]]
-    });
+    let start = plane_motion(&zones, |x| [[0.0; 2], [FLIGHT - SPIN * x[1], SPIN * x[0]]]);
     zones.restart(&start)?;
     let start = zones.balance();
     let mut kept = Kept::default();

@@ -66,10 +66,7 @@ pub(crate) const CHECK: Check = Check {
             rows.push(Row::at_most(format!("{name}: L2 norm"), error, 0.03));
             let sum = |f: &[f64]| f.iter().sum::<f64>();
             let peak = |f: &[f64]| f.iter().fold(0.0, |m: f64, f| m.max(*f));
-            for (what, of) in [
-                ("impulse", sum as fn(&[f64]) -> f64),
-                ("peak", peak),
-            ] {
+            for (what, of) in [("impulse", sum as fn(&[f64]) -> f64), ("peak", peak)] {
                 let name = format!("{name}: {what}");
                 rows.push(Row::near(name, of(&two) / of(&one), 1.0, 0.03));
             }
@@ -156,10 +153,7 @@ impl Ring {
             far: None,
         };
         let mut zones = Zones::new(&Zoned {
-            zones: vec![
-                zone(0, theta(THETA), SUBSTEPS),
-                zone(1, self.outer, 1),
-            ],
+            zones: vec![zone(0, theta(THETA), SUBSTEPS), zone(1, self.outer, 1)],
             links,
             kind: LinkKind::PrakashHjelmstad,
             model: self.model(mesh, bodies, self.dt)?,
@@ -177,8 +171,13 @@ impl Ring {
 
 /// A part of the ring from one angle to another.
 fn part(name: &str, [from, to]: [f64; 2], n: [usize; 2]) -> Mesh {
-    let mut mesh =
-        generate::rectangle(name, [1.0 - THICKNESS, from], [THICKNESS, to - from], n, false);
+    let mut mesh = generate::rectangle(
+        name,
+        [1.0 - THICKNESS, from],
+        [THICKNESS, to - from],
+        n,
+        false,
+    );
     for x in &mut mesh.nodes {
         let [r, angle, _] = *x;
         *x = [r * angle.cos(), r * angle.sin(), 0.0];

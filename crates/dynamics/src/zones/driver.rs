@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::origin::Origin;
 use crate::driver::linked::LinkRow;
 use crate::driver::{Costs, Driver};
 use crate::error::Error;
@@ -10,7 +11,6 @@ use crate::march::Stepper;
 use crate::newton::Newton;
 use crate::state::{State, StepReport};
 use crate::system::System;
-use super::origin::Origin;
 
 /// The solver of a zone.
 pub enum ZoneDriver {

@@ -28,8 +28,8 @@ use condensed::Condensed;
 pub use driver::ZoneDriver;
 pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
 use moves::Moves;
-pub use tie::mortar_rows;
 pub use origin::Origin;
+pub use tie::mortar_rows;
 pub use whole::Whole;
 
 /// Defect of a row at which it holds, as a part of the largest velocity.

@@ -82,9 +82,16 @@ fn strip() -> (Mesh, [Vec<ElementId>; 2]) {
     let mesh = generate::rectangle("strip", [0.0; 2], [2.0, 0.5], [8, 2], false);
     let is_left = |cell: &ElementId| {
         let nodes = mesh.element_nodes(*cell);
-        nodes.iter().map(|n| mesh.nodes[*n as usize][0]).sum::<f64>() < 4.0
+        nodes
+            .iter()
+            .map(|n| mesh.nodes[*n as usize][0])
+            .sum::<f64>()
+            < 4.0
     };
-    let (left, right) = mesh.groups["strip"].elements.iter().partition(|c| is_left(c));
+    let (left, right) = mesh.groups["strip"]
+        .elements
+        .iter()
+        .partition(|c| is_left(c));
     (mesh, [left, right])
 }
 
@@ -203,7 +210,10 @@ fn zones_at_finite_strain_tend_to_linear_ones_with_the_amplitude() {
 
 #[test]
 fn a_uniform_stress_rests_on_a_border_whose_nodes_do_not_match() {
-    let material = carom_materials::Elastic { poisson: 0.0, ..SOFT };
+    let material = carom_materials::Elastic {
+        poisson: 0.0,
+        ..SOFT
+    };
     let law = Law::StVenantKirchhoff(StVenantKirchhoff { initial: material });
     let mut mesh = generate::rectangle("left", [0.0; 2], [1.0, 1.0], [3, 3], false);
     let other = generate::rectangle("right", [1.0, 0.0], [1.0, 1.0], [2, 4], false);
@@ -214,14 +224,23 @@ fn a_uniform_stress_rests_on_a_border_whose_nodes_do_not_match() {
     let surface = |body: usize, group: &str| {
         Surface::new(&mesh, &mesh.groups[group], &bodies[body].spec.cells).unwrap()
     };
-    let rows = mortar_rows(&mesh, &surface(0, "left.right"), &surface(1, "right.left"), |_| 1.0);
+    let rows = mortar_rows(
+        &mesh,
+        &surface(0, "left.right"),
+        &surface(1, "right.left"),
+        |_| 1.0,
+    );
     assert_eq!(rows.rows.len(), 2 * 5);
     let stretch = 1.3;
     let load = Load {
         name: "pull".into(),
         surface: surface(1, "right.right"),
         // P = F S with S = E (stretch² - 1)/2
-        kind: LoadKind::Traction([stretch * material.young * (stretch * stretch - 1.0) / 2.0, 0.0, 0.0]),
+        kind: LoadKind::Traction([
+            stretch * material.young * (stretch * stretch - 1.0) / 2.0,
+            0.0,
+            0.0,
+        ]),
         amplitude: Amplitude::constant(1.0),
     };
     let held = mesh.group_nodes(&mesh.groups["left.left"]);
@@ -232,7 +251,8 @@ fn a_uniform_stress_rests_on_a_border_whose_nodes_do_not_match() {
     }];
     model.nonlinear.loads = vec![load];
     for scheme in [HALF, TRAPEZOID, BETWEEN] {
-        let mut zones = Zones::new(&zoned(model.clone(), rows.rows.clone(), [scheme; 2], 1)).unwrap();
+        let mut zones =
+            Zones::new(&zoned(model.clone(), rows.rows.clone(), [scheme; 2], 1)).unwrap();
         let motions: Vec<[Vec<f64>; 2]> = zones
             .drivers()
             .iter()
@@ -249,7 +269,12 @@ fn a_uniform_stress_rests_on_a_border_whose_nodes_do_not_match() {
             let motion = &driver.state().motion;
             // equilibrium to the tolerance of the iterations
             let moved: Vec<f64> = motion.u.iter().zip(u).map(|(a, b)| a - b).collect();
-            eprintln!("{} {:e} {:e}", scheme.get().name(), largest(&moved), largest(&motion.v));
+            eprintln!(
+                "{} {:e} {:e}",
+                scheme.get().name(),
+                largest(&moved),
+                largest(&motion.v)
+            );
             assert!(largest(&moved) < 1e-10 && largest(&motion.v) < 1e-10);
         }
     }

@@ -255,7 +255,11 @@ fn cells_of_second_order_wedges_and_pyramids_have_their_volumes_and_faces() {
         assert_close(extent(mesh, &mesh.groups[cells]), volume, tolerance);
         let facets = &mesh.groups[&format!("{cells}.bottom")];
         let surface = Surface::new(mesh, facets, &mesh.groups[cells].elements).unwrap();
-        assert_close(surface.node_areas(mesh, |_| 1.0).iter().sum(), area, tolerance);
+        assert_close(
+            surface.node_areas(mesh, |_| 1.0).iter().sum(),
+            area,
+            tolerance,
+        );
         for face in &surface.faces {
             let mut buffer = [[0.0; 3]; MAX_NODES];
             let x = gather(&mesh.nodes, face.corners(), &mut buffer);
