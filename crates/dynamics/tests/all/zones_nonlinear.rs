@@ -173,7 +173,6 @@ fn matching_zones_of_one_scheme_are_the_single_mesh() {
             }
         }
         let passes = zones.all_passes() as f64 / zones.outer_step() as f64;
-        eprintln!("{} passes {passes}", scheme.get().name());
         assert!(passes < 8.0, "{}: {passes} passes", scheme.get().name());
     }
 }
@@ -202,7 +201,6 @@ fn zones_at_finite_strain_tend_to_linear_ones_with_the_amplitude() {
             largest(&gap) / largest(&other)
         };
         let [coarse, fine] = [1e-4, 1e-5].map(difference);
-        eprintln!("{schemes:?} {coarse} {fine}");
         // of the order of the strain, 1e-4 times some ten
         assert!(coarse < 2e-3 && (8.0..12.0).contains(&(coarse / fine)));
     }
@@ -269,12 +267,6 @@ fn a_uniform_stress_rests_on_a_border_whose_nodes_do_not_match() {
             let motion = &driver.state().motion;
             // equilibrium to the tolerance of the iterations
             let moved: Vec<f64> = motion.u.iter().zip(u).map(|(a, b)| a - b).collect();
-            eprintln!(
-                "{} {:e} {:e}",
-                scheme.get().name(),
-                largest(&moved),
-                largest(&motion.v)
-            );
             assert!(largest(&moved) < 1e-10 && largest(&motion.v) < 1e-10);
         }
     }
@@ -306,7 +298,6 @@ fn plastic_strain_stays_in_its_zone_and_all_energy_is_found() {
         assert!(left.ledger.balance.dissipation_material > 0.02 * start.energy());
         assert_eq!(right.ledger.balance.dissipation_material, 0.0);
         assert!(right.motion.history.is_empty());
-        eprintln!("links {:e}", zones.balance().work_links / start.energy());
     }
 }
 
@@ -315,12 +306,9 @@ fn zones_that_have_turned_go_on_from_their_state() {
     let model = halves([NEO_HOOKE; 2], [HALF, TRAPEZOID], 1);
     let mut zones = Zones::new(&model).unwrap();
     start(&mut zones, |x| tumble(x).map(|v| 2.0 * v));
-    let mut most = 0;
     for _ in 0..30 {
         zones.step().unwrap();
-        most = most.max(zones.passes());
     }
-    eprintln!("most {most} mean {}", zones.all_passes() as f64 / 30.0);
     let state = zones.state();
     let mut other = Zones::new(&model).unwrap();
     other.resume(&state);
