@@ -214,7 +214,7 @@ impl Operators {
     /// One operator for the whole system.
     pub(crate) fn whole(operator: Operator, unknowns: usize) -> Operators {
         Operators {
-            parts: vec![0..unknowns],
+            parts: std::iter::once(0..unknowns).collect(),
             operators: vec![operator],
         }
     }

@@ -39,7 +39,7 @@ impl Zones {
         let links = links.collect();
         let mut drivers = systems
             .iter()
-            .map(|system| ZoneDriver::new(system))
+            .map(ZoneDriver::new)
             .collect::<Result<Vec<_>, Error>>()?;
         let multipliers = start(&mut drivers, &rows, count)?;
         let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
