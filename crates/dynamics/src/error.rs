@@ -117,6 +117,18 @@ pub enum Error {
         /// The critical step 2/ω, s.
         critical: f64,
     },
+    /// A surface that faces itself has nodes inside its own body.
+    #[error(
+        "contact '{contact}': {points} nodes of the surface lie inside the body at the start, the first is node {node} of the mesh"
+    )]
+    Overlap {
+        /// Name of the contact.
+        contact: String,
+        /// Number of such nodes.
+        points: usize,
+        /// One of them.
+        node: u32,
+    },
     /// A scheme that needs a diagonal mass meets a consistent one.
     #[error("the scheme {scheme} needs lumped mass, but body '{body}' has consistent mass")]
     ConsistentMass {

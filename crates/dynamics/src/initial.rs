@@ -1,10 +1,10 @@
 //! Contacts that penetrate at the start: refused, offset, or their nodes moved before bodies are built.
 
-use carom_contact::{Contact, Initial, Integration, Places};
+use carom_contact::{Contact, Initial, Integration, Places, Sight, Target};
 
 use crate::Error;
 use crate::contacts::numbered;
-use crate::system::Model;
+use crate::system::{Model, System};
 
 /// The most passes over all contacts that are to be freed of penetrations.
 const PASSES: usize = 10;
@@ -69,6 +69,32 @@ impl Model {
             }
         }
         u
+    }
+}
+
+impl System {
+    /// Nodes of a contact whose surface faces itself that lie inside cells of their bodies, in the reference position, by the
+    /// numbers of the mesh. The gap of such a contact cannot tell: an overlap looks like a thin part.
+    pub fn self_penetrations(&self, contact: usize) -> Vec<u32> {
+        let Target::Surface(target) = &self.contacts[contact].target else {
+            return Vec::new();
+        };
+        let own = &self.secondary_faces[contact];
+        if !Sight::is_needed(own, target) {
+            return Vec::new();
+        }
+        let numbers = own.iter().flat_map(|face| face.corners());
+        let mut nodes: Vec<u32> = numbers.map(|&n| self.mesh_node[n as usize]).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let cells: Vec<_> = self
+            .bodies
+            .iter()
+            .flat_map(|body| body.cells())
+            .copied()
+            .collect();
+        let inside = self.mesh.nodes_inside(&nodes, &cells);
+        inside.into_iter().map(|(node, _)| node).collect()
     }
 }
 

@@ -465,6 +465,35 @@ mod tests {
     }
 
     #[test]
+    fn a_damper_that_is_cut_off_does_not_pull_its_neighbour() {
+        let law = Law::Damped(Damped {
+            stiffness: 2.0,
+            damping: 3.0,
+            adhesion: Adhesion::Clip,
+        });
+        // the first point is inside and leaves so fast that its damper would pull
+        let rates = [10.0, -4.0];
+        let candidates = rates.map(|rate_free| Candidate {
+            rate_free,
+            ..candidate(law, -1.0)
+        });
+        let (d, s) = ([1.0, 0.5, 0.5, 1.0], [0.01, 1.0]);
+        let mut interface = Interface::default();
+        interface.solve(&candidates, (&d, 1), s).unwrap();
+        let [p, q] = interface.forces[..] else {
+            panic!()
+        };
+        let pull = |own: f64, other: f64, rate: f64| {
+            let product = own + 0.5 * other;
+            2.0 * (-1.0 + s[0] * product) + 3.0 * (rate + s[1] * product)
+        };
+        assert_eq!(p, 0.0);
+        assert!(pull(p, q, rates[0]) > 0.0);
+        // the solve of one equation, to rounding
+        assert!((q + pull(q, p, rates[1])).abs() < 1e-12, "{q}");
+    }
+
+    #[test]
     fn damped_point_obeys_its_law_or_its_corner() {
         let law = |stiffness, damping| {
             Law::Damped(Damped {

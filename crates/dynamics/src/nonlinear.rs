@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use carom_bodies::{Body, FollowerPressure};
+use carom_contact::law::Level;
 use carom_contact::{Contact, Integration};
 use carom_mesh::Surface;
 use serde::{Deserialize, Serialize};
@@ -403,12 +404,23 @@ impl System {
                 "they follow a linear equilibrium; leave the mass of the nodes as it is",
             );
         }
-        let weak = |contact: &&Contact| matches!(contact.integration, Integration::Weak { .. });
-        if let Some(contact) = self.contacts.iter().find(weak) {
-            return refuse(
-                Refused::Integration(contact.name.clone()),
-                "the weak form with signs at Gauss points is for the linear driver; take node or mortar",
-            );
+        let weak = |contact: &Contact| matches!(contact.integration, Integration::Weak { .. });
+        for (contact, friction) in self.contacts.iter().zip(&self.friction) {
+            let refused = || Refused::Integration(contact.name.clone());
+            if weak(contact) && *friction > 0.0 {
+                return refuse(
+                    refused(),
+                    "the weak form with signs at Gauss points has no friction; take node or mortar",
+                );
+            }
+            let of_rate = contact.law.get().level() == Level::Rate;
+            if weak(contact) && of_rate && self.nonlinear.preload.is_some() {
+                return refuse(
+                    refused(),
+                    "in a static stage laws in the rate hold in the gap, for which r of the weak form has another unit; \
+                     take node or mortar, or the displacement law",
+                );
+            }
         }
         if let Some(contact) = self.contacts.iter().find(|contact| contact.law.projects()) {
             return refuse(

@@ -199,6 +199,7 @@ impl System {
             });
         }
         let (system, bodies, contacts) = System::assemble(model)?;
+        system.check_overlaps(&contacts)?;
         system.check_scheme(&bodies)?;
         system.check_nonlinear()?;
         system.check_massless(&contacts)?;
@@ -326,6 +327,24 @@ impl System {
             mesh: model.mesh,
         };
         Ok((system, model.bodies, model.contacts))
+    }
+
+    /// Refuses meshes that overlap themselves where a contact with [`Initial::Refuse`] faces itself.
+    fn check_overlaps(&self, contacts: &[ModelContact]) -> Result<(), Error> {
+        for (k, contact) in contacts.iter().enumerate() {
+            if contact.initial != Initial::Refuse {
+                continue;
+            }
+            let inside = self.self_penetrations(k);
+            if let Some(&node) = inside.first() {
+                return Err(Error::Overlap {
+                    contact: contact.name.clone(),
+                    points: inside.len(),
+                    node,
+                });
+            }
+        }
+        Ok(())
     }
 
     fn check_massless(&self, contacts: &[ModelContact]) -> Result<(), Error> {

@@ -29,6 +29,8 @@ pub(crate) struct Collision {
     pub(crate) velocity: [f64; 3],
     /// Integration of the contact: the second body's surface carries it.
     pub(crate) integration: Integration,
+    /// Largest penetration that is a contact, m: about the thickness of the walls, so that shadows end at the near wall.
+    pub(crate) depth: f64,
 }
 
 impl Collision {
@@ -50,6 +52,7 @@ impl Collision {
             law,
         );
         touch.integration = self.integration;
+        touch.depth = Some(self.depth);
         let mut nonlinear = Nonlinear::default();
         nonlinear.iteration.tolerance = TOLERANCE;
         Ok(Model {

@@ -119,6 +119,7 @@ fn collide(mesh: &'static str, steps: usize, scheme: Scheme, law: Law) -> Result
         integration: Integration::Mortar {
             basis: Basis::Standard,
         },
+        depth: THICKNESS,
     };
     let mut newton = Newton::new(System::new(rings.model(scheme, law, STEP)?)?)?;
     let mut kept = Kept::new(newton.system(), newton.state());

@@ -43,6 +43,7 @@ pub(crate) const CHECK: Check = Check {
             integration: Integration::Mortar {
                 basis: Basis::Standard,
             },
+            depth: 5.0,
         };
         let model = tori.model(Scheme::EnergyMomentum(EnergyMomentum), NOW, 0.05)?;
         let mut newton = Newton::new(System::new(model)?)?;

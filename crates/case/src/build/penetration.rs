@@ -17,9 +17,23 @@ impl Builder<'_> {
             x: &system.x,
             u: &system.initial_displacement,
         };
-        for contact in &system.contacts {
+        for (k, contact) in system.contacts.iter().enumerate() {
             let name = &contact.name;
             let way = self.case.contact.get(name).map(|contact| contact.initial);
+            let inside = system.self_penetrations(k);
+            if let (Some(&node), Some(schema::Penetration::Refuse)) = (inside.first(), way) {
+                let count = super::plural(inside.len(), "node");
+                let message = format!("{count} of the surface inside its own body at the start");
+                let x = system.mesh.nodes[node as usize];
+                let problem = Problem::new(format!("contact.{name}"), message)
+                    .found(format!(
+                        "node {node}, ({:.6}, {:.6}, {:.6}) m",
+                        x[0], x[1], x[2]
+                    ))
+                    .accepted(["a mesh that does not overlap itself"]);
+                self.problems.push(problem);
+                continue;
+            }
             if way == Some(schema::Penetration::Offset) {
                 let offsets = contact.offsets.iter().enumerate();
                 let deepest = offsets.min_by(|a, b| b.1.total_cmp(a.1));

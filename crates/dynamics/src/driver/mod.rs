@@ -15,6 +15,7 @@ mod weak;
 
 pub(crate) use balance::{contact_report, crush_energy};
 pub(crate) use contacts::on_row;
+pub(crate) use weak::{WeakForms, WithWeak};
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -43,7 +44,6 @@ use linked::Linked;
 use predictor::Predictor;
 use projection::Projected;
 use restoring::Restoring;
-use weak::{WeakForms, WithWeak};
 
 /// Takes steps.
 pub struct Driver {

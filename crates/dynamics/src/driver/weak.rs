@@ -12,7 +12,7 @@ const SOFTENING: f64 = 1e-8;
 
 /// The weak form of each contact that has one.
 #[derive(Default)]
-pub(super) struct WeakForms {
+pub(crate) struct WeakForms {
     forms: Vec<Option<Form>>,
     /// Scratch.
     marks: Vec<[bool; 2]>,
@@ -27,7 +27,7 @@ struct Form {
 
 /// D over the candidates with the compliance of the weak forms added.
 #[derive(Default)]
-pub(super) struct WithWeak {
+pub(crate) struct WithWeak {
     matrix: Vec<f64>,
     version: u64,
     /// Version of D, and the factors of D P in gap and rate.
@@ -35,7 +35,7 @@ pub(super) struct WithWeak {
 }
 
 impl WeakForms {
-    pub(super) fn new(system: &System) -> Result<WeakForms, Error> {
+    pub(crate) fn new(system: &System) -> Result<WeakForms, Error> {
         let form = |contact: &carom_contact::Contact| {
             let Integration::Weak { r } = contact.integration else {
                 return Ok(None);
@@ -65,7 +65,7 @@ impl WeakForms {
     }
 
     /// Takes the multipliers of these forces, in N once multiplied with `factor`.
-    pub(super) fn take(&mut self, system: &System, points: &[u32], forces: &[f64], factor: f64) {
+    pub(crate) fn take(&mut self, system: &System, points: &[u32], forces: &[f64], factor: f64) {
         for (k, form) in self.forms.iter_mut().enumerate() {
             let Some(form) = form else { continue };
             let range = system.first_point[k]..system.first_point[k + 1];
@@ -80,7 +80,7 @@ impl WeakForms {
     }
 
     /// p / r at a point of the system, in m or m/s, for the multipliers taken last; 0 where there is none.
-    pub(super) fn pull(&self, system: &System, point: usize) -> f64 {
+    pub(crate) fn pull(&self, system: &System, point: usize) -> f64 {
         if self.none() {
             return 0.0;
         }
@@ -91,8 +91,18 @@ impl WeakForms {
         })
     }
 
+    /// What the multipliers taken last, with the force of the point in N, add to the quantity that its law constrains,
+    /// `(G P)_i / r`, and which of the two that is; nothing where there is no weak form.
+    pub(crate) fn shift(&self, system: &System, point: usize, force: f64) -> Option<(f64, Level)> {
+        let contact = system.contact_of(point);
+        let form = self.forms[contact].as_ref()?;
+        let place = point - system.first_point[contact];
+        let own = form.weak.own_compliance(place) * force;
+        Some((own - form.weak.pull(place, &form.multiplier), form.level))
+    }
+
     /// Nodes of a contact whose supports are partly closed. `forces`: of all its points, N.
-    pub(super) fn mixed(&mut self, contact: usize, forces: &[f64]) -> usize {
+    pub(crate) fn mixed(&mut self, contact: usize, forces: &[f64]) -> usize {
         let marks = &mut self.marks;
         self.forms[contact]
             .as_ref()
@@ -103,7 +113,7 @@ impl WeakForms {
 impl WithWeak {
     /// The matrix D of this version over its candidates, with `G / (r s)` in the blocks of the weak forms, and a version that tells its changes.
     /// `factors`: s of laws in the gap and of laws in the rate.
-    pub(super) fn of<'a>(
+    pub(crate) fn of<'a>(
         &'a mut self,
         weak: &WeakForms,
         system: &System,

@@ -190,6 +190,8 @@ impl Newton {
         for k in 0..system.contacts.len() {
             let (old, new) = (&self.state.interface, &self.next.interface);
             let mut report = contact_report(&system, k, &self.pairing.rows, old, new, self.dt);
+            let points = system.first_point[k]..system.first_point[k + 1];
+            report.mixed = self.weak.mixed(k, &new.force[points]);
             self.report_friction(k, &mut report);
             let points = system.first_point[k]..system.first_point[k + 1];
             let work = points.map(|point| {

@@ -214,10 +214,17 @@ impl Newton {
             return Ok(());
         };
         compliance.update(&self.candidates, rows, &system.fixed, operators);
-        let matrix = (&compliance.matrix[..], compliance.version);
+        let condensed = (
+            &compliance.matrix[..],
+            &compliance.candidates[..],
+            compliance.version,
+        );
+        let matrix = self
+            .with_weak
+            .of(&self.weak, &system, (condensed, rows), factors);
         let solved = self.interface.solve(&self.candidate_data, matrix, factors);
         if let Err(failure) = solved {
-            let compliance = compliance.matrix.clone();
+            let compliance = matrix.0.to_vec();
             return Err(self.interface_error(failure, compliance, factors));
         }
         let interface = &mut self.next.interface;
@@ -232,7 +239,25 @@ impl Newton {
             }
         }
         self.end_iteration();
+        self.take_weak();
         Ok(())
+    }
+
+    /// Takes the multipliers of the weak forms that belong to the forces as they stand.
+    pub(super) fn take_weak(&mut self) {
+        let forces = &self.next.interface.force;
+        let points: Vec<u32> = (0..forces.len() as u32).collect();
+        self.weak.take(&self.system, &points, forces, 1.0);
+    }
+
+    /// Gap and rate of a point with what its weak form adds to them.
+    fn weakly(&self, point: usize, (gap, rate): (f64, f64)) -> (f64, f64) {
+        let force = self.next.interface.force[point];
+        match self.weak.shift(&self.system, point, force) {
+            None => (gap, rate),
+            Some((shift, Level::Gap)) => (gap + shift, rate),
+            Some((shift, _)) => (gap, rate + shift),
+        }
     }
 
     /// No contact force at all.
@@ -242,6 +267,7 @@ impl Newton {
         interface.friction.fill([0.0; 2]);
         interface.status.fill(Status::Open);
         self.slips.fill(Slip::Open);
+        self.take_weak();
     }
 
     /// The motion of the iteration from the begun solve with all forces in it.
@@ -264,11 +290,9 @@ impl Newton {
             }
             let step = self.pairing.rows.product(point, &self.vectors.dx);
             let (gap, rate) = self.now(point);
-            if self.asks(
-                point,
-                gap + self.map.gap.x * step,
-                rate + self.map.rate.x * step,
-            ) {
+            let ahead = (gap + self.map.gap.x * step, rate + self.map.rate.x * step);
+            let (gap, rate) = self.weakly(point, ahead);
+            if self.asks(point, gap, rate) {
                 self.candidates.push(point as u32);
                 self.next.interface.watched[point] = true;
             }
@@ -306,7 +330,7 @@ impl Newton {
             if self.told(point) == Some(false) {
                 continue;
             }
-            let (gap, rate) = self.now(point);
+            let (gap, rate) = self.weakly(point, self.now(point));
             let status = self.next.interface.status[point];
             let force = self.next.interface.force[point];
             let law = self.law(self.system.point(point).0);

@@ -26,7 +26,7 @@ use carom_bodies::{Placement, Scratch, Stored};
 use carom_contact::{Pairing, Rows, Search};
 
 use crate::coulomb::{Coulomb, Slip};
-use crate::driver::{Costs, Phases};
+use crate::driver::{Costs, Phases, WeakForms, WithWeak};
 use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::march::Stepper;
@@ -50,6 +50,8 @@ pub struct Newton {
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,
     coulomb: Coulomb,
+    weak: WeakForms,
+    with_weak: WithWeak,
     /// Normal and tangential rows of all points, point after point, where there is friction.
     stacked: Rows,
     slips: Vec<Slip>,
@@ -116,6 +118,8 @@ impl Newton {
             candidates: Vec::new(),
             candidate_data: Vec::new(),
             coulomb: Coulomb::default(),
+            weak: WeakForms::new(&system)?,
+            with_weak: WithWeak::default(),
             stacked: Rows::default(),
             slips: Vec::new(),
             scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),

@@ -61,6 +61,7 @@ impl Newton {
         let interface = &mut self.next.interface;
         interface.clone_from(&self.state.interface);
         self.guess_slips();
+        self.take_weak();
         self.evaluate(true)?;
         self.pair(true);
         let mut standing = self.standing();

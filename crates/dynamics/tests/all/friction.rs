@@ -214,7 +214,7 @@ fn a_block_on_a_spinning_platform_stays_where_it_stands() {
     for (scheme, law, bound) in sets {
         let mut newton = spun(scheme, law, dt);
         let mut worst = 0.0_f64;
-        for step in 0..126 {
+        for _ in 0..126 {
             newton.step().unwrap();
             let (system, state) = (newton.system(), newton.state());
             let (sin, cos) = state.time.sin_cos();

@@ -227,3 +227,52 @@ fn a_nonlinear_step_costs_few_iterations_and_the_ledger_closes() {
         );
     }
 }
+
+#[test]
+fn the_weak_form_takes_the_steps_of_the_linear_driver_and_closes_at_finite_strain() {
+    // r = E / h and rho c / h of the mesh of three elements
+    let pairs = [
+        (
+            Scheme::Newmark(scheme::Newmark {
+                beta: 0.49,
+                gamma: 0.9,
+            }),
+            DISPLACEMENT,
+            24.0,
+        ),
+        (Scheme::Theta(scheme::Theta { theta: 0.6 }), VELOCITY, 4.0),
+    ];
+    for (scheme, law, r) in pairs {
+        let model = |material: Material| {
+            let mut model = square(scheme, law, material, 3);
+            model.contacts[0].integration = Integration::Weak { r };
+            System::new(model).unwrap()
+        };
+        let mut linear = Driver::new(model(SOFT.into())).unwrap();
+        let mut newton = Newton::new(model(SOFT.into())).unwrap();
+        let mut finite = Newton::new(model(neo_hooke())).unwrap();
+        let (mut largest, mut difference, mut touches) = (0.0_f64, 0.0_f64, false);
+        for _ in 0..40 {
+            linear.step().unwrap();
+            newton.step().unwrap();
+            finite.step().unwrap();
+            let [one, other] = [linear.report(), newton.report()].map(|r| r.contacts[0].force);
+            largest = largest.max(one);
+            difference = difference.max((one - other).abs());
+            touches |= finite.report().contacts[0].force > 0.0;
+        }
+        let name = scheme.get().name();
+        // both solve the same linear equations to rounding
+        assert!(
+            largest > 0.0 && difference < 1e-9 * largest,
+            "{name}: {difference} {largest}"
+        );
+        assert!(touches, "{name}");
+        let ledger = &finite.state().ledger;
+        // iterations end at 1e-10 of the forces
+        assert!(
+            ledger.largest_energy_residual < 1e-9 * ledger.largest_energy,
+            "{name}"
+        );
+    }
+}

@@ -109,6 +109,36 @@ fn blocks_that_overlap_are_refused_with_node_and_depth() {
 }
 
 #[test]
+fn a_mesh_that_overlaps_itself_is_refused_where_its_surface_faces_itself() {
+    for dim in [2, 3] {
+        let refused = |low| {
+            let mesh = blocks(dim, low);
+            let mut both = mesh.groups["upper"].elements.clone();
+            both.extend(&mesh.groups["lower"].elements);
+            let mut facets = mesh.groups["upper.bottom"].elements.clone();
+            facets.extend(&mesh.groups["lower.top"].elements);
+            let mut mesh = mesh;
+            let group = |elements, dim| carom_mesh::Group::new(dim, elements);
+            mesh.groups.insert("whole".into(), group(both, dim));
+            mesh.groups.insert("inner".into(), group(facets, dim - 1));
+            let inner = [("inner", "whole"); 2];
+            System::new(model(mesh, &["whole"], inner, Initial::Refuse))
+        };
+        assert!(refused(1.01).is_ok(), "a gap is no overlap");
+        match refused(0.95) {
+            Err(Error::Overlap {
+                contact, points, ..
+            }) => {
+                // the nodes of either side but those on the rims, which lie in no cell
+                assert!(contact == "joint" && points > 0);
+            }
+            Err(other) => panic!("{other}"),
+            Ok(_) => panic!("taken"),
+        }
+    }
+}
+
+#[test]
 fn a_static_stage_names_the_body_that_is_free_and_its_motion() {
     let free = |dim: usize, holds: &[(&str, [bool; 3])]| {
         let mut model = model(blocks(dim, 1.0), &["upper", "lower"], JOINT, Initial::Keep);

@@ -122,7 +122,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
             momentum.relative_residual,
             BOUND,
         ),
-        check("energy gained / largest energy", gained(last), GAIN),
+        check("energy gained / largest energy", gained(system, last), GAIN),
         check("states that are not finite", totals.not_finite as f64, 0.0),
     ]);
     let names = results.folder.names().map(str::to_owned);
@@ -170,15 +170,20 @@ fn without_identity<'a>(system: &System, zones: Option<&'a Zones>) -> Option<&'a
     }
 }
 
-/// Kinetic and strain energy that loads and supports have not given, relative to the largest; zero for a loss.
-fn gained(last: &Last) -> f64 {
+/// Kinetic and strain energy that loads, supports and moving obstacles have not given, relative to the largest; zero for a
+/// loss.
+fn gained(system: &System, last: &Last) -> f64 {
     let Ledger {
         initial,
         balance,
         largest_energy,
         ..
     } = &last.ledger;
-    let given = balance.work_loads + balance.work_supports;
+    let obstacles = match system.contacts.iter().any(|contact| contact.moves()) {
+        true => balance.work_contact.max(0.0),
+        false => 0.0,
+    };
+    let given = balance.work_loads + balance.work_supports + obstacles;
     let gain = balance.energy() - initial.energy() - given;
     gain.max(0.0) / largest_energy.max(f64::MIN_POSITIVE)
 }
