@@ -24,7 +24,7 @@ pub use obstacle::{
     Cylinder, Distance, Motion, Obstacle, Placed, Plane, RigidSurface, Shape, Side, Sphere,
     Translation, Turn,
 };
-pub use pairing::{Basis, Mortar, Pairing};
+pub use pairing::{Basis, Mortar, Pairing, Tie};
 pub use point::Point;
 pub use rows::Rows;
 pub use search::Search;

@@ -43,5 +43,6 @@ pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, Ste
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::{Mass, Model, ModelBody, ModelContact, ModelTarget, Support, System};
 pub use zones::{
-    LinkKind, ModelLink, ModelZone, Sample, Whole, ZoneDriver, Zoned, Zones, ZonesState,
+    LinkKind, ModelLink, ModelZone, Origin, Sample, Whole, ZoneDriver, Zoned, Zones, ZonesState,
+    mortar_rows,
 };

@@ -15,14 +15,13 @@
 //!
 //! No published numbers are known for this problem; those above are this program's.
 
-use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
-use carom_bodies::{CellWeights, Kinematics};
+use carom_bodies::Kinematics;
 use carom_dynamics::{LinkKind, Model, ModelLink, ModelZone, Support, ZoneDriver, Zoned, Zones};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
 
 use crate::Error;
-use crate::build::{CENTRAL, body, group, theta};
+use crate::build::{CENTRAL, glued, plane_motion, theta};
 use crate::check::{Check, Row};
 use crate::glued_bar::{GluedBar, characteristics, motion, pulse};
 
@@ -121,29 +120,8 @@ impl Strip {
             young: 1.0,
             poisson: 0.0,
         };
-        let [inner, outer] = ["fine", "coarse"].map(|name| group(&mesh, name));
-        let models = Models {
-            mesh: &mesh,
-            inner: &inner?.elements,
-            outer: &outer?.elements,
-        };
-        let overlap = Overlap::new(models, &Region::Intersection)?;
-        let weights = overlap.weights(&Weighting::default())?;
         let kinematics = Kinematics::PlaneStrain { thickness: 1.0 };
-        let mut bodies = Vec::new();
-        for (name, side, weights) in [
-            ("fine", Side::Inner, weights.inner),
-            ("coarse", Side::Outer, weights.outer),
-        ] {
-            let mut part = body(&mesh, name, kinematics, material)?;
-            part.spec.cells = overlap.cells(side).to_vec();
-            part.spec.weights = Some(CellWeights {
-                inertia: weights.inertia,
-                stiffness: weights.stiffness,
-            });
-            bodies.push(part);
-        }
-        let mut rows = overlap.rows(&Coupling::default())?;
+        let (bodies, mut rows) = glued(&mesh, ["fine", "coarse"], kinematics, material)?;
         let mut supports = Vec::new();
         if self.plane {
             rows.drop(|_, component| component == 1);
@@ -169,7 +147,7 @@ impl Strip {
             kind: LinkKind::GravouilCombescure,
             model: Model {
                 mesh,
-                bodies,
+                bodies: bodies.into(),
                 supports,
                 gravity: [0.0; 3],
                 contacts: Vec::new(),
@@ -189,7 +167,7 @@ impl Strip {
     fn reflected(&self, width: f64) -> Result<f64, Error> {
         let mut zones = self.zones()?;
         let wave = pulse(self.border() - 3.0 * width, width);
-        let start = fields(&zones, |x| {
+        let start = plane_motion(&zones, |x| {
             let [u, v] = wave(x[0]);
             [[u, 0.0], [v, 0.0]]
         });
@@ -248,14 +226,6 @@ impl Strip {
     }
 }
 
-/// Displacement and velocity of each zone from those at a place.
-fn fields(zones: &Zones, of: impl Fn(&[f64; 3]) -> [[f64; 2]; 2]) -> Vec<[Vec<f64>; 2]> {
-    let vectors = |driver: &ZoneDriver| {
-        [0, 1].map(|k| driver.system().x.iter().flat_map(|x| of(x)[k]).collect())
-    };
-    zones.drivers().iter().map(vectors).collect()
-}
-
 /// Largest multiplier and internal force of a strip that flies and turns over 200 steps, over those of a blow: h Z v.
 fn flight() -> Result<[f64; 2], Error> {
     let strip = Strip {
@@ -263,7 +233,7 @@ fn flight() -> Result<[f64; 2], Error> {
         ..Strip::new(2.0, 4, SHEAR)
     };
     let mut zones = strip.zones()?;
-    let start = fields(&zones, |x| {
+    let start = plane_motion(&zones, |x| {
         [[0.0; 2], [1.0 - 0.1 * x[1], -0.5 + 0.1 * x[0]]]
     });
     zones.restart(&start)?;

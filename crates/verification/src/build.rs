@@ -1,10 +1,11 @@
 //! Parts of models, in few words.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Rows, Weighting};
+use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, MassKind};
 use carom_contact::law::{Adhesion, Capture, Compliance, Damped, Displacement, Reading, Velocity};
 use carom_contact::{Initial, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
-use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Scheme, Support};
+use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Scheme, Support, ZoneDriver, Zones};
 use carom_materials::Elastic;
 use carom_mesh::{Group, Mesh, Surface};
 
@@ -92,6 +93,47 @@ pub(crate) fn body(
         velocity: [0.0; 3],
         displacement: [0.0; 3],
     })
+}
+
+/// Two bodies, inner and outer, glued where they overlap with linear weights and the coarse L2 mediator, and the rows.
+pub(crate) fn glued(
+    mesh: &Mesh,
+    groups: [&str; 2],
+    kinematics: Kinematics,
+    material: Elastic,
+) -> Result<([ModelBody; 2], Rows), Error> {
+    let [inner, outer] = groups.map(|name| group(mesh, name));
+    let models = Models {
+        mesh,
+        inner: &inner?.elements,
+        outer: &outer?.elements,
+    };
+    let overlap = Overlap::new(models, &Region::Intersection)?;
+    let weights = overlap.weights(&Weighting::default())?;
+    let part = |name, side, inertia, stiffness| {
+        let mut part = body(mesh, name, kinematics, material)?;
+        part.spec.cells = overlap.cells(side).to_vec();
+        part.spec.weights = Some(CellWeights { inertia, stiffness });
+        Ok::<_, Error>(part)
+    };
+    let [inner, outer] = [weights.inner, weights.outer];
+    let bodies = [
+        part(groups[0], Side::Inner, inner.inertia, inner.stiffness)?,
+        part(groups[1], Side::Outer, outer.inertia, outer.stiffness)?,
+    ];
+    let rows = overlap.rows(&Coupling::default())?;
+    Ok((bodies, rows))
+}
+
+/// Displacement and velocity of each zone from those at a place in the plane.
+pub(crate) fn plane_motion(
+    zones: &Zones,
+    of: impl Fn(&[f64; 3]) -> [[f64; 2]; 2],
+) -> Vec<[Vec<f64>; 2]> {
+    let vectors = |driver: &ZoneDriver| {
+        [0, 1].map(|k| driver.system().x.iter().flat_map(|x| of(x)[k]).collect())
+    };
+    zones.drivers().iter().map(vectors).collect()
 }
 
 /// The surface of a body made of the facets of a group.

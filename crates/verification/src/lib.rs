@@ -49,6 +49,7 @@ mod contact_patch;
 mod crushed_stop;
 mod energy_identity;
 mod first_force;
+mod glued_rotating;
 mod hertz_cylinder;
 mod hertz_impact;
 mod hertz_spheres;
@@ -62,6 +63,7 @@ mod quadrature;
 mod rejections;
 mod restitution;
 mod resume;
+mod ring_sector;
 pub mod rings;
 mod sdnl111;
 mod sdnl111_bars;
@@ -132,6 +134,7 @@ registry! {
     crushed_stop
     energy_identity
     first_force
+    glued_rotating
     hertz_cylinder
     hertz_impact
     hertz_spheres
@@ -145,6 +148,7 @@ registry! {
     rejections
     restitution
     resume
+    ring_sector
     rings
     sdnl111
     sdnl111_bars

@@ -126,7 +126,7 @@ impl Builder<'_> {
         let cells: Vec<Vec<carom_mesh::ElementId>> =
             bodies.iter().map(|body| body.spec.cells.clone()).collect();
         let contacts = self.contacts(&mesh, &bodies, &cells);
-        self.nonlinear_in_zones(&bodies);
+        self.nonlinear_in_zones();
         self.stresses_between(&bodies);
         self.contacts_outside(&mesh, &contacts, &joints);
         self.zones_of_contacts(&contacts, &cells);

@@ -11,7 +11,6 @@ use carom_materials::Law;
 use super::Builder;
 use super::time::scheme;
 use crate::error::Problem;
-use crate::schema::Scheme;
 
 impl Builder<'_> {
     /// Loads and motions with damping, static stage and the rules of the iteration.
@@ -39,52 +38,41 @@ impl Builder<'_> {
         }
     }
 
-    /// Refuses in zones, whose solver is linear, all that is not.
-    pub(super) fn nonlinear_in_zones(&mut self, bodies: &[ModelBody]) {
+    /// Refuses in zones what their links do not know.
+    pub(super) fn nonlinear_in_zones(&mut self) {
         if self.plan.zones.is_empty() {
             return;
         }
         let case = self.case;
-        let mut found: Vec<(String, &str)> = Vec::new();
-        for body in bodies.iter().filter(|b| b.spec.material.finite().is_some()) {
-            let path = format!("body.{}.material", body.spec.name);
-            found.push((path, "a material at finite strain"));
-        }
-        for (name, _) in case.body.iter().filter(|(_, body)| body.damping.is_some()) {
-            found.push((format!("body.{name}.damping"), "damping"));
+        if case.time.stage.is_some() {
+            let message = "links between zones join velocities, which a static stage has none of";
+            let problem = Problem::new("time.static", message);
+            self.problems
+                .push(problem.accepted(["no static stage", "a case without zones"]));
         }
         for (name, _) in case.support.iter().filter(|(_, s)| s.motion.is_some()) {
-            found.push((format!("support.{name}.move"), "a prescribed motion"));
-        }
-        for (name, _) in case.load.iter().filter(|(_, load)| load.on.is_some()) {
-            found.push((format!("load.{name}"), "a load on a surface"));
-        }
-        for (name, _) in case.contact.iter().filter(|(_, c)| c.friction.is_some()) {
-            found.push((format!("contact.{name}.friction"), "friction"));
-        }
-        if case.time.stage.is_some() {
-            found.push(("time.static".to_string(), "a static stage"));
-        }
-        for zone in &self.plan.zones {
-            if matches!(zone.scheme, Scheme::EnergyMomentum(_)) {
-                found.push((zone.scheme_path.clone(), "energy-momentum"));
-            }
-        }
-        for (path, what) in found {
-            let message = "zones are linear: small strain, no friction, no damping, no loads or motions in time, no static stage";
-            let problem = Problem::new(path, message).found(what);
-            self.problems
-                .push(problem.accepted(["a case without zones"]));
+            let message = "in zones supports do not move: a link would not know which of its nodes are driven";
+            let problem = Problem::new(format!("support.{name}.move"), message);
+            self.problems.push(problem.accepted([
+                "a support that holds",
+                "an obstacle that moves",
+                "a case without zones",
+            ]));
         }
     }
 
     /// Refuses, of a scheme that takes stresses between two states, bodies that have none.
     pub(super) fn stresses_between(&mut self, bodies: &[ModelBody]) {
-        let scheme = scheme(&self.case.time.scheme());
-        if !scheme.get().is_between() || self.case.time.is_static() {
+        if self.case.time.is_static() {
             return;
         }
-        for body in bodies {
+        for (number, body) in bodies.iter().enumerate() {
+            let zone = self.plan.zone_of(number);
+            let given = zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
+            let scheme = scheme(&given);
+            if !scheme.get().is_between() {
+                continue;
+            }
             let stores_all = match body.spec.material {
                 Law::Elastic(_)
                 | Law::StVenantKirchhoff(_)

@@ -99,6 +99,13 @@ impl Builder<'_> {
                         format!("zone.{name}.substeps = {enough}"),
                     ])
             }
+            (
+                Error::Nonlinear {
+                    what: what @ Refused::Scheme(_),
+                    why,
+                },
+                Some(zone),
+            ) => Problem::new(&zone.scheme_path, format!("{what}: {why}")),
             _ => self.refused(cause).note(format!("in the zone `{name}`")),
         }
     }

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use carom_arlequin::{Error, Rows, Term, trace};
-use carom_dynamics::{ModelBody, Support};
-use carom_mesh::Mesh;
+use carom_dynamics::{ModelBody, Support, mortar_rows};
+use carom_mesh::{Mesh, Surface};
 
 use super::Builder;
 use super::arlequin::Joints;
@@ -57,7 +57,7 @@ impl<'a> Ties<'a> {
 
     /// Drops rows between nodes that are tied already, and ties the others; returns those dropped.
     pub(super) fn join(&mut self, bodies: [usize; 2], rows: &mut Rows) -> Vec<(u32, u32)> {
-        let [inner, outer] = bodies.map(|body| self.zones[body]);
+        let [inner, outer] = self.zones_of(bodies);
         let mut known = BTreeSet::new();
         let mut pairs = Vec::new();
         for row in &rows.rows {
@@ -72,10 +72,28 @@ impl<'a> Ties<'a> {
             }
         }
         for [one, other] in pairs {
-            let (one, other) = (self.find(one), self.find(other));
-            self.leader.insert(one.max(other), one.min(other));
+            self.tie(one, other);
         }
         rows.drop(|node, component| known.contains(&(node, component)))
+    }
+
+    /// Ties the nodes that two surfaces share, which their rows hold together in the mean.
+    fn join_surfaces(&mut self, bodies: [usize; 2], [one, other]: &[Surface; 2]) {
+        let [inner, outer] = self.zones_of(bodies);
+        for &node in one.nodes.iter().filter(|&node| other.nodes.contains(node)) {
+            self.tie((inner, node), (outer, node));
+        }
+    }
+
+    fn zones_of(&self, bodies: [usize; 2]) -> [usize; 2] {
+        bodies.map(|body| self.zones[body])
+    }
+
+    fn tie(&mut self, one: (usize, u32), other: (usize, u32)) {
+        let (one, other) = (self.find(one), self.find(other));
+        if one != other {
+            self.leader.insert(one.max(other), one.min(other));
+        }
     }
 
     /// Pairs of bodies, by name, in different zones with nodes in common that are not tied, and these nodes.
@@ -148,7 +166,67 @@ impl Held {
 }
 
 impl Builder<'_> {
-    /// The borders where zones are tied node to node.
+    /// The rows between nodes at the same place, without those that are tied already.
+    fn nodes_tied(
+        &mut self,
+        path: &str,
+        name: &str,
+        [inner, outer]: [usize; 2],
+        ties: &mut Ties,
+    ) -> Option<Rows> {
+        let mut rows = match ties.rows(inner, outer) {
+            Ok(rows) => rows,
+            Err(error) => {
+                let problem = Problem::new(path, error.to_string());
+                self.problems.push(problem.accepted([
+                    "two bodies with nodes at the same places",
+                    "surfaces = [...], whose nodes need not match",
+                ]));
+                return None;
+            }
+        };
+        let known = ties.join([inner, outer], &mut rows);
+        self.name_rows(
+            name,
+            ties.mesh,
+            &known,
+            "dropped: other interfaces tie them already",
+        );
+        Some(rows)
+    }
+
+    /// The rows between two surfaces whose nodes need not match.
+    fn mortar(
+        &mut self,
+        path: &str,
+        names: &[String; 2],
+        sides: [usize; 2],
+        ties: &mut Ties,
+    ) -> Option<Rows> {
+        let path = format!("{path}.surfaces");
+        let bodies = ties.bodies;
+        let mut surface = |k: usize| {
+            let cells = &bodies[sides[k]].spec.cells;
+            self.surface(ties.mesh, cells, &format!("{path}[{k}]"), &names[k])
+        };
+        let (inner, outer) = (surface(0), surface(1));
+        let surfaces = [inner?, outer?];
+        let kinematics = bodies[sides[0]].spec.kinematics;
+        let rows = mortar_rows(ties.mesh, &surfaces[0], &surfaces[1], |x| {
+            kinematics.surface_factor(x)
+        });
+        if rows.rows.is_empty() {
+            let message = "these surfaces lie opposite to each other nowhere";
+            let problem = Problem::new(path, message).found(names.join(" and "));
+            self.problems
+                .push(problem.accepted(["two surfaces that face each other"]));
+            return None;
+        }
+        ties.join_surfaces(sides, &surfaces);
+        Some(rows)
+    }
+
+    /// The borders where zones are tied.
     pub(super) fn borders(
         &mut self,
         mesh: &Mesh,
@@ -166,22 +244,12 @@ impl Builder<'_> {
             ) else {
                 continue;
             };
-            let mut rows = match ties.rows(inner, outer) {
-                Ok(rows) => rows,
-                Err(error) => {
-                    let problem = Problem::new(path, error.to_string());
-                    self.problems
-                        .push(problem.accepted(["two bodies with nodes at the same places"]));
-                    continue;
-                }
+            let sides = [inner, outer];
+            let found = match &given.surfaces {
+                Some(surfaces) => self.mortar(&path, surfaces, sides, &mut ties),
+                None => self.nodes_tied(&path, name, sides, &mut ties),
             };
-            let known = ties.join([inner, outer], &mut rows);
-            self.name_rows(
-                name,
-                mesh,
-                &known,
-                "dropped: other interfaces tie them already",
-            );
+            let Some(mut rows) = found else { continue };
             let dropped = held.drop_rows(&mut rows);
             self.name_rows(
                 name,

@@ -265,8 +265,12 @@ impl Builder<'_> {
                     zone.name
                 );
                 let problem = Problem::new(&zone.scheme_path, message).found(own.get().name());
-                self.problems
-                    .push(problem.accepted(["theta", "newmark", "central-difference"]));
+                self.problems.push(problem.accepted([
+                    "theta",
+                    "newmark",
+                    "central-difference",
+                    "energy-momentum",
+                ]));
             }
         }
     }

@@ -15,7 +15,8 @@ pub struct Zone {
     /// Names of its bodies.
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub bodies: Vec<String>,
-    /// Its time scheme, as `time.scheme`, which is the default. Zones that are joined take theta, newmark or central-difference.
+    /// Its time scheme, as `time.scheme`, which is the default. Zones that are joined take theta, newmark,
+    /// central-difference or energy-momentum.
     pub scheme: Option<Scheme>,
     /// Steps of this zone to one outer step, which is `time.step`; or, in the outer zone, those of other zones by name:
     /// `{ impact = 4 }`, or `{ impact = { near = 400, far = 1 } }` where few are enough while nothing can touch. Default: 1. At least one zone takes the outer step; the others take all the same number to it.
@@ -85,7 +86,8 @@ pub struct Arlequin {
     pub link: Option<Link>,
 }
 
-/// A border where two bodies in different zones are tied node to node: nodes that they share, or nodes at the same place.
+/// A border where two bodies in different zones are tied: node to node, at nodes that they share or at nodes at the same place,
+/// or over surfaces whose nodes need not match.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Interface {
@@ -93,6 +95,9 @@ pub struct Interface {
     pub inner: String,
     /// The other body, in another zone.
     pub outer: String,
+    /// Groups of sides of the inner and of the outer body that are tied in the mean where they lie opposite to each other in the
+    /// mesh (mortar). Default: ties at common nodes.
+    pub surfaces: Option<[String; 2]>,
     /// How the multiplier runs over an outer step; as in `arlequin`.
     pub link: Option<Link>,
 }

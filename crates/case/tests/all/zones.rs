@@ -2,7 +2,7 @@
 
 use carom_arlequin::Row;
 use carom_case::{Built, Input, build, parse};
-use carom_dynamics::{LinkKind, Zones};
+use carom_dynamics::{LinkKind, Stepper, Whole, Zones};
 
 /// A file with two bars with fine tips that meet at x = 0; the fine cells are a quarter of the coarse ones.
 fn bars(end: &str) -> String {
@@ -276,4 +276,64 @@ outer = "bar"
     );
     // on equal meshes they would be redundant: the multipliers could not be found
     Zones::new(zoned).unwrap().step().unwrap();
+}
+
+/// A block of rubber over a foot that yields, in zones whose nodes do not match, that slide on a plane.
+const STACK: &str = r#"
+carom = 1
+[mesh.generate]
+foot.rectangle = { origin = [0.0, 0.0], size = [1.0, 0.5], elements = [6, 3] }
+block.rectangle = { origin = [0.0, 0.5], size = [1.0, 1.0], elements = [4, 4] }
+[material.rubber]
+density = 1.0
+neo-hooke = { young = 1.0, poisson = 0.3 }
+[material.clay]
+density = 1.0
+j2 = { young = 1.0, poisson = 0.3, yield-stress = 0.02, hardening = 0.1 }
+[body]
+foot = { region = "foot", material = "clay", section.plane-strain.thickness = 1.0, initial.velocity = [0.1, -0.2] }
+block = { region = "block", material = "rubber", section.plane-strain.thickness = 1.0, initial.velocity = [0.1, -0.2] }
+[contact.ground]
+secondary = "foot.bottom"
+obstacle.plane = { point = [0.0, -0.01], normal = [0.0, 1.0] }
+law.velocity = {}
+friction.coulomb = 0.3
+[time]
+end = 2.0
+step = 0.08
+scheme.theta = { theta = 0.5 }
+[zone.low]
+bodies = ["foot"]
+substeps = 2
+[zone.high]
+bodies = ["block"]
+scheme.energy-momentum = {}
+[interface.glue]
+inner = "foot"
+outer = "block"
+surfaces = ["foot.top", "block.bottom"]
+"#;
+
+#[test]
+fn zones_at_finite_strain_are_tied_over_surfaces_whose_nodes_do_not_match() {
+    let built = built(STACK);
+    let zoned = built.zoned.as_ref().unwrap();
+    // a multiplier at each of seven nodes of the finer side, in two directions
+    assert_eq!(zoned.links[0].rows.len(), 14);
+    let mut whole = Whole::new(zoned, built.system.clone()).unwrap();
+    let start = whole.state().ledger.balance;
+    for _ in 0..25 {
+        whole.step().unwrap();
+    }
+    let state = whole.state();
+    let balance = &state.ledger.balance;
+    // what iterations to 1e-10 leave in 25 steps
+    assert!(balance.energy_residual.abs() < 1e-8 * start.energy());
+    assert!(balance.dissipation_material > 0.0 && balance.dissipation_friction > 0.0);
+    // the history of the foot is in the state of the whole, and its friction
+    let low = whole.names().iter().position(|name| name == "low").unwrap();
+    let zone = whole.zones().drivers()[low].state();
+    assert!(!zone.motion.history.is_empty());
+    assert_eq!(state.motion.history, zone.motion.history);
+    assert_eq!(state.interface.friction, zone.interface.friction);
 }

@@ -11,6 +11,7 @@ mod merge;
 mod mortar;
 mod overlap;
 mod stencil;
+mod tie;
 
 use carom_algebra::csr::Csr;
 
@@ -19,6 +20,7 @@ use self::merge::Merge;
 use self::mortar::Quadrature;
 pub use self::mortar::{Basis, Mortar};
 use self::stencil::Stencil;
+pub use self::tie::Tie;
 use crate::{Contact, Integration, Places, Rows, Search};
 
 /// Contact points of a list of contacts at one configuration, with the derivatives that Newton's method and friction

@@ -166,14 +166,24 @@ impl Stencil {
         (self.gap, self.normal)
     }
 
-    /// Relative motion x₁ - y at a foot that keeps its coordinates: nodes and their coefficients s_a and -N_b.
-    pub fn relative(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+    /// Nodes and shape functions of the point.
+    pub fn carriers(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        self.point.carriers()
+    }
+
+    /// Nodes and shape functions N_b of the face at the foot; none on an obstacle.
+    pub fn opposite(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let (nodes, shape) = match &self.foot {
             Foot::Face(foot) => (foot.face.corners(), foot.shape.as_slice()),
             Foot::Obstacle { .. } => (&[][..], &[][..]),
         };
-        let primary = nodes.iter().zip(shape).map(|(&node, n)| (node, -n));
-        self.point.carriers().chain(primary)
+        nodes.iter().copied().zip(shape.iter().copied())
+    }
+
+    /// Relative motion x₁ - y at a foot that keeps its coordinates: nodes and their coefficients s_a and -N_b.
+    pub fn relative(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        let primary = self.opposite().map(|(node, n)| (node, -n));
+        self.carriers().chain(primary)
     }
 
     /// What the row N has beside n times the relative motion, for each node of [`Stencil::relative`]: -ρ^α S_α, at a foot

@@ -10,8 +10,11 @@ use super::Newton;
 use crate::driver::linked::{LinkRow, Ramp, on};
 use crate::error::Error;
 use crate::operator::{Operator, Operators};
+use crate::scheme::{Scheme, Theta};
 use crate::state::State;
+use crate::step_map::StepMap;
 use crate::system::push_cliques;
+use crate::zones::Origin;
 
 impl Newton {
     /// Makes the solver take forces of links from its next start on, which is with this force (N).
@@ -82,15 +85,33 @@ impl Newton {
 
     /// Factors of M and K in the effective matrix, and of its solution in the velocity at the end of a step.
     pub(crate) fn effective(&self) -> (f64, f64, f64) {
-        (self.map.inertia.x, self.map.force.x, self.map.velocity.x)
+        let map = self.linear_map();
+        (map.inertia.x, map.force.x, map.velocity.x)
+    }
+
+    /// The map of the linearised zone: where forces belong to the way of the step they are those of its middle.
+    fn linear_map(&self) -> StepMap {
+        match self.between() {
+            true => Scheme::Theta(Theta { theta: 0.5 }).get().step_map(self.dt),
+            false => self.map,
+        }
+    }
+
+    /// Loads at the present instant, after a start, N.
+    pub(crate) fn load(&self) -> &[f64] {
+        &self.vectors.load
     }
 
     /// Velocity that multipliers growing linearly from 0 to 1 in `steps` steps leave in the rows, without contact: the dense
-    /// matrix `C V`, row-major over the rows given, of the zone linearised where it is.
+    /// matrix `C V`, row-major over the rows given, of the zone linearised at the origin.
     ///
     /// # Errors
     /// An effective matrix that is not positive definite.
-    pub(crate) fn ramp(&mut self, rows: &[(u32, LinkRow)], steps: u32) -> Result<Vec<f64>, Error> {
+    pub(crate) fn ramp(
+        &mut self,
+        (rows, steps): (&[(u32, LinkRow)], u32),
+        origin: &Origin,
+    ) -> Result<Vec<f64>, Error> {
         let system = Arc::clone(&self.system);
         let n = system.unknowns();
         let mut cliques = Cliques::new();
@@ -98,21 +119,21 @@ impl Newton {
             push_cliques(body, system.dim, &(0..n), &mut cliques);
         }
         let mut stiffness = Csr::from_cliques(n, &cliques);
-        let motion = &self.state.motion;
         for (k, body) in system.bodies.iter().enumerate() {
             let at = Placement {
-                u: &motion.u,
+                u: &origin.u,
                 from: None,
                 dt: self.dt,
-                old: &motion.history[system.nonlinear.histories[k].clone()],
+                old: &origin.history[system.nonlinear.histories[k].clone()],
             };
             body.add_tangent(&at, 1.0, &mut stiffness)?;
         }
         let weights = system.scheme.link_weights().unwrap_or([0.0, 1.0]);
-        let mut operators = self.linear_operators(&stiffness)?;
+        let map = self.linear_map();
+        let mut operators = self.linear_operators(&map, &stiffness)?;
         let mut ramp = Ramp {
             system: &system,
-            map: &self.map,
+            map: &map,
             operators: &mut operators,
             forces: &mut |u, f| stiffness.multiply(u, f),
         };
@@ -120,8 +141,8 @@ impl Newton {
     }
 
     /// The factor of the effective matrix with this stiffness.
-    fn linear_operators(&self, stiffness: &Csr) -> Result<Operators, Error> {
-        let (system, map) = (&*self.system, &self.map);
+    fn linear_operators(&self, map: &StepMap, stiffness: &Csr) -> Result<Operators, Error> {
+        let system = &*self.system;
         let n = system.unknowns();
         let lumped = system.mass.lumped.iter().map(|m| map.inertia.x * m);
         if map.force.x == 0.0 && system.mass.consistent.is_none() {

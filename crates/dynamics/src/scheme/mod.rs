@@ -174,6 +174,7 @@ impl Scheme {
     pub fn link_weights(&self) -> Option<[f64; 2]> {
         match self {
             Scheme::Theta(Theta { theta }) => Some([1.0 - theta, *theta]),
+            Scheme::EnergyMomentum(_) => Some([0.5, 0.5]),
             Scheme::Newmark(_) | Scheme::CentralDifference(_) => Some([0.0, 1.0]),
             _ => None,
         }

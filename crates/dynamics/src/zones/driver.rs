@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::origin::Origin;
 use crate::driver::linked::LinkRow;
 use crate::driver::{Costs, Driver};
 use crate::error::Error;
@@ -76,6 +77,14 @@ impl ZoneDriver {
         }
     }
 
+    /// Loads at the present instant, N.
+    pub(super) fn load(&self) -> &[f64] {
+        match self {
+            ZoneDriver::Linear(driver) => &driver.system().load,
+            ZoneDriver::Nonlinear(driver) => driver.load(),
+        }
+    }
+
     pub(super) fn may_touch(&self, dt: f64) -> bool {
         either!(self, driver => driver.state().may_touch(dt, driver.system().tolerance))
     }
@@ -130,10 +139,14 @@ impl ZoneDriver {
         either!(self, driver => driver.effective())
     }
 
-    pub(super) fn ramp(&mut self, rows: &[(u32, LinkRow)], steps: u32) -> Result<Vec<f64>, Error> {
+    pub(super) fn ramp(
+        &mut self,
+        (rows, steps): (&[(u32, LinkRow)], u32),
+        origin: &Origin,
+    ) -> Result<Vec<f64>, Error> {
         match self {
             ZoneDriver::Linear(driver) => Ok(driver.ramp(rows, steps)),
-            ZoneDriver::Nonlinear(driver) => driver.ramp(rows, steps),
+            ZoneDriver::Nonlinear(driver) => driver.ramp((rows, steps), origin),
         }
     }
 }

@@ -12,7 +12,9 @@ mod condensed;
 mod driver;
 mod model;
 mod moves;
+mod origin;
 mod start;
+mod tie;
 mod whole;
 
 use serde::{Deserialize, Serialize};
@@ -26,6 +28,8 @@ use condensed::Condensed;
 pub use driver::ZoneDriver;
 pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
 use moves::Moves;
+pub use origin::Origin;
+pub use tie::mortar_rows;
 pub use whole::Whole;
 
 /// Defect of a row at which it holds, as a part of the largest velocity.
@@ -69,6 +73,8 @@ pub struct ZonesState {
     pub forces: Vec<Vec<f64>>,
     /// Work of each link on both its sides, J.
     pub link_works: Vec<f64>,
+    /// Where each zone was linearised last.
+    pub origins: Vec<Origin>,
     /// By zone.
     pub zones: Vec<State>,
 }
@@ -97,6 +103,9 @@ pub struct Zones {
     earlier: [Vec<f64>; 2],
     /// H of the multipliers that a pass looks for.
     factor: Option<Condensed>,
+    /// Where the zones were linearised for H, and whether H is to be made anew.
+    origins: Vec<Origin>,
+    stale: bool,
     /// Part of H of the zones with one step, row-major: for pointwise multipliers.
     outer: Vec<f64>,
     /// Both for other numbers of inner steps.
@@ -180,6 +189,7 @@ impl Zones {
     /// # Errors
     /// A step of a zone that fails, or multipliers that are not found. The state is then the one before the step.
     pub fn step(&mut self) -> Result<(), Error> {
+        self.renew_condensed()?;
         self.choose_substeps()?;
         for (k, driver) in self.drivers.iter().enumerate() {
             if self.substeps[k] > 1
@@ -262,6 +272,7 @@ impl Zones {
         std::mem::swap(before, first);
         before.copy_from_slice(old);
         old.copy_from_slice(new);
+        self.judge_origins();
     }
 
     fn go_back(&mut self) {

@@ -7,6 +7,7 @@ use carom_algebra::dense::DenseCholesky;
 use super::ZoneDriver;
 use super::condensed::{Answer, Condensed, DENSE, Joined};
 use super::moves::Moves;
+use super::origin::Origin;
 use super::{LinkKind, Zoned, Zones, ZonesState};
 use crate::driver::linked::{LinkRow, on};
 use crate::error::Error;
@@ -50,6 +51,8 @@ impl Zones {
         });
         let mut zones = Zones {
             saved: saved.collect(),
+            origins: drivers.iter().map(Origin::of).collect(),
+            stale: false,
             drivers,
             choices: [substeps.clone(), far],
             substeps,
@@ -102,6 +105,10 @@ impl Zones {
         self.earlier = [multipliers.clone(), multipliers.clone()];
         self.multipliers = [multipliers.clone(), multipliers];
         self.start_works();
+        let origins: Vec<Origin> = self.drivers.iter().map(Origin::of).collect();
+        if origins != self.origins {
+            self.start_from(origins);
+        }
         Ok(())
     }
 
@@ -149,7 +156,7 @@ impl Zones {
                 LinkKind::GravouilCombescure => 1,
                 LinkKind::PrakashHjelmstad => self.substeps[k],
             };
-            let own = driver.ramp(rows, steps)?;
+            let own = driver.ramp((rows, steps), &self.origins[k])?;
             for (i, (row, _)) in rows.iter().enumerate() {
                 for (j, (column, _)) in rows.iter().enumerate() {
                     let place = *row as usize * n + *column as usize;
@@ -177,6 +184,7 @@ impl Zones {
             earlier: self.earlier.clone(),
             forces: self.mixes.iter().map(|[_, last, _]| last.clone()).collect(),
             link_works: self.works[1].clone(),
+            origins: self.origins.clone(),
             zones: self.drivers.iter().map(|d| d.state().clone()).collect(),
         }
     }
@@ -191,6 +199,9 @@ impl Zones {
             before.clone_from(force);
         }
         self.works[1].clone_from(&state.link_works);
+        if state.origins != self.origins {
+            self.start_from(state.origins.clone());
+        }
         for (driver, state) in self.drivers.iter_mut().zip(&state.zones) {
             driver.go_back(state);
         }
@@ -261,10 +272,11 @@ fn start(
         .map(|k| {
             let system = drivers[k].system();
             let f = &drivers[k].state().motion.internal_force;
+            let load = drivers[k].load();
             let balance: Vec<f64> = (0..f.len())
                 .map(|i| match system.fixed[i] {
                     true => 0.0,
-                    false => system.load[i] - f[i],
+                    false => load[i] - f[i],
                 })
                 .collect();
             mass.solve(k, &balance)

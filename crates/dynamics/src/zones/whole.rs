@@ -4,6 +4,7 @@
 //! Nothing here influences the steps. The largest terms of the balance are those of the sum over the zones, which no
 //! zone knows: they are saved beside the state of the zones.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -43,6 +44,8 @@ struct Places {
     own: Vec<(u32, u32)>,
     /// Contact points.
     points: Vec<(u32, u32)>,
+    /// Histories of the bodies.
+    histories: Vec<(Range<usize>, Range<usize>)>,
 }
 
 /// What a run in zones goes on from.
@@ -94,9 +97,11 @@ impl Whole {
 
     fn around(zones: Zones, zoned: &Zoned, system: Arc<System>) -> Whole {
         let mut taken = vec![false; system.unknowns()];
-        let drivers = zones.drivers.iter().zip(&zones.contacts);
-        let places = drivers
-            .map(|(driver, contacts)| Places::new(driver.system(), contacts, &system, &mut taken));
+        let drivers = zones.drivers.iter().zip(&zoned.zones).zip(&zones.contacts);
+        let places = drivers.map(|((driver, zone), contacts)| {
+            let parts = (&zone.bodies[..], &contacts[..]);
+            Places::new(driver.system(), parts, &system, &mut taken)
+        });
         let mut state = empty_state(&system);
         state.motion.link_force = vec![0.0; system.unknowns()];
         state.records = Records {
@@ -168,6 +173,9 @@ impl Whole {
                 whole.v[to] = motion.v[from];
                 whole.a[to] = motion.a[from];
             }
+            for (from, to) in &places.histories {
+                whole.history[to.clone()].copy_from_slice(&motion.history[from.clone()]);
+            }
             let forces = [
                 &motion.internal_force,
                 &motion.contact_force,
@@ -186,6 +194,9 @@ impl Whole {
         let whole = &mut self.state.interface;
         for (driver, places) in self.zones.drivers.iter().zip(&self.places) {
             let interface = &driver.state().interface;
+            if !interface.friction.is_empty() {
+                whole.friction.resize(whole.force.len(), [0.0; 2]);
+            }
             for &(from, to) in &places.points {
                 let (from, to) = (from as usize, to as usize);
                 whole.force[to] = interface.force[from];
@@ -194,6 +205,9 @@ impl Whole {
                 whole.rate[to] = interface.rate[from];
                 whole.status[to] = interface.status[from];
                 whole.watched[to] = interface.watched[from];
+                if let Some(friction) = interface.friction.get(from) {
+                    whole.friction[to] = *friction;
+                }
             }
         }
     }
@@ -322,7 +336,12 @@ fn forces_mut(motion: &mut Motion) -> [&mut Vec<f64>; 3] {
 
 impl Places {
     /// `taken`: unknowns of the whole that a zone before this one has.
-    fn new(zone: &System, contacts: &[usize], whole: &System, taken: &mut [bool]) -> Places {
+    fn new(
+        zone: &System,
+        (bodies, contacts): (&[usize], &[usize]),
+        whole: &System,
+        taken: &mut [bool],
+    ) -> Places {
         let dim = zone.dim as u32;
         let numbers = zone.mesh_node.iter().zip(0..);
         let unknowns: Vec<(u32, u32)> = numbers
@@ -339,7 +358,13 @@ impl Places {
             let to = whole.first_point[*contact]..whole.first_point[*contact + 1];
             points.extend(from.zip(to).map(|(from, to)| (from as u32, to as u32)));
         }
+        let histories = [zone, whole].map(|system| &system.nonlinear.histories);
+        let histories = bodies.iter().zip(histories[0]).map(|(&body, own)| {
+            let of_whole = &histories[1][body];
+            (own.clone(), of_whole.clone())
+        });
         Places {
+            histories: histories.collect(),
             unknowns,
             own,
             points,

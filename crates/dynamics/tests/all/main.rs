@@ -21,3 +21,4 @@ mod whole;
 
 #[global_allocator]
 static COUNTER: carom_testing::Counter = carom_testing::Counter;
+mod zones_nonlinear;
