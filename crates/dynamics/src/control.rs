@@ -58,6 +58,9 @@ pub struct Control {
     /// Relative change of lengths in the elements since an explicit step at finite strain was last compared with the
     /// critical one.
     pub(crate) changed: f64,
+    /// Factor by which an iteration with a fresh factor between two states reduced the residual when it was last seen; zero
+    /// before.
+    pub(crate) pace: f64,
     /// Steps since the last event.
     quiet: u32,
     /// Step and time from which steps of the size `taken` are counted: the instants of equal steps are products, not sums.

@@ -53,6 +53,7 @@ impl Newton {
         self.next.step = step + 1;
         self.next.time = control.instant(*step, *time, self.dt);
         self.next.control = *control;
+        self.next.control.pace = self.pace.fresh;
         Ok(())
     }
 

@@ -249,6 +249,7 @@ impl Newton {
         control.take(None, (start.step, first, end - first), self.system.dt);
         self.next.step = start.step + 1;
         self.next.time = end;
+        control.pace = self.pace.fresh;
         self.next.control = control;
         self.failed = None;
         std::mem::swap(&mut self.state, &mut self.next);

@@ -31,7 +31,7 @@ pub(super) struct Pace {
     /// The iteration in which it was made.
     made: usize,
     /// Contraction with a factor made within the iterations of a step, between two states; zero while unknown.
-    fresh: f64,
+    pub(super) fresh: f64,
 }
 
 /// Where an iteration stands.
@@ -59,7 +59,7 @@ impl Newton {
     pub(super) fn solve(&mut self) -> Result<(), Error> {
         let limit = self.system.nonlinear.iteration.passes;
         self.residuals.clear();
-        self.pace.age = 0;
+        (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
         self.predict();
         let interface = &mut self.next.interface;
         interface.clone_from(&self.state.interface);

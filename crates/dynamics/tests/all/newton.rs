@@ -324,3 +324,26 @@ fn dynamics_begin_at_the_equilibrium_of_the_static_stage_with_the_velocities_giv
     let started = thrown.state().ledger.initial.kinetic;
     assert!((started - kinetic * 5.0 / 6.0).abs() < 1e-12 * kinetic);
 }
+
+#[test]
+fn a_run_that_is_cut_goes_on_with_the_same_bits() {
+    let system = || {
+        let scheme = Scheme::EnergyMomentum(scheme::EnergyMomentum);
+        let mut model = square(scheme, VELOCITY, neo_hooke(), 3);
+        model.bodies[0].velocity = [0.3, -0.2, 0.0];
+        System::new(model).unwrap()
+    };
+    let mut whole = Newton::new(system()).unwrap();
+    for _ in 0..15 {
+        whole.step().unwrap();
+    }
+    let bytes = whole.state().to_bytes().unwrap();
+    let saved = carom_dynamics::State::from_bytes(whole.system(), &bytes).unwrap();
+    let mut cut = Newton::resume(system(), saved).unwrap();
+    for _ in 0..15 {
+        whole.step().unwrap();
+        cut.step().unwrap();
+    }
+    assert!(whole.state().records.contacts[0].impulse() > 0.0);
+    assert_eq!(whole.state(), cut.state());
+}
