@@ -94,10 +94,7 @@ impl Driver {
     }
 
     /// What speaks against an attempt, and the size to go on from.
-    fn judge(
-        &self,
-        outcome: Result<(), Error>,
-    ) -> Result<Option<(Event, f64)>, (Event, Box<Error>)> {
+    fn judge(&self, outcome: Result<(), Error>) -> Result<Option<Verdict>, (Event, Box<Error>)> {
         outcome.map_err(|error| (Event::Failure, Box::new(error)))?;
         let Some(rules) = &self.system.adaptive else {
             return Ok(None);
