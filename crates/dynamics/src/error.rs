@@ -314,13 +314,13 @@ pub enum Error {
         /// Node of the mesh with the largest residual.
         node: u32,
         /// Its body.
-        body: String,
+        body: Box<str>,
         /// The first cell of the body at the node.
         cell: carom_mesh::ElementId,
         /// The contact point that agrees least, as a text; empty without contact.
-        contact: String,
+        contact: Box<str>,
         /// Residuals of the last iterations.
-        history: String,
+        history: Box<str>,
     },
     /// A part of the model that can move without any force.
     #[error(

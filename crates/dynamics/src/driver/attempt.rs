@@ -26,9 +26,6 @@ const WORTH: f64 = 0.05;
 /// Penetration at which a cut step aims, in tolerances of a closed gap: rounding then leaves no gap that is open.
 const AIM: f64 = 10.0;
 
-/// What speaks against an attempt, and the size to go on from, s.
-type Verdict = (Event, f64);
-
 /// What depends on the size of the step.
 pub(super) struct Sized {
     dt: f64,
@@ -79,9 +76,9 @@ impl Driver {
                 Err((event, error)) => {
                     self.forget_predictor();
                     let Some(rules) = &self.system.adaptive else {
-                        return Err(*error);
+                        return Err(error);
                     };
-                    dt = control.drop(rules, event, dt).ok_or(*error)?;
+                    dt = control.drop(rules, event, dt).ok_or(error)?;
                 }
             }
         }
@@ -94,8 +91,8 @@ impl Driver {
     }
 
     /// What speaks against an attempt, and the size to go on from.
-    fn judge(&self, outcome: Result<(), Error>) -> Result<Option<Verdict>, (Event, Box<Error>)> {
-        outcome.map_err(|error| (Event::Failure, Box::new(error)))?;
+    fn judge(&self, outcome: Result<(), Error>) -> Result<Option<(Event, f64)>, (Event, Error)> {
+        outcome.map_err(|error| (Event::Failure, error))?;
         let Some(rules) = &self.system.adaptive else {
             return Ok(None);
         };

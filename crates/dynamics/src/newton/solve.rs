@@ -418,10 +418,10 @@ impl Newton {
             dt: self.dt,
             passes,
             node: system.mesh_node[node],
-            body: system.bodies[body].name().to_string(),
+            body: system.bodies[body].name().into(),
             cell: first_cell(&system.bodies[body], node as u32),
-            contact,
-            history: history.collect::<Vec<_>>().join(", "),
+            contact: contact.into(),
+            history: history.collect::<Vec<_>>().join(", ").into(),
         }
     }
 }
