@@ -118,6 +118,8 @@ impl Effective {
         let factored = self.factorise(&free, system.dim);
         self.matrix = Some(a);
         factored.map_err(|cause| {
+            // the factor is of no use any more, but it was computed
+            self.retired = self.work();
             self.operators = None;
             let node = match &cause {
                 carom_algebra::Error::NotPositiveDefinite { unknown, .. } => *unknown / system.dim,
