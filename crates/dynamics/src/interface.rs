@@ -140,11 +140,17 @@ impl Interface {
         self.statuses.clear();
         // a corner is found anew in each step, from a closed point that opens
         self.statuses
-            .extend(candidates.iter().map(|candidate| match candidate.status {
-                Status::Open => Status::Open,
-                Status::Closed | Status::Corner => Status::Closed,
-                Status::Piece(piece) => Status::Piece(piece),
-            }));
+            .extend(
+                candidates
+                    .iter()
+                    .enumerate()
+                    .map(|(i, candidate)| match candidate.status {
+                        _ if is_stuck(candidate, i, compliance.0, n) => Status::Open,
+                        Status::Open => Status::Open,
+                        Status::Closed | Status::Corner => Status::Closed,
+                        Status::Piece(piece) => Status::Piece(piece),
+                    }),
+            );
         self.reversals.clear();
         self.reversals.resize(n, 0);
         self.circled = None;
@@ -273,6 +279,9 @@ impl Interface {
     fn disagreements(&mut self, candidates: &[Candidate], d: &[f64], s: [f64; 2]) {
         self.changes.clear();
         for (i, candidate) in candidates.iter().enumerate() {
+            if is_stuck(candidate, i, d, candidates.len()) {
+                continue;
+            }
             let end = end(candidate, i, d, s, &self.forces, &self.product);
             if candidate.law.get().status(
                 self.statuses[i],
@@ -363,6 +372,15 @@ fn factor(
         points: points.len(),
         cause,
     })
+}
+
+/// Whether no force moves a point, all of its nodes being held, and its law does not say the force either: it carries none.
+fn is_stuck(candidate: &Candidate, i: usize, d: &[f64], n: usize) -> bool {
+    let relation = candidate
+        .law
+        .get()
+        .relation(Status::Closed, &candidate.local);
+    d[i * n + i] == 0.0 && relation.compliance == 0.0
 }
 
 /// Factor of D P in the relation of a law.

@@ -86,6 +86,34 @@ fn points_that_say_the_same_share_their_force() {
 }
 
 #[test]
+fn a_point_that_nothing_moves_carries_no_force_unless_its_law_says_it() {
+    let exact = Law::Displacement(Displacement::default());
+    let soft = Law::Damped(Damped {
+        stiffness: 2.0,
+        damping: 0.0,
+        adhesion: Adhesion::Clip,
+    });
+    // on a plane of symmetry, through it by rounding; the second point is free
+    let mut interface = Interface::default();
+    let d = [0.0, 0.0, 0.0, 1.0];
+    let gaps = [-1e-17, -1.0];
+    let solved = |interface: &mut Interface, law| {
+        let candidates = gaps.map(|gap| Candidate {
+            status: Status::Closed,
+            ..candidate(law, gap)
+        });
+        interface.solve(&candidates, (&d, 1), [1.0, 0.0]).unwrap();
+        interface.forces.clone()
+    };
+    assert_eq!(solved(&mut interface, exact), [0.0, 1.0]);
+    let mut interface = Interface::default();
+    // P = -2 (g + P), to rounding
+    let soft = solved(&mut interface, soft);
+    assert!((soft[0] - 2e-17).abs() < 1e-31);
+    assert!((soft[1] - 2.0 / 3.0).abs() < 1e-15);
+}
+
+#[test]
 fn a_force_that_the_step_cannot_change_is_told_by_its_law() {
     let soft = |damping| {
         Law::Damped(Damped {
