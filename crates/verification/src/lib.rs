@@ -15,6 +15,7 @@ mod error;
 mod figures;
 mod glued;
 mod glued_bar;
+mod hairpin;
 mod hertz;
 mod kept;
 
@@ -47,6 +48,7 @@ mod blocks_as_bars;
 mod closed_field_as_printed;
 mod contact_patch;
 mod crushed_stop;
+mod crushed_tube;
 mod energy_identity;
 mod first_force;
 mod glued_rotating;
@@ -67,6 +69,7 @@ mod ring_sector;
 pub mod rings;
 mod sdnl111;
 mod sdnl111_bars;
+mod self_contact;
 mod shapes;
 mod sliding_block;
 mod spinning_bar;
@@ -132,6 +135,7 @@ registry! {
     closed_field_as_printed
     contact_patch
     crushed_stop
+    crushed_tube
     energy_identity
     first_force
     glued_rotating
@@ -152,6 +156,7 @@ registry! {
     rings
     sdnl111
     sdnl111_bars
+    self_contact
     shapes
     sliding_block
     spinning_bar
