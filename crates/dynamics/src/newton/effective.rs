@@ -239,21 +239,10 @@ fn assemble(system: &System, at: &At, a: &mut Csr) -> Result<(), Error> {
             }
         }
     }
-    for (i, m) in system.mass.lumped.iter().enumerate() {
-        a.add(i, i, map.inertia.x * m);
-    }
-    if let Some(mass) = system
-        .mass
-        .consistent
-        .as_ref()
-        .filter(|_| map.inertia.x != 0.0)
-    {
-        for i in 0..system.unknowns() {
-            let (columns, values) = mass.row(i);
-            for (&j, m) in columns.iter().zip(values).filter(|(_, m)| **m != 0.0) {
-                a.add(i, j as usize, map.inertia.x * m);
-            }
-        }
+    if map.inertia.x != 0.0 {
+        system
+            .mass
+            .add_to(map.inertia.x, &(0..system.unknowns()), a);
     }
     Ok(())
 }
