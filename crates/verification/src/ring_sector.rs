@@ -194,7 +194,7 @@ fn ring_body(mesh: &Mesh, name: &str) -> Result<ModelBody, Error> {
 }
 
 /// The mesh with nodes at the same place as one.
-fn welded(mut mesh: Mesh) -> Mesh {
+pub(crate) fn welded(mut mesh: Mesh) -> Mesh {
     let mut first = Vec::new();
     for (node, x) in mesh.nodes.iter().enumerate() {
         let near = |y: &[f64; 3]| (0..2).all(|i| (x[i] - y[i]).abs() < 1e-9);
