@@ -1,16 +1,16 @@
 //! A thick tube of rubber that hardly changes its volume breathes, and spins.
 //!
 //! Problem: a free tube in plane strain, radii 0.5 m and 1 m, E = 1 MPa, ν = 0.499, ρ = 1000 kg/m³, is thrown outwards with the
-//! velocity 6 m/s A/R along the radius, which keeps volumes; energy-momentum. A second one also spins, by 20 rad/s, and doubles its
-//! inner radius and more.
+//! velocity 6 m/s A/R along the radius, which keeps volumes; energy-momentum. A second one also spins, by 20 rad/s, and its inner
+//! radius grows by six tenths.
 //! Closed solution: an incompressible tube has one degree of freedom, the inner radius a: r² = R² + a² - A², and over 2π
 //! ½ ρ (a ȧ)² ln(b/a) + ∫ ½ μ (r/R - R/r)² R dR stays, for the neo-Hookean law. It turns where nothing is left of the first
 //! term, and is back at A after twice the time to there. Knowles (1960), whose text was not at hand; derived here. Momenta
 //! and energy stay with any law.
-//! Tolerances: 3 % of the growth and of the time, for 3 x 32 quadrilaterals with straight sides; halves of them are found with
-//! a finer mesh, full size. With full integration the same mesh has half of both, which is asked for from above, so that the problem is
-//! known to lock. Energy and momenta 1e-10 over 300 steps: iterations end at 1e-13. Order 2 in the step, within 0.05, as steps of
-//! 1/20 to 1/80 of the time of return show it.
+//! Tolerances: 2 % of the growth and of the time, for 3 x 32 quadrilaterals with straight sides, and a quarter of it with
+//! twice as many each way (1.1 and 0.3 % are found). With full integration the same mesh has 0.55 of both, which is asked for from
+//! above, so that the problem is known to lock. Energy and momenta 1e-10 over 300 steps: iterations end at 1e-13. Order 2 in the step,
+//! within 0.05, as steps of 1/20 to 1/80 of the time of return show it.
 
 use std::f64::consts::PI;
 
@@ -189,8 +189,8 @@ pub(crate) const CHECK: Check = Check {
         let neo_hooke = Law::NeoHooke(NeoHooke { initial: RUBBER });
         let [growth, time] = exact();
         let meshes: &[([usize; 2], f64)] = match size {
-            Size::Quick => &[([3, 32], 0.03)],
-            Size::Full => &[([3, 32], 0.03), ([6, 64], 0.015)],
+            Size::Quick => &[([3, 32], 0.02)],
+            Size::Full => &[([3, 32], 0.02), ([6, 64], 0.005)],
         };
         let tube = |formulation, elements, dt| Tube {
             formulation,

@@ -17,8 +17,8 @@
 //! f·Δu = ΔU, T is symmetric, so that f has no moment about the places in the middle, and all turns with both ends. Nothing
 //! is a difference of energies, and nothing is divided by D, but in the law: a small step keeps all its digits.
 //!
-//! Derivative by u_1, with B_1 = cof(C_1)/J_1, k = 𝕂:C_1 and 𝕂 = ∂S̄/∂Ē_1, q = M v - w p ⟨θ⟩, A = C_m + D/3, and A × that of
-//! the cofactors of A:
+//! Derivative by u_1, with B_1 = cof(C_1)/J_1 (that of J_1), 𝕂 = ∂S̄/∂Ē_1, k = 𝕂:C_1, q = M v - w p ⟨θ⟩, A = C_m + D/3 and the
+//! derivative A× of its cofactors:
 //!
 //! K = Σ Bᵀ (F_m 𝕃 F_1 + T/2) B + y ⊗ d + n ⊗ z,
 //!
@@ -30,8 +30,7 @@
 //!
 //! Π = R (S̄ + s_1² C_m:𝕂)/2 - (β + p) B_1/J_1,   β = s_1 (R s_1 C_m:k/2 + p r)/3, r = ∂ ln R/∂s_1.
 //!
-//! Conserving elements with an assumed strain: Armero (2008), whose text was not at hand and who corrects the stress of the
-//! whole element by one number; the chain is derived here.
+//! Conserving elements with an assumed volume ratio: Armero (2008), whose text was not at hand; the chain is derived here.
 
 use carom_algebra::tensor::Mat3;
 use carom_materials::{Conserving, Failure, Tangent, Want};
@@ -95,6 +94,7 @@ struct Slopes {
 }
 
 impl Cells {
+    /// Fails where the point is turned inside out.
     fn motion(&self, (element, point): (usize, usize), u: [&[f64]; 2]) -> Result<Motion, Fault> {
         let gradient = self.gradient(element, point);
         let f = u.map(|u| gradient.deformation(u));
@@ -280,12 +280,12 @@ impl Point {
         let j_1 = self.motion.jacobian[1];
         let c_1 = f_1.tr_mul(f_1);
         let b_1 = cofactor(&c_1) / j_1;
-        let (moduli, flat) = (self.law_moduli(), |x: &Mat3, k: usize| x[(k / 3, k % 3)]);
-        let k = Mat3::from_fn(|i, j| {
-            let row = &moduli[3 * i + j];
-            (0..9).map(|c| row[c] * flat(&c_1, c)).sum()
-        });
-        let left = Mat3::from_fn(|i, j| (0..9).map(|r| flat(c_m, r) * moduli[r][3 * i + j]).sum());
+        let moduli = self.law_moduli();
+        // sums over a pair; the moduli of a step are not the same from left and right
+        let sum =
+            |of: &dyn Fn(usize) -> f64, x: &Mat3| (0..9).map(|k| of(k) * x[(k / 3, k % 3)]).sum();
+        let k = Mat3::from_fn(|i, j| sum(&|c| moduli[3 * i + j][c], &c_1));
+        let left = Mat3::from_fn(|i, j| sum(&|r| moduli[r][3 * i + j], c_m));
         let r = 1.0 / (s_0 + s_1) - (s_0 + 2.0 * s_1) / (s_0 * s_0 + s_0 * s_1 + s_1 * s_1);
         let beta = s_1 / 3.0 * (0.5 * rate * s_1 * c_m.dot(&k) + p * r);
         Slopes {
