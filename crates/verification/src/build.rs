@@ -159,3 +159,18 @@ pub(crate) fn support(mesh: &Mesh, name: &str, fix: [bool; 3]) -> Result<Support
         fix,
     })
 }
+
+/// The mesh with nodes at the same place as one.
+pub(crate) fn welded(mut mesh: Mesh) -> Mesh {
+    let mut first = Vec::new();
+    for (node, x) in mesh.nodes.iter().enumerate() {
+        let near = |y: &[f64; 3]| (0..2).all(|i| (x[i] - y[i]).abs() < 1e-9);
+        first.push(mesh.nodes[..node].iter().position(near).unwrap_or(node) as u32);
+    }
+    for block in &mut mesh.blocks {
+        for node in &mut block.nodes {
+            *node = first[*node as usize];
+        }
+    }
+    mesh
+}
