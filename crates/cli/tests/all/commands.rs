@@ -76,6 +76,32 @@ fn every_template_passes_the_check_and_no_file_is_overwritten() {
 }
 
 #[test]
+fn a_template_with_a_mesh_brings_it_along_and_writes_all_its_files_or_none() {
+    let work = tempfile::tempdir().unwrap();
+    let names = || {
+        let entries = std::fs::read_dir(work.path().join("sub")).unwrap();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    std::fs::create_dir(work.path().join("sub")).unwrap();
+    let mine = work.path().join("sub/block.msh");
+    std::fs::write(&mine, "mine").unwrap();
+    let output = carom(work.path(), &["new", "block-drop", "sub/drop.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output).contains("block.msh exists"));
+    assert_eq!(names(), ["block.msh"]);
+    assert_eq!(std::fs::read(&mine).unwrap(), b"mine");
+
+    std::fs::remove_file(&mine).unwrap();
+    let output = carom(work.path(), &["new", "block-drop", "sub/drop.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    assert_eq!(names(), ["block.geo", "block.msh", "drop.toml"]);
+    let output = carom(work.path(), &["check", "sub/drop.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+}
+
+#[test]
 fn schema_is_json_and_names_the_tables() {
     let output = carom(&project(), &["schema"]);
     let schema: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
