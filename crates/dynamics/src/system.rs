@@ -39,6 +39,23 @@ pub struct Model {
     pub nonlinear: Nonlinear,
 }
 
+impl Model {
+    /// Bodies that nothing holds, loads or touches, in equal steps of `dt` (s).
+    pub fn new(bodies: Vec<ModelBody>, mesh: Mesh, scheme: Scheme, dt: f64) -> Model {
+        Model {
+            mesh,
+            bodies,
+            supports: Vec::new(),
+            gravity: [0.0; 3],
+            contacts: Vec::new(),
+            scheme,
+            dt,
+            adaptive: None,
+            nonlinear: Nonlinear::default(),
+        }
+    }
+}
+
 /// A body and its initial state.
 #[derive(Clone, Debug)]
 pub struct ModelBody {
@@ -50,6 +67,18 @@ pub struct ModelBody {
     pub velocity: [f64; 3],
     /// Initial displacement of all its nodes, m.
     pub displacement: [f64; 3],
+}
+
+impl ModelBody {
+    /// A body at rest, with lumped mass.
+    pub fn new(spec: BodySpec) -> ModelBody {
+        ModelBody {
+            spec,
+            mass: MassKind::Lumped,
+            velocity: [0.0; 3],
+            displacement: [0.0; 3],
+        }
+    }
 }
 
 /// Nodes that cannot move in some directions.
@@ -85,6 +114,29 @@ pub struct ModelContact {
     /// Largest penetration that is a contact, m: points see only faces turned against them and not further away inside than
     /// this ([`Sight`](carom_contact::Sight)). `None`: they see everything, unless the surface faces itself.
     pub depth: Option<f64>,
+}
+
+impl ModelContact {
+    /// A contact at nodes, of small sliding, without friction, and with penetrations at the start as they are.
+    pub fn new(
+        name: impl Into<String>,
+        secondary: Surface,
+        primary: ModelTarget,
+        law: Law,
+    ) -> ModelContact {
+        ModelContact {
+            name: name.into(),
+            secondary,
+            primary,
+            law,
+            sliding: Sliding::Small,
+            integration: Integration::Node,
+            massless: false,
+            friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
+        }
+    }
 }
 
 /// What a secondary surface faces.

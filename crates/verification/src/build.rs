@@ -1,9 +1,9 @@
 //! Parts of models, in few words.
 
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Rows, Weighting};
-use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, CellWeights, Kinematics};
 use carom_contact::law::{Adhesion, Capture, Compliance, Damped, Displacement, Reading, Velocity};
-use carom_contact::{Initial, Integration, Law, Plane, Sliding};
+use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Scheme, Support, ZoneDriver, Zones};
 use carom_materials::Elastic;
@@ -80,19 +80,12 @@ pub(crate) fn body(
     kinematics: Kinematics,
     material: Elastic,
 ) -> Result<ModelBody, Error> {
-    Ok(ModelBody {
-        spec: BodySpec {
-            name: name.to_string(),
-            cells: group(mesh, name)?.elements.clone(),
-            kinematics,
-            material: material.into(),
-            formulation: Formulation::Full,
-            weights: None,
-        },
-        mass: MassKind::Lumped,
-        velocity: [0.0; 3],
-        displacement: [0.0; 3],
-    })
+    Ok(ModelBody::new(BodySpec::new(
+        name,
+        group(mesh, name)?.elements.clone(),
+        kinematics,
+        material,
+    )))
 }
 
 /// Two bodies, inner and outer, glued where they overlap with linear weights and the coarse L2 mediator, and the rows.
@@ -144,16 +137,8 @@ pub(crate) fn surface(mesh: &Mesh, name: &str, body: &ModelBody) -> Result<Surfa
 /// A contact, named "shock", with pairing anew at every step.
 pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> ModelContact {
     ModelContact {
-        name: "shock".to_string(),
-        secondary,
-        primary,
-        law,
         sliding: Sliding::Finite,
-        integration: Integration::Node,
-        massless: false,
-        friction: 0.0,
-        initial: Initial::Keep,
-        depth: None,
+        ..ModelContact::new("shock", secondary, primary, law)
     }
 }
 

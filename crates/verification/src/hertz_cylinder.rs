@@ -52,14 +52,8 @@ fn pressed(mesh: Mesh, integration: Integration) -> Result<Pressed, Error> {
     let motion = lowered(&mesh, "upper.equator", WAY)?;
     let model = Model {
         contacts: vec![touch],
-        bodies,
         supports,
-        gravity: [0.0; 3],
-        scheme: theta(0.5),
-        dt: 1.0,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(bodies, mesh, theta(0.5), 1.0)
     };
     Pressed::half(model, motion)
 }

@@ -49,14 +49,8 @@ fn pressed(mesh: Mesh, way: f64, integration: Integration) -> Result<Pressed, Er
     let motion = lowered(&mesh, "upper.equator", way)?;
     let model = Model {
         contacts: vec![touch],
-        bodies: vec![upper, lower],
         supports,
-        gravity: [0.0; 3],
-        scheme: theta(0.5),
-        dt: 1.0,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(vec![upper, lower], mesh, theta(0.5), 1.0)
     };
     Pressed::half(model, motion)
 }

@@ -18,8 +18,8 @@ use std::f64::consts::PI;
 use carom_bodies::Kinematics;
 use carom_contact::Plane;
 use carom_dynamics::{
-    LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, Newton, Nonlinear, Scheme,
-    System, Zoned, Zones, mortar_rows,
+    LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, Newton, Scheme, System, Zoned,
+    Zones, mortar_rows,
 };
 use carom_materials::{Elastic, Law, NeoHooke};
 use carom_mesh::{Mesh, generate};
@@ -93,15 +93,8 @@ impl Ring {
         });
         let touch = contact(surface(&mesh, "sector.right", &bodies[0])?, wall, NOW);
         Ok(Model {
-            mesh,
-            bodies,
-            supports: Vec::new(),
-            gravity: [0.0; 3],
             contacts: vec![touch],
-            scheme: theta(THETA),
-            dt,
-            adaptive: None,
-            nonlinear: Nonlinear::default(),
+            ..Model::new(bodies, mesh, theta(THETA), dt)
         })
     }
 

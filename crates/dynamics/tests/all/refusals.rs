@@ -1,11 +1,11 @@
 //! Models that are refused, and why: meshes that overlap at the start, static stages of what nothing holds.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Displacement;
-use carom_contact::{Initial, Integration, Law, Sliding};
+use carom_contact::{Initial, Law, Sliding};
 use carom_dynamics::{
-    Error, Model, ModelBody, ModelContact, ModelTarget, Newton, Nonlinear, Preload, Scheme,
-    Support, System, scheme,
+    Error, Model, ModelBody, ModelContact, ModelTarget, Newton, Preload, Scheme, Support, System,
+    scheme,
 };
 use carom_materials::{Elastic, Law as Material, NeoHooke};
 use carom_mesh::{Mesh, Surface, generate};
@@ -22,46 +22,37 @@ fn model(mesh: Mesh, bodies: &[&str], contact: [(&str, &str); 2], initial: Initi
         2 => Kinematics::PlaneStrain { thickness: 1.0 },
         _ => Kinematics::Solid,
     };
-    let body = |name: &&str| ModelBody {
-        spec: BodySpec {
-            name: name.to_string(),
-            cells: mesh.groups[*name].elements.clone(),
+    let body = |name: &&str| {
+        ModelBody::new(BodySpec::new(
+            *name,
+            mesh.groups[*name].elements.clone(),
             kinematics,
-            material: Material::NeoHooke(NeoHooke { initial: SOFT }),
-            formulation: Formulation::Full,
-            weights: None,
-        },
-        mass: MassKind::Lumped,
-        velocity: [0.0; 3],
-        displacement: [0.0; 3],
+            Material::NeoHooke(NeoHooke { initial: SOFT }),
+        ))
     };
     let [secondary, primary] = contact.map(|(group, body)| {
         Surface::new(&mesh, &mesh.groups[group], &mesh.groups[body].elements).unwrap()
     });
     Model {
-        bodies: bodies.iter().map(body).collect(),
-        supports: Vec::new(),
-        gravity: [0.0; 3],
         contacts: vec![ModelContact {
-            name: "joint".into(),
-            secondary,
-            primary: ModelTarget::Surface(primary),
-            law: Law::Displacement(Displacement::default()),
             sliding: Sliding::Finite,
-            integration: Integration::Node,
-            massless: false,
-            friction: 0.0,
             initial,
-            depth: None,
+            ..ModelContact::new(
+                "joint",
+                secondary,
+                ModelTarget::Surface(primary),
+                Law::Displacement(Displacement::default()),
+            )
         }],
-        scheme: Scheme::Newmark(scheme::Newmark {
-            beta: 0.25,
-            gamma: 0.5,
-        }),
-        dt: 0.01,
-        adaptive: None,
-        nonlinear: Nonlinear::default(),
-        mesh,
+        ..Model::new(
+            bodies.iter().map(body).collect(),
+            mesh,
+            Scheme::Newmark(scheme::Newmark {
+                beta: 0.25,
+                gamma: 0.5,
+            }),
+            0.01,
+        )
     }
 }
 
