@@ -214,7 +214,7 @@ impl Newton {
     /// No equilibrium with the smallest part of the step, or one that is not stable; the state is then the one before the step.
     pub fn step(&mut self) -> Result<(), Error> {
         let start = self.state.clone();
-        let (first, end) = (self.state.time, self.end_of_step());
+        let (first, end, size) = (self.state.time, self.end_of_step(), self.size_of_step());
         let whole = self.stable_level(end - first)?;
         let mut control = self.state.control;
         let (mut done, mut level) = (0u64, whole);
@@ -224,7 +224,7 @@ impl Newton {
             let part = parts >> level;
             let to = first + (end - first) * ((done + part) as f64 / parts as f64);
             self.report.attempts += 1;
-            match self.attempt(to - self.state.time) {
+            match self.attempt(size * (part as f64 / parts as f64)) {
                 Ok(()) => {
                     done += part;
                     if done < parts {
@@ -269,6 +269,14 @@ impl Newton {
             }
             Some(preload) => preload.end + (step + 1 - preload.steps) as f64 * dt,
             None => (step + 1) as f64 * dt,
+        }
+    }
+
+    /// Size of the next step, s: the same bits for equal steps, so that a constant matrix is.
+    fn size_of_step(&self) -> f64 {
+        match self.system.nonlinear.preload {
+            Some(preload) if self.is_static() => preload.end / preload.steps as f64,
+            _ => self.system.dt,
         }
     }
 
