@@ -12,6 +12,7 @@
 mod balance;
 mod contacts;
 mod effective;
+mod floating;
 mod friction;
 mod linked;
 mod loads;
@@ -34,6 +35,7 @@ use crate::state::{ContactReport, State, StepReport, empty_state};
 use crate::step_map::StepMap;
 use crate::system::System;
 use effective::Effective;
+use floating::Floating;
 use solve::Pace;
 
 /// Takes steps of systems that are not linear.
@@ -43,6 +45,7 @@ pub struct Newton {
     dt: f64,
     map: StepMap,
     effective: Effective,
+    floating: Floating,
     interface: Interface,
     pairing: Pairing,
     /// Contacts with small sliding where all nodes are at their reference places; empty until they are paired.
@@ -105,7 +108,7 @@ impl Newton {
     ///
     /// # Errors
     /// A mass matrix that is not positive definite, elements that are turned inside out, a static stage of a body that
-    /// nothing holds.
+    /// neither supports nor contacts could hold.
     pub fn new(system: Arc<System>) -> Result<Newton, Error> {
         let n = system.unknowns();
         let zeros = || vec![0.0; n];
@@ -114,6 +117,7 @@ impl Newton {
             dt: 0.0,
             map: system.scheme.get().step_map(system.dt),
             effective: Effective::new(&system),
+            floating: Floating::new(&system)?,
             interface: Interface::default(),
             pairing: Pairing::default(),
             initial: vec![Pairing::default(); system.contacts.len()],
@@ -157,7 +161,6 @@ impl Newton {
             phases: Phases::default(),
             system,
         };
-        newton.check_free_motions()?;
         let system = Arc::clone(&newton.system);
         newton.restart(&system.initial_displacement, &system.initial_velocity)?;
         Ok(newton)
@@ -230,6 +233,8 @@ impl Newton {
                     if done < parts {
                         std::mem::swap(&mut self.state, &mut self.next);
                         self.state.time = to;
+                        // parts of a step are of the same stage
+                        (self.state.step, self.state.control) = (start.step, control);
                     }
                     while level > whole
                         && done.is_multiple_of(2 * part)

@@ -5,6 +5,7 @@
 
 mod allocation;
 mod dense;
+mod floating;
 mod friction;
 mod initial;
 mod interface;
