@@ -3,10 +3,11 @@
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::{
-    Amplitude, Error, Load, LoadKind, Model, ModelTarget, Newton, Preload, Scheme, System, scheme,
+    Amplitude, Error, Load, LoadKind, Model, ModelTarget, Newton, Preload, Scheme, Support, System,
+    scheme,
 };
 use carom_materials::{Elastic, Law as Material, NeoHooke};
-use carom_mesh::Surface;
+use carom_mesh::{Surface, generate};
 
 use crate::newton::{SOFT, square};
 
@@ -200,5 +201,59 @@ fn a_block_slides_on_to_the_contact_that_stops_it() {
             "{}",
             contact.force
         );
+    }
+}
+
+#[test]
+fn blocks_that_only_touch_each_other_and_the_ground_carry_a_load_down() {
+    for material in [COLUMN.into(), neo_hooke()] {
+        let mut model = falling(DISPLACEMENT, material);
+        // a narrower block of another mesh, 0.02 above the first one
+        let upper = generate::rectangle("b", [0.2, 1.02], [0.5, 0.5], [3, 2], false);
+        model.mesh.merge("b", upper).unwrap();
+        let mut body = model.bodies[0].clone();
+        body.spec.name = "b".into();
+        body.spec.cells = model.mesh.groups["b"].elements.clone();
+        let surface = |group: &str, cells: &[_]| {
+            Surface::new(&model.mesh, &model.mesh.groups[group], cells).unwrap()
+        };
+        let mut joint = model.contacts[0].clone();
+        joint.name = "joint".into();
+        joint.integration = Integration::Mortar {
+            basis: carom_contact::Basis::Dual,
+        };
+        joint.secondary = surface("b.bottom", &body.spec.cells);
+        joint.primary = ModelTarget::Surface(surface("a.top", &model.bodies[0].spec.cells));
+        let push = Load {
+            name: "push".into(),
+            surface: surface("b.top", &body.spec.cells),
+            kind: LoadKind::Traction([0.0, -0.5, 0.0]),
+            amplitude: Amplitude::constant(1.0),
+        };
+        model.contacts.push(joint);
+        model.bodies.push(body);
+        model.nonlinear.loads = vec![push];
+        // the upper block is not above the middle of the lower one, whose top leans and would let it slide
+        for group in ["a.left", "b.left"] {
+            let nodes = model.mesh.group_nodes(&model.mesh.groups[group]);
+            let fix = [true, false, false];
+            model.supports.push(Support { nodes, fix });
+        }
+        let newton = pressed(model).unwrap();
+        let (system, motion) = (newton.system(), &newton.state().motion);
+        let on = |body: usize| -> f64 {
+            let nodes = system.body_masses[body].iter();
+            nodes
+                .map(|(node, _)| motion.contact_force[2 * *node as usize + 1])
+                .sum()
+        };
+        // a quarter of the area of the lower block, and the traction on 0.5 times 0.5
+        let upper = 0.25 * WEIGHT + 0.5 * 0.25;
+        // iterations end at 1e-10 of the forces, the largest of which are those inside
+        assert!((on(1) - upper).abs() < 1e-8, "{}", on(1) - upper);
+        assert!((on(0) - WEIGHT).abs() < 1e-8, "{}", on(0) - WEIGHT);
+        let ground = newton.report().contacts[0].force;
+        assert!((ground - WEIGHT - upper).abs() < 1e-8, "{ground}");
+        assert!(newton.residuals().len() <= 20, "{:?}", newton.residuals());
     }
 }
