@@ -16,7 +16,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::Integration;
-use carom_dynamics::{Model, ModelTarget};
+use carom_dynamics::{Model, ModelTarget, Nonlinear};
 use carom_mesh::Mesh;
 
 use crate::Error;
@@ -55,10 +55,13 @@ fn pressed(mesh: Mesh, way: f64, integration: Integration) -> Result<Pressed, Er
         scheme: theta(0.5),
         dt: 1.0,
         adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
+        nonlinear: Nonlinear {
+            motions: vec![motion],
+            ..Nonlinear::default()
+        },
         mesh,
     };
-    Pressed::half(model, motion)
+    Pressed::half(model)
 }
 
 fn hertz(force: f64) -> Exact<impl Fn(f64) -> f64> {
