@@ -118,11 +118,13 @@ impl Effective {
         turning
             .pairing
             .add_curvatures(forces, -turning.factor, &mut self.loads, &mut a);
+        let mut free = a.with_identity(&system.fixed);
         let (parts, weight) = at.proximal;
         for i in parts.iter().flat_map(Range::clone) {
-            a.add(i, i, weight * a.get(i, i).abs());
+            if !system.fixed[i] {
+                free.add(i, i, weight * a.get(i, i).abs());
+            }
         }
-        let free = a.with_identity(&system.fixed);
         let factored = self.factorise(&free, system.dim);
         self.matrix = Some(a);
         factored.map_err(|cause| {

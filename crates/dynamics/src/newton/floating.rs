@@ -7,7 +7,8 @@
 //! so that where the iterations end nothing of it is left: the balance of forces is tested without it. It is a small part
 //! of the stiffness with which contacts hold the part, and iterations shrink errors by about that ratio; a motion that
 //! nothing holds and nothing loads stays as it is. What is loaded along such a motion is moved on to the next contact;
-//! where none is on its way there is no equilibrium, and the body and its motion are named.
+//! where none is on its way there is no equilibrium near, and the body and its motion are named. Held is what a support
+//! or the row of a contact that carries a force holds: a place at the bottom of a bowl is not searched.
 //!
 //! The proximal point algorithm: R. T. Rockafellar (1976), SIAM J. Control Optim. 14; here one Newton iteration to each of its.
 
