@@ -16,7 +16,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::Integration;
-use carom_dynamics::{Model, ModelTarget};
+use carom_dynamics::{Model, ModelTarget, Nonlinear};
 use carom_mesh::Mesh;
 
 use crate::Error;
@@ -50,9 +50,13 @@ fn pressed(mesh: Mesh, way: f64, integration: Integration) -> Result<Pressed, Er
     let model = Model {
         contacts: vec![touch],
         supports,
+        nonlinear: Nonlinear {
+            motions: vec![motion],
+            ..Nonlinear::default()
+        },
         ..Model::new(vec![upper, lower], mesh, theta(0.5), 1.0)
     };
-    Pressed::half(model, motion)
+    Pressed::half(model)
 }
 
 fn hertz(force: f64) -> Exact<impl Fn(f64) -> f64> {
