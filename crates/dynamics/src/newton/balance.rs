@@ -176,6 +176,9 @@ impl Newton {
             &squares,
             forces,
         );
+        if map.inertia.x == 0.0 {
+            self.next.ledger.compare_with_work();
+        }
     }
 
     /// Records of the contacts.
@@ -213,25 +216,6 @@ impl Newton {
                 .records
                 .add(&system, k, &step, &self.state, &self.next.motion.v);
             self.report.contacts[k] = report;
-        }
-    }
-
-    pub(super) fn finite(&self) -> Result<(), Error> {
-        let motion = &self.next.motion;
-        let bad = [
-            ("displacement", &motion.u),
-            ("velocity", &motion.v),
-            ("contact force", &motion.contact_force),
-        ]
-        .into_iter()
-        .find(|(_, vector)| !vector.iter().sum::<f64>().is_finite());
-        match bad {
-            None => Ok(()),
-            Some((quantity, _)) => Err(Error::NotFinite {
-                step: self.state.step + 1,
-                time: self.state.time,
-                quantity,
-            }),
         }
     }
 

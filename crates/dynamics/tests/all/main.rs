@@ -5,6 +5,7 @@
 
 mod allocation;
 mod dense;
+mod floating;
 mod friction;
 mod initial;
 mod interface;
@@ -15,6 +16,7 @@ mod mortar;
 mod newton;
 mod quadrature;
 mod refusals;
+mod sliding;
 mod stability;
 mod weak_form;
 mod whole;
