@@ -9,7 +9,7 @@
 //! ledgers of energy, momentum and angular momentum close. No part goes through another: in each state the nodes of the surface that
 //! lie in cells of which they are no corner are looked for among all cells, with nothing of the search of the contact, and
 //! their depth is the distance from the nearest side of the surface.
-//! Tolerances: ledgers 1e-9 (iterations end at 1e-8 of the forces, and 1e-10 is found). Depth: the velocity law lets points in by the way
+//! Tolerances: ledgers 1e-9 (iterations end at 1e-10 of the forces, and 5e-11 is found). Depth: the velocity law lets points in by the way
 //! of a step, at 2 x 8 m/s 16 mm, a third of the 50 mm of an element.
 //! Sizes: quick 2 x 48 elements, the first 200 steps; full 2 x 96, 320 steps.
 
@@ -154,7 +154,7 @@ pub(crate) const CHECK: Check = Check {
                 0.0,
                 0.0,
             ),
-            Row::at_least("most points with a force inside", closed as f64, 6.0),
+            Row::at_least("most points with a force inside", closed as f64, 4.0),
             Row::at_least(
                 "impulse inside / momentum",
                 records[1].impulse() / start,
