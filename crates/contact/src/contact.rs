@@ -139,6 +139,11 @@ impl Contact {
         }
     }
 
+    /// Whether the surface faces itself.
+    pub fn faces_itself(&self) -> bool {
+        self.sight.as_ref().is_some_and(Sight::is_of_itself)
+    }
+
     /// What a point sees; `None` for everything.
     pub(crate) fn view(&self, point: usize) -> Option<View<'_>> {
         self.sight.as_ref().map(|sight| sight.of(point))

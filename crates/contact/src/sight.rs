@@ -147,6 +147,11 @@ impl Sight {
         sight
     }
 
+    /// Whether the surface faces itself: points on its both sides may then say the same.
+    pub fn is_of_itself(&self) -> bool {
+        self.reach.is_finite()
+    }
+
     /// The normals of the secondary faces, at their centres.
     pub(crate) fn normals(&self, places: &Places) -> impl Iterator<Item = [f64; 3]> {
         let places = *places;

@@ -24,12 +24,14 @@ pub struct Candidate {
     pub rate_free: f64,
     /// Status at the end of the last step.
     pub status: Status,
+    /// Whether its surface faces itself, so that other points may say the same as it does.
+    pub faces_itself: bool,
 }
 
 /// Why the problem was not solved.
 #[derive(Debug, ThisError)]
 pub enum Failure {
-    /// The closed points' matrix is not even positive semidefinite.
+    /// The closed points' matrix is not positive definite.
     #[error("the matrix of {points} closed points is singular: {cause}")]
     Singular {
         /// Closed points.
@@ -245,7 +247,8 @@ impl Interface {
                 let relation = relation(i, status);
                 relation.compliance / scale(&relation, s)
             };
-            self.factor = factor(&self.coupled, d, n, own)?;
+            let shared = |i: u32| candidates[i as usize].faces_itself;
+            self.factor = factor(&self.coupled, d, n, own, shared)?;
             self.factor_of = (version, self.coupled.clone());
         }
         let Some(factor) = &self.factor else {
@@ -339,13 +342,15 @@ impl Interface {
     }
 }
 
-/// Factor of D over some points of `n`, with their own compliance on the diagonal; `None` for no point. Points that say the
-/// same are told apart by [`SHIFT`], and share their force.
+/// Factor of D over some points of `n`, with their own compliance on the diagonal; `None` for no point. Points of
+/// surfaces that face themselves may say the same: [`SHIFT`] then tells them apart, and they share their force. `shared`: whether a
+/// point is one.
 fn factor(
     points: &[(u32, Status)],
     d: &[f64],
     n: usize,
     own: impl Fn(u32, Status) -> f64,
+    shared: impl Fn(u32) -> bool,
 ) -> Result<Option<DenseCholesky>, Failure> {
     if points.is_empty() {
         return Ok(None);
@@ -355,10 +360,10 @@ fn factor(
         for &(i, status) in points {
             matrix.extend(points.iter().map(|&(j, _)| {
                 let entry = d[i as usize * n + j as usize];
-                if i == j {
-                    entry * (1.0 + shift) + own(i, status)
-                } else {
-                    entry
+                match i == j {
+                    true if shared(i) => entry * (1.0 + shift) + own(i, status),
+                    true => entry + own(i, status),
+                    false => entry,
                 }
             }));
         }
@@ -366,6 +371,7 @@ fn factor(
     };
     let factor = match matrix(0.0) {
         Ok(factor) if factor.least_pivot() > DEPENDENT => Ok(factor),
+        other if points.iter().all(|&(i, _)| !shared(i)) => other,
         _ => matrix(SHIFT),
     };
     factor.map(Some).map_err(|cause| Failure::Singular {

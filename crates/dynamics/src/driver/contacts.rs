@@ -134,6 +134,7 @@ impl Driver {
                 },
                 rate_free: value(&self.map.rate),
                 status: self.state.interface.status[at],
+                faces_itself: contact.faces_itself(),
             });
         }
         let factor = self.map.contact;

@@ -146,6 +146,7 @@ impl Impulses {
                     true => Status::Closed,
                     false => Status::Open,
                 },
+                faces_itself: system.point(points[i] as usize).0.faces_itself(),
             });
         }
         self.interface

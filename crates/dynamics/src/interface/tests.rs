@@ -14,6 +14,7 @@ fn candidate(law: Law, gap_free: f64) -> Candidate {
         },
         rate_free: 0.0,
         status: Status::Open,
+        faces_itself: false,
     }
 }
 
@@ -58,7 +59,7 @@ fn random_complementarity_problems_are_solved() {
 }
 
 #[test]
-fn points_that_say_the_same_share_their_force() {
+fn points_of_a_surface_that_faces_itself_share_their_force_where_they_say_the_same() {
     // two pairs of equal points, and one point that depends on both pairs
     let b = [[2.0, 0.3], [2.0, 0.3], [0.5, 1.0], [0.5, 1.0], [1.0, 0.4]];
     let d: Vec<f64> = (0..25)
@@ -69,7 +70,10 @@ fn points_that_say_the_same_share_their_force() {
     // the deeper one of a pair rules
     let differing = [-1.0, -1.1, -2.0, -1.5, 5.0];
     for gaps in [consistent, differing] {
-        let candidates = gaps.map(|gap| candidate(law, gap));
+        let candidates = gaps.map(|gap| Candidate {
+            faces_itself: true,
+            ..candidate(law, gap)
+        });
         let mut interface = Interface::default();
         interface.solve(&candidates, (&d, 1), [1.0, 0.0]).unwrap();
         for (i, gap) in gaps.iter().enumerate() {

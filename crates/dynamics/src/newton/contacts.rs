@@ -227,6 +227,7 @@ impl Newton {
                 local: self.local(at, gap + self.map.gap.x * step),
                 rate_free: rate + self.map.rate.x * step,
                 status: self.next.interface.status[at],
+                faces_itself: system.point(at).0.faces_itself(),
             }
         });
         self.candidate_data = data.collect();

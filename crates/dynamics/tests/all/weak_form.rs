@@ -53,6 +53,7 @@ fn problem(q: &[f64], compliance: Vec<f64>, factor: f64) -> InterfaceProblem {
         },
         rate_free: 0.0,
         status: Status::Open,
+        faces_itself: false,
     };
     InterfaceProblem {
         step: 0,
