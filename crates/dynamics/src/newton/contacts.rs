@@ -186,16 +186,20 @@ impl Newton {
             self.release();
             return Ok(());
         }
-        let free = self.vectors.dx.clone();
-        let begun = self.vectors.half.clone();
+        let mut free = std::mem::take(&mut self.vectors.free);
+        free.copy_from_slice(&self.vectors.dx);
+        self.vectors.begun.copy_from_slice(&self.vectors.half);
+        let mut solved = Ok(());
         for _ in 0..ADDITIONS {
-            self.vectors.half.copy_from_slice(&begun);
-            self.solve_candidates(&free)?;
-            if !self.add_missed() {
+            let Vectors { half, begun, .. } = &mut self.vectors;
+            half.copy_from_slice(begun);
+            solved = self.solve_candidates(&free);
+            if solved.is_err() || !self.add_missed() {
                 break;
             }
         }
-        Ok(())
+        self.vectors.free = free;
+        solved
     }
 
     fn choose_candidates(&mut self) {
@@ -218,7 +222,9 @@ impl Newton {
 
     fn solve_candidates(&mut self, free: &[f64]) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
-        let data = self.candidates.iter().map(|&point| {
+        let mut data = std::mem::take(&mut self.candidate_data);
+        data.clear();
+        data.extend(self.candidates.iter().map(|&point| {
             let at = point as usize;
             let step = self.pairing.rows.product(at, free);
             let (gap, rate) = self.now(at);
@@ -228,8 +234,8 @@ impl Newton {
                 rate_free: rate + self.map.rate.x * step,
                 status: self.next.interface.status[at],
             }
-        });
-        self.candidate_data = data.collect();
+        }));
+        self.candidate_data = data;
         if self.rubs() {
             return self.solve_with_friction(free);
         }

@@ -373,12 +373,13 @@ impl Newton {
 
     /// Goes the way of the iteration, or as much of it as does not make things much worse.
     fn go(&mut self, before: &Standing, jumps: bool) -> Result<Standing, Error> {
-        let x = self.vectors.x.clone();
+        self.vectors.before.copy_from_slice(&self.vectors.x);
         let mut share = 1.0;
         let mut last = None;
         for _ in 0..=SHORTENINGS {
-            for (i, x_i) in self.vectors.x.iter_mut().enumerate() {
-                *x_i = x[i] + share * self.vectors.dx[i];
+            let vectors = &mut self.vectors;
+            for (i, x) in vectors.x.iter_mut().enumerate() {
+                *x = vectors.before[i] + share * vectors.dx[i];
             }
             match self.evaluate(false) {
                 Ok(()) => {
