@@ -75,6 +75,17 @@ impl DenseCholesky {
         )
     }
 
+    /// Least pivot over the diagonal entry that it is left of: L_kk² / A_kk, 1 for a diagonal matrix, about the rounding unit
+    /// for a singular one. Infinite without unknowns.
+    pub fn least_pivot(&self) -> f64 {
+        let n = self.n;
+        let ratio = |k: usize| {
+            let row = (0..=k).map(|j| self.values[j * n + k].powi(2));
+            self.values[k * n + k].powi(2) / row.sum::<f64>()
+        };
+        (0..n).map(ratio).fold(f64::INFINITY, f64::min)
+    }
+
     /// x ← A⁻¹ x; no allocation.
     pub fn solve(&self, x: &mut [f64]) {
         Arch::new().dispatch(Solve(self, x));

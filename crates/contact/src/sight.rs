@@ -14,11 +14,14 @@
 use carom_elements::{MAX_FACE_NODES, map};
 use carom_mesh::{Bounds, BoxTree, Face, Projection};
 
-use crate::search::{faces_point, positions};
+use crate::search::positions;
 use crate::{Places, Point};
 
 /// Cosine of the angle between the normals of a point and of a face up to which the face is in view.
 const OPPOSED: f64 = -0.5;
+
+/// How far sideways the other side of a wall may be, over its depth behind the plane of a face: 63°.
+const BEND: f64 = 2.0;
 
 /// Views of the points of a contact.
 #[derive(Clone, Debug)]
@@ -175,8 +178,11 @@ impl Sight {
                 let face = &target[item as usize];
                 let x = positions(&places, face);
                 let foot = carom_mesh::project(face, &x[..face.corners().len()], &place);
-                let back =
-                    foot.gap < 0.0 && view.opposes(&foot, &normals) && faces_point(&foot, face);
+                // where a wall bends sharply the closest point is an edge, which none of its faces may face
+                let sideways = foot.distance.powi(2) - foot.gap.powi(2);
+                let back = foot.gap < 0.0
+                    && sideways <= (BEND * foot.gap).powi(2)
+                    && view.opposes(&foot, &normals);
                 if back { foot.distance } else { f64::INFINITY }
             };
             if let Some((_, thickness)) = tree.closest(&place, 2.0 * *depth, 0.0, behind) {

@@ -16,6 +16,7 @@ mod error;
 mod figures;
 mod glued;
 mod glued_bar;
+mod hairpin;
 mod hertz;
 mod kept;
 
@@ -48,6 +49,7 @@ mod blocks_as_bars;
 mod closed_field_as_printed;
 mod contact_patch;
 mod crushed_stop;
+mod crushed_tube;
 mod energy_identity;
 mod first_force;
 mod glued_rotating;
@@ -68,6 +70,7 @@ mod ring_sector;
 pub mod rings;
 mod sdnl111;
 mod sdnl111_bars;
+mod self_contact;
 mod shapes;
 mod sliding_block;
 mod spinning_bar;
@@ -134,6 +137,7 @@ registry! {
     closed_field_as_printed
     contact_patch
     crushed_stop
+    crushed_tube
     energy_identity
     first_force
     glued_rotating
@@ -154,6 +158,7 @@ registry! {
     rings
     sdnl111
     sdnl111_bars
+    self_contact
     shapes
     sliding_block
     spinning_bar

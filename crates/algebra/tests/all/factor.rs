@@ -244,6 +244,15 @@ mod dense_factor {
     use super::*;
 
     #[test]
+    fn least_pivot_is_what_the_others_leave_of_a_diagonal() {
+        // the angle between two vectors: 1 - cos²
+        let (cos, size) = (0.6, 9.0);
+        let matrix = [size, 3.0 * cos, 3.0 * cos, 1.0];
+        let factor = DenseCholesky::new(2, &matrix).unwrap();
+        assert!((factor.least_pivot() - 0.64).abs() < 1e-15);
+    }
+
+    #[test]
     fn solves_a_matrix_of_known_inverse() {
         // Second difference matrix: inverse (min(i, j) + 1) (n - max(i, j)) / (n + 1).
         let n = 37;

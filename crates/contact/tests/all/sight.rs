@@ -1,6 +1,8 @@
 //! Surfaces that face themselves, and thin parts.
 
-use carom_contact::{Contact, Places, Point, Rows, Search, Sight, Target};
+use carom_contact::{
+    Basis, Contact, Integration, Mortar, Places, Point, Rows, Search, Sight, Target,
+};
 use carom_elements::Kind;
 use carom_mesh::Face;
 
@@ -10,7 +12,7 @@ use crate::fixture::{contact, face};
 const LEG: f64 = 2.0;
 const THICK: f64 = 0.1;
 const OPEN: f64 = 0.3;
-/// Segments of a leg and of the bend.
+/// Segments of a leg and of a round bend.
 const ALONG: u32 = 20;
 const ROUND: u32 = 12;
 
@@ -23,16 +25,17 @@ struct Fold {
 }
 
 impl Fold {
-    fn new() -> Fold {
+    /// `round`: segments of the bend.
+    fn new(round: u32) -> Fold {
         let middle = 0.5 * (OPEN + THICK);
-        let count = 2 * ALONG + ROUND;
+        let count = 2 * ALONG + round;
         let place = |k: u32, off: f64| {
             // along the middle line, the middle of the bend being at (LEG, 0)
             let radius = middle + off;
             if k <= ALONG {
                 [LEG * f64::from(k) / f64::from(ALONG), -radius, 0.0]
-            } else if k < ALONG + ROUND {
-                let angle = std::f64::consts::PI * f64::from(k - ALONG) / f64::from(ROUND);
+            } else if k < ALONG + round {
+                let angle = std::f64::consts::PI * f64::from(k - ALONG) / f64::from(round);
                 [LEG + radius * angle.sin(), -radius * angle.cos(), 0.0]
             } else {
                 let k = count - k;
@@ -91,7 +94,7 @@ impl Fold {
 
 #[test]
 fn a_folded_strip_sees_its_other_leg_and_never_its_far_side() {
-    let fold = Fold::new();
+    let fold = Fold::new(ROUND);
     let contact = fold.contact(None);
     assert!(Sight::is_needed(&fold.faces, &fold.faces));
     let mut search = Search::default();
@@ -120,8 +123,28 @@ fn a_folded_strip_sees_its_other_leg_and_never_its_far_side() {
 }
 
 #[test]
+fn where_a_strip_bends_sharply_it_does_not_see_its_far_side_either() {
+    // two segments, at 83° inside: the point there that is closest to the outer tip of the bend is an edge, neither of whose
+    // faces the tip faces
+    let mut fold = Fold::new(2);
+    let tip = fold.inner(ALONG + 1);
+    fold.x[tip][0] += 0.02;
+    let (mortar, points) = Mortar::new(fold.faces.clone(), &fold.x, |_| 1.0);
+    let sight = Sight::new((&points, &fold.faces), &fold.faces, &fold.x, None);
+    let mut contact = contact(points, Target::Surface(fold.faces.clone()));
+    contact.integration = Integration::Mortar {
+        basis: Basis::Standard,
+    };
+    (contact.mortar, contact.sight) = (Some(mortar), Some(sight));
+    let rows = fold.rows(&contact, &fold.pressed(0.0), &mut Search::default());
+    for node in 0..fold.side as usize {
+        assert_eq!(rows.gap(node), f64::INFINITY, "{node}");
+    }
+}
+
+#[test]
 fn deeper_than_half_the_thickness_or_than_allowed_is_no_contact() {
-    let fold = Fold::new();
+    let fold = Fold::new(ROUND);
     let tip = fold.inner(2 * ALONG + ROUND);
     let gap = |depth: Option<f64>, part: f64| {
         let contact = fold.contact(depth);

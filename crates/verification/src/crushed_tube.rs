@@ -1,0 +1,195 @@
+//! A rubber tube thrown at a wall so hard that it closes.
+//!
+//! Problem: `cases/crushed-tube`: the section of a tube, outer radius 1 m, thickness 0.1 m, plane strain, neo-Hooke, E = 1 MPa,
+//! ν = 0.3, ρ = 1000 kg/m³, meets a rigid wall with 8 m/s. Its lower half is thrown back against the upper one; inside and outside
+//! are one surface that faces itself. Velocity law at the nodes, energy-momentum, dt = 1 ms.
+//!
+//! Closed facts: before the inside meets itself, the run is the run without self-contact, for a thin wall does not see its own far
+//! side: bit for bit, no row having entered a sum. The wall has no friction and takes no momentum along it; the
+//! ledgers of energy, momentum and angular momentum close. No part goes through another: in each state the nodes of the surface that
+//! lie in cells of which they are no corner are looked for among all cells, with nothing of the search of the contact, and
+//! their depth is the distance from the nearest side of the surface.
+//! Tolerances: ledgers 1e-9 (iterations end at 1e-10 of the forces, and 5e-11 is found). Depth: the velocity law lets points in by the way
+//! of a step, at 2 x 8 m/s 16 mm, a third of the 50 mm of an element.
+//! Sizes: quick 2 x 48 elements, the first 200 steps; full 2 x 96, 320 steps.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use carom_bodies::Kinematics;
+use carom_dynamics::scheme::EnergyMomentum;
+use carom_dynamics::{Model, ModelTarget, Newton, Nonlinear, Scheme, System};
+use carom_materials::{Elastic, Law as Material, NeoHooke};
+use carom_mesh::read::read;
+
+use crate::Error;
+use crate::build::{NOW, body, contact, plane, surface};
+use crate::check::{Check, Row, Size};
+
+const RUBBER: Elastic = Elastic {
+    density: 1000.0,
+    young: 1e6,
+    poisson: 0.3,
+};
+const SPEED: f64 = 8.0;
+const STEP: f64 = 1e-3;
+/// Size of an element through the wall, m.
+const ELEMENT: f64 = 0.05;
+const BALANCE: f64 = 1e-9;
+
+fn newton(mesh: &str, facing_itself: bool) -> Result<Newton, Error> {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/crushed-tube");
+    let mesh = read(&cases.join(mesh))?;
+    let mut tube = body(
+        &mesh,
+        "tube",
+        Kinematics::PlaneStrain { thickness: 1.0 },
+        RUBBER,
+    )?;
+    tube.spec.material = Material::NeoHooke(NeoHooke { initial: RUBBER });
+    tube.velocity = [0.0, -SPEED, 0.0];
+    let mut contacts = vec![contact(
+        surface(&mesh, "tube.outer", &tube)?,
+        plane(1, 1.0),
+        NOW,
+    )];
+    if facing_itself {
+        let skin = surface(&mesh, "tube.surface", &tube)?;
+        contacts.push(contact(skin.clone(), ModelTarget::Surface(skin), NOW));
+    }
+    let system: Arc<System> = System::new(Model {
+        contacts,
+        bodies: vec![tube],
+        supports: Vec::new(),
+        gravity: [0.0; 3],
+        scheme: Scheme::EnergyMomentum(EnergyMomentum),
+        dt: STEP,
+        adaptive: None,
+        nonlinear: Nonlinear::default(),
+        mesh,
+    })?;
+    Ok(Newton::new(system)?)
+}
+
+type Place = [f64; 2];
+
+/// Twice the area of a triangle, positive where c is on the left of the way from a to b.
+fn side(a: Place, b: Place, c: Place) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// Distance of a place from a segment.
+fn distance(a: Place, b: Place, x: Place) -> f64 {
+    let (along, to) = ([b[0] - a[0], b[1] - a[1]], [x[0] - a[0], x[1] - a[1]]);
+    let part = (along[0] * to[0] + along[1] * to[1]) / (along[0].powi(2) + along[1].powi(2));
+    let part = part.clamp(0.0, 1.0);
+    (to[0] - part * along[0]).hypot(to[1] - part * along[1])
+}
+
+/// Depth of the surface node that lies deepest in a cell of which it is no corner, m.
+fn depth(newton: &Newton) -> f64 {
+    let (system, u) = (newton.system(), &newton.state().motion.u);
+    let place = |node: u32| -> Place {
+        let k = node as usize;
+        [0, 1].map(|i| system.x[k][i] + u[2 * k + i])
+    };
+    let faces = &system.secondary_faces[1];
+    let mut nodes: Vec<u32> = faces
+        .iter()
+        .flat_map(|face| face.corners().to_vec())
+        .collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let mut deepest = 0.0_f64;
+    system.bodies[0].each_element(&mut |cell| {
+        for &node in nodes.iter().filter(|node| !cell.contains(node)) {
+            let x = place(node);
+            let inside = |k: usize| side(place(cell[k]), place(cell[(k + 1) % 4]), x) > 0.0;
+            if (0..4).all(inside) {
+                let others = faces.iter().filter(|face| !face.corners().contains(&node));
+                let ends = others.map(|face| [0, 1].map(|k| place(face.corners()[k])));
+                let nearest = ends.map(|[a, b]| distance(a, b, x));
+                deepest = deepest.max(nearest.fold(f64::INFINITY, f64::min));
+            }
+        }
+    });
+    deepest
+}
+
+pub(crate) const CHECK: Check = Check {
+    name: "crushed-tube",
+    fact: "a tube that a wall closes meets itself inside and nowhere else, and no part of it goes through another",
+    run: |size| {
+        let (mesh, steps) = match size {
+            Size::Quick => ("tube-coarse.msh", 200),
+            Size::Full => ("tube.msh", 320),
+        };
+        let (mut tube, mut alone) = (newton(mesh, true)?, newton(mesh, false)?);
+        let (mut met, mut difference, mut closed, mut deepest) = (0, 0.0_f64, 0, 0.0_f64);
+        for step in 1..=steps {
+            tube.step()?;
+            let touches = tube.report().contacts[1].closed;
+            closed = closed.max(touches);
+            if met == 0 && touches > 0 {
+                met = step;
+            }
+            if met == 0 {
+                alone.step()?;
+                let [u, v] = [&tube, &alone].map(|run| &run.state().motion.u);
+                let pairs = u.iter().zip(v);
+                difference = pairs.fold(difference, |most, (u, v)| most.max((u - v).abs()));
+            } else {
+                deepest = deepest.max(depth(&tube));
+            }
+        }
+        let ledger = &tube.state().ledger;
+        let (balance, start) = (&ledger.balance, -ledger.initial.momentum.linear[1]);
+        let turned = balance.momentum_residual.angular[2].abs();
+        let records = &tube.state().records.contacts;
+        Ok(vec![
+            Row::at_least("steps before the inside meets itself", met as f64, 50.0),
+            Row::near(
+                "motion until then, less that without self-contact, m",
+                difference,
+                0.0,
+                0.0,
+            ),
+            Row::at_least("most points with a force inside", closed as f64, 4.0),
+            Row::at_least(
+                "impulse inside / momentum",
+                records[1].impulse() / start,
+                0.1,
+            ),
+            Row::at_most(
+                "depth of a node in the body / element",
+                deepest / ELEMENT,
+                1.0 / 3.0,
+            ),
+            Row::at_most(
+                "penetration of the contact / element",
+                records[1].penetration / ELEMENT,
+                1.0 / 3.0,
+            ),
+            Row::at_most(
+                "momentum along the wall / initial",
+                balance.momentum.linear[0].abs() / start,
+                1e-10,
+            ),
+            Row::at_most(
+                "energy residual / largest",
+                ledger.largest_energy_residual / ledger.largest_energy,
+                BALANCE,
+            ),
+            Row::at_most(
+                "momentum residual / largest",
+                ledger.largest_momentum_residual / ledger.largest_momentum,
+                BALANCE,
+            ),
+            Row::at_most(
+                "angular momentum residual / momentum times radius",
+                turned / start,
+                BALANCE,
+            ),
+        ])
+    },
+};
