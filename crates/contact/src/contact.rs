@@ -18,7 +18,8 @@ pub enum Target {
 /// How far bodies slide along each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sliding {
-    /// Much less than an element: points are paired once, in the initial configuration, and their responses kept.
+    /// Much less than an element: points are paired once, where all nodes are at their reference places, and their rows and
+    /// responses kept. Of an obstacle that moves, with the obstacle where it is now.
     Small,
     /// Any distance: points are paired anew at every step.
     Finite,

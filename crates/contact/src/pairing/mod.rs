@@ -85,6 +85,20 @@ impl Pairing {
         self.ends.clear();
     }
 
+    /// Appends the points of `initial`, paired once at zero displacement, with gaps moved by N u: rows and tangents are those
+    /// of the initial configuration, and nothing curves.
+    pub fn append_moved(&mut self, initial: &Pairing, u: &[f64]) {
+        self.dim = initial.dim;
+        self.rows.append_moved(&initial.rows, u);
+        for (rows, initial) in self.tangents.iter_mut().zip(&initial.tangents) {
+            rows.append(initial);
+        }
+        self.areas.extend_from_slice(&initial.areas);
+        let points = initial.len();
+        self.ends
+            .extend(std::iter::repeat_n(self.terms.len() as u32, points));
+    }
+
     /// Number of points.
     pub fn len(&self) -> usize {
         self.rows.len()

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use carom_contact::law::{Displacement, End, Level, Local, Status};
-use carom_contact::{Contact, Law, Places};
+use carom_contact::{Contact, Law, Places, Sliding};
 
-use super::Newton;
+use super::{Newton, Vectors};
 use crate::coulomb::Slip;
 use crate::driver::on_row;
 use crate::error::Error;
@@ -28,10 +28,18 @@ impl Newton {
     }
 
     /// The configuration in which a contact is paired: of a law in the gap the one that it constrains, of a law in the rate
-    /// the captured one, which is known; of a scheme between two states their middle.
+    /// the captured one, which is known; of a scheme between two states their middle. With small sliding gaps are linear in
+    /// the displacement, and are those of a configuration that is known.
     pub(super) fn paired_at(&self, contact: &Contact) -> Row {
         let map = &self.map;
         let law = self.law(contact);
+        let captured = Row {
+            v: map.placed.v + law.get().capture() * self.dt,
+            ..map.placed
+        };
+        if contact.sliding == Sliding::Small {
+            return captured;
+        }
         if self.between() {
             let end = &map.displacement;
             return Row {
@@ -43,10 +51,7 @@ impl Newton {
             };
         }
         match law.get().level() {
-            Level::Rate => Row {
-                v: map.placed.v + law.get().capture() * self.dt,
-                ..map.placed
-            },
+            Level::Rate => captured,
             Level::Gap | Level::GapAndRate => map.gap,
         }
     }
@@ -77,16 +82,37 @@ impl Newton {
                 &[],
                 &mut self.vectors.place,
             );
-            let places = Places {
-                dim: system.dim,
-                time: self.state.time + self.paired_after(contact),
-                x: &system.x,
-                u: &self.vectors.place,
-            };
             self.pairing.span = self.span(contact);
-            contact.pair_fully(&places, &mut self.search[k], &mut self.pairing);
+            self.append(k, self.state.time + self.paired_after(contact));
         }
         self.stack();
+    }
+
+    /// Appends a contact at the configuration in `place`; `time`, s: where obstacles are. With small sliding the points are
+    /// paired at their reference places, once, or with an obstacle that moves where it is now; gaps are then linear in the
+    /// displacement, and rows and tangents do not turn with the bodies.
+    pub(super) fn append(&mut self, number: usize, time: f64) {
+        let system = Arc::clone(&self.system);
+        let contact = &system.contacts[number];
+        let search = &mut self.search[number];
+        let Vectors { place, work, .. } = &mut self.vectors;
+        let at = |u| Places {
+            dim: system.dim,
+            time,
+            x: &system.x,
+            u,
+        };
+        if contact.sliding == Sliding::Finite {
+            return contact.pair_fully(&at(place), search, &mut self.pairing);
+        }
+        let initial = &mut self.initial[number];
+        if initial.is_empty() || contact.moves() {
+            initial.clear();
+            initial.span = self.pairing.span;
+            work.fill(0.0);
+            contact.pair_fully(&at(work), search, initial);
+        }
+        self.pairing.append_moved(initial, place);
     }
 
     /// How long after the start of the step a contact is paired, s.

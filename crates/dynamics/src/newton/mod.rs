@@ -45,6 +45,8 @@ pub struct Newton {
     effective: Effective,
     interface: Interface,
     pairing: Pairing,
+    /// Contacts with small sliding where all nodes are at their reference places; empty until they are paired.
+    initial: Vec<Pairing>,
     search: Vec<Search>,
     /// Points that may carry a force, ascending.
     candidates: Vec<u32>,
@@ -114,6 +116,7 @@ impl Newton {
             effective: Effective::new(&system),
             interface: Interface::default(),
             pairing: Pairing::default(),
+            initial: vec![Pairing::default(); system.contacts.len()],
             search: system.contacts.iter().map(|_| Search::default()).collect(),
             candidates: Vec::new(),
             candidate_data: Vec::new(),

@@ -142,17 +142,11 @@ impl Newton {
     }
 
     fn pair_now(&mut self) {
-        let system = Arc::clone(&self.system);
         self.pairing.clear();
         self.pairing.span = [0.0; 2];
-        for (k, contact) in system.contacts.iter().enumerate() {
-            let places = carom_contact::Places {
-                dim: system.dim,
-                time: self.state.time,
-                x: &system.x,
-                u: &self.state.motion.u,
-            };
-            contact.pair_fully(&places, &mut self.search[k], &mut self.pairing);
+        self.vectors.place.clone_from(&self.state.motion.u);
+        for contact in 0..self.system.contacts.len() {
+            self.append(contact, self.state.time);
         }
     }
 

@@ -15,6 +15,7 @@ mod mortar;
 mod newton;
 mod quadrature;
 mod refusals;
+mod sliding;
 mod stability;
 mod weak_form;
 mod whole;
