@@ -174,7 +174,18 @@ fn extent(system: &System, body: usize) -> f64 {
     largest
 }
 
-fn contact_facts(system: &System, contact: usize) -> String {
+/// How the two sides of a contact come together as the run begins.
+pub(crate) struct Approach {
+    /// Least gap, m; infinite where nothing faces anything.
+    pub(crate) gap: f64,
+    /// Fastest closing, m/s; zero where nothing closes.
+    pub(crate) speed: f64,
+    /// When a point may close first, s; infinite where nothing closes.
+    pub(crate) impact: f64,
+    points: usize,
+}
+
+pub(crate) fn approach(system: &System, contact: usize) -> Approach {
     let places = Places {
         dim: system.dim,
         time: 0.0,
@@ -184,26 +195,33 @@ fn contact_facts(system: &System, contact: usize) -> String {
     let mut rows = Rows::default();
     rows.clear();
     system.contacts[contact].pair(&places, &mut Search::default(), &mut rows);
-    let gap = (0..rows.len())
-        .map(|point| rows.gap(point))
-        .fold(f64::INFINITY, f64::min);
-    let first = (0..rows.len())
-        .map(|point| {
-            (
-                rows.gap(point),
-                -rows.product(point, &system.initial_velocity),
-            )
-        })
-        .filter(|(_, closing)| *closing > 0.0)
-        .map(|(gap, closing)| gap.max(0.0) / closing)
-        .fold(f64::INFINITY, f64::min);
+    let mut approach = Approach {
+        gap: f64::INFINITY,
+        speed: 0.0,
+        impact: f64::INFINITY,
+        points: rows.len(),
+    };
+    for point in 0..rows.len() {
+        let gap = rows.gap(point);
+        approach.gap = approach.gap.min(gap);
+        let closing = -rows.product(point, &system.initial_velocity) - rows.rate(point);
+        if closing > 0.0 && gap.is_finite() {
+            approach.speed = approach.speed.max(closing);
+            approach.impact = approach.impact.min(gap.max(0.0) / closing);
+        }
+    }
+    approach
+}
+
+fn contact_facts(system: &System, contact: usize) -> String {
+    let approach = approach(system, contact);
     let law = system.contacts[contact].law.get().name();
-    let impact = match first.is_finite() {
-        true => format!("first possible impact at {first:.4e} s"),
+    let impact = match approach.impact.is_finite() {
+        true => format!("first possible impact at {:.4e} s", approach.impact),
         false => "nothing approaches at the start".to_string(),
     };
     format!(
-        "{law} law, {} points, least gap {gap:.4e} m, {impact}",
-        rows.len()
+        "{law} law, {} points, least gap {:.4e} m, {impact}",
+        approach.points, approach.gap
     )
 }

@@ -68,7 +68,7 @@ pub enum Error {
     },
     /// Energy grows with the smallest step too.
     #[error(
-        "step {step}, t = {time:e} s: the energy grows without a load, with the smallest step of {dt:e} s too; \
+        "step {step}, t = {time:e} s: the energy grows without a load, with the smallest step of {dt:.4e} s too; \
          another contact law or scheme is needed"
     )]
     EnergyGrowth {
@@ -90,13 +90,13 @@ pub enum Error {
         largest: f64,
     },
     /// A fixed step that cannot be: not positive or not finite.
-    #[error("the step must be positive and finite, not {dt:e} s")]
+    #[error("the step must be positive and finite, not {dt:.4e} s")]
     Step {
         /// The step given, s.
         dt: f64,
     },
     /// An explicit step beyond the stability limit.
-    #[error("the step {dt:e} s is above the critical step {critical:e} s of the scheme")]
+    #[error("the step {dt:.4e} s is above the critical step {critical:e} s of the scheme")]
     Unstable {
         /// The step given, s.
         dt: f64,
@@ -105,7 +105,7 @@ pub enum Error {
     },
     /// Elements have shortened so far that no part of an explicit step is stable.
     #[error(
-        "step {step}, t = {time:e} s: elements have shortened, so that the critical step is now {critical:e} s, below the smallest part of a step, {dt:e} s"
+        "step {step}, t = {time:e} s: elements have shortened, so that the critical step is now {critical:e} s, below the smallest part of a step, {dt:.4e} s"
     )]
     Shortened {
         /// Number of the step.
@@ -298,7 +298,7 @@ pub enum Error {
     },
     /// The equations of a step were not solved.
     #[error(
-        "step {step}, t = {time:e} s: no equilibrium in {passes} iterations with a step of {dt:e} s; \
+        "step {step}, t = {time:e} s: no equilibrium in {passes} iterations with a step of {dt:.4e} s; \
          the residual is largest at node {node} of the mesh, in body '{body}', cell {} of block {}{contact}; residuals relative to the forces: {history}",
         cell.index, cell.block
     )]

@@ -51,6 +51,28 @@ pub struct Motion {
     pub history: Vec<f64>,
 }
 
+impl Motion {
+    /// # Errors
+    /// A vector with an entry that is no number.
+    pub(crate) fn finite(&self, step: u64, time: f64) -> Result<(), Error> {
+        let bad = [
+            ("displacement", &self.u),
+            ("velocity", &self.v),
+            ("contact force", &self.contact_force),
+        ]
+        .into_iter()
+        .find(|(_, vector)| !vector.iter().sum::<f64>().is_finite());
+        match bad {
+            None => Ok(()),
+            Some((quantity, _)) => Err(Error::NotFinite {
+                step,
+                time,
+                quantity,
+            }),
+        }
+    }
+}
+
 /// Arrays over all contact points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct InterfaceState {

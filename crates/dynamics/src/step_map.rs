@@ -21,6 +21,27 @@ pub struct Row {
 }
 
 impl Row {
+    /// The displacement at the start, alone.
+    pub const START: Row = Row {
+        u: 1.0,
+        ..Row::NONE
+    };
+
+    /// The unknown alone.
+    pub const UNKNOWN: Row = Row {
+        x: 1.0,
+        ..Row::NONE
+    };
+
+    const NONE: Row = Row {
+        u: 0.0,
+        v: 0.0,
+        a: 0.0,
+        m: 0.0,
+        x: 0.0,
+        c: 0.0,
+    };
+
     /// The change from another combination to this one.
     pub fn since(&self, other: &Row) -> Row {
         Row {

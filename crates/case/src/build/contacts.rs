@@ -9,6 +9,7 @@ use carom_mesh::{ElementId, Mesh, Surface};
 use super::Builder;
 use super::laws::{Side, sides};
 use crate::error::Problem;
+use crate::facts::approach;
 use crate::schema::{self, Basis, Friction, IntegrationName, IntegrationWith, Penetration, Scheme};
 
 impl Builder<'_> {
@@ -109,11 +110,31 @@ impl Builder<'_> {
         }
     }
 
+    /// Warns where bodies come nearer in a step by more than an element: nothing is looked at within a step, and what has left
+    /// a thin body on its far side faces it no more.
+    fn warn_of_speed(&mut self, system: &System) {
+        for (k, &(secondary, _)) in system.sides.iter().enumerate() {
+            let zone = self.plan.zone_of(secondary);
+            let parts = zone.map_or(1, |zone| self.plan.zones[zone].substeps);
+            let way = approach(system, k).speed * system.dt / f64::from(parts);
+            let element = system.bodies[secondary].smallest_size();
+            if way > element {
+                self.warnings.push(format!(
+                    "contact `{}`: in a step its sides come nearer by {way:.4e} m, more than the smallest element of `{}` ({element:.4e} m), and may pass through each other; take a step of at most {:.4e} s",
+                    system.contacts[k].name,
+                    system.bodies[secondary].name(),
+                    system.dt * element / way
+                ));
+            }
+        }
+    }
+
     /// What is strange about contacts and schemes, without being wrong.
     pub(super) fn advise(&mut self, system: &System) {
         if self.plan.zones.is_empty() {
             self.warn_of_springs(system);
         }
+        self.warn_of_speed(system);
         for (contact, (secondary, _)) in system.contacts.iter().zip(&system.sides) {
             let name = &contact.name;
             let zone = self.plan.zone_of(*secondary);

@@ -50,3 +50,37 @@ fn an_explicit_scheme_has_its_critical_step_instead() {
     assert!(warnings(law, 0.4, "central-difference = {}").is_empty());
     assert_eq!(warnings(law, 0.95, "theta.theta = 0.5").len(), 1);
 }
+
+#[test]
+fn a_step_in_which_bodies_come_nearer_by_more_than_an_element_is_told() {
+    let text = |speed: f64, step: f64| {
+        format!(
+            r#"
+carom = 1
+mesh.generate.one.line = {{ from = [0.0], to = [1.0], elements = 10 }}
+mesh.generate.two.line = {{ from = [2.0], to = [3.0], elements = 5 }}
+material.soft = {{ density = 1.0, elastic = {{ young = 1.0, poisson = 0.0 }} }}
+body.one = {{ region = "one", material = "soft", section.bar.area = 1.0, initial.velocity = [{speed}] }}
+body.two = {{ region = "two", material = "soft", section.bar.area = 1.0, initial.velocity = [-1.0] }}
+contact.shock = {{ secondary = "one.right", primary = "two.left", law.velocity = {{}} }}
+time = {{ end = 2.0, step = {step}, scheme.theta.theta = 0.5 }}
+"#
+        )
+    };
+    let told = |speed, step| {
+        let input = Input::from_text("case.toml", &text(speed, step), &[]);
+        let (case, locator) = parse(&input).unwrap();
+        build(&case, &locator, &input).unwrap().warnings
+    };
+    // elements of 0.1 m come nearer at speed + 1 m/s
+    assert!(told(1.0, 0.0499).is_empty());
+    let warnings = told(1.0, 0.1);
+    let [warning] = &warnings[..] else {
+        panic!("{warnings:?}");
+    };
+    for word in ["`shock`", "by 2.0000e-1 m", "(1.0000e-1 m)", "5.0000e-2 s"] {
+        assert!(warning.contains(word), "{word}: {warning}");
+    }
+    // what moves away does not pass through
+    assert!(told(-1.5, 0.5).is_empty());
+}

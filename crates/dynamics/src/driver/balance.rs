@@ -7,7 +7,6 @@ use carom_algebra::reduce::dot;
 use carom_contact::Rows;
 
 use super::{Driver, Forces, Vectors};
-use crate::error::Error;
 use crate::ledger::{Energies, Resultant, Squares, reactions};
 use crate::records::Step;
 use crate::scheme::EnergyIdentity;
@@ -209,25 +208,6 @@ impl Driver {
             } = &mut self.next;
             records.add(&system, k, &step, &self.state, &motion.v);
             self.report.contacts[k] = report;
-        }
-    }
-
-    pub(super) fn finite(&self) -> Result<(), Error> {
-        let motion = &self.next.motion;
-        let bad = [
-            ("displacement", &motion.u),
-            ("velocity", &motion.v),
-            ("contact force", &motion.contact_force),
-        ]
-        .into_iter()
-        .find(|(_, vector)| !vector.iter().sum::<f64>().is_finite());
-        match bad {
-            None => Ok(()),
-            Some((quantity, _)) => Err(Error::NotFinite {
-                step: self.next.step,
-                time: self.next.time,
-                quantity,
-            }),
         }
     }
 

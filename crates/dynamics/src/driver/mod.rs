@@ -467,7 +467,7 @@ impl Driver {
         self.project(strain)?;
         self.restore(strain);
         self.record();
-        self.finite()?;
+        self.next.motion.finite(self.next.step, self.next.time)?;
         self.phases.forces += ended - solved;
         self.phases.sweeps += sweeps;
         self.phases.contact += (solved - begin).saturating_sub(sweeps);

@@ -216,25 +216,6 @@ impl Newton {
         }
     }
 
-    pub(super) fn finite(&self) -> Result<(), Error> {
-        let motion = &self.next.motion;
-        let bad = [
-            ("displacement", &motion.u),
-            ("velocity", &motion.v),
-            ("contact force", &motion.contact_force),
-        ]
-        .into_iter()
-        .find(|(_, vector)| !vector.iter().sum::<f64>().is_finite());
-        match bad {
-            None => Ok(()),
-            Some((quantity, _)) => Err(Error::NotFinite {
-                step: self.state.step + 1,
-                time: self.state.time,
-                quantity,
-            }),
-        }
-    }
-
     /// Completes the report of the state just accepted. `dt`: the whole step, s.
     pub(super) fn tell(&mut self, dt: f64) {
         let state = &self.state;

@@ -289,7 +289,9 @@ impl Newton {
         self.advance()?;
         self.balance();
         self.record();
-        self.finite()?;
+        self.next
+            .motion
+            .finite(self.state.step + 1, self.state.time)?;
         self.phases.balance += solved.elapsed();
         let counted = |phases: &Phases| phases.factorisation + phases.forces + phases.sweeps;
         let other = (solved - begin).saturating_sub(counted(&self.phases) - counted(&before));

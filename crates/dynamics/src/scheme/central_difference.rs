@@ -30,10 +30,7 @@ impl TimeScheme for CentralDifference {
             x: 0.0,
             ..Row::default()
         };
-        let acceleration = Row {
-            x: 1.0,
-            ..Row::default()
-        };
+        let acceleration = Row::UNKNOWN;
         StepMap {
             inertia: acceleration,
             force: displacement,

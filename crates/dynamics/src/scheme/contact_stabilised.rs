@@ -43,10 +43,7 @@ impl TimeScheme for ContactStabilised {
             x: 0.5 * dt * dt,
             ..Row::default()
         };
-        let acceleration = Row {
-            x: 1.0,
-            ..Row::default()
-        };
+        let acceleration = Row::UNKNOWN;
         StepMap {
             inertia: acceleration,
             force: Row {
@@ -60,10 +57,7 @@ impl TimeScheme for ContactStabilised {
             displacement,
             velocity,
             acceleration,
-            placed: Row {
-                u: 1.0,
-                ..Row::default()
-            },
+            placed: Row::START,
             gap: displacement,
             rate: velocity,
             memory: Row::default(),

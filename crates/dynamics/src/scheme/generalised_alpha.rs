@@ -119,14 +119,8 @@ impl Averaged {
             force_fraction: Some(end),
             displacement,
             velocity,
-            acceleration: Row {
-                x: 1.0,
-                ..Row::default()
-            },
-            placed: Row {
-                u: 1.0,
-                ..Row::default()
-            },
+            acceleration: Row::UNKNOWN,
+            placed: Row::START,
             gap: displacement,
             rate: velocity,
             memory: Row::default(),

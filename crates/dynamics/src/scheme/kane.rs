@@ -3,7 +3,7 @@
 use carom_contact::law::Level;
 use serde::{Deserialize, Serialize};
 
-use super::{EnergyIdentity, TimeScheme};
+use super::{EnergyIdentity, Newmark, TimeScheme};
 use crate::step_map::{Impulse, Row, StepMap};
 
 /// Newmark's scheme with contact forces fully implicit. With a the acceleration from internal forces and loads alone,
@@ -36,45 +36,21 @@ impl TimeScheme for Kane {
 
     fn step_map(&self, dt: f64) -> StepMap {
         let (beta, gamma) = (self.beta, self.gamma);
-        let displacement = Row {
-            u: 1.0,
-            v: dt,
-            a: dt * dt * (0.5 - beta),
-            x: dt * dt * beta,
-            ..Row::default()
-        };
+        let newmark = Newmark { beta, gamma }.step_map(dt);
         let velocity = Row {
-            u: 0.0,
-            v: 1.0,
-            a: dt * (1.0 - gamma),
-            x: dt * gamma,
             c: dt * (1.0 - 0.5 * gamma / beta),
-            ..Row::default()
+            ..newmark.velocity
         };
         StepMap {
-            inertia: Row {
-                x: 1.0,
-                ..Row::default()
-            },
-            force: displacement,
-            force_fraction: Some(1.0),
-            displacement,
             velocity,
-            acceleration: Row {
-                x: 1.0,
-                c: -0.5 / beta,
-                ..Row::default()
-            },
-            placed: Row {
-                u: 1.0,
-                ..Row::default()
-            },
-            gap: displacement,
             rate: velocity,
-            memory: Row::default(),
+            acceleration: Row {
+                c: -0.5 / beta,
+                ..newmark.acceleration
+            },
             contact: 0.5 / beta,
-            impulse: Impulse::weights(1.0 - gamma, gamma),
             contact_impulse: Impulse::weights(0.0, 1.0),
+            ..newmark
         }
     }
 

@@ -61,10 +61,7 @@ impl TimeScheme for Krenk {
             x: 0.5 * dt * (1.0 + q),
             ..Row::default()
         };
-        let velocity = Row {
-            x: 1.0,
-            ..Row::default()
-        };
+        let velocity = Row::UNKNOWN;
         StepMap {
             inertia: Row {
                 v: -1.0 / dt,
@@ -85,10 +82,7 @@ impl TimeScheme for Krenk {
                 x: 1.0 / (kappa * dt),
                 ..Row::default()
             },
-            placed: Row {
-                u: 1.0,
-                ..Row::default()
-            },
+            placed: Row::START,
             gap: displacement,
             rate: velocity,
             memory: Row {

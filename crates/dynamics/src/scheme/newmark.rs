@@ -46,10 +46,7 @@ impl TimeScheme for Newmark {
             x: dt * gamma,
             ..Row::default()
         };
-        let acceleration = Row {
-            x: 1.0,
-            ..Row::default()
-        };
+        let acceleration = Row::UNKNOWN;
         StepMap {
             inertia: acceleration,
             force: displacement,
@@ -57,10 +54,7 @@ impl TimeScheme for Newmark {
             displacement,
             velocity,
             acceleration,
-            placed: Row {
-                u: 1.0,
-                ..Row::default()
-            },
+            placed: Row::START,
             gap: displacement,
             rate: velocity,
             memory: Row::default(),

@@ -41,10 +41,7 @@ impl TimeScheme for PaoliSchatzman {
             x: 1.0 / dt,
             ..Row::default()
         };
-        let velocity = Row {
-            x: 1.0,
-            ..Row::default()
-        };
+        let velocity = Row::UNKNOWN;
         let end = 1.0 / (1.0 + self.restitution);
         StepMap {
             inertia: acceleration,
@@ -62,10 +59,7 @@ impl TimeScheme for PaoliSchatzman {
             },
             velocity,
             acceleration,
-            placed: Row {
-                u: 1.0,
-                ..Row::default()
-            },
+            placed: Row::START,
             gap: Row {
                 u: 1.0,
                 v: -self.restitution * end * dt,

@@ -37,10 +37,7 @@ impl TimeScheme for TchamwaWielgosz {
             a: self.phi * dt * dt,
             ..Row::default()
         };
-        let acceleration = Row {
-            x: 1.0,
-            ..Row::default()
-        };
+        let acceleration = Row::UNKNOWN;
         let velocity = Row {
             v: 1.0,
             a: dt,

@@ -42,10 +42,7 @@ impl TimeScheme for Theta {
             x: theta * dt,
             ..Row::default()
         };
-        let velocity = Row {
-            x: 1.0,
-            ..Row::default()
-        };
+        let velocity = Row::UNKNOWN;
         StepMap {
             inertia: acceleration,
             force: Row {
@@ -59,10 +56,7 @@ impl TimeScheme for Theta {
             displacement,
             velocity,
             acceleration,
-            placed: Row {
-                u: 1.0,
-                ..Row::default()
-            },
+            placed: Row::START,
             gap: displacement,
             rate: velocity,
             memory: Row::default(),
