@@ -4,7 +4,7 @@ use carom_elements::MAX_FACE_NODES;
 use carom_mesh::{Face, Projection};
 
 use crate::sight::View;
-use crate::{Basis, Distance, Law, Mortar, Obstacle, Point, Rows, Search, Sight};
+use crate::{Basis, Distance, Law, Mortar, Obstacle, Point, Rows, Search, Shape, Sight};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,6 +147,13 @@ impl Contact {
     /// What is added to the gap of a point, m.
     pub(crate) fn offset(&self, point: usize) -> f64 {
         self.offsets.get(point).copied().unwrap_or(0.0)
+    }
+
+    /// Whether rows depend on the places of the points: with finite sliding, and on anything but a rigid plane.
+    pub fn turns(&self) -> bool {
+        let plane =
+            matches!(&self.target, Target::Rigid(rigid) if matches!(rigid.shape, Shape::Plane(_)));
+        self.sliding == Sliding::Finite && !plane
     }
 
     /// Whether the target moves by itself: gaps then have a rate at bodies at rest ([`Rows::rate`]).

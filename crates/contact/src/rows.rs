@@ -100,7 +100,7 @@ impl Rows {
         self.move_from(first, u);
     }
 
-    /// Moves the gaps of the points from `first` on by N u, u in m.
+    /// Moves the gaps of the points from `first` on by N u, u in m, as if the rows stood.
     pub fn move_from(&mut self, first: usize, u: &[f64]) {
         for point in first..self.len() {
             self.gaps[point] += self.product(point, u);

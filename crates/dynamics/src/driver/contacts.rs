@@ -63,7 +63,7 @@ impl Driver {
             match &self.initial_rows[k] {
                 Some(initial) => self.rows.append_moved(initial, u),
                 None => {
-                    let ahead = !now && looks_ahead(map, &contact.law);
+                    let ahead = !now && looks_ahead(map, contact, &contact.law);
                     if ahead {
                         let end = &self.vectors.ahead;
                         part_way(motion, end, &contact.law, &mut self.vectors.work);
@@ -79,8 +79,8 @@ impl Driver {
                     contact.pair(&places, &mut self.search[k], &mut self.rows);
                     if ahead {
                         let Vectors { known, work, .. } = &mut self.vectors;
-                        for (w, u) in work.iter_mut().zip(&*known) {
-                            *w = u - *w;
+                        for (way, to) in work.iter_mut().zip(&*known) {
+                            *way = to - *way;
                         }
                         self.rows.move_from(first, work);
                     }
@@ -94,8 +94,7 @@ impl Driver {
     /// that are paired ahead.
     pub(super) fn look_ahead(&mut self) {
         let system = &*self.system;
-        let finite = |contact: &Contact| contact.sliding == Sliding::Finite;
-        let ahead = |contact: &Contact| finite(contact) && looks_ahead(&self.map, &contact.law);
+        let ahead = |contact: &Contact| looks_ahead(&self.map, contact, &contact.law);
         if !system.contacts.iter().any(ahead) {
             return;
         }
@@ -363,12 +362,12 @@ pub(super) fn sums_compliances(system: &System, map: &StepMap) -> bool {
     map.rate.c != 0.0 && system.scheme.get().takes(Level::Rate)
 }
 
-/// Whether a contact with finite sliding is paired where the step is predicted to lead, and not where the present velocity
-/// does: for a law that looks ahead, in a step that goes further than the waves across an element. There the velocity times
-/// dt/2 is up to Ω/2 times as far as any node gets, Ω = ω dt of the shortest waves, and the turning of the rows would be
-/// that of an explicit step of the surface nodes' mass alone, unstable beyond dt² |P ∂²g/∂u²| = 4 m.
-pub(crate) fn looks_ahead(map: &StepMap, law: &Law) -> bool {
-    map.force.x != 0.0 && law.get().capture() > 0.0
+/// Whether a contact is paired where the step is predicted to lead, for a law that looks ahead, and not where the present
+/// velocity does. In a step much longer than a wave takes across an element the velocity of the shortest waves times dt/2
+/// leads much further than any node gets, and the turning of the rows would be that of an explicit step of the mass m of the
+/// surface nodes alone, unstable beyond dt² |P ∂²g/∂u²| = 4 m.
+pub(crate) fn looks_ahead(map: &StepMap, contact: &Contact, law: &Law) -> bool {
+    map.force.x != 0.0 && contact.turns() && law.get().capture() > 0.0
 }
 
 /// The part of the way from the start of the step to `end` at which a law takes the geometry.

@@ -14,7 +14,7 @@ mod restoring;
 mod weak;
 
 pub(crate) use balance::{contact_report, crush_energy};
-pub(crate) use contacts::on_row;
+pub(crate) use contacts::{looks_ahead, on_row, part_way};
 pub(crate) use weak::{WeakForms, WithWeak};
 
 use std::sync::Arc;

@@ -7,7 +7,7 @@ use carom_contact::{Contact, Law, Places, Sliding};
 
 use super::{Newton, Vectors};
 use crate::coulomb::Slip;
-use crate::driver::on_row;
+use crate::driver::{looks_ahead, on_row, part_way};
 use crate::error::Error;
 use crate::interface::{Candidate, Failure, InterfaceProblem};
 use crate::step_map::Row;
@@ -76,16 +76,41 @@ impl Newton {
         self.pairing.clear();
         for (k, contact) in system.contacts.iter().enumerate() {
             let row = self.paired_at(contact);
-            row.whole(
-                &self.state.motion,
-                &self.vectors.x,
-                &[],
-                &mut self.vectors.place,
-            );
+            let ahead = self.looks_ahead(contact) && !self.vectors.ahead.is_empty();
+            let motion = &self.state.motion;
+            let Vectors {
+                x,
+                place,
+                ahead: end,
+                ..
+            } = &mut self.vectors;
+            match ahead {
+                true => part_way(motion, end, &contact.law, place),
+                false => row.whole(motion, x, &[], place),
+            }
             self.pairing.span = self.span(contact);
+            let first = self.pairing.len();
             self.append(k, self.state.time + self.paired_after(contact));
+            if ahead {
+                self.move_gaps(first, &row);
+            }
         }
         self.stack();
+    }
+
+    /// Whether a contact is paired where the step is predicted to lead.
+    pub(super) fn looks_ahead(&self, contact: &Contact) -> bool {
+        !self.between() && looks_ahead(&self.map, contact, &self.law(contact))
+    }
+
+    /// Moves the gaps of the points from `first` on, paired at the configuration in `place`, to another one.
+    fn move_gaps(&mut self, first: usize, to: &Row) {
+        let Vectors { x, place, work, .. } = &mut self.vectors;
+        to.whole(&self.state.motion, x, &[], work);
+        for (way, from) in work.iter_mut().zip(place) {
+            *way -= *from;
+        }
+        self.pairing.rows.move_from(first, work);
     }
 
     /// Appends a contact at the configuration in `place`; `time`, s: where obstacles are. With small sliding the points are

@@ -95,6 +95,8 @@ struct Vectors {
     half: Vec<f64>,
     /// A configuration or a velocity.
     place: Vec<f64>,
+    /// Displacement at the end of the step, predicted; empty where no contact is paired ahead.
+    ahead: Vec<f64>,
     work: Vec<f64>,
     /// Histories of the bodies at the end of the attempt.
     history: Vec<f64>,
@@ -146,6 +148,7 @@ impl Newton {
                 residual: zeros(),
                 half: zeros(),
                 place: zeros(),
+                ahead: Vec::new(),
                 work: zeros(),
                 history: state.motion.history.clone(),
             },

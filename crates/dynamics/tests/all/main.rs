@@ -17,6 +17,7 @@ mod quadrature;
 mod refusals;
 mod sliding;
 mod stability;
+mod trough;
 mod weak_form;
 mod whole;
 
