@@ -4,7 +4,7 @@ use carom_elements::MAX_FACE_NODES;
 use carom_mesh::{Face, Projection};
 
 use crate::sight::View;
-use crate::{Basis, Distance, Law, Mortar, Obstacle, Point, Rows, Search, Shape, Sight};
+use crate::{Basis, Distance, Held, Law, Mortar, Obstacle, Point, Rows, Search, Shape, Sight};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,6 +128,17 @@ impl Contact {
                     }
                     None => rows.push(f64::INFINITY, [0.0; 3]),
                 },
+            }
+        }
+    }
+
+    /// The points that the iterations of a step have made stay with a face ([`Search::begin_step`]). `search` is that of
+    /// these places.
+    pub fn held(&self, places: &Places, search: &Search) -> Vec<Held> {
+        match &self.target {
+            Target::Rigid(_) => Vec::new(),
+            Target::Surface(faces) => {
+                search.held(places, faces, |point| self.points[point].place(places))
             }
         }
     }

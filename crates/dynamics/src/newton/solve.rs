@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use carom_bodies::Body;
+use carom_contact::Search;
 use carom_mesh::ElementId;
 
 use super::effective::{At, Turning};
@@ -67,6 +68,7 @@ impl Newton {
         self.take_weak();
         self.evaluate(true)?;
         self.vectors.ahead.clear();
+        self.search.iter_mut().for_each(Search::begin_step);
         self.pair(true);
         if self.system.contacts.iter().any(|c| self.looks_ahead(c)) {
             self.look_ahead()?;
@@ -77,7 +79,7 @@ impl Newton {
             let jumps = self.vectors.jump.iter().any(|jump| *jump != 0.0);
             self.residuals.push(standing.imbalance);
             if pass > 0 && !jumps && self.is_solved(&standing) {
-                return Ok(());
+                return self.check_held(pass);
             }
             if self.wants_factor(pass) {
                 self.renew()?;
@@ -91,7 +93,7 @@ impl Newton {
             }
         }
         if self.is_solved(&standing) {
-            return Ok(());
+            return self.check_held(limit);
         }
         Err(self.no_equilibrium(limit))
     }
@@ -432,7 +434,7 @@ impl Newton {
         }
     }
 
-    fn no_equilibrium(&self, passes: usize) -> Error {
+    pub(super) fn no_equilibrium(&self, passes: usize) -> Error {
         let system = &*self.system;
         let vectors = &self.vectors;
         let imbalance = |i: usize| match system.fixed[i] {
