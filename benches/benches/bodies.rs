@@ -7,7 +7,7 @@
 
 use std::time::{Duration, Instant};
 
-use carom_bodies::{Body, BodySpec, Formulation, Kinematics, Scratch};
+use carom_bodies::{Body, BodySpec, Kinematics, Scratch};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
 use criterion::{Criterion, Throughput};
@@ -70,14 +70,7 @@ fn sweep(criterion: &mut Criterion, name: &str, mesh: &Mesh, kinematics: Kinemat
     let cells = mesh.groups["b"].elements.clone();
     let count = cells.len() as u64;
     let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
-    let spec = BodySpec {
-        name: name.to_owned(),
-        cells,
-        kinematics,
-        material: MATERIAL.into(),
-        formulation: Formulation::Full,
-        weights: None,
-    };
+    let spec = BodySpec::new(name, cells, kinematics, MATERIAL);
     let body = match Body::new(mesh, spec, &number) {
         Ok(body) => body,
         Err(error) => {

@@ -12,9 +12,9 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use carom_algebra::reduce;
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Initial, Law, Plane, Sliding};
+use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Phases, Scheme, System};
 use carom_materials::{self as materials, Elastic};
@@ -89,46 +89,28 @@ fn model(n: usize) -> Result<Model, Box<dyn Error>> {
     let cells = mesh.groups["block"].elements.clone();
     let bottom = Surface::new(&mesh, &mesh.groups["block.bottom"], &cells)?;
     let block = ModelBody {
-        spec: BodySpec {
-            name: "block".to_owned(),
-            cells,
-            kinematics: Kinematics::Solid,
-            material: RUBBER.into(),
-            formulation: Formulation::Full,
-            weights: None,
-        },
-        mass: MassKind::Lumped,
         velocity: [0.0, 0.0, -SPEED],
-        displacement: [0.0; 3],
+        ..ModelBody::new(BodySpec::new("block", cells, Kinematics::Solid, RUBBER))
     };
     let ground = ModelContact {
-        name: "ground".to_owned(),
-        secondary: bottom,
-        primary: ModelTarget::rigid(Plane {
-            point: [0.0; 3],
-            normal: [0.0, 0.0, 1.0],
-        }),
-        law: Law::Velocity(Velocity {
-            capture: Capture::Now,
-            reading: Reading::Closed,
-        }),
         sliding: Sliding::Finite,
-        massless: false,
-        friction: 0.0,
-        initial: Initial::Keep,
-        depth: None,
         integration: carom_contact::Integration::Node,
+        ..ModelContact::new(
+            "ground",
+            bottom,
+            ModelTarget::rigid(Plane {
+                point: [0.0; 3],
+                normal: [0.0, 0.0, 1.0],
+            }),
+            Law::Velocity(Velocity {
+                capture: Capture::Now,
+                reading: Reading::Closed,
+            }),
+        )
     };
     Ok(Model {
-        mesh,
-        bodies: vec![block],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
         contacts: vec![ground],
-        scheme: Scheme::Theta(Theta { theta: 0.5 }),
-        dt,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
+        ..Model::new(vec![block], mesh, Scheme::Theta(Theta { theta: 0.5 }), dt)
     })
 }
 

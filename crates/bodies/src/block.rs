@@ -44,6 +44,26 @@ pub(crate) struct Matrices<'a> {
     pub(crate) lumped: &'a [f64],
 }
 
+/// Calls the method for the number of nodes of a kind; points have no elements, and quadratic bars none here.
+macro_rules! by_nodes {
+    ($kind:expr => $block:ident.$method:ident($($argument:expr),*)) => {
+        match $kind {
+            Kind::Point1 | Kind::Bar3 => {}
+            Kind::Bar2 => $block.$method::<2>($($argument),*),
+            Kind::Tri3 => $block.$method::<3>($($argument),*),
+            Kind::Quad4 | Kind::Tet4 => $block.$method::<4>($($argument),*),
+            Kind::Pyramid5 => $block.$method::<5>($($argument),*),
+            Kind::Tri6 | Kind::Wedge6 => $block.$method::<6>($($argument),*),
+            Kind::Hex8 | Kind::Quad8 => $block.$method::<8>($($argument),*),
+            Kind::Quad9 => $block.$method::<9>($($argument),*),
+            Kind::Tet10 => $block.$method::<10>($($argument),*),
+            Kind::Wedge15 => $block.$method::<15>($($argument),*),
+            Kind::Hex20 => $block.$method::<20>($($argument),*),
+            Kind::Hex27 => $block.$method::<27>($($argument),*),
+        }
+    };
+}
+
 /// What is called for each element.
 pub(crate) type Visit<'a> = dyn FnMut(&Matrices) + 'a;
 
@@ -184,20 +204,7 @@ impl Block {
 
     /// Calls `visit` with the matrices of each element.
     pub(crate) fn matrices(&self, dim: usize, stiffness: bool, visit: &mut Visit) {
-        match self.kind {
-            Kind::Point1 | Kind::Bar3 => {}
-            Kind::Bar2 => self.visit::<2>(dim, stiffness, visit),
-            Kind::Tri3 => self.visit::<3>(dim, stiffness, visit),
-            Kind::Quad4 | Kind::Tet4 => self.visit::<4>(dim, stiffness, visit),
-            Kind::Pyramid5 => self.visit::<5>(dim, stiffness, visit),
-            Kind::Tri6 | Kind::Wedge6 => self.visit::<6>(dim, stiffness, visit),
-            Kind::Hex8 | Kind::Quad8 => self.visit::<8>(dim, stiffness, visit),
-            Kind::Quad9 => self.visit::<9>(dim, stiffness, visit),
-            Kind::Tet10 => self.visit::<10>(dim, stiffness, visit),
-            Kind::Wedge15 => self.visit::<15>(dim, stiffness, visit),
-            Kind::Hex20 => self.visit::<20>(dim, stiffness, visit),
-            Kind::Hex27 => self.visit::<27>(dim, stiffness, visit),
-        }
+        by_nodes!(self.kind => self.visit(dim, stiffness, visit));
     }
 
     fn visit<const N: usize>(&self, dim: usize, stiffness: bool, visit: &mut Visit) {
@@ -280,20 +287,7 @@ impl Block {
     /// Volume (m³) and mean stress (Pa) of each element, in the block's order; weights do not enter: it is the stress
     /// of the model.
     pub(crate) fn stresses(&self, dim: usize, u: &[f64], out: &mut Vec<(f64, Mat3)>) {
-        match self.kind {
-            Kind::Point1 | Kind::Bar3 => {}
-            Kind::Bar2 => self.stress::<2>(dim, u, out),
-            Kind::Tri3 => self.stress::<3>(dim, u, out),
-            Kind::Quad4 | Kind::Tet4 => self.stress::<4>(dim, u, out),
-            Kind::Pyramid5 => self.stress::<5>(dim, u, out),
-            Kind::Tri6 | Kind::Wedge6 => self.stress::<6>(dim, u, out),
-            Kind::Hex8 | Kind::Quad8 => self.stress::<8>(dim, u, out),
-            Kind::Quad9 => self.stress::<9>(dim, u, out),
-            Kind::Tet10 => self.stress::<10>(dim, u, out),
-            Kind::Wedge15 => self.stress::<15>(dim, u, out),
-            Kind::Hex20 => self.stress::<20>(dim, u, out),
-            Kind::Hex27 => self.stress::<27>(dim, u, out),
-        }
+        by_nodes!(self.kind => self.stress(dim, u, out));
     }
 
     fn stress<const N: usize>(&self, dim: usize, u: &[f64], out: &mut Vec<(f64, Mat3)>) {

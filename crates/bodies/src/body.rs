@@ -35,6 +35,25 @@ pub struct BodySpec {
     pub weights: Option<CellWeights>,
 }
 
+impl BodySpec {
+    /// A body whose elements are integrated in full, alone in its volume.
+    pub fn new(
+        name: impl Into<String>,
+        cells: Vec<ElementId>,
+        kinematics: Kinematics,
+        material: impl Into<Law>,
+    ) -> BodySpec {
+        BodySpec {
+            name: name.into(),
+            cells,
+            kinematics,
+            material: material.into(),
+            formulation: Formulation::Full,
+            weights: None,
+        }
+    }
+}
+
 /// A discretised body, at small strain or total Lagrangian.
 #[derive(Debug)]
 pub struct Body {

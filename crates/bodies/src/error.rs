@@ -123,7 +123,7 @@ pub enum Error {
     },
     /// An algorithmic stress between two displacements where there is none.
     #[error(
-        "body '{body}': there is no stress between two displacements that conserves energy for this law and formulation; it needs a hyperelastic law, fully or reduced integrated"
+        "body '{body}': there is no stress between two displacements that conserves energy for this law; it needs a hyperelastic one"
     )]
     NoBetween {
         /// Name of the body.

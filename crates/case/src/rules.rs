@@ -7,8 +7,8 @@ use crate::schema::{
 };
 use crate::units::with_article;
 
-/// Most nodes of a generated part: beyond it a case is a slip of the pen.
-const MOST_NODES: f64 = 1e8;
+/// Most nodes of a generated part or a refined mesh: beyond it a case is a slip of the pen.
+pub(crate) const MOST_NODES: f64 = 1e8;
 
 /// Every rule that `case` breaks.
 pub(crate) fn check(case: &Case) -> Vec<Problem> {

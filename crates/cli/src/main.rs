@@ -50,7 +50,7 @@ enum Command {
         #[arg(long)]
         reference: bool,
     },
-    /// Write a commented case to start from
+    /// Write a commented case to start from, with the mesh that it reads
     New {
         /// Name of the template; without it the templates are listed
         template: Option<String>,

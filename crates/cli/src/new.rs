@@ -1,75 +1,122 @@
-//! `carom new`: templates, most of them cases of the project that need no mesh file.
+//! `carom new`: templates, most of them cases of the project.
 
-use std::io::Write;
-use std::path::Path;
+use std::fs::{self, File};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
 
 use crate::{BAD_INPUT, FAILED};
 
-/// Name, what it shows, text.
-const TEMPLATES: [(&str, &str, &str); 5] = [
-    (
-        "two-bars",
-        "two bars in impact, velocity law",
-        include_str!("../../../cases/two-bars/case.toml"),
-    ),
-    (
-        "two-bars-newmark",
-        "two bars, Newmark with the displacement law",
-        include_str!("../../../cases/two-bars-newmark/case.toml"),
-    ),
-    (
-        "bar-on-wall",
-        "a bar on a rigid wall",
-        include_str!("../../../cases/bar-on-wall/case.toml"),
-    ),
-    (
-        "block-drop",
-        "a 3D block on a rigid plane",
-        include_str!("../../../cases/block-drop/case.toml"),
-    ),
-    (
-        "arlequin",
-        "two bars with fine tips, in zones that overlap",
-        include_str!("../templates/arlequin.toml"),
-    ),
+/// A case to start from.
+struct Template {
+    name: &'static str,
+    shows: &'static str,
+    case: &'static str,
+    /// What goes beside the case, under the names that it uses: the mesh, and the script it was made from.
+    beside: &'static [(&'static str, &'static [u8])],
+}
+
+const TEMPLATES: [Template; 5] = [
+    Template {
+        name: "two-bars",
+        shows: "two bars in impact, velocity law",
+        case: include_str!("../../../cases/two-bars/case.toml"),
+        beside: &[],
+    },
+    Template {
+        name: "two-bars-newmark",
+        shows: "two bars, Newmark with the displacement law",
+        case: include_str!("../../../cases/two-bars-newmark/case.toml"),
+        beside: &[],
+    },
+    Template {
+        name: "bar-on-wall",
+        shows: "a bar on a rigid wall",
+        case: include_str!("../../../cases/bar-on-wall/case.toml"),
+        beside: &[],
+    },
+    Template {
+        name: "block-drop",
+        shows: "a 3D block on a rigid plane, with its Gmsh files",
+        case: include_str!("../../../cases/block-drop/case.toml"),
+        beside: &[
+            (
+                "block.geo",
+                include_bytes!("../../../cases/block-drop/block.geo"),
+            ),
+            (
+                "block.msh",
+                include_bytes!("../../../cases/block-drop/block.msh"),
+            ),
+        ],
+    },
+    Template {
+        name: "arlequin",
+        shows: "two bars with fine tips, in zones that overlap",
+        case: include_str!("../templates/arlequin.toml"),
+        beside: &[],
+    },
 ];
 
-/// Writes a template to a file that must not exist yet; returns the exit code.
+/// Writes a template to a file, and what it needs to the same folder, where none of them may exist yet; returns the exit
+/// code. Leaves all files or none.
 pub fn new(template: Option<&str>, file: &Path) -> u8 {
     let Some(name) = template else {
         println!("Templates:");
-        for (name, shows, _) in TEMPLATES {
+        for Template { name, shows, .. } in TEMPLATES {
             println!("  {name:<18} {shows}");
         }
         println!("Write one with: carom new TEMPLATE [FILE]");
         return 0;
     };
-    let Some((_, _, text)) = TEMPLATES.iter().find(|(known, _, _)| *known == name) else {
-        let names: Vec<&str> = TEMPLATES.iter().map(|(name, _, _)| *name).collect();
+    let Some(template) = TEMPLATES.iter().find(|known| known.name == name) else {
+        let names = TEMPLATES.map(|template| template.name);
         eprintln!(
             "error: no template `{name}`; there are: {}",
             names.join(", ")
         );
         return BAD_INPUT;
     };
-    let written =
-        std::fs::File::create_new(file).and_then(|mut target| target.write_all(text.as_bytes()));
-    match written {
-        Ok(()) => {
-            println!(
-                "Wrote {}. Next: carom run {}",
-                file.display(),
-                file.display()
-            );
-            0
+    let beside = template.beside.iter();
+    let mut files: Vec<(PathBuf, &[u8])> = beside
+        .map(|(name, content)| (file.with_file_name(name), *content))
+        .collect();
+    files.insert(0, (file.to_path_buf(), template.case.as_bytes()));
+    let mut made = Vec::new();
+    for (path, content) in &files {
+        let written = File::create_new(path).and_then(|mut target| {
+            made.push(path);
+            target.write_all(content)
+        });
+        if let Err(error) = written {
+            for path in made {
+                // what cannot be taken away again stays, and the error below says why
+                let _ = fs::remove_file(path);
+            }
+            return refused(path, &error);
         }
-        Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
-            eprintln!("error: {} exists; give another file name", file.display());
-            BAD_INPUT
-        }
-        Err(error) => {
-            eprintln!("error: {}: {error}", file.display());
-            FAILED
-        }
+    }
+    let names: Vec<String> = files
+        .iter()
+        .map(|(path, _)| path.display().to_string())
+        .collect();
+    println!(
+        "Wrote {}. Next: carom run {}",
+        names.join(", "),
+        file.display()
+    );
+    0
+}
+
+/// Says why a file was not written; returns the exit code.
+fn refused(path: &Path, error: &std::io::Error) -> u8 {
+    if error.kind() == ErrorKind::AlreadyExists {
+        eprintln!(
+            "error: {} exists; give another file name or folder",
+            path.display()
+        );
+        BAD_INPUT
+    } else {
+        eprintln!("error: {}: {error}", path.display());
+        FAILED
     }
 }

@@ -4,7 +4,8 @@ use carom_contact::{Contact, Integration, Mortar, Point, Sight, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
 
 use crate::Error;
-use crate::system::{Model, ModelContact, ModelTarget, System};
+use crate::model::{Model, ModelContact, ModelTarget};
+use crate::system::System;
 
 const WHICH_LAWS: &str = "at Gauss points hold, in their weak form, the displacement law without projection and the velocity law, and, in each point by itself, the compliance, and penalty and stop without damping; the other laws hold at nodes";
 

@@ -322,11 +322,26 @@ pub enum Error {
         /// Residuals of the last iterations.
         history: Box<str>,
     },
-    /// A part of the model that can move without any force.
+    /// A part of the model that can move without any force, and that no contact could hold.
     #[error(
-        "the static stage: body '{body}' can {motion} without any force; hold it by supports, or leave the stage out"
+        "the static stage: body '{body}' can {motion} without any force; hold it by supports or a contact, or leave the stage out"
     )]
     FreeMotion {
+        /// Name of the body.
+        body: String,
+        /// The motion.
+        motion: String,
+    },
+    /// A part of the model that supports leave free, and whose loads no contact takes.
+    #[error(
+        "step {step}, t = {time:e} s: the static stage has no equilibrium: body '{body}' can {motion}, its loads push it there, \
+         and no contact is on its way; hold it by supports or friction, or leave the stage out"
+    )]
+    Unheld {
+        /// Number of the step.
+        step: u64,
+        /// Time at its end, s.
+        time: f64,
         /// Name of the body.
         body: String,
         /// The motion.

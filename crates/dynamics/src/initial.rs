@@ -4,7 +4,8 @@ use carom_contact::{Contact, Initial, Integration, Places, Sight, Target};
 
 use crate::Error;
 use crate::contacts::numbered;
-use crate::system::{Model, System};
+use crate::model::Model;
+use crate::system::System;
 
 /// The most passes over all contacts that are to be freed of penetrations.
 const PASSES: usize = 10;

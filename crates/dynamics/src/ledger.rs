@@ -201,7 +201,8 @@ pub struct Ledger {
     pub initial: Balance,
     /// The balance now.
     pub balance: Balance,
-    /// Largest kinetic and strain energy so far, J: the size that residuals are compared with.
+    /// Largest kinetic and strain energy so far, J, in a static stage the largest work of the loads if that is more: the size
+    /// that residuals are compared with.
     pub largest_energy: f64,
     /// Largest component of the momentum, or of the impulse of loads, contacts or supports so far, N s.
     pub largest_momentum: f64,
@@ -368,6 +369,12 @@ impl Ledger {
             }
         }
         self.close(energies, identity);
+    }
+
+    /// Makes the work of the loads a size that residuals are compared with: in a static stage rigid motions take it, and leave
+    /// no energy.
+    pub(crate) fn compare_with_work(&mut self) {
+        self.largest_energy = self.largest_energy.max(self.balance.work_loads.abs());
     }
 
     /// The energy of the scheme has another term with the next size of the step: what it gains by that is no work.

@@ -14,7 +14,9 @@ mod initial;
 mod interface;
 mod ledger;
 mod march;
+mod mass;
 mod massless;
+mod model;
 mod newton;
 mod nonlinear;
 mod operator;
@@ -33,6 +35,8 @@ pub use error::Error;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Resultant};
 pub use march::{Observer, Outcome, Stepper, march, step_count};
+pub use mass::Mass;
+pub use model::{Model, ModelBody, ModelContact, ModelTarget, Support};
 pub use newton::Newton;
 pub use nonlinear::{
     Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed, Refused,
@@ -41,7 +45,7 @@ pub use records::{ContactRecord, Impact, Records};
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, StepReport};
 pub use step_map::{Impulse, Row, StepMap};
-pub use system::{Mass, Model, ModelBody, ModelContact, ModelTarget, Support, System};
+pub use system::System;
 pub use zones::{
     LinkKind, ModelLink, ModelZone, Origin, Sample, Whole, ZoneDriver, Zoned, Zones, ZonesState,
     mortar_rows,

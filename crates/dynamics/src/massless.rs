@@ -13,7 +13,8 @@
 use carom_bodies::{Body, MassKind};
 
 use crate::error::Error;
-use crate::system::{Mass, Model, ModelContact, ModelTarget};
+use crate::mass::Mass;
+use crate::model::{Model, ModelContact, ModelTarget};
 
 /// Unknowns without mass, and the masses of the bodies brought in line with them.
 ///

@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error as ThisError;
 
 use crate::Error;
-use crate::system::{Model, ModelBody, ModelContact, ModelTarget, System};
+use crate::model::{Model, ModelBody, ModelContact, ModelTarget};
+use crate::system::System;
 
 /// A quantity as a function of time: straight between its points, constant before the first and after the last.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

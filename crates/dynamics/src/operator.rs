@@ -254,16 +254,6 @@ pub(crate) fn assembled(
     for body in &system.bodies {
         body.assemble(stiffness_factor, 0.0, part, &mut a);
     }
-    for (i, m) in system.mass.lumped[part.clone()].iter().enumerate() {
-        a.add(i, i, mass_factor * m);
-    }
-    if let Some(mass) = &system.mass.consistent {
-        for i in part.clone() {
-            let (columns, values) = mass.row(i);
-            for (&j, m) in columns.iter().zip(values).filter(|(_, m)| **m != 0.0) {
-                a.add(i - part.start, j as usize - part.start, mass_factor * m);
-            }
-        }
-    }
+    system.mass.add_to(mass_factor, part, &mut a);
     a
 }

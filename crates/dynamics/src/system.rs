@@ -3,127 +3,19 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
-use carom_bodies::{Body, BodySpec, Kinematics, MassKind};
+use carom_bodies::{Body, Kinematics, MassKind};
 use carom_contact::law::Level;
-use carom_contact::{Contact, Initial, Integration, Law, Obstacle, Places, Sliding};
-use carom_mesh::{Face, Mesh, Surface};
+use carom_contact::{Contact, Initial, Places};
+use carom_mesh::{Face, Mesh};
 
 use crate::contacts::{numbered, renumbered, sides};
 use crate::initial::settle;
+use crate::mass::Mass;
 use crate::massless::redistribute;
-use crate::nonlinear::{Nonlinear, NumberedNonlinear};
+use crate::model::{Model, ModelBody, ModelContact};
+use crate::nonlinear::NumberedNonlinear;
 use crate::{Adaptive, Error, Scheme};
-
-/// Everything from which a system is built; names are those of the case file.
-#[derive(Clone, Debug)]
-pub struct Model {
-    /// The mesh, in m.
-    pub mesh: Mesh,
-    /// Bodies.
-    pub bodies: Vec<ModelBody>,
-    /// Supports.
-    pub supports: Vec<Support>,
-    /// Acceleration of gravity, m/s².
-    pub gravity: [f64; 3],
-    /// Contacts.
-    pub contacts: Vec<ModelContact>,
-    /// Time scheme.
-    pub scheme: Scheme,
-    /// Step in s; the largest of an adaptive step.
-    pub dt: f64,
-    /// Rules of an adaptive step; `None` for equal steps.
-    pub adaptive: Option<Adaptive>,
-    /// Loads and motions in time, damping, a static stage, and how nonlinear steps are solved.
-    pub nonlinear: Nonlinear,
-}
-
-/// A body and its initial state.
-#[derive(Clone, Debug)]
-pub struct ModelBody {
-    /// Elements, kinematics, material.
-    pub spec: BodySpec,
-    /// Lumped or consistent mass.
-    pub mass: MassKind,
-    /// Initial velocity of all its nodes, m/s.
-    pub velocity: [f64; 3],
-    /// Initial displacement of all its nodes, m.
-    pub displacement: [f64; 3],
-}
-
-/// Nodes that cannot move in some directions.
-#[derive(Clone, Debug)]
-pub struct Support {
-    /// Nodes of the mesh.
-    pub nodes: Vec<u32>,
-    /// Directions held.
-    pub fix: [bool; 3],
-}
-
-/// A contact before numbering.
-#[derive(Clone, Debug)]
-pub struct ModelContact {
-    /// Name as in the case file.
-    pub name: String,
-    /// Surface whose nodes carry the contact forces.
-    pub secondary: Surface,
-    /// What it faces.
-    pub primary: ModelTarget,
-    /// The law.
-    pub law: Law,
-    /// Extent of the sliding.
-    pub sliding: Sliding,
-    /// Where the law holds.
-    pub integration: Integration,
-    /// Whether the nodes of both surfaces give their mass to the other nodes of their bodies.
-    pub massless: bool,
-    /// Coefficient of Coulomb's friction; zero for none.
-    pub friction: f64,
-    /// What is done about penetrations at the start.
-    pub initial: Initial,
-    /// Largest penetration that is a contact, m: points see only faces turned against them and not further away inside than
-    /// this ([`Sight`](carom_contact::Sight)). `None`: they see everything, unless the surface faces itself.
-    pub depth: Option<f64>,
-}
-
-/// What a secondary surface faces.
-#[derive(Clone, Debug)]
-pub enum ModelTarget {
-    /// A surface of deformable bodies.
-    Surface(Surface),
-    /// A rigid obstacle.
-    Rigid(Obstacle),
-}
-
-impl ModelTarget {
-    /// A rigid obstacle, at rest if it is given by its shape.
-    pub fn rigid(obstacle: impl Into<Obstacle>) -> ModelTarget {
-        ModelTarget::Rigid(obstacle.into())
-    }
-}
-
-/// Mass of the system: a diagonal, and the consistent part where there is one.
-#[derive(Debug)]
-pub struct Mass {
-    /// Row sums of the lumped bodies, kg, one entry per unknown.
-    pub lumped: Vec<f64>,
-    /// Consistent mass of the other bodies.
-    pub consistent: Option<Csr>,
-}
-
-impl Mass {
-    /// y = M x.
-    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
-        match &self.consistent {
-            Some(matrix) => matrix.multiply(x, y),
-            None => y.fill(0.0),
-        }
-        for i in 0..y.len() {
-            y[i] += self.lumped[i] * x[i];
-        }
-    }
-}
 
 /// The immutable side of a run.
 #[derive(Debug)]
@@ -243,7 +135,7 @@ impl System {
                 }
             }
         }
-        let mut mass = mass(&bodies, &model.bodies, dim, x.len());
+        let mut mass = Mass::of(&bodies, &model.bodies, dim, x.len());
         let mut body_masses: Vec<_> = bodies
             .iter()
             .map(|body| node_masses(body, dim, x.len()))
@@ -514,35 +406,6 @@ fn node_masses(body: &Body, dim: usize, nodes: usize) -> Vec<(u32, f64)> {
         .filter(|&node| mass[dim * node] > 0.0)
         .map(|node| (node as u32, mass[dim * node]))
         .collect()
-}
-
-fn mass(bodies: &[Body], specs: &[ModelBody], dim: usize, nodes: usize) -> Mass {
-    let mut lumped = vec![0.0; dim * nodes];
-    let mut cliques = Cliques::new();
-    let mut consistent = Vec::new();
-    for (body, spec) in bodies.iter().zip(specs) {
-        match spec.mass {
-            MassKind::Lumped => body.add_lumped_mass(&mut lumped),
-            MassKind::Consistent => {
-                push_cliques(body, dim, &(0..dim * nodes), &mut cliques);
-                consistent.push(body);
-            }
-        }
-    }
-    if consistent.is_empty() {
-        return Mass {
-            lumped,
-            consistent: None,
-        };
-    }
-    let mut matrix = Csr::from_cliques(dim * nodes, &cliques);
-    for body in consistent {
-        body.assemble(0.0, 1.0, &(0..dim * nodes), &mut matrix);
-    }
-    Mass {
-        lumped,
-        consistent: Some(matrix),
-    }
 }
 
 /// Adds the unknowns of each element of a body that lies in a part, counted from the first of the part.

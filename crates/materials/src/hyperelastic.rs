@@ -4,7 +4,7 @@
 use carom_algebra::tensor::Mat3;
 
 use crate::lagrange::{Moduli, add_geometric, add_product, cofactor, green_lagrange, positive};
-use crate::{Elastic, Failure, Material, Response, Want};
+use crate::{Conserving, Elastic, Failure, Material, Response, Want};
 
 /// A hyperelastic law, chosen by the coefficients of its [`Potential`].
 pub(crate) trait Hyperelastic {
@@ -33,6 +33,15 @@ impl<T: Hyperelastic> Material for T {
 
     fn between(&self, f_0: &Mat3, f_1: &Mat3, want: Want) -> Option<Result<Response, Failure>> {
         Some(self.potential().between(f_0, f_1, want))
+    }
+
+    fn between_strains(
+        &self,
+        e_1: &Mat3,
+        d: &Mat3,
+        want: Want,
+    ) -> Option<Result<Conserving, Failure>> {
+        Some(self.potential().between_strains(e_1, d, want))
     }
 
     fn initial(&self) -> Elastic {
@@ -88,6 +97,18 @@ impl State {
             e,
         })
     }
+}
+
+/// The discrete gradient of a step.
+struct Algorithmic {
+    /// S_alg in Pa.
+    stress: Mat3,
+    /// ∂S_alg/∂E_1 without D⊗w.
+    moduli: Moduli,
+    /// w, where it is wanted and not too small.
+    slope: Option<Mat3>,
+    /// ψ(E_1) in Pa.
+    stored: f64,
 }
 
 /// 1/3, 1/5, ..., 1/25: the coefficients of t³, t⁵, ... in atanh t.
@@ -161,43 +182,22 @@ impl Potential {
         })
     }
 
-    /// Gonzalez' discrete gradient: P_alg = F_m S_alg, F_m = (F_0 + F_1)/2, and with E_m = (E_0 + E_1)/2, D = E_1 - E_0,
-    ///
-    /// S_alg = S(E_m) + x/(D:D) D,   x = ψ(E_1) - ψ(E_0) - S(E_m):D,
-    ///
-    /// so that P_alg : (F_1 - F_0) = S_alg : D = ψ(E_1) - ψ(E_0), because sym(F_mᵀ (F_1 - F_0)) = D. x is of third order in
-    /// D; taken from [`Potential::excess`] and not from the difference of energies it brings no noise into small steps.
-    ///
-    /// ∂P_alg/∂F_1 = S_alg/2 on each row, and F_m (∂S_alg/∂E_1) F_1, where
-    /// ∂S_alg/∂E_1 = (∂S/∂E)_m/2 + x/(D:D) 𝕀 + D⊗w,   w = (S_1 - S_m - (∂S/∂E)_m:D/2)/(D:D) - 2x/(D:D)² D.
-    ///
-    /// The stress is that of Gonzalez (2000), Comput. Methods Appl. Mech. Eng. 190, 1763, after Simo and Tarnow (1992), ZAMP 43,
-    /// 757; the derivative is derived here.
+    /// P_alg = F_m S_alg of [`Potential::conserving`], F_m = (F_0 + F_1)/2, so that P_alg : (F_1 - F_0) = S_alg : D, because
+    /// sym(F_mᵀ (F_1 - F_0)) = D. ∂P_alg/∂F_1 = S_alg/2 on each row, and F_m (∂S_alg/∂E_1) F_1.
     fn between(&self, f_0: &Mat3, f_1: &Mat3, want: Want) -> Result<Response, Failure> {
         positive(f_0.determinant())?;
         positive(f_1.determinant())?;
         let f_m = (f_0 + f_1) * 0.5;
         let product = f_m.tr_mul(&(f_1 - f_0));
         let d = (product + product.transpose()) * 0.5;
-        let end = State::new(green_lagrange(f_1))?;
-        let middle = State::new((green_lagrange(f_0) + end.e) * 0.5)?;
-        let length = d.norm_squared();
-        let rate = if length > 0.0 {
-            self.excess(&middle, &d) / length
-        } else {
-            0.0
-        };
-        let s_m = self.stress(&middle);
-        let s = s_m + d * rate;
+        let e_1 = green_lagrange(f_1);
+        let e_m = (green_lagrange(f_0) + e_1) * 0.5;
+        let algorithmic = self.conserving((e_m, e_1), &d, want)?;
+        let s = algorithmic.stress;
         let tangent = (want == Want::Tangent).then(|| {
-            let mut moduli = self.moduli(&middle).half();
-            let bent = self.stress(&end) - s_m - moduli.times(&d);
-            moduli.identity += rate;
-            let mut tangent = moduli.pushed(&f_m, f_1);
+            let mut tangent = algorithmic.moduli.pushed(&f_m, f_1);
             add_geometric(&mut tangent, &(s * 0.5));
-            // below, D⊗w is smaller than the round-off of its parts
-            if length > 1e-16 {
-                let w = (bent - d * (2.0 * rate)) / length;
+            if let Some(w) = algorithmic.slope {
                 add_product(&mut tangent, &(f_m * d), &(f_1 * w));
             }
             tangent
@@ -205,9 +205,68 @@ impl Potential {
         Ok(Response {
             stress: f_m * s,
             tangent,
-            stored: self.energy(&end),
+            stored: algorithmic.stored,
             hardening: 0.0,
             dissipated: 0.0,
+        })
+    }
+
+    /// The same of strains.
+    fn between_strains(&self, e_1: &Mat3, d: &Mat3, want: Want) -> Result<Conserving, Failure> {
+        let algorithmic = self.conserving((e_1 - d * 0.5, *e_1), d, want)?;
+        let moduli = (want == Want::Tangent).then(|| {
+            let unit = Mat3::identity();
+            let mut moduli = algorithmic.moduli.pushed(&unit, &unit);
+            if let Some(w) = algorithmic.slope {
+                add_product(&mut moduli, d, &w);
+            }
+            moduli
+        });
+        Ok(Conserving {
+            stress: algorithmic.stress,
+            moduli,
+            stored: algorithmic.stored,
+        })
+    }
+
+    /// Gonzalez' discrete gradient: with D = E_1 - E_0,
+    ///
+    /// S_alg = S(E_m) + x/(D:D) D,   x = ψ(E_1) - ψ(E_0) - S(E_m):D,
+    ///
+    /// so that S_alg : D = ψ(E_1) - ψ(E_0). x is of third order in D; taken from [`Potential::excess`] and not from the
+    /// difference of energies it brings no noise into small steps.
+    ///
+    /// ∂S_alg/∂E_1 = (∂S/∂E)_m/2 + x/(D:D) 𝕀 + D⊗w,   w = (S_1 - S_m - (∂S/∂E)_m:D/2)/(D:D) - 2x/(D:D)² D.
+    ///
+    /// The stress is that of Gonzalez (2000), Comput. Methods Appl. Mech. Eng. 190, 1763, after Simo and Tarnow (1992), ZAMP 43,
+    /// 757; the derivative is derived here.
+    fn conserving(
+        &self,
+        (e_m, e_1): (Mat3, Mat3),
+        d: &Mat3,
+        want: Want,
+    ) -> Result<Algorithmic, Failure> {
+        let end = State::new(e_1)?;
+        let middle = State::new(e_m)?;
+        let length = d.norm_squared();
+        let rate = if length > 0.0 {
+            self.excess(&middle, d) / length
+        } else {
+            0.0
+        };
+        let s_m = self.stress(&middle);
+        let mut moduli = self.moduli(&middle).half();
+        // below, D⊗w is smaller than the round-off of its parts
+        let slope = (want == Want::Tangent && length > 1e-16).then(|| {
+            let bent = self.stress(&end) - s_m - moduli.times(d);
+            (bent - d * (2.0 * rate)) / length
+        });
+        moduli.identity += rate;
+        Ok(Algorithmic {
+            stress: s_m + d * rate,
+            moduli,
+            slope,
+            stored: self.energy(&end),
         })
     }
 

@@ -5,7 +5,7 @@ use carom_algebra::tensor::Mat3;
 use crate::lagrange::{cofactor, pack, positive, unpack};
 use crate::range::{OutOfRange, require};
 use crate::spectral::spectral;
-use crate::{Elastic, Failure, Material, Plane, Response, Tangent, Want};
+use crate::{Conserving, Elastic, Failure, Material, Plane, Response, Tangent, Want};
 
 /// J2 (von Mises) plasticity with linear isotropic hardening, in logarithmic strain.
 ///
@@ -228,6 +228,15 @@ impl Material for J2Plasticity {
     }
 
     fn between(&self, _f_0: &Mat3, _f_1: &Mat3, _want: Want) -> Option<Result<Response, Failure>> {
+        None
+    }
+
+    fn between_strains(
+        &self,
+        _e_1: &Mat3,
+        _d: &Mat3,
+        _want: Want,
+    ) -> Option<Result<Conserving, Failure>> {
         None
     }
 

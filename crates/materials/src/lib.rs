@@ -14,7 +14,7 @@ mod st_venant_kirchhoff;
 
 pub use elastic::{Elastic, Plane};
 pub use j2_plasticity::J2Plasticity;
-pub use material::{Failure, Law, Material, Response, Tangent, Want};
+pub use material::{Conserving, Failure, Law, Material, Response, Tangent, Want};
 pub use maxwell::{Branch, MAX_BRANCHES, Maxwell};
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hooke::NeoHooke;

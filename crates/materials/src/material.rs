@@ -34,6 +34,17 @@ pub struct Response {
     pub dissipated: f64,
 }
 
+/// Algorithmic stress of a step between two strains.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conserving {
+    /// Second Piola-Kirchhoff stress S_alg in Pa.
+    pub stress: Mat3,
+    /// ∂S_alg/∂E_1 at the same E_0, where it was wanted: entry `[3 i + j][3 k + l]`, in Pa, symmetric in each pair.
+    pub moduli: Option<Box<Tangent>>,
+    /// ψ(E_1) in J/m³.
+    pub stored: f64,
+}
+
 /// Why a law gave no stress.
 #[derive(Clone, Debug, PartialEq, ThisError)]
 pub enum Failure {
@@ -72,6 +83,18 @@ pub trait Material {
     /// # Errors
     /// As [`Material::update`].
     fn between(&self, f_0: &Mat3, f_1: &Mat3, want: Want) -> Option<Result<Response, Failure>>;
+    /// [`Material::between`] in terms of strains: S_alg of a step to the Green-Lagrange strain `e_1` that changes it by `d`,
+    /// both symmetric, with S_alg : D = ψ(E_1) - ψ(E_1 - D). For elements whose law does not see F itself; `d` comes apart
+    /// from the strains, so that small steps keep their digits.
+    ///
+    /// # Errors
+    /// det(I + 2E) not positive at the end or in the middle; that at the start is the caller's.
+    fn between_strains(
+        &self,
+        e_1: &Mat3,
+        d: &Mat3,
+        want: Want,
+    ) -> Option<Result<Conserving, Failure>>;
     /// Linear elasticity of the undeformed, unloaded material, and its density: wave speed and time step follow.
     fn initial(&self) -> Elastic;
 }

@@ -4,7 +4,7 @@ use carom_algebra::tensor::Mat3;
 
 use crate::lagrange::{Moduli, add_geometric, green_lagrange, pack, positive, unpack};
 use crate::range::{OutOfRange, require};
-use crate::{Elastic, Failure, Material, Plane, Response, Want};
+use crate::{Conserving, Elastic, Failure, Material, Plane, Response, Want};
 
 /// Most branches of a [`Maxwell`] material.
 pub const MAX_BRANCHES: usize = 4;
@@ -162,6 +162,15 @@ impl Material for Maxwell {
     }
 
     fn between(&self, _f_0: &Mat3, _f_1: &Mat3, _want: Want) -> Option<Result<Response, Failure>> {
+        None
+    }
+
+    fn between_strains(
+        &self,
+        _e_1: &Mat3,
+        _d: &Mat3,
+        _want: Want,
+    ) -> Option<Result<Conserving, Failure>> {
         None
     }
 

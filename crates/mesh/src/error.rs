@@ -67,6 +67,15 @@ pub enum Error {
         /// Its kind.
         kind: Kind,
     },
+    /// An element that is not cut into smaller ones.
+    #[error(
+        "{} is not cut into smaller elements, only bar2, tri3, quad4, tet4 and hex8 are",
+        kind.table().name
+    )]
+    NoRefinement {
+        /// Its kind.
+        kind: Kind,
+    },
     /// Two facets of a surface have the same nodes.
     #[error("the facet at {centre:?} is in the surface twice")]
     FacetTwice {

@@ -13,6 +13,7 @@ mod mesh;
 pub mod project;
 pub mod raise;
 pub mod read;
+pub mod refine;
 pub mod search;
 pub mod surface;
 
@@ -25,5 +26,6 @@ pub use error::Error;
 pub use mesh::{Block, Defect, ElementId, Group, Mesh, gather};
 pub use project::{Projection, project};
 pub use raise::raise;
+pub use refine::refine;
 pub use search::BoxTree;
 pub use surface::{Face, Surface, face_nodes};

@@ -72,17 +72,12 @@ fn zoned(n: usize) -> Result<Zoned, Error> {
     };
     Ok(Zoned {
         zones: vec![zone("below", 0, theta(0.5)), zone("above", 1, CENTRAL)],
-        model: Model {
-            mesh,
+        model: Model::new(
             bodies,
-            supports: Vec::new(),
-            gravity: [0.0; 3],
-            contacts: Vec::new(),
-            scheme: theta(0.5),
-            dt: 0.5 * h / RUBBER.wave_speed(Plane::Full),
-            adaptive: None,
-            nonlinear: carom_dynamics::Nonlinear::default(),
-        },
+            mesh,
+            theta(0.5),
+            0.5 * h / RUBBER.wave_speed(Plane::Full),
+        ),
         links,
         kind: LinkKind::GravouilCombescure,
     })

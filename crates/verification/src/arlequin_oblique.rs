@@ -146,15 +146,8 @@ impl Strip {
             }],
             kind: LinkKind::GravouilCombescure,
             model: Model {
-                mesh,
-                bodies: bodies.into(),
                 supports,
-                gravity: [0.0; 3],
-                contacts: Vec::new(),
-                scheme: theta(0.5),
-                dt: COURANT,
-                adaptive: None,
-                nonlinear: carom_dynamics::Nonlinear::default(),
+                ..Model::new(bodies.into(), mesh, theta(0.5), COURANT)
             },
         })?)
     }

@@ -248,14 +248,7 @@ impl Run {
                 depth: None,
                 ..contact(secondary, primary, self.law)
             }],
-            bodies,
-            supports: Vec::new(),
-            gravity: [0.0; 3],
-            scheme: self.scheme,
-            dt: self.dt(),
-            adaptive: None,
-            nonlinear: carom_dynamics::Nonlinear::default(),
-            mesh,
+            ..Model::new(bodies, mesh, self.scheme, self.dt())
         })
     }
 }

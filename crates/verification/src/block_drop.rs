@@ -40,14 +40,12 @@ fn model(n: usize, scheme: Scheme, law: Law) -> Result<Model, Error> {
     let bottom = surface(&mesh, "block.bottom", &block)?;
     Ok(Model {
         contacts: vec![contact(bottom, plane(2, 1.0), law)],
-        bodies: vec![block],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
-        scheme,
-        dt: 0.5 * SIDE / n as f64 / RUBBER.wave_speed(Plane::Full),
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(
+            vec![block],
+            mesh,
+            scheme,
+            0.5 * SIDE / n as f64 / RUBBER.wave_speed(Plane::Full),
+        )
     })
 }
 

@@ -97,14 +97,12 @@ impl Blocks {
         };
         Ok(Model {
             contacts: vec![shock],
-            bodies: vec![upper, lower],
-            supports: Vec::new(),
-            gravity: [0.0; 3],
-            scheme,
-            dt: courant * shortest / RUBBER.wave_speed(Plane::Full),
-            adaptive: None,
-            nonlinear: carom_dynamics::Nonlinear::default(),
-            mesh,
+            ..Model::new(
+                vec![upper, lower],
+                mesh,
+                scheme,
+                courant * shortest / RUBBER.wave_speed(Plane::Full),
+            )
         })
     }
 }

@@ -94,14 +94,8 @@ impl Blocks {
         nonlinear.iteration.tolerance = 1e-13;
         Ok(Model {
             contacts: vec![joint],
-            bodies,
-            supports: Vec::new(),
-            gravity: [0.0; 3],
-            scheme: self.scheme,
-            dt: 0.25 / self.along as f64,
-            adaptive: None,
             nonlinear,
-            mesh,
+            ..Model::new(bodies, mesh, self.scheme, 0.25 / self.along as f64)
         })
     }
 

@@ -1,9 +1,9 @@
 //! Parts of models, in few words.
 
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Rows, Weighting};
-use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, CellWeights, Kinematics};
 use carom_contact::law::{Adhesion, Capture, Compliance, Damped, Displacement, Reading, Velocity};
-use carom_contact::{Initial, Integration, Law, Plane, Sliding};
+use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Scheme, Support, ZoneDriver, Zones};
 use carom_materials::Elastic;
@@ -80,19 +80,12 @@ pub(crate) fn body(
     kinematics: Kinematics,
     material: Elastic,
 ) -> Result<ModelBody, Error> {
-    Ok(ModelBody {
-        spec: BodySpec {
-            name: name.to_string(),
-            cells: group(mesh, name)?.elements.clone(),
-            kinematics,
-            material: material.into(),
-            formulation: Formulation::Full,
-            weights: None,
-        },
-        mass: MassKind::Lumped,
-        velocity: [0.0; 3],
-        displacement: [0.0; 3],
-    })
+    Ok(ModelBody::new(BodySpec::new(
+        name,
+        group(mesh, name)?.elements.clone(),
+        kinematics,
+        material,
+    )))
 }
 
 /// Two bodies, inner and outer, glued where they overlap with linear weights and the coarse L2 mediator, and the rows.
@@ -144,16 +137,8 @@ pub(crate) fn surface(mesh: &Mesh, name: &str, body: &ModelBody) -> Result<Surfa
 /// A contact, named "shock", with pairing anew at every step.
 pub(crate) fn contact(secondary: Surface, primary: ModelTarget, law: Law) -> ModelContact {
     ModelContact {
-        name: "shock".to_string(),
-        secondary,
-        primary,
-        law,
         sliding: Sliding::Finite,
-        integration: Integration::Node,
-        massless: false,
-        friction: 0.0,
-        initial: Initial::Keep,
-        depth: None,
+        ..ModelContact::new("shock", secondary, primary, law)
     }
 }
 
@@ -173,4 +158,19 @@ pub(crate) fn support(mesh: &Mesh, name: &str, fix: [bool; 3]) -> Result<Support
         nodes: mesh.group_nodes(group(mesh, name)?),
         fix,
     })
+}
+
+/// The mesh with nodes at the same place as one.
+pub(crate) fn welded(mut mesh: Mesh) -> Mesh {
+    let mut first = Vec::new();
+    for (node, x) in mesh.nodes.iter().enumerate() {
+        let near = |y: &[f64; 3]| (0..2).all(|i| (x[i] - y[i]).abs() < 1e-9);
+        first.push(mesh.nodes[..node].iter().position(near).unwrap_or(node) as u32);
+    }
+    for block in &mut mesh.blocks {
+        for node in &mut block.nodes {
+            *node = first[*node as usize];
+        }
+    }
+    mesh
 }

@@ -56,15 +56,9 @@ impl Collision {
         let mut nonlinear = Nonlinear::default();
         nonlinear.iteration.tolerance = TOLERANCE;
         Ok(Model {
-            bodies: vec![moving, resting],
-            supports: Vec::new(),
-            gravity: [0.0; 3],
             contacts: vec![touch],
-            scheme,
-            dt,
-            adaptive: None,
             nonlinear,
-            mesh,
+            ..Model::new(vec![moving, resting], mesh, scheme, dt)
         })
     }
 

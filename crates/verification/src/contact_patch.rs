@@ -224,14 +224,14 @@ impl Patch {
         nonlinear.iteration.tolerance = 1e-13;
         Ok(Model {
             contacts: vec![joint],
-            bodies,
             supports,
-            gravity: [0.0; 3],
-            scheme: newmark(0.25, 0.5),
-            dt: 0.2 / self.across[0] as f64 / RUBBER.wave_speed(Plane::Full),
-            adaptive: None,
             nonlinear,
-            mesh,
+            ..Model::new(
+                bodies,
+                mesh,
+                newmark(0.25, 0.5),
+                0.2 / self.across[0] as f64 / RUBBER.wave_speed(Plane::Full),
+            )
         })
     }
 

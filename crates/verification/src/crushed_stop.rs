@@ -130,14 +130,8 @@ fn model(scheme: Scheme) -> Result<Model, Error> {
     };
     Ok(Model {
         contacts: vec![contact(end, plane(0, 1.0), law)],
-        bodies: vec![bar],
         supports: vec![support(&mesh, "bar.right", [true; 3])?],
-        gravity: [0.0; 3],
-        scheme,
-        dt: first.course().0[2] / STEPS,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(vec![bar], mesh, scheme, first.course().0[2] / STEPS)
     })
 }
 

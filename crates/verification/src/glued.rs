@@ -211,15 +211,8 @@ pub(crate) fn model(
     dt: f64,
 ) -> Model {
     Model {
-        mesh,
-        bodies,
-        supports: Vec::new(),
-        gravity: [0.0; 3],
         contacts: vec![contact],
-        scheme: theta(0.5),
-        dt,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
+        ..Model::new(bodies, mesh, theta(0.5), dt)
     }
 }
 

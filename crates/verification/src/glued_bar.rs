@@ -124,15 +124,8 @@ impl GluedBar {
             }],
             kind: self.kind,
             model: Model {
-                mesh,
-                bodies,
                 supports,
-                gravity: [0.0; 3],
-                contacts: Vec::new(),
-                scheme: theta(0.5),
-                dt: self.courant,
-                adaptive: None,
-                nonlinear: carom_dynamics::Nonlinear::default(),
+                ..Model::new(bodies, mesh, theta(0.5), self.courant)
             },
         })
     }

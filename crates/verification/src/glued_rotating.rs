@@ -121,15 +121,8 @@ fn zones(schemes: [Scheme; 2], dt: f64) -> Result<Zones, Error> {
         }],
         kind: LinkKind::GravouilCombescure,
         model: Model {
-            mesh,
-            bodies: bodies.into(),
-            supports: Vec::new(),
-            gravity: [0.0; 3],
-            contacts: Vec::new(),
-            scheme: theta(0.5),
-            dt,
-            adaptive: None,
             nonlinear,
+            ..Model::new(bodies.into(), mesh, theta(0.5), dt)
         },
     })?)
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use carom_contact::{Basis, Integration};
-use carom_dynamics::{Amplitude, Model, Newton, Nonlinear, Preload, Prescribed, System};
+use carom_dynamics::{Amplitude, Model, Newton, Preload, Prescribed, System};
 use carom_exact::hertz::{Pair, Solid};
 use carom_materials::Elastic;
 use carom_mesh::Mesh;
@@ -76,7 +76,7 @@ pub(crate) struct Errors {
     pub(crate) inside: f64,
 }
 
-/// A static contact, half-way and at the end of a prescribed motion in [`Pressed::STEPS`] steps.
+/// A static contact, half-way and at the end of a prescribed motion, or of a load that grows, in [`Pressed::STEPS`] steps.
 pub(crate) struct Pressed(Newton);
 
 impl Pressed {
@@ -84,15 +84,11 @@ impl Pressed {
     pub(crate) const STEPS: u64 = 10;
 
     /// Goes half of the way.
-    pub(crate) fn half(mut model: Model, motion: Prescribed) -> Result<Pressed, Error> {
-        model.nonlinear = Nonlinear {
-            motions: vec![motion],
-            preload: Some(Preload {
-                end: 1.0,
-                steps: Self::STEPS,
-            }),
-            ..Nonlinear::default()
-        };
+    pub(crate) fn half(mut model: Model) -> Result<Pressed, Error> {
+        model.nonlinear.preload = Some(Preload {
+            end: 1.0,
+            steps: Self::STEPS,
+        });
         let mut newton = Newton::new(System::new(model)?)?;
         for _ in 0..Self::STEPS / 2 {
             newton.step()?;
@@ -118,6 +114,14 @@ impl Pressed {
             l2: mean.l2.sqrt(),
             inside: mean.inside.sqrt(),
         })
+    }
+
+    /// Goes to the end.
+    pub(crate) fn finish(&mut self) -> Result<(), Error> {
+        for _ in Self::STEPS / 2..Self::STEPS {
+            self.0.step()?;
+        }
+        Ok(())
     }
 
     /// Force on the secondary body along the second axis, N.

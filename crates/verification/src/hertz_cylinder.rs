@@ -5,15 +5,16 @@
 //! of about 1 mm. The same on a second half cylinder whose nodes are not opposite to those of the first. There facets of the
 //! lower one make a valley under load, in which a node pressed on one face slides over to the other: node-to-face finds an
 //! equilibrium because such a node stays with a face (its gap is then off by 1e-7 of the face). Static stage, ten steps,
-//! displacement law.
+//! displacement law. And pressed by a given force of 340 kN/m, spread over an equator that nothing holds but sideways.
 //! Closed solution: Hertz, p = p0 √(1 - x²/b²) of the force found; the approach is no local property.
 //!
 //! Pressures, norms and tolerances as for spheres (`hertz_spheres`): 3 % on the finest mesh, half-width within half an
-//! element. Two cylinders are as fine as the middle mesh; node-to-face has no bound there point by point (7 % of p0).
+//! element. Two cylinders are as fine as the middle mesh; node-to-face has no bound there point by point (7 % of p0). The
+//! force that the plane takes is the one given, to 1e-9: iterations end at 1e-10 of it.
 
 use carom_bodies::Kinematics;
 use carom_contact::Integration;
-use carom_dynamics::{Model, ModelTarget};
+use carom_dynamics::{Amplitude, Load, LoadKind, Model, ModelTarget, Nonlinear};
 use carom_exact::hertz::{Pair, Solid};
 use carom_mesh::Mesh;
 
@@ -21,8 +22,8 @@ use crate::Error;
 use crate::build::{DISPLACEMENT, body, contact, plane, support, surface, theta};
 use crate::check::{Check, Row, Size};
 use crate::hertz::{
-    BODY, DUAL, Exact, MATERIAL, Pressed, STANDARD, falling, lowered, mesh, pair, profile_rows,
-    reach,
+    BODY, DUAL, Exact, MATERIAL, Pressed, RADIUS, STANDARD, falling, lowered, mesh, pair,
+    profile_rows, reach,
 };
 
 const COARSE: &[u8] = include_bytes!("../../../cases/hertz-cylinder/cylinder-coarse.msh");
@@ -35,8 +36,9 @@ const WAY: f64 = 4.4e-5;
 /// Elements of the finest mesh at the contact, m.
 const FINEST: f64 = 1.5e-3 / 32.0;
 
-/// A half cylinder half-way to the end of its motion, on another one if the mesh has one.
-fn pressed(mesh: Mesh, integration: Integration) -> Result<Pressed, Error> {
+/// A half cylinder half-way to the end of its motion, on another one if the mesh has one; with a force in N/m half-way to
+/// that, and free to move up and down.
+fn pressed(mesh: Mesh, integration: Integration, force: Option<f64>) -> Result<Pressed, Error> {
     let kinematics = Kinematics::PlaneStrain { thickness: 1.0 };
     let mut bodies = vec![body(&mesh, "upper", kinematics, MATERIAL)?];
     let mut supports = vec![support(&mesh, "upper.equator", [true, false, false])?];
@@ -50,19 +52,25 @@ fn pressed(mesh: Mesh, integration: Integration) -> Result<Pressed, Error> {
     }
     let mut touch = contact(secondary, primary, DISPLACEMENT);
     touch.integration = integration;
-    let motion = lowered(&mesh, "upper.equator", WAY)?;
+    let mut nonlinear = Nonlinear::default();
+    match force {
+        None => nonlinear.motions = vec![lowered(&mesh, "upper.equator", WAY)?],
+        Some(force) => {
+            nonlinear.loads = vec![Load {
+                name: "force".into(),
+                surface: surface(&mesh, "upper.equator", &bodies[0])?,
+                kind: LoadKind::Traction([0.0, -force / (2.0 * RADIUS), 0.0]),
+                amplitude: Amplitude::constant(1.0),
+            }];
+        }
+    }
     let model = Model {
         contacts: vec![touch],
-        bodies,
         supports,
-        gravity: [0.0; 3],
-        scheme: theta(0.5),
-        dt: 1.0,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        nonlinear,
+        ..Model::new(bodies, mesh, theta(0.5), 1.0)
     };
-    Pressed::half(model, motion)
+    Pressed::half(model)
 }
 
 /// Rows of one kind of contact over the meshes, the coarsest first, and the last with elements of a 2^`doublings` of those
@@ -83,7 +91,7 @@ fn rows(
     let (mut means, mut rows) = (Vec::new(), Vec::new());
     let row = |what: &str| format!("{name}: {what}");
     for (k, content) in meshes.iter().enumerate() {
-        let mut run = pressed(mesh("cylinder.msh", content)?, integration)?;
+        let mut run = pressed(mesh("cylinder.msh", content)?, integration, None)?;
         means.push(run.on(hertz)?);
         if k + 1 == meshes.len() {
             let strip = pair.strip(run.force());
@@ -104,6 +112,32 @@ fn rows(
     Ok(rows)
 }
 
+/// Rows of a cylinder on a plane under a given force, on the middle mesh.
+fn under_force(name: &str, pair: Pair, integration: Integration) -> Result<Vec<Row>, Error> {
+    const FORCE: f64 = 3.4e5;
+    let strip = pair.strip(FORCE);
+    let exact = Exact {
+        edge: strip.half_width,
+        pressure: |x| strip.pressure(x),
+    };
+    let mut run = pressed(mesh("cylinder.msh", MIDDLE)?, integration, Some(FORCE))?;
+    run.finish()?;
+    let name = format!("by a force, {name}");
+    let row = |what: &str| format!("{name}: {what}");
+    let mut rows = vec![
+        Row::relative(row("force on the plane, N/m"), run.force(), FORCE, 1e-9),
+        Row::relative(row("peak pressure, Pa"), run.peak(), strip.peak, 0.03),
+        Row::near(
+            row("half-width, m"),
+            0.5 * run.area(),
+            strip.half_width,
+            2.0 * reach(integration) * FINEST,
+        ),
+    ];
+    rows.extend(profile_rows(&name, &run.errors(&exact), 1));
+    Ok(rows)
+}
+
 pub(crate) const CHECK: Check = Check {
     name: "hertz-cylinder",
     fact: "a cylinder pressed on a rigid plane, or on another one, has Hertz's pressures",
@@ -120,6 +154,7 @@ pub(crate) const CHECK: Check = Check {
             ("node-to-face", Integration::Node),
         ] {
             all.extend(rows(name, (alone, integration), meshes, doublings)?);
+            all.extend(under_force(name, alone, integration)?);
         }
         for (name, integration) in [("dual", DUAL), ("standard", STANDARD)] {
             let name = format!("two cylinders, mortar, {name}");

@@ -73,14 +73,8 @@ impl Spheres {
         touch.integration = self.integration;
         Ok(Model {
             contacts: vec![touch],
-            bodies,
             supports,
-            gravity: [0.0; 3],
-            scheme: self.scheme,
-            dt: self.exact().duration / steps,
-            adaptive: None,
-            nonlinear: carom_dynamics::Nonlinear::default(),
-            mesh,
+            ..Model::new(bodies, mesh, self.scheme, self.exact().duration / steps)
         })
     }
 

@@ -16,7 +16,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::Integration;
-use carom_dynamics::{Model, ModelTarget};
+use carom_dynamics::{Model, ModelTarget, Nonlinear};
 use carom_mesh::Mesh;
 
 use crate::Error;
@@ -49,16 +49,14 @@ fn pressed(mesh: Mesh, way: f64, integration: Integration) -> Result<Pressed, Er
     let motion = lowered(&mesh, "upper.equator", way)?;
     let model = Model {
         contacts: vec![touch],
-        bodies: vec![upper, lower],
         supports,
-        gravity: [0.0; 3],
-        scheme: theta(0.5),
-        dt: 1.0,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        nonlinear: Nonlinear {
+            motions: vec![motion],
+            ..Nonlinear::default()
+        },
+        ..Model::new(vec![upper, lower], mesh, theta(0.5), 1.0)
     };
-    Pressed::half(model, motion)
+    Pressed::half(model)
 }
 
 fn hertz(force: f64) -> Exact<impl Fn(f64) -> f64> {

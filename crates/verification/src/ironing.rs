@@ -101,10 +101,6 @@ fn model(file: &str, friction: f64, integration: Integration, slides: u64) -> Re
     Ok(Model {
         supports: vec![support(&mesh, "block.bottom", [true, true, false])?],
         contacts: vec![iron],
-        gravity: [0.0; 3],
-        scheme: newmark(0.25, 0.5),
-        dt: 1.0,
-        adaptive: None,
         nonlinear: Nonlinear {
             motions: vec![Prescribed {
                 nodes: mesh.group_nodes(group(&mesh, "indenter.top")?),
@@ -117,8 +113,7 @@ fn model(file: &str, friction: f64, integration: Integration, slides: u64) -> Re
             },
             ..Nonlinear::default()
         },
-        bodies,
-        mesh,
+        ..Model::new(bodies, mesh, newmark(0.25, 0.5), 1.0)
     })
 }
 

@@ -8,6 +8,7 @@
 
 mod bars;
 mod battery;
+mod breathing_tube;
 mod build;
 mod check;
 mod collision;
@@ -129,6 +130,7 @@ registry! {
     block_drop
     blocks
     blocks_as_bars
+    breathing_tube
     closed_field_as_printed
     contact_patch
     crushed_stop

@@ -7,9 +7,9 @@
 //! and Chawla and of Laursen and Love keep it. Bounds: a gain of 1e-9 of the energy, for the rounding of some 1e5 steps; the last contact
 //! within a fifth of a period, a thousandth of a period for each bounce.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Capture;
-use carom_contact::{Initial, Integration, Law, Plane, Sliding};
+use carom_contact::{Law, Plane};
 use carom_dynamics::{
     Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, march,
 };
@@ -98,49 +98,34 @@ pub fn bounces(
     let mesh = generate::line("bar", [0.0; 3], [1.0, 0.0, 0.0], elements, 1);
     let cells = group(&mesh, "bar")?.elements.clone();
     let model = Model {
-        bodies: vec![ModelBody {
-            spec: BodySpec {
-                name: "bar".to_string(),
-                cells: cells.clone(),
-                kinematics: Kinematics::Bar { area: 1.0 },
-                material: Elastic {
-                    density: 1.0,
-                    young: 1.0,
-                    poisson: 0.0,
-                }
-                .into(),
-                formulation: Formulation::Full,
-                weights: None,
-            },
-            mass: MassKind::Lumped,
-            velocity: [0.0; 3],
-            displacement: [0.0; 3],
-        }],
         supports: vec![Support {
             nodes: mesh.group_nodes(group(&mesh, "bar.right")?),
             fix: [true, false, false],
         }],
-        gravity: [0.0; 3],
-        contacts: vec![ModelContact {
-            name: "wall".to_string(),
-            secondary: Surface::new(&mesh, group(&mesh, "bar.left")?, &cells)?,
-            primary: ModelTarget::rigid(Plane {
+        contacts: vec![ModelContact::new(
+            "wall",
+            Surface::new(&mesh, group(&mesh, "bar.left")?, &cells)?,
+            ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal: [1.0, 0.0, 0.0],
             }),
             law,
-            sliding: Sliding::Small,
-            integration: Integration::Node,
-            massless: false,
-            friction: 0.0,
-            initial: Initial::Keep,
-            depth: None,
-        }],
-        scheme,
-        dt: 0.5 / elements as f64,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        )],
+        ..Model::new(
+            vec![ModelBody::new(BodySpec::new(
+                "bar",
+                cells.clone(),
+                Kinematics::Bar { area: 1.0 },
+                Elastic {
+                    density: 1.0,
+                    young: 1.0,
+                    poisson: 0.0,
+                },
+            ))],
+            mesh,
+            scheme,
+            0.5 / elements as f64,
+        )
     };
     let Ok(system) = System::new(model) else {
         return Ok(None);

@@ -67,14 +67,8 @@ fn model(size: Size, scheme: Scheme, law: Law, integration: Integration) -> Resu
     let speed = (RUBBER.young / RUBBER.density).sqrt();
     Ok(Model {
         contacts: vec![wall],
-        bodies: vec![bar],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
-        scheme,
-        dt: 0.8 * SIDES[0] / along / speed,
-        adaptive: None,
         nonlinear,
-        mesh,
+        ..Model::new(vec![bar], mesh, scheme, 0.8 * SIDES[0] / along / speed)
     })
 }
 

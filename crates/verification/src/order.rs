@@ -35,18 +35,11 @@ fn model(scheme: Scheme, dt: f64) -> Result<Model, Error> {
     )?;
     let held = [true, false, false];
     Ok(Model {
-        bodies: vec![bar],
         supports: vec![
             support(&mesh, "bar.left", held)?,
             support(&mesh, "bar.right", held)?,
         ],
-        gravity: [0.0; 3],
-        contacts: Vec::new(),
-        scheme,
-        dt,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(vec![bar], mesh, scheme, dt)
     })
 }
 

@@ -74,14 +74,12 @@ fn tilted(n: usize, choice: Choice, integration: Integration) -> Result<Model, E
     shock.integration = integration;
     Ok(Model {
         contacts: vec![shock],
-        bodies: vec![block],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
-        scheme: choice.scheme,
-        dt: 0.5 / n as f64 / RUBBER.wave_speed(Plane::Full),
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(
+            vec![block],
+            mesh,
+            choice.scheme,
+            0.5 / n as f64 / RUBBER.wave_speed(Plane::Full),
+        )
     })
 }
 

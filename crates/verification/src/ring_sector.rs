@@ -18,14 +18,14 @@ use std::f64::consts::PI;
 use carom_bodies::Kinematics;
 use carom_contact::Plane;
 use carom_dynamics::{
-    LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, Newton, Nonlinear, Scheme,
-    System, Zoned, Zones, mortar_rows,
+    LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, Newton, Scheme, System, Zoned,
+    Zones, mortar_rows,
 };
 use carom_materials::{Elastic, Law, NeoHooke};
 use carom_mesh::{Mesh, generate};
 
 use crate::Error;
-use crate::build::{CENTRAL, NOW, body, contact, newmark, surface, theta};
+use crate::build::{CENTRAL, NOW, body, contact, newmark, surface, theta, welded};
 use crate::check::{Check, Row, Size};
 
 const RUBBER: Elastic = Elastic {
@@ -93,15 +93,8 @@ impl Ring {
         });
         let touch = contact(surface(&mesh, "sector.right", &bodies[0])?, wall, NOW);
         Ok(Model {
-            mesh,
-            bodies,
-            supports: Vec::new(),
-            gravity: [0.0; 3],
             contacts: vec![touch],
-            scheme: theta(THETA),
-            dt,
-            adaptive: None,
-            nonlinear: Nonlinear::default(),
+            ..Model::new(bodies, mesh, theta(THETA), dt)
         })
     }
 
@@ -191,19 +184,4 @@ fn ring_body(mesh: &Mesh, name: &str) -> Result<ModelBody, Error> {
     body.spec.material = Law::NeoHooke(NeoHooke { initial: RUBBER });
     body.velocity = [0.2, 0.0, 0.0];
     Ok(body)
-}
-
-/// The mesh with nodes at the same place as one.
-fn welded(mut mesh: Mesh) -> Mesh {
-    let mut first = Vec::new();
-    for (node, x) in mesh.nodes.iter().enumerate() {
-        let near = |y: &[f64; 3]| (0..2).all(|i| (x[i] - y[i]).abs() < 1e-9);
-        first.push(mesh.nodes[..node].iter().position(near).unwrap_or(node) as u32);
-    }
-    for block in &mut mesh.blocks {
-        for node in &mut block.nodes {
-            *node = first[*node as usize];
-        }
-    }
-    mesh
 }

@@ -62,14 +62,13 @@ fn model(mesh: Mesh, elements: usize) -> Result<Model, Error> {
     let primary = surface(&mesh, "target.contact", &target)?;
     Ok(Model {
         contacts: vec![contact(secondary, ModelTarget::Surface(primary), HALF)],
-        bodies: vec![striker, target],
         supports,
-        gravity: [0.0; 3],
-        scheme: theta(0.5),
-        dt: 0.5 / elements as f64 / STEEL.wave_speed(Plane::Full),
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(
+            vec![striker, target],
+            mesh,
+            theta(0.5),
+            0.5 / elements as f64 / STEEL.wave_speed(Plane::Full),
+        )
     })
 }
 

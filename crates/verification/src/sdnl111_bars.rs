@@ -56,14 +56,13 @@ fn model(elements: usize, young: f64) -> Result<Model, Error> {
     let primary = ModelTarget::Surface(surface(&mesh, "target.left", &target)?);
     Ok(Model {
         contacts: vec![contact(secondary, primary, HALF)],
-        bodies: vec![striker, target],
         supports: vec![support(&mesh, "target.right", [true; 3])?],
-        gravity: [0.0; 3],
-        scheme: theta(0.5),
-        dt: 0.5 * LENGTH / elements as f64 / (young / DENSITY).sqrt(),
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(
+            vec![striker, target],
+            mesh,
+            theta(0.5),
+            0.5 * LENGTH / elements as f64 / (young / DENSITY).sqrt(),
+        )
     })
 }
 

@@ -15,11 +15,9 @@
 //! In space the way is straight to 1e-10 of its length: the mean force on a square block is along the way, whatever its
 //! direction, but where nodes vibrate across it, an effect of second order.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::{Law, Motion, Obstacle, Plane, Translation};
-use carom_dynamics::{
-    Model, ModelBody, ModelTarget, Newton, Nonlinear, Scheme, State, Support, System,
-};
+use carom_dynamics::{Model, ModelBody, ModelTarget, Newton, Scheme, State, Support, System};
 use carom_elements::Kind;
 use carom_exact::friction::Incline;
 use carom_materials::Elastic;
@@ -103,17 +101,13 @@ impl Rough {
         let mut bodies = Vec::new();
         for (name, kinematics, material) in parts {
             bodies.push(ModelBody {
-                spec: BodySpec {
-                    name: name.into(),
-                    cells: group(&mesh, name)?.elements.clone(),
-                    kinematics,
-                    material: material.into(),
-                    formulation: Formulation::Full,
-                    weights: None,
-                },
-                mass: MassKind::Lumped,
                 velocity: self.velocity,
-                displacement: [0.0; 3],
+                ..ModelBody::new(BodySpec::new(
+                    name,
+                    group(&mesh, name)?.elements.clone(),
+                    kinematics,
+                    material,
+                ))
             });
         }
         let mut normal = [0.0; 3];
@@ -135,14 +129,9 @@ impl Rough {
         rubbing.friction = self.mu;
         let system = System::new(Model {
             contacts: vec![rubbing],
-            bodies,
             supports,
             gravity: self.gravity,
-            scheme: self.scheme,
-            dt: self.dt,
-            adaptive: None,
-            nonlinear: Nonlinear::default(),
-            mesh,
+            ..Model::new(bodies, mesh, self.scheme, self.dt)
         })?;
         Ok(Newton::new(system)?)
     }

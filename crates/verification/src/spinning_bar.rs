@@ -10,9 +10,9 @@
 //! the momentum per step, near rounding, since what they leave adds up over 40000 steps. What the others do is bounded from
 //! below, at half of what was measured.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Model, ModelBody, Newton, Nonlinear, Scheme, System};
+use carom_dynamics::{Model, ModelBody, Newton, Scheme, System};
 use carom_materials::{Elastic, Law, NeoHooke};
 use carom_mesh::generate;
 
@@ -36,29 +36,17 @@ const STEPS: usize = 40;
 fn newton(scheme: Scheme) -> Result<Newton, Error> {
     let corner = [-0.5 * LENGTH, -0.5 * HEIGHT];
     let mesh = generate::rectangle("bar", corner, [LENGTH, HEIGHT], [10, 1], false);
-    let mut model = Model {
-        bodies: vec![ModelBody {
-            spec: BodySpec {
-                name: "bar".to_string(),
-                cells: group(&mesh, "bar")?.elements.clone(),
-                kinematics: Kinematics::PlaneStrain { thickness: 1.0 },
-                material: Law::NeoHooke(NeoHooke { initial: RUBBER }),
-                formulation: Formulation::Full,
-                weights: None,
-            },
-            mass: MassKind::Lumped,
-            velocity: [0.0; 3],
-            displacement: [0.0; 3],
-        }],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
-        contacts: Vec::new(),
-        scheme,
-        dt: 1.0 / STEPS as f64,
-        adaptive: None,
-        nonlinear: Nonlinear::default(),
+    let mut model = Model::new(
+        vec![ModelBody::new(BodySpec::new(
+            "bar",
+            group(&mesh, "bar")?.elements.clone(),
+            Kinematics::PlaneStrain { thickness: 1.0 },
+            Law::NeoHooke(NeoHooke { initial: RUBBER }),
+        ))],
         mesh,
-    };
+        scheme,
+        1.0 / STEPS as f64,
+    );
     model.nonlinear.iteration.tolerance = 1e-14;
     let system = System::new(model)?;
     let spin = |node: &[f64; 3]| [-SPIN * node[1], SPIN * node[0]];

@@ -22,8 +22,8 @@
 
 use std::path::Path;
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
-use carom_dynamics::{Model, ModelBody, Newton, Nonlinear, Scheme, Support, System};
+use carom_bodies::{BodySpec, Formulation, Kinematics};
+use carom_dynamics::{Model, ModelBody, Newton, Scheme, Support, System};
 use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_mesh::{Mesh, generate, read};
 
@@ -85,34 +85,27 @@ impl Bar {
         let mut velocity = [0.0; 3];
         velocity[axis] = -SPEED;
         let body = ModelBody {
-            spec: BodySpec {
-                name: "bar".to_string(),
-                cells: group(&mesh, "bar")?.elements.clone(),
-                kinematics: match mesh.dim {
-                    2 => Kinematics::Axisymmetric,
-                    _ => Kinematics::Solid,
-                },
-                material: Law::J2Plasticity(COPPER),
-                formulation: Formulation::BBar,
-                weights: None,
-            },
-            mass: MassKind::Lumped,
             velocity,
-            displacement: [0.0; 3],
+            ..ModelBody::new(BodySpec {
+                formulation: Formulation::BBar,
+                ..BodySpec::new(
+                    "bar",
+                    group(&mesh, "bar")?.elements.clone(),
+                    match mesh.dim {
+                        2 => Kinematics::Axisymmetric,
+                        _ => Kinematics::Solid,
+                    },
+                    Law::J2Plasticity(COPPER),
+                )
+            })
         };
         let wall = contact(surface(&mesh, foot, &body)?, plane(axis, 1.0), HALF);
         let nodes = |name: &str| Ok::<_, Error>(mesh.group_nodes(group(&mesh, name)?));
         let (foot, top) = (nodes(foot)?, nodes(top)?);
         let system = System::new(Model {
-            bodies: vec![body],
             supports,
-            gravity: [0.0; 3],
             contacts: vec![wall],
-            scheme,
-            dt,
-            adaptive: None,
-            nonlinear: Nonlinear::default(),
-            mesh,
+            ..Model::new(vec![body], mesh, scheme, dt)
         })?;
         Ok(Bar {
             newton: Newton::new(system)?,

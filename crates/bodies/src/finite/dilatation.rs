@@ -17,6 +17,7 @@ use carom_algebra::tensor::Mat3;
 use carom_materials::{Failure, Response, Tangent, Want};
 
 use super::Stored;
+use super::between::cofactor;
 use super::cells::{Cells, MAX_UNKNOWNS};
 use super::element::{Fault, Local, tangent};
 use super::gradient::symmetric;
@@ -73,17 +74,12 @@ impl Cells {
         new: &mut [f64],
         want: Want,
     ) -> Result<Point, Fault> {
-        if at.from.is_some() {
-            return Err(Fault::NoBetween);
-        }
         let f = self.gradient(element, point).deformation(at.u);
         let determinant = f.determinant();
         let s = (dilatation.ratio / determinant).cbrt();
         let response = at.update(self.points, point, &(f * s), new, want)?;
-        let [a, b, c] = [0, 1, 2].map(|j| f.column(j));
-        let cofactors = Mat3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)]);
         Ok(Point {
-            g: cofactors / determinant,
+            g: cofactor(&f) / determinant,
             s,
             share: self.volume(element, point) * determinant / dilatation.volume,
             weighted: self.weighted(element, point),

@@ -55,7 +55,10 @@ impl Cells {
         f: &mut [f64],
     ) -> Result<Stored, Fault> {
         if self.dilatation {
-            return self.dilated_force(element, at, new, f);
+            return match at.from {
+                None => self.dilated_force(element, at, new, f),
+                Some(from) => self.dilated_force_between(element, from, at, f),
+            };
         }
         let mut stored = Stored::default();
         for point in 0..self.points {
@@ -81,7 +84,10 @@ impl Cells {
     ) -> Result<(), Fault> {
         matrix.fill(0.0);
         if self.dilatation {
-            self.dilated_tangent(element, at, new, matrix)?;
+            match at.from {
+                None => self.dilated_tangent(element, at, new, matrix)?,
+                Some(from) => self.dilated_tangent_between(element, from, at, matrix)?,
+            }
         } else {
             for point in 0..self.points {
                 let response = self.response(element, point, at, new, Want::Tangent)?;

@@ -10,6 +10,7 @@ use crate::body::Body;
 use crate::error::Error;
 use crate::stability;
 
+mod between;
 mod cells;
 mod dilatation;
 mod element;
@@ -92,7 +93,7 @@ impl Body {
     /// `f` and `new` are of no use.
     ///
     /// # Errors
-    /// An element whose law gives no stress; a law or a formulation without stress between two displacements.
+    /// An element whose law gives no stress; a law without stress between two displacements.
     pub fn finite_force(
         &self,
         at: &Placement,

@@ -1,6 +1,6 @@
 //! What a body refuses.
 
-use carom_bodies::{Body, BodySpec, CellWeights, Error, Formulation, Kinematics};
+use carom_bodies::{Body, BodySpec, CellWeights, Error, Kinematics};
 use carom_mesh::{ElementId, Mesh, generate};
 
 use crate::sample::{MATERIAL, cells};
@@ -16,12 +16,8 @@ fn refusal_of(
     weights: Option<CellWeights>,
 ) -> Error {
     let spec = BodySpec {
-        name: "arm".to_owned(),
-        cells,
-        kinematics,
-        material: MATERIAL.into(),
-        formulation: Formulation::Full,
         weights,
+        ..BodySpec::new("arm", cells, kinematics, MATERIAL)
     };
     let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
     Body::new(mesh, spec, &number).unwrap_err()

@@ -50,12 +50,8 @@ impl Sample {
         number.push(u32::MAX);
         let cells = cells(&mesh, kinematics.dim());
         let spec = BodySpec {
-            name: name.to_owned(),
-            cells,
-            kinematics,
-            material,
             formulation,
-            weights: None,
+            ..BodySpec::new(name, cells, kinematics, material)
         };
         Sample {
             name: format!("{name}, {}", kinematics.name()),
@@ -72,12 +68,14 @@ impl Sample {
     pub fn weighted(self, weights: CellWeights) -> Sample {
         let kinematics = self.body.kinematics();
         let spec = BodySpec {
-            name: self.name.clone(),
-            cells: cells(&self.mesh, kinematics.dim()),
-            kinematics,
-            material: *self.body.material(),
             formulation: self.formulation,
             weights: Some(weights),
+            ..BodySpec::new(
+                self.name.clone(),
+                cells(&self.mesh, kinematics.dim()),
+                kinematics,
+                *self.body.material(),
+            )
         };
         let body = Body::new(&self.mesh, spec, &self.number).unwrap();
         let name = format!("{}, weighted", self.name);

@@ -1,6 +1,6 @@
 //! Bodies that carry a part of their inertia and of their internal work.
 
-use carom_bodies::{Body, BodySpec, CellWeights, Formulation, Kinematics};
+use carom_bodies::{Body, BodySpec, CellWeights, Kinematics};
 use carom_mesh::{ElementId, generate};
 use carom_testing::Random;
 
@@ -136,12 +136,8 @@ fn weights_follow_their_cells_and_zeros_leave_them_out() {
         let weights = lists.flat_map(|(k, cell)| vec![f64::from(u8::from(kept(k))); per(cell)]);
         let body = |cells: Vec<ElementId>, weights| {
             let spec = BodySpec {
-                name: "b".to_owned(),
-                cells,
-                kinematics,
-                material: MATERIAL.into(),
-                formulation: Formulation::Full,
                 weights,
+                ..BodySpec::new("b", cells, kinematics, MATERIAL)
             };
             Body::new(&sample.mesh, spec, &sample.number).unwrap()
         };

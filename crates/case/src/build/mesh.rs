@@ -1,12 +1,13 @@
-//! The mesh of a case: its file, and generated parts.
+//! The mesh of a case: its file, generated parts, and both refined.
 
 use std::path::Path;
 
-use carom_mesh::{Mesh, generate, read};
+use carom_mesh::{Mesh, generate, read, refine};
 
 use super::{Builder, dimensions};
 use crate::error::Problem;
 use crate::input::Input;
+use crate::rules::MOST_NODES;
 use crate::schema::{Count, Part};
 use crate::units;
 
@@ -53,7 +54,35 @@ impl Builder<'_> {
                 );
             }
         }
-        self.problems.is_empty().then_some(whole)
+        if self.problems.is_empty() {
+            self.refined(whole)
+        } else {
+            None
+        }
+    }
+
+    /// The mesh with every element cut as often as the case says.
+    fn refined(&mut self, mut mesh: Mesh) -> Option<Mesh> {
+        let times = self.case.mesh.refine;
+        let nodes = mesh.nodes.len() as f64 * 2f64.powi(mesh.dim as i32 * times as i32);
+        if times > 0 && nodes > MOST_NODES {
+            let problem = Problem::new("mesh.refine", "too many elements");
+            let problem = problem.found(format!("about {nodes:.0e} nodes"));
+            self.problems
+                .push(problem.accepted([format!("at most {MOST_NODES:e} nodes")]));
+            return None;
+        }
+        for _ in 0..times {
+            match refine(&mesh) {
+                Ok(finer) => mesh = finer,
+                Err(error) => {
+                    self.problems
+                        .push(Problem::new("mesh.refine", error.to_string()));
+                    return None;
+                }
+            }
+        }
+        Some(mesh)
     }
 
     fn read(&mut self, folder: &Path, file: &str, scale: f64) -> Option<Mesh> {

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use carom_bodies::Formulation;
 use carom_dynamics::{
     Damping, Iteration, Load, ModelBody, Newton, Nonlinear, Preload, Prescribed, System,
 };
@@ -89,14 +88,6 @@ impl Builder<'_> {
                     problem
                         .found(format!("{name} with a material that dissipates"))
                         .accepted(["st-venant-kirchhoff", "neo-hooke", "mooney-rivlin"]),
-                );
-            }
-            if body.spec.formulation == Formulation::BBar {
-                let problem = Problem::new(format!("{path}.formulation"), message);
-                self.problems.push(
-                    problem
-                        .found(format!("{name} with mean dilatation"))
-                        .accepted(["\"full\"", "{ reduced = {} }"]),
                 );
             }
         }

@@ -43,8 +43,11 @@ impl Builder<'_> {
             Error::FreeMotion { body, motion } => {
                 let message =
                     format!("in a static stage the body `{body}` can {motion} without any force");
-                Problem::new("time.static", message)
-                    .accepted(["supports that hold it", "no static stage"])
+                Problem::new("time.static", message).accepted([
+                    "supports that hold it",
+                    "a contact that may hold it",
+                    "no static stage",
+                ])
             }
             Error::Nonlinear { what, why } => self.refused_nonlinear(what, why),
             Error::Zone { zone, cause } => self.refused_zone(zone, cause),

@@ -17,6 +17,12 @@ pub struct Mesh {
     /// Unit of the coordinates in `file`.
     #[serde(default)]
     pub unit: LengthUnit,
+    /// How many times every element is cut in halves along each of its directions: twice makes 16 elements of a quadrilateral, 64 of a
+    /// hexahedron. Groups keep their names, curved borders the shape of the coarse mesh. For linear elements, but not
+    /// wedges and pyramids.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0, "maximum" = 10))]
+    pub refine: u32,
     /// Generated parts. The part `a` has a group `a` of its cells, and groups of its sides: `a.left` and `a.right` (ends in x),
     /// `a.bottom` and `a.top` (in y in two dimensions, in z in three), `a.front` and `a.back` (in y in three dimensions).
     #[serde(default, skip_serializing_if = "Named::is_empty")]

@@ -6,6 +6,7 @@
 mod compare;
 mod large;
 mod quadrature;
+mod refine;
 mod stage_one;
 mod warnings;
 mod zones;

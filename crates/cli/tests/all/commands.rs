@@ -40,6 +40,10 @@ fn every_case_of_the_project_passes_the_check_and_leaves_nothing() {
             text(&output)
         );
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), before);
+        // users mesh planes and solids with Gmsh, and so do the cases that they copy
+        let case = std::fs::read_to_string(folder.join("case.toml")).unwrap();
+        let on_a_line = text(&output).contains(" 1D, ");
+        assert!(!case.contains("generate") || on_a_line, "{case}");
         count += 1;
     }
     assert!(count >= 5);
@@ -73,6 +77,32 @@ fn every_template_passes_the_check_and_no_file_is_overwritten() {
         carom(work.path(), &["new", "two-barz"]).status.code(),
         Some(2)
     );
+}
+
+#[test]
+fn a_template_with_a_mesh_brings_it_along_and_writes_all_its_files_or_none() {
+    let work = tempfile::tempdir().unwrap();
+    let names = || {
+        let entries = std::fs::read_dir(work.path().join("sub")).unwrap();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    std::fs::create_dir(work.path().join("sub")).unwrap();
+    let mine = work.path().join("sub/block.msh");
+    std::fs::write(&mine, "mine").unwrap();
+    let output = carom(work.path(), &["new", "block-drop", "sub/drop.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output).contains("block.msh exists"));
+    assert_eq!(names(), ["block.msh"]);
+    assert_eq!(std::fs::read(&mine).unwrap(), b"mine");
+
+    std::fs::remove_file(&mine).unwrap();
+    let output = carom(work.path(), &["new", "block-drop", "sub/drop.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    assert_eq!(names(), ["block.geo", "block.msh", "drop.toml"]);
+    let output = carom(work.path(), &["check", "sub/drop.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
 }
 
 #[test]

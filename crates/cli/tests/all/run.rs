@@ -208,3 +208,59 @@ fn an_adaptive_step_that_cannot_go_on_ends_the_run_with_its_cause_and_what_was_c
         "{reason}"
     );
 }
+
+/// A block under its weight on a plane, static; `load` pushes its left side.
+fn lying(load: &str) -> String {
+    format!(
+        r#"
+carom = 1
+[mesh]
+generate.block.rectangle = {{ origin = [0.0, 0.0], size = [1.0, 1.0], elements = [2, 2] }}
+[material.rubber]
+density = 1000.0
+neo-hooke = {{ young = "1 MPa", poisson = 0.3 }}
+[body.block]
+region = "block"
+material = "rubber"
+section.plane-strain = {{ thickness = 1.0 }}
+[load.weight]
+acceleration = [0.0, -9.81]
+[load.push]
+on = "block.left"
+traction = {load}
+[contact.ground]
+secondary = "block.bottom"
+obstacle.plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}
+law.displacement = {{}}
+[time]
+static = {{ end = "1 s", steps = 4 }}
+end = "1 s"
+"#
+    )
+}
+
+#[test]
+fn a_static_load_that_no_contact_takes_ends_the_run_with_body_and_motion() {
+    let cases = [
+        ("[0.0, 0.0]", None),
+        ("[1.0, 0.0]", Some("can move along x")),
+        // less than its weight of 9810 N, more than half of it: about the right edge
+        ("[0.0, 6e3]", Some("can turn about z")),
+    ];
+    for (load, motion) in cases {
+        let work = tempfile::tempdir().unwrap();
+        fs::write(work.path().join("case.toml"), lying(load)).unwrap();
+        let output = carom(work.path(), &["run", "case.toml"]);
+        let said = text(&output);
+        match motion {
+            None => assert_eq!(output.status.code(), Some(0), "{said}"),
+            Some(motion) => {
+                assert_eq!(output.status.code(), Some(3), "{said}");
+                assert!(
+                    said.contains("body 'block'") && said.contains(motion),
+                    "{said}"
+                );
+            }
+        }
+    }
+}

@@ -176,6 +176,9 @@ impl Newton {
             &squares,
             forces,
         );
+        if map.inertia.x == 0.0 {
+            self.next.ledger.compare_with_work();
+        }
     }
 
     /// Records of the contacts.

@@ -196,7 +196,7 @@ impl Newton {
     }
 
     /// Gap and rate that the law of a point constrains, at the x of the iteration.
-    fn now(&self, point: usize) -> (f64, f64) {
+    pub(super) fn now(&self, point: usize) -> (f64, f64) {
         let rows = &self.pairing.rows;
         let (contact, _) = self.system.point(point);
         let motion = &self.state.motion;

@@ -1,5 +1,7 @@
 //! The effective matrix of an iteration, its factor, and the compliance of the contact points in it.
 
+use std::ops::Range;
+
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_algebra::solver::FactorStats;
@@ -42,6 +44,8 @@ pub(super) struct At<'a> {
     pub(super) from: Option<&'a [f64]>,
     /// Histories at the start of the step.
     pub(super) history: &'a [f64],
+    /// Parts with a proximal term, and its part of the diagonal.
+    pub(super) proximal: (&'a [Range<usize>], f64),
 }
 
 /// The contact points whose forces turn with the configuration.
@@ -114,7 +118,13 @@ impl Effective {
         turning
             .pairing
             .add_curvatures(forces, -turning.factor, &mut self.loads, &mut a);
-        let free = a.with_identity(&system.fixed);
+        let mut free = a.with_identity(&system.fixed);
+        let (parts, weight) = at.proximal;
+        for i in parts.iter().flat_map(Range::clone) {
+            if !system.fixed[i] {
+                free.add(i, i, weight * a.get(i, i).abs());
+            }
+        }
         let factored = self.factorise(&free, system.dim);
         self.matrix = Some(a);
         factored.map_err(|cause| {
@@ -239,21 +249,10 @@ fn assemble(system: &System, at: &At, a: &mut Csr) -> Result<(), Error> {
             }
         }
     }
-    for (i, m) in system.mass.lumped.iter().enumerate() {
-        a.add(i, i, map.inertia.x * m);
-    }
-    if let Some(mass) = system
-        .mass
-        .consistent
-        .as_ref()
-        .filter(|_| map.inertia.x != 0.0)
-    {
-        for i in 0..system.unknowns() {
-            let (columns, values) = mass.row(i);
-            for (&j, m) in columns.iter().zip(values).filter(|(_, m)| **m != 0.0) {
-                a.add(i, j as usize, map.inertia.x * m);
-            }
-        }
+    if map.inertia.x != 0.0 {
+        system
+            .mass
+            .add_to(map.inertia.x, &(0..system.unknowns()), a);
     }
     Ok(())
 }

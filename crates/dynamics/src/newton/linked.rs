@@ -145,9 +145,9 @@ impl Newton {
     fn linear_operators(&self, map: &StepMap, stiffness: &Csr) -> Result<Operators, Error> {
         let system = &*self.system;
         let n = system.unknowns();
-        let lumped = system.mass.lumped.iter().map(|m| map.inertia.x * m);
         if map.force.x == 0.0 && system.mass.consistent.is_none() {
-            let diagonal: Vec<f64> = lumped.collect();
+            let lumped = system.mass.lumped.iter();
+            let diagonal: Vec<f64> = lumped.map(|m| map.inertia.x * m).collect();
             return Ok(Operators::whole(
                 Operator::diagonal(&diagonal, &system.fixed),
                 n,
@@ -155,17 +155,7 @@ impl Newton {
         }
         let mut a = stiffness.clone();
         a.scale(map.force.x);
-        for (i, m) in lumped.enumerate() {
-            a.add(i, i, m);
-        }
-        if let Some(mass) = &system.mass.consistent {
-            for i in 0..n {
-                let (columns, values) = mass.row(i);
-                for (&j, m) in columns.iter().zip(values).filter(|(_, m)| **m != 0.0) {
-                    a.add(i, j as usize, map.inertia.x * m);
-                }
-            }
-        }
+        system.mass.add_to(map.inertia.x, &(0..n), &mut a);
         let operator = Operator::factored(&a, &system.fixed, system.dim);
         let operator = operator.map_err(|cause| Error::Factor {
             matrix: "effective matrix",

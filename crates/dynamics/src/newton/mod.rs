@@ -12,6 +12,7 @@
 mod balance;
 mod contacts;
 mod effective;
+mod floating;
 mod friction;
 mod linked;
 mod loads;
@@ -34,6 +35,7 @@ use crate::state::{ContactReport, State, StepReport, empty_state};
 use crate::step_map::StepMap;
 use crate::system::System;
 use effective::Effective;
+use floating::Floating;
 use solve::Pace;
 
 /// Takes steps of systems that are not linear.
@@ -43,6 +45,7 @@ pub struct Newton {
     dt: f64,
     map: StepMap,
     effective: Effective,
+    floating: Floating,
     interface: Interface,
     pairing: Pairing,
     /// Contacts with small sliding where all nodes are at their reference places; empty until they are paired.
@@ -107,7 +110,7 @@ impl Newton {
     ///
     /// # Errors
     /// A mass matrix that is not positive definite, elements that are turned inside out, a static stage of a body that
-    /// nothing holds.
+    /// neither supports nor contacts could hold.
     pub fn new(system: Arc<System>) -> Result<Newton, Error> {
         let n = system.unknowns();
         let zeros = || vec![0.0; n];
@@ -116,6 +119,7 @@ impl Newton {
             dt: 0.0,
             map: system.scheme.get().step_map(system.dt),
             effective: Effective::new(&system),
+            floating: Floating::new(&system)?,
             interface: Interface::default(),
             pairing: Pairing::default(),
             initial: vec![Pairing::default(); system.contacts.len()],
@@ -160,7 +164,6 @@ impl Newton {
             phases: Phases::default(),
             system,
         };
-        newton.check_free_motions()?;
         let system = Arc::clone(&newton.system);
         newton.restart(&system.initial_displacement, &system.initial_velocity)?;
         Ok(newton)
@@ -217,7 +220,7 @@ impl Newton {
     /// No equilibrium with the smallest part of the step, or one that is not stable; the state is then the one before the step.
     pub fn step(&mut self) -> Result<(), Error> {
         let start = self.state.clone();
-        let (first, end) = (self.state.time, self.end_of_step());
+        let (first, end, size) = (self.state.time, self.end_of_step(), self.size_of_step());
         let whole = self.stable_level(end - first)?;
         let mut control = self.state.control;
         let (mut done, mut level) = (0u64, whole);
@@ -227,12 +230,14 @@ impl Newton {
             let part = parts >> level;
             let to = first + (end - first) * ((done + part) as f64 / parts as f64);
             self.report.attempts += 1;
-            match self.attempt(to - self.state.time) {
+            match self.attempt(size * (part as f64 / parts as f64)) {
                 Ok(()) => {
                     done += part;
                     if done < parts {
                         std::mem::swap(&mut self.state, &mut self.next);
                         self.state.time = to;
+                        // parts of a step are of the same stage
+                        (self.state.step, self.state.control) = (start.step, control);
                     }
                     while level > whole
                         && done.is_multiple_of(2 * part)
@@ -272,6 +277,14 @@ impl Newton {
             }
             Some(preload) => preload.end + (step + 1 - preload.steps) as f64 * dt,
             None => (step + 1) as f64 * dt,
+        }
+    }
+
+    /// Size of the next step, s: the same bits for equal steps, so that a constant matrix is.
+    fn size_of_step(&self) -> f64 {
+        match self.system.nonlinear.preload {
+            Some(preload) if self.is_static() => preload.end / preload.steps as f64,
+            _ => self.system.dt,
         }
     }
 

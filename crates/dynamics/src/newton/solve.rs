@@ -8,6 +8,7 @@ use carom_contact::Search;
 use carom_mesh::ElementId;
 
 use super::effective::{At, Turning};
+use super::floating::{GROWTH as HEAVIER, LARGEST, WEIGHT};
 use super::{Newton, Which};
 use crate::error::Error;
 use crate::step_map::StepMap;
@@ -41,6 +42,8 @@ struct Standing {
     imbalance: f64,
     /// Largest defect of a contact law, in tolerances.
     defect: f64,
+    /// Largest of the forces that balance, N.
+    scale: f64,
 }
 
 impl Newton {
@@ -61,6 +64,7 @@ impl Newton {
         let limit = self.system.nonlinear.iteration.passes;
         self.residuals.clear();
         (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
+        self.floating.weight = WEIGHT;
         self.predict();
         let interface = &mut self.next.interface;
         interface.clone_from(&self.state.interface);
@@ -80,6 +84,9 @@ impl Newton {
             self.residuals.push(standing.imbalance);
             if pass > 0 && !jumps && self.is_solved(&standing) {
                 return self.check_held(pass);
+            }
+            if self.floats() && !jumps && self.approach(standing.scale)? {
+                standing = self.standing();
             }
             if self.wants_factor(pass) {
                 self.renew()?;
@@ -108,7 +115,7 @@ impl Newton {
         let system = &*self.system;
         let bodies = self.map.force.x == 0.0 || system.bodies.iter().all(|body| body.is_linear());
         let contacts = system.contacts.iter().all(|c| self.turning(c) == 0.0);
-        bodies && contacts && !system.nonlinear.has_followers()
+        bodies && contacts && !system.nonlinear.has_followers() && !self.floats()
     }
 
     /// Begins with the motion of no acceleration, or with the one before it; motions that are prescribed come as a jump in
@@ -143,7 +150,7 @@ impl Newton {
     }
 
     /// Loads, inertia, internal and damping forces at x. `first`: those that x does not change too.
-    fn evaluate(&mut self, first: bool) -> Result<(), Error> {
+    pub(super) fn evaluate(&mut self, first: bool) -> Result<(), Error> {
         let map = self.map;
         let motion = &self.state.motion;
         let vectors = &mut self.vectors;
@@ -208,6 +215,7 @@ impl Newton {
                 false => imbalance / scale.max(f64::MIN_POSITIVE),
             },
             defect: self.worst_point().map_or(0.0, |(_, defect)| defect),
+            scale,
         }
     }
 
@@ -224,7 +232,7 @@ impl Newton {
     }
 
     /// What rounding of the positions leaves in the internal forces, N.
-    fn rounding(&self) -> f64 {
+    pub(super) fn rounding(&self) -> f64 {
         let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         let x = self
             .system
@@ -300,7 +308,7 @@ impl Newton {
     }
 
     /// Makes the effective matrix at x. Where it is not positive definite with the turning contact forces, it is made
-    /// without them: the iterations take longer, and the answer is the same.
+    /// without them, and then with more of the proximal term: the iterations take longer, and the answer is the same.
     fn renew(&mut self) -> Result<(), Error> {
         let begin = Instant::now();
         let system = Arc::clone(&self.system);
@@ -309,7 +317,11 @@ impl Newton {
         self.map
             .force
             .whole(motion, &self.vectors.x, &[], &mut self.vectors.place);
-        let at = At {
+        let floats: &[_] = match self.floats() {
+            true => &self.floating.parts,
+            false => &[],
+        };
+        let mut at = At {
             map: &self.map,
             dt: match self.between() {
                 true => self.dt,
@@ -319,6 +331,7 @@ impl Newton {
             u: &self.vectors.place,
             from: self.between().then_some(&motion.u[..]),
             history: &motion.history,
+            proximal: (floats, self.floating.weight),
         };
         let forces = self.next.interface.force.iter().enumerate();
         let turned = forces.map(|(point, force)| force * self.turning(system.point(point).0));
@@ -332,6 +345,11 @@ impl Newton {
             turning.forces.fill(0.0);
             made = self.effective.renew(&system, &at, &mut turning, constant);
         }
+        while made.is_err() && !floats.is_empty() && at.proximal.1 < LARGEST {
+            at.proximal.1 *= HEAVIER;
+            made = self.effective.renew(&system, &at, &mut turning, constant);
+        }
+        self.floating.weight = at.proximal.1;
         self.phases.factorisation += begin.elapsed();
         made
     }

@@ -1,4 +1,4 @@
-//! The initial state, the passage from the static stage to the dynamics, and bodies that nothing holds.
+//! The initial state, and the passage from the static stage to the dynamics.
 
 use std::sync::Arc;
 
@@ -149,93 +149,6 @@ impl Newton {
             self.append(contact, self.state.time);
         }
     }
-
-    /// Refuses a static stage of a connected part that supports leave free to move, unless contacts in the gap may hold it.
-    pub(super) fn check_free_motions(&self) -> Result<(), Error> {
-        let system = &*self.system;
-        if system.nonlinear.preload.is_none() {
-            return Ok(());
-        }
-        for part in &system.parts {
-            let Some(motion) = free_motion(system, part.clone()) else {
-                continue;
-            };
-            let first = (part.start / system.dim) as u32;
-            let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(node, _)| *node == first);
-            let body = system.body_masses.iter().position(owns).unwrap_or(0);
-            return Err(Error::FreeMotion {
-                body: system.bodies[body].name().to_string(),
-                motion,
-            });
-        }
-        Ok(())
-    }
-}
-
-/// A rigid motion of a part that its supports leave free, in words: the null space of the motions at held unknowns.
-fn free_motion(system: &System, part: std::ops::Range<usize>) -> Option<String> {
-    let dim = system.dim;
-    let nodes = part.start / dim..part.end / dim;
-    let centre = |i: usize| {
-        let sum: f64 = nodes.clone().map(|node| system.x[node][i]).sum();
-        sum / nodes.len() as f64
-    };
-    let centre = [centre(0), centre(1), centre(2)];
-    let size = nodes
-        .clone()
-        .map(|node| {
-            (0..3)
-                .map(|i| (system.x[node][i] - centre[i]).abs())
-                .fold(0.0, f64::max)
-        })
-        .fold(f64::MIN_POSITIVE, f64::max);
-    let modes = modes(dim, system.axisymmetric);
-    // Gram matrix of the modes over the held unknowns
-    let mut gram = vec![vec![0.0; modes.len()]; modes.len()];
-    for unknown in part.filter(|&unknown| system.fixed[unknown]) {
-        let (node, i) = (unknown / dim, unknown % dim);
-        let x = [0, 1, 2].map(|j| (system.x[node][j] - centre[j]) / size);
-        let values: Vec<f64> = modes.iter().map(|mode| mode.1(&x)[i]).collect();
-        for (a, row) in gram.iter_mut().enumerate() {
-            for (b, entry) in row.iter_mut().enumerate() {
-                *entry += values[a] * values[b];
-            }
-        }
-    }
-    // a mode that elimination leaves without pivot is free
-    for k in 0..modes.len() {
-        if gram[k][k] <= 1e-9 {
-            return Some(modes[k].0.to_string());
-        }
-        for a in k + 1..modes.len() {
-            let factor = gram[a][k] / gram[k][k];
-            for b in k..modes.len() {
-                gram[a][b] -= factor * gram[k][b];
-            }
-        }
-    }
-    None
-}
-
-type Mode = (&'static str, fn(&[f64; 3]) -> [f64; 3]);
-
-fn modes(dim: usize, axisymmetric: bool) -> Vec<Mode> {
-    if axisymmetric {
-        return vec![("move along its axis", |_| [0.0, 1.0, 0.0])];
-    }
-    let mut modes: Vec<Mode> = vec![("move along x", |_| [1.0, 0.0, 0.0])];
-    if dim > 1 {
-        modes.push(("move along y", |_| [0.0, 1.0, 0.0]));
-    }
-    if dim > 2 {
-        modes.push(("move along z", |_| [0.0, 0.0, 1.0]));
-        modes.push(("turn about x", |x| [0.0, -x[2], x[1]]));
-        modes.push(("turn about y", |x| [x[2], 0.0, -x[0]]));
-    }
-    if dim > 1 {
-        modes.push(("turn about z", |x| [-x[1], x[0], 0.0]));
-    }
-    modes
 }
 
 /// Energies and momentum of a motion; angular momentum about the origin, in the present configuration.

@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::contacts::sides;
 use crate::error::Error;
+use crate::model::Model;
 use crate::nonlinear::{Nonlinear, Refused};
 use crate::scheme::Scheme;
-use crate::system::{Model, System};
+use crate::system::System;
 
 /// A group of bodies with its own scheme and step.
 #[derive(Clone, Debug)]

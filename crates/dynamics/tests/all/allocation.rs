@@ -1,8 +1,8 @@
 //! A step allocates nothing once contact has been met and the buffers have grown.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Initial, Integration, Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{
     Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Stepper, System, Zones,
@@ -18,46 +18,38 @@ fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
     let mesh = generate::box_("cube", [0.0; 3], [1.0; 3], [4, 4, 4], false);
     let cells = mesh.groups["cube"].elements.clone();
     let model = Model {
-        bodies: vec![ModelBody {
-            spec: BodySpec {
-                name: "cube".into(),
-                cells: cells.clone(),
-                kinematics: Kinematics::Solid,
-                material: Elastic {
-                    density: 1000.0,
-                    young: 1e9,
-                    poisson: 0.3,
-                }
-                .into(),
-                formulation: Formulation::Full,
-                weights: None,
-            },
-            mass: MassKind::Lumped,
-            velocity: [0.0, 0.0, -1.0],
-            displacement: [0.0; 3],
-        }],
-        supports: Vec::new(),
         gravity: [0.0, 0.0, -1e6],
         contacts: vec![ModelContact {
-            name: "ground".into(),
-            secondary: Surface::new(&mesh, &mesh.groups["cube.bottom"], &cells).unwrap(),
-            primary: ModelTarget::rigid(Plane {
-                point: [0.0; 3],
-                normal: [0.0, 0.0, 1.0],
-            }),
-            law,
             sliding: Sliding::Finite,
             integration,
-            massless: false,
-            friction: 0.0,
-            initial: Initial::Keep,
-            depth: None,
+            ..ModelContact::new(
+                "ground",
+                Surface::new(&mesh, &mesh.groups["cube.bottom"], &cells).unwrap(),
+                ModelTarget::rigid(Plane {
+                    point: [0.0; 3],
+                    normal: [0.0, 0.0, 1.0],
+                }),
+                law,
+            )
         }],
-        scheme,
-        dt: 5e-5,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(
+            vec![ModelBody {
+                velocity: [0.0, 0.0, -1.0],
+                ..ModelBody::new(BodySpec::new(
+                    "cube",
+                    cells.clone(),
+                    Kinematics::Solid,
+                    Elastic {
+                        density: 1000.0,
+                        young: 1e9,
+                        poisson: 0.3,
+                    },
+                ))
+            }],
+            mesh,
+            scheme,
+            5e-5,
+        )
     };
     Driver::new(System::new(model).unwrap()).unwrap()
 }

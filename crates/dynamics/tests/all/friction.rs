@@ -1,10 +1,8 @@
 //! Friction in the nonlinear solver: stick, objectivity, symmetry.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{
-    Basis, Initial, Integration, Law, Motion, Obstacle, Plane, Sliding, Translation, Turn,
-};
+use carom_contact::{Basis, Integration, Law, Motion, Obstacle, Plane, Sliding, Translation, Turn};
 use carom_dynamics::{
     Amplitude, Model, ModelBody, ModelContact, ModelTarget, Newton, Nonlinear, Preload, Prescribed,
     Scheme, System, scheme,
@@ -24,33 +22,24 @@ const SOFT: Elastic = Elastic {
 };
 
 fn body(mesh: &Mesh, name: &str, kinematics: Kinematics, material: Material) -> ModelBody {
-    ModelBody {
-        spec: BodySpec {
-            name: name.into(),
-            cells: mesh.groups[name].elements.clone(),
-            kinematics,
-            material,
-            formulation: Formulation::Full,
-            weights: None,
-        },
-        mass: MassKind::Lumped,
-        velocity: [0.0; 3],
-        displacement: [0.0; 3],
-    }
+    ModelBody::new(BodySpec::new(
+        name,
+        mesh.groups[name].elements.clone(),
+        kinematics,
+        material,
+    ))
 }
 
 fn rubbing(mesh: &Mesh, group: &str, of: &ModelBody, primary: ModelTarget) -> ModelContact {
     ModelContact {
-        name: "rubbing".into(),
-        secondary: Surface::new(mesh, &mesh.groups[group], &of.spec.cells).unwrap(),
-        primary,
-        law: DISPLACEMENT,
         sliding: Sliding::Finite,
-        integration: Integration::Node,
-        massless: false,
         friction: 0.5,
-        initial: Initial::Keep,
-        depth: None,
+        ..ModelContact::new(
+            "rubbing",
+            Surface::new(mesh, &mesh.groups[group], &of.spec.cells).unwrap(),
+            primary,
+            DISPLACEMENT,
+        )
     }
 }
 
@@ -95,16 +84,7 @@ fn turned(integration: Integration, young: [f64; 2]) -> Newton {
         }
     }
     let model = Model {
-        bodies,
-        supports: Vec::new(),
-        gravity: [0.0; 3],
         contacts: vec![contact],
-        scheme: Scheme::Newmark(scheme::Newmark {
-            beta: 0.25,
-            gamma: 0.5,
-        }),
-        dt: 1.0,
-        adaptive: None,
         nonlinear: Nonlinear {
             motions,
             preload: Some(Preload {
@@ -113,7 +93,15 @@ fn turned(integration: Integration, young: [f64; 2]) -> Newton {
             }),
             ..Nonlinear::default()
         },
-        mesh,
+        ..Model::new(
+            bodies,
+            mesh,
+            Scheme::Newmark(scheme::Newmark {
+                beta: 0.25,
+                gamma: 0.5,
+            }),
+            1.0,
+        )
     };
     Newton::new(System::new(model).unwrap()).unwrap()
 }
@@ -174,15 +162,9 @@ fn spun(scheme: Scheme, law: Law, dt: f64) -> Newton {
     let mut contact = rubbing(&mesh, "a.bottom", &block, ModelTarget::Rigid(platform));
     contact.law = law;
     let model = Model {
-        bodies: vec![block],
-        supports: Vec::new(),
         gravity: [0.0, 0.0, -10.0],
         contacts: vec![contact],
-        scheme,
-        dt,
-        adaptive: None,
-        nonlinear: Nonlinear::default(),
-        mesh,
+        ..Model::new(vec![block], mesh, scheme, dt)
     };
     let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
     let system = newton.system();
@@ -257,19 +239,18 @@ fn a_block_pressed_on_a_rough_plane_sticks_inside_and_slips_at_its_edges_alike()
         displacement: [Some(Amplitude::constant(0.0)), Some(down), None],
     };
     let model = Model {
-        bodies: vec![block],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
         contacts: vec![contact],
-        scheme: Scheme::Theta(scheme::Theta { theta: 0.5 }),
-        dt: 1.0,
-        adaptive: None,
         nonlinear: Nonlinear {
             motions: vec![top],
             preload: Some(Preload { end: 4.0, steps: 4 }),
             ..Nonlinear::default()
         },
-        mesh,
+        ..Model::new(
+            vec![block],
+            mesh,
+            Scheme::Theta(scheme::Theta { theta: 0.5 }),
+            1.0,
+        )
     };
     let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
     for _ in 0..3 {

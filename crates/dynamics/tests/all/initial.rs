@@ -2,11 +2,9 @@
 
 use std::sync::Arc;
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Displacement;
-use carom_contact::{
-    Initial, Integration, Law, Motion, Obstacle, Plane, Sliding, Target, Translation,
-};
+use carom_contact::{Initial, Law, Motion, Obstacle, Plane, Sliding, Target, Translation};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -21,46 +19,34 @@ fn sunk(initial: Initial, motion: Motion) -> Result<Arc<System>, Error> {
         normal: [0.0, 1.0, 0.0],
     };
     System::new(Model {
-        bodies: vec![ModelBody {
-            spec: BodySpec {
-                name: "block".into(),
-                cells: cells.clone(),
-                kinematics: Kinematics::PlaneStrain { thickness: 1.0 },
-                material: Elastic {
+        contacts: vec![ModelContact {
+            sliding: Sliding::Finite,
+            initial,
+            ..ModelContact::new(
+                "ground",
+                Surface::new(&mesh, &mesh.groups["block.bottom"], &cells).unwrap(),
+                ModelTarget::rigid(Obstacle {
+                    motion,
+                    ..ground.into()
+                }),
+                Law::Displacement(Displacement::default()),
+            )
+        }],
+        ..Model::new(
+            vec![ModelBody::new(BodySpec::new(
+                "block",
+                cells.clone(),
+                Kinematics::PlaneStrain { thickness: 1.0 },
+                Elastic {
                     density: 1000.0,
                     young: 1e9,
                     poisson: 0.3,
-                }
-                .into(),
-                formulation: Formulation::Full,
-                weights: None,
-            },
-            mass: MassKind::Lumped,
-            velocity: [0.0; 3],
-            displacement: [0.0; 3],
-        }],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
-        contacts: vec![ModelContact {
-            name: "ground".into(),
-            secondary: Surface::new(&mesh, &mesh.groups["block.bottom"], &cells).unwrap(),
-            primary: ModelTarget::rigid(Obstacle {
-                motion,
-                ..ground.into()
-            }),
-            law: Law::Displacement(Displacement::default()),
-            sliding: Sliding::Finite,
-            integration: Integration::Node,
-            massless: false,
-            friction: 0.0,
-            initial,
-            depth: None,
-        }],
-        scheme: Scheme::Theta(Theta { theta: 1.0 }),
-        dt: 1e-4,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+                },
+            ))],
+            mesh,
+            Scheme::Theta(Theta { theta: 1.0 }),
+            1e-4,
+        )
     })
 }
 

@@ -1,8 +1,8 @@
 //! A contact problem that cannot be solved leaves itself behind.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Displacement;
-use carom_contact::{Initial, Integration, Law, Plane, Sliding};
+use carom_contact::{Law, Plane};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{
     Driver, Error, InterfaceProblem, Model, ModelBody, ModelContact, ModelTarget, Scheme, System,
@@ -14,48 +14,37 @@ use carom_mesh::{Surface, generate};
 fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is_regular() {
     let mesh = generate::line("bar", [0.0; 3], [1.0, 0.0, 0.0], 4, 1);
     let cells = mesh.groups["bar"].elements.clone();
-    let wall = |name: &str| ModelContact {
-        name: name.into(),
-        secondary: Surface::new(&mesh, &mesh.groups["bar.left"], &cells).unwrap(),
-        primary: ModelTarget::rigid(Plane {
-            point: [0.0; 3],
-            normal: [1.0, 0.0, 0.0],
-        }),
-        law: Law::Displacement(Displacement { projection: false }),
-        sliding: Sliding::Small,
-        integration: Integration::Node,
-        massless: false,
-        friction: 0.0,
-        initial: Initial::Keep,
-        depth: None,
+    let wall = |name: &str| {
+        ModelContact::new(
+            name,
+            Surface::new(&mesh, &mesh.groups["bar.left"], &cells).unwrap(),
+            ModelTarget::rigid(Plane {
+                point: [0.0; 3],
+                normal: [1.0, 0.0, 0.0],
+            }),
+            Law::Displacement(Displacement { projection: false }),
+        )
     };
     let model = Model {
-        bodies: vec![ModelBody {
-            spec: BodySpec {
-                name: "bar".into(),
-                cells: cells.clone(),
-                kinematics: Kinematics::Bar { area: 1.0 },
-                material: Elastic {
-                    density: 1.0,
-                    young: 1.0,
-                    poisson: 0.0,
-                }
-                .into(),
-                formulation: Formulation::Full,
-                weights: None,
-            },
-            mass: MassKind::Lumped,
-            velocity: [-1.0, 0.0, 0.0],
-            displacement: [0.0; 3],
-        }],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
         contacts: vec![wall("one"), wall("same")],
-        scheme: Scheme::Theta(Theta { theta: 1.0 }),
-        dt: 0.1,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh: mesh.clone(),
+        ..Model::new(
+            vec![ModelBody {
+                velocity: [-1.0, 0.0, 0.0],
+                ..ModelBody::new(BodySpec::new(
+                    "bar",
+                    cells.clone(),
+                    Kinematics::Bar { area: 1.0 },
+                    Elastic {
+                        density: 1.0,
+                        young: 1.0,
+                        poisson: 0.0,
+                    },
+                ))
+            }],
+            mesh.clone(),
+            Scheme::Theta(Theta { theta: 1.0 }),
+            0.1,
+        )
     };
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();
     let before = driver.state().clone();

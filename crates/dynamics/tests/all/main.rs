@@ -5,6 +5,7 @@
 
 mod allocation;
 mod dense;
+mod floating;
 mod fold;
 mod friction;
 mod initial;

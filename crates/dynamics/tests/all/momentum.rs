@@ -1,8 +1,8 @@
 //! Momentum of bodies of revolution: only the axial one is a momentum.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Initial, Integration, Law, Plane, Sliding};
+use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -13,49 +13,39 @@ fn a_cylinder_that_bulges_as_it_strikes_keeps_its_axial_momentum_balance() {
     let mesh = generate::rectangle("cylinder", [0.0, 0.0], [1.0, 2.0], [4, 8], false);
     let cells = mesh.groups["cylinder"].elements.clone();
     let model = Model {
-        bodies: vec![ModelBody {
-            spec: BodySpec {
-                name: "cylinder".into(),
-                cells: cells.clone(),
-                kinematics: Kinematics::Axisymmetric,
-                material: Elastic {
-                    density: 1000.0,
-                    young: 1e9,
-                    poisson: 0.3,
-                }
-                .into(),
-                formulation: Formulation::Full,
-                weights: None,
-            },
-            mass: MassKind::Lumped,
-            velocity: [0.0, -5.0, 0.0],
-            displacement: [0.0; 3],
-        }],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
         contacts: vec![ModelContact {
-            name: "ground".into(),
-            secondary: Surface::new(&mesh, &mesh.groups["cylinder.bottom"], &cells).unwrap(),
-            primary: ModelTarget::rigid(Plane {
-                point: [0.0; 3],
-                normal: [0.0, 1.0, 0.0],
-            }),
-            law: Law::Velocity(Velocity {
-                capture: Capture::Half,
-                reading: Reading::Closed,
-            }),
             sliding: Sliding::Finite,
-            integration: Integration::Node,
-            massless: false,
-            friction: 0.0,
-            initial: Initial::Keep,
-            depth: None,
+            ..ModelContact::new(
+                "ground",
+                Surface::new(&mesh, &mesh.groups["cylinder.bottom"], &cells).unwrap(),
+                ModelTarget::rigid(Plane {
+                    point: [0.0; 3],
+                    normal: [0.0, 1.0, 0.0],
+                }),
+                Law::Velocity(Velocity {
+                    capture: Capture::Half,
+                    reading: Reading::Closed,
+                }),
+            )
         }],
-        scheme: Scheme::Theta(Theta { theta: 0.5 }),
-        dt: 5e-5,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(
+            vec![ModelBody {
+                velocity: [0.0, -5.0, 0.0],
+                ..ModelBody::new(BodySpec::new(
+                    "cylinder",
+                    cells.clone(),
+                    Kinematics::Axisymmetric,
+                    Elastic {
+                        density: 1000.0,
+                        young: 1e9,
+                        poisson: 0.3,
+                    },
+                ))
+            }],
+            mesh,
+            Scheme::Theta(Theta { theta: 0.5 }),
+            5e-5,
+        )
     };
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();
     for _ in 0..100 {

@@ -4,9 +4,9 @@
 //! bar free or against a rigid wall that it presses on. Matrices, equations and elimination are all written here.
 
 use carom_arlequin::{Row, Term};
-use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, CellWeights, Kinematics};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Initial, Integration, Law, Plane, Sliding};
+use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Zoned,
@@ -136,38 +136,33 @@ impl Problem {
         };
         let mut mesh = line("inner", inner);
         mesh.merge("outer", line("outer", outer)).unwrap();
-        let body = |name: &str, bar: &Bar| ModelBody {
-            spec: BodySpec {
-                name: name.into(),
-                cells: mesh.groups[name].elements.clone(),
-                kinematics: Kinematics::Bar { area: AREA },
-                material: bar.material.into(),
-                formulation: Formulation::Full,
+        let body = |name: &str, bar: &Bar| {
+            ModelBody::new(BodySpec {
                 weights: Some(bar.weights.clone()),
-            },
-            mass: MassKind::Lumped,
-            velocity: [0.0; 3],
-            displacement: [0.0; 3],
+                ..BodySpec::new(
+                    name,
+                    mesh.groups[name].elements.clone(),
+                    Kinematics::Bar { area: AREA },
+                    bar.material,
+                )
+            })
         };
         let bodies = vec![body("inner", inner), body("outer", outer)];
         let end = Surface::new(&mesh, &mesh.groups["inner.left"], &bodies[0].spec.cells).unwrap();
         let wall = ModelContact {
-            name: "wall".into(),
-            secondary: end,
-            primary: ModelTarget::rigid(Plane {
-                point: [0.0; 3],
-                normal: [1.0, 0.0, 0.0],
-            }),
-            law: Law::Velocity(Velocity {
-                capture: Capture::Now,
-                reading: Reading::Closed,
-            }),
             sliding: Sliding::Finite,
-            integration: Integration::Node,
-            massless: false,
-            friction: 0.0,
-            initial: Initial::Keep,
-            depth: None,
+            ..ModelContact::new(
+                "wall",
+                end,
+                ModelTarget::rigid(Plane {
+                    point: [0.0; 3],
+                    normal: [1.0, 0.0, 0.0],
+                }),
+                Law::Velocity(Velocity {
+                    capture: Capture::Now,
+                    reading: Reading::Closed,
+                }),
+            )
         };
         let terms = |c: &[f64], first: usize| {
             let term = |(i, c): (usize, &f64)| Term {
@@ -216,15 +211,8 @@ impl Problem {
             }],
             kind: self.kind,
             model: Model {
-                mesh: mesh.clone(),
-                bodies,
-                supports: Vec::new(),
-                gravity: [0.0; 3],
                 contacts: if self.contact { vec![wall] } else { Vec::new() },
-                scheme: theta,
-                dt: self.dt,
-                adaptive: None,
-                nonlinear: carom_dynamics::Nonlinear::default(),
+                ..Model::new(bodies, mesh.clone(), theta, self.dt)
             },
         })
         .unwrap()

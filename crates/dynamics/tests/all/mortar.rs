@@ -1,8 +1,8 @@
 //! Mortar contact of meshes that do not match, in the linear drivers.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Basis, Initial, Integration, Law, Sliding};
+use carom_contact::{Basis, Integration, Law, Sliding};
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System, scheme};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface, generate};
@@ -26,20 +26,16 @@ fn blocks(dim: usize, across: [usize; 2], scheme: Scheme, law: Law) -> Model {
         let mut velocity = [0.0; 3];
         velocity[dim - 1] = speed;
         ModelBody {
-            spec: BodySpec {
-                name: name.into(),
-                cells: mesh.groups[name].elements.clone(),
-                kinematics: match dim {
+            velocity,
+            ..ModelBody::new(BodySpec::new(
+                name,
+                mesh.groups[name].elements.clone(),
+                match dim {
                     2 => Kinematics::PlaneStrain { thickness: 0.5 },
                     _ => Kinematics::Solid,
                 },
-                material: STEEL.into(),
-                formulation: Formulation::Full,
-                weights: None,
-            },
-            mass: MassKind::Lumped,
-            velocity,
-            displacement: [0.0; 3],
+                STEEL,
+            ))
         }
     };
     let side = |body: &str, side: &str| {
@@ -47,27 +43,18 @@ fn blocks(dim: usize, across: [usize; 2], scheme: Scheme, law: Law) -> Model {
         Surface::new(&mesh, group, &mesh.groups[body].elements).unwrap()
     };
     Model {
-        bodies: vec![body("a", -1.0), body("b", 1.0)],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
-        contacts: vec![ModelContact {
-            name: "joint".into(),
-            secondary: side("a", "bottom"),
-            primary: ModelTarget::Surface(side("b", "top")),
+        contacts: vec![ModelContact::new(
+            "joint",
+            side("a", "bottom"),
+            ModelTarget::Surface(side("b", "top")),
             law,
-            sliding: Sliding::Small,
-            integration: Integration::Node,
-            massless: false,
-            friction: 0.0,
-            initial: Initial::Keep,
-            depth: None,
-        }],
-        scheme,
-        // c = 2 m/s, h = 0.25 m: CFL 0.5 along the body
-        dt: 0.0625,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        )],
+        ..Model::new(
+            vec![body("a", -1.0), body("b", 1.0)],
+            mesh,
+            scheme, // c = 2 m/s, h = 0.25 m: CFL 0.5 along the body
+            0.0625,
+        )
     }
 }
 

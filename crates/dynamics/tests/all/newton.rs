@@ -1,8 +1,8 @@
 //! The nonlinear solver against what is known of its steps.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Initial, Integration, Law, Plane, Sliding};
+use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::{
     Driver, Model, ModelBody, ModelContact, ModelTarget, Newton, Scheme, Stepper, System, scheme,
 };
@@ -25,41 +25,33 @@ pub(crate) fn square(scheme: Scheme, law: Law, material: Material, n: usize) -> 
     let mesh = generate::rectangle("a", [0.0; 2], [1.0; 2], [n, n], false);
     let cells = mesh.groups["a"].elements.clone();
     Model {
-        bodies: vec![ModelBody {
-            spec: BodySpec {
-                name: "a".into(),
-                cells: cells.clone(),
-                kinematics: Kinematics::PlaneStrain { thickness: 0.5 },
-                material,
-                formulation: Formulation::Full,
-                weights: None,
-            },
-            mass: MassKind::Lumped,
-            velocity: [0.0, -0.2, 0.0],
-            displacement: [0.0; 3],
-        }],
-        supports: Vec::new(),
         gravity: [0.0, -0.1, 0.0],
         contacts: vec![ModelContact {
-            name: "ground".into(),
-            secondary: Surface::new(&mesh, &mesh.groups["a.bottom"], &cells).unwrap(),
-            primary: ModelTarget::rigid(Plane {
-                point: [0.0, -0.01, 0.0],
-                normal: [0.0, 1.0, 0.0],
-            }),
-            law,
             sliding: Sliding::Finite,
-            integration: Integration::Node,
-            massless: false,
-            friction: 0.0,
-            initial: Initial::Keep,
-            depth: None,
+            ..ModelContact::new(
+                "ground",
+                Surface::new(&mesh, &mesh.groups["a.bottom"], &cells).unwrap(),
+                ModelTarget::rigid(Plane {
+                    point: [0.0, -0.01, 0.0],
+                    normal: [0.0, 1.0, 0.0],
+                }),
+                law,
+            )
         }],
-        scheme,
-        dt: 0.05,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(
+            vec![ModelBody {
+                velocity: [0.0, -0.2, 0.0],
+                ..ModelBody::new(BodySpec::new(
+                    "a",
+                    cells.clone(),
+                    Kinematics::PlaneStrain { thickness: 0.5 },
+                    material,
+                ))
+            }],
+            mesh,
+            scheme,
+            0.05,
+        )
     }
 }
 

@@ -1,10 +1,10 @@
 //! The weak form with a sign at each Gauss point.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{
     Adhesion, Capture, Damped, Displacement, Level, Penalty, Reading, Velocity,
 };
-use carom_contact::{Initial, Integration, Law, Plane, Sliding, Weak};
+use carom_contact::{Integration, Law, Plane, Weak};
 use carom_dynamics::{
     Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, scheme,
 };
@@ -40,42 +40,24 @@ fn model(mesh: Mesh, kinematics: Kinematics, normal: [f64; 3], scheme: Scheme, l
     let mut velocity = [0.0; 3];
     velocity[dim - 1] = -1.0;
     Model {
-        bodies: vec![ModelBody {
-            spec: BodySpec {
-                name: "a".into(),
-                cells: cells.clone(),
-                kinematics,
-                material: SOFT.into(),
-                formulation: Formulation::Full,
-                weights: None,
-            },
-            mass: MassKind::Lumped,
-            velocity,
-            displacement: [0.0; 3],
-        }],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
-        contacts: vec![ModelContact {
-            name: "ground".into(),
-            secondary: Surface::new(&mesh, &mesh.groups[side], &cells).unwrap(),
-            primary: ModelTarget::rigid(Plane {
+        contacts: vec![ModelContact::new(
+            "ground",
+            Surface::new(&mesh, &mesh.groups[side], &cells).unwrap(),
+            ModelTarget::rigid(Plane {
                 point: [0.0; 3],
                 normal,
             }),
             law,
-            sliding: Sliding::Small,
-            integration: Integration::Node,
-            massless: false,
-            friction: 0.0,
-            initial: Initial::Keep,
-            depth: None,
-        }],
-        scheme,
-        // c = 2 m/s, h = 0.25 m: CFL 0.5 along the body
-        dt: 0.0625,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        )],
+        ..Model::new(
+            vec![ModelBody {
+                velocity,
+                ..ModelBody::new(BodySpec::new("a", cells.clone(), kinematics, SOFT))
+            }],
+            mesh,
+            scheme, // c = 2 m/s, h = 0.25 m: CFL 0.5 along the body
+            0.0625,
+        )
     }
 }
 

@@ -1,8 +1,8 @@
 //! The critical step of central differences, with a compliant contact.
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
+use carom_contact::Law;
 use carom_contact::law::{Adhesion, Damped};
-use carom_contact::{Initial, Integration, Law, Sliding};
 use carom_dynamics::scheme::CentralDifference;
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -14,49 +14,36 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
     mesh.merge("b", generate::line("b", [0.0; 3], [1.0, 0.0, 0.0], 20, 1))
         .unwrap();
     let body = |name: &str, speed: f64| ModelBody {
-        spec: BodySpec {
-            name: name.into(),
-            cells: mesh.groups[name].elements.clone(),
-            kinematics: Kinematics::Bar { area: 1.0 },
-            material: Elastic {
+        velocity: [speed, 0.0, 0.0],
+        ..ModelBody::new(BodySpec::new(
+            name,
+            mesh.groups[name].elements.clone(),
+            Kinematics::Bar { area: 1.0 },
+            Elastic {
                 density: 1.0,
                 young: 1.0,
                 poisson: 0.0,
-            }
-            .into(),
-            formulation: Formulation::Full,
-            weights: None,
-        },
-        mass: MassKind::Lumped,
-        velocity: [speed, 0.0, 0.0],
-        displacement: [0.0; 3],
+            },
+        ))
     };
     let bodies = vec![body("a", 1.0), body("b", 0.0)];
     let surface = |group: &str, k: usize| {
         Surface::new(&mesh, &mesh.groups[group], &bodies[k].spec.cells).unwrap()
     };
-    let contacts = vec![ModelContact {
-        name: "shock".into(),
-        secondary: surface("a.right", 0),
-        primary: ModelTarget::Surface(surface("b.left", 1)),
+    let contacts = vec![ModelContact::new(
+        "shock",
+        surface("a.right", 0),
+        ModelTarget::Surface(surface("b.left", 1)),
         law,
-        sliding: Sliding::Small,
-        integration: Integration::Node,
-        massless: false,
-        friction: 0.0,
-        initial: Initial::Keep,
-        depth: None,
-    }];
+    )];
     let model = Model {
-        bodies: bodies.clone(),
-        supports: Vec::new(),
-        gravity: [0.0; 3],
         contacts,
-        scheme: Scheme::CentralDifference(CentralDifference),
-        dt,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh: mesh.clone(),
+        ..Model::new(
+            bodies.clone(),
+            mesh.clone(),
+            Scheme::CentralDifference(CentralDifference),
+            dt,
+        )
     };
     Driver::new(System::new(model)?)
 }

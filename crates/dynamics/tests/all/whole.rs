@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Initial, Integration, Law, Plane, Sliding};
+use carom_contact::{Law, Plane};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Stepper,
@@ -29,39 +29,30 @@ pub fn bar() -> Zoned {
     let mut mesh = line("rest", -1.0, -0.2, 40);
     mesh.merge("tip", line("tip", -0.2, 0.0, 40)).unwrap();
     let body = |name: &str| ModelBody {
-        spec: BodySpec {
-            name: name.into(),
-            cells: mesh.groups[name].elements.clone(),
-            kinematics: Kinematics::Bar { area: 1e-4 },
-            material: steel.into(),
-            formulation: Formulation::Full,
-            weights: None,
-        },
-        mass: MassKind::Lumped,
         velocity: [1.0, 0.0, 0.0],
         displacement: [-1e-5, 0.0, 0.0],
+        ..ModelBody::new(BodySpec::new(
+            name,
+            mesh.groups[name].elements.clone(),
+            Kinematics::Bar { area: 1e-4 },
+            steel,
+        ))
     };
     let bodies = vec![body("rest"), body("tip")];
     let nodes = |group: &str| mesh.group_nodes(&mesh.groups[group]);
     let rows = carom_arlequin::trace(&mesh, &nodes("tip"), &nodes("rest"), 1e-9).unwrap();
-    let contacts = vec![ModelContact {
-        name: "wall".into(),
-        secondary: Surface::new(&mesh, &mesh.groups["tip.right"], &bodies[1].spec.cells).unwrap(),
-        primary: ModelTarget::rigid(Plane {
+    let contacts = vec![ModelContact::new(
+        "wall",
+        Surface::new(&mesh, &mesh.groups["tip.right"], &bodies[1].spec.cells).unwrap(),
+        ModelTarget::rigid(Plane {
             point: [0.0; 3],
             normal: [-1.0, 0.0, 0.0],
         }),
-        law: Law::Velocity(Velocity {
+        Law::Velocity(Velocity {
             capture: Capture::Half,
             reading: Reading::Closed,
         }),
-        sliding: Sliding::Small,
-        integration: Integration::Node,
-        massless: false,
-        friction: 0.0,
-        initial: Initial::Keep,
-        depth: None,
-    }];
+    )];
     let zone = |name: &str, body, scheme, substeps| ModelZone {
         name: name.into(),
         bodies: vec![body],
@@ -81,15 +72,13 @@ pub fn bar() -> Zoned {
         }],
         kind: LinkKind::PrakashHjelmstad,
         model: Model {
-            bodies,
-            supports: Vec::new(),
-            gravity: [0.0; 3],
             contacts,
-            scheme: Scheme::CentralDifference(CentralDifference),
-            dt: 0.5 * 0.02 / (steel.young / steel.density).sqrt(),
-            adaptive: None,
-            nonlinear: carom_dynamics::Nonlinear::default(),
-            mesh,
+            ..Model::new(
+                bodies,
+                mesh,
+                Scheme::CentralDifference(CentralDifference),
+                0.5 * 0.02 / (steel.young / steel.density).sqrt(),
+            )
         },
     }
 }

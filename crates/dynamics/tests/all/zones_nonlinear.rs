@@ -1,7 +1,7 @@
 //! Zones at finite strain, and the links between them.
 
 use carom_arlequin::{Row, trace};
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_dynamics::scheme::{CentralDifference, EnergyMomentum, Newmark, Theta};
 use carom_dynamics::{
     Amplitude, LinkKind, Load, LoadKind, Model, ModelBody, ModelLink, ModelZone, Newton, Nonlinear,
@@ -22,34 +22,20 @@ const EXPLICIT: Scheme = Scheme::CentralDifference(CentralDifference);
 const NEO_HOOKE: Law = Law::NeoHooke(NeoHooke { initial: SOFT });
 
 fn body(name: &str, cells: Vec<ElementId>, material: Law) -> ModelBody {
-    ModelBody {
-        spec: BodySpec {
-            name: name.into(),
-            cells,
-            kinematics: Kinematics::PlaneStrain { thickness: 1.0 },
-            material,
-            formulation: Formulation::Full,
-            weights: None,
-        },
-        mass: MassKind::Lumped,
-        velocity: [0.0; 3],
-        displacement: [0.0; 3],
-    }
+    ModelBody::new(BodySpec::new(
+        name,
+        cells,
+        Kinematics::PlaneStrain { thickness: 1.0 },
+        material,
+    ))
 }
 
 fn model(mesh: Mesh, bodies: Vec<ModelBody>, scheme: Scheme) -> Model {
     let mut nonlinear = Nonlinear::default();
     nonlinear.iteration.tolerance = 1e-12;
     Model {
-        mesh,
-        bodies,
-        supports: Vec::new(),
-        gravity: [0.0; 3],
-        contacts: Vec::new(),
-        scheme,
-        dt: 0.08,
-        adaptive: None,
         nonlinear,
+        ..Model::new(bodies, mesh, scheme, 0.08)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The meshes of `cases/`: files that Gmsh wrote for the examples, with the `.geo` or script beside them.
+//! The meshes of `cases/`: files that Gmsh wrote for the examples, with the `.geo` beside them.
 
 use std::path::{Path, PathBuf};
 
@@ -74,6 +74,23 @@ fn every_mesh_has_sound_cells_and_surfaces_that_bound_the_body_of_their_name() {
                 assert!(surface.is_ok(), "{}: {name}: {surface:?}", file.display());
             }
         }
+    }
+}
+
+#[test]
+fn every_mesh_has_beside_it_the_script_that_says_how_it_was_made() {
+    for file in meshes() {
+        let name = file.file_name().unwrap().to_string_lossy().into_owned();
+        let beside = std::fs::read_dir(file.parent().unwrap()).unwrap();
+        let scripts = beside
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| path.extension().is_some_and(|ending| ending == "geo"));
+        let naming = scripts.filter(|script| {
+            let text = std::fs::read_to_string(script).unwrap();
+            text.lines()
+                .any(|line| line.starts_with("//") && line.contains(&name))
+        });
+        assert_eq!(naming.count(), 1, "{}", file.display());
     }
 }
 

@@ -5,13 +5,11 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Displacement;
-use carom_contact::{Initial, Integration, Law, Plane, Sliding};
+use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::{EnergyMomentum, Newmark};
-use carom_dynamics::{
-    Model, ModelBody, ModelContact, ModelTarget, Newton, Nonlinear, Scheme, System, march,
-};
+use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Newton, Scheme, System, march};
 use carom_materials::{Elastic, J2Plasticity, Law as Material, NeoHooke};
 use carom_mesh::{Surface, generate};
 use carom_output::{Ending, Results, Settings, Summary};
@@ -47,43 +45,24 @@ fn block(dim: usize, material: Material, velocity: [f64; 3], floor: bool) -> Arc
     };
     let bottom = if dim == 2 { "a.bottom" } else { "a.front" };
     let ground = ModelContact {
-        name: "ground".to_owned(),
-        secondary: Surface::new(&mesh, &mesh.groups[bottom], &cells).unwrap(),
-        primary: ModelTarget::rigid(Plane {
-            point: [0.0; 3],
-            normal: [0.0, 1.0, 0.0],
-        }),
-        law: Law::Displacement(Displacement::default()),
         sliding: Sliding::Finite,
-        integration: Integration::Node,
-        massless: false,
-        friction: 0.0,
-        initial: Initial::Keep,
-        depth: None,
+        ..ModelContact::new(
+            "ground",
+            Surface::new(&mesh, &mesh.groups[bottom], &cells).unwrap(),
+            ModelTarget::rigid(Plane {
+                point: [0.0; 3],
+                normal: [0.0, 1.0, 0.0],
+            }),
+            Law::Displacement(Displacement::default()),
+        )
     };
     let body = ModelBody {
-        spec: BodySpec {
-            name: "a".to_owned(),
-            cells,
-            kinematics,
-            material,
-            formulation: Formulation::Full,
-            weights: None,
-        },
-        mass: MassKind::Lumped,
         velocity,
-        displacement: [0.0; 3],
+        ..ModelBody::new(BodySpec::new("a", cells, kinematics, material))
     };
     System::new(Model {
-        bodies: vec![body],
-        supports: Vec::new(),
-        gravity: [0.0; 3],
         contacts: if floor { vec![ground] } else { Vec::new() },
-        scheme,
-        dt: 1e-3,
-        adaptive: None,
-        nonlinear: Nonlinear::default(),
-        mesh,
+        ..Model::new(vec![body], mesh, scheme, 1e-3)
     })
     .unwrap()
 }

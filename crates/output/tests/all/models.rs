@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
+use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
-use carom_contact::{Initial, Integration, Law, Plane, Sliding};
+use carom_contact::{Law, Plane};
 use carom_dynamics::scheme::{Newmark, Theta};
 use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System};
 use carom_exact::{Bar, Impact};
@@ -46,44 +46,32 @@ pub fn two_bars(n: usize) -> Arc<System> {
     let mut mesh = line("striker", -LENGTH);
     mesh.merge("target", line("target", 0.0)).unwrap();
     let body = |name: &str, speed: f64| ModelBody {
-        spec: BodySpec {
-            name: name.to_owned(),
-            cells: mesh.groups[name].elements.clone(),
-            kinematics: Kinematics::Bar { area: AREA },
-            material: STEEL.into(),
-            formulation: Formulation::Full,
-            weights: None,
-        },
-        mass: MassKind::Lumped,
         velocity: [speed, 0.0, 0.0],
-        displacement: [0.0; 3],
+        ..ModelBody::new(BodySpec::new(
+            name,
+            mesh.groups[name].elements.clone(),
+            Kinematics::Bar { area: AREA },
+            STEEL,
+        ))
     };
     let bodies = vec![body("striker", SPEED), body("target", 0.0)];
     let surface = |group: &str, body: &ModelBody| {
         Surface::new(&mesh, &mesh.groups[group], &body.spec.cells).unwrap()
     };
-    let contacts = vec![ModelContact {
-        name: "shock".to_owned(),
-        secondary: surface("striker.right", &bodies[0]),
-        primary: ModelTarget::Surface(surface("target.left", &bodies[1])),
-        law: velocity_law(),
-        sliding: Sliding::Small,
-        integration: Integration::Node,
-        massless: false,
-        friction: 0.0,
-        initial: Initial::Keep,
-        depth: None,
-    }];
+    let contacts = vec![ModelContact::new(
+        "shock",
+        surface("striker.right", &bodies[0]),
+        ModelTarget::Surface(surface("target.left", &bodies[1])),
+        velocity_law(),
+    )];
     let model = Model {
-        bodies,
-        supports: Vec::new(),
-        gravity: [0.0; 3],
         contacts,
-        scheme: Scheme::Theta(Theta { theta: 0.5 }),
-        dt: 0.5 * LENGTH / n as f64 / wave_speed(),
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(
+            bodies,
+            mesh,
+            Scheme::Theta(Theta { theta: 0.5 }),
+            0.5 * LENGTH / n as f64 / wave_speed(),
+        )
     };
     System::new(model).unwrap()
 }
@@ -109,52 +97,41 @@ pub fn exact(end: f64) -> Reference {
 pub fn block(n: usize, plane: bool) -> Arc<System> {
     let mesh = generate::box_("block", [0.0, 0.0, 0.001], [1.0; 3], [n; 3], false);
     let body = ModelBody {
-        spec: BodySpec {
-            name: "block".to_owned(),
-            cells: mesh.groups["block"].elements.clone(),
-            kinematics: Kinematics::Solid,
-            material: Elastic {
+        velocity: [0.0, 0.0, -5.0],
+        ..ModelBody::new(BodySpec::new(
+            "block",
+            mesh.groups["block"].elements.clone(),
+            Kinematics::Solid,
+            Elastic {
                 density: 1000.0,
                 young: 1e9,
                 poisson: 0.3,
-            }
-            .into(),
-            formulation: Formulation::Full,
-            weights: None,
-        },
-        mass: MassKind::Lumped,
-        velocity: [0.0, 0.0, -5.0],
-        displacement: [0.0; 3],
+            },
+        ))
     };
     let bottom = Surface::new(&mesh, &mesh.groups["block.bottom"], &body.spec.cells).unwrap();
-    let ground = ModelContact {
-        name: "ground".to_owned(),
-        secondary: bottom,
-        primary: ModelTarget::rigid(Plane {
+    let ground = ModelContact::new(
+        "ground",
+        bottom,
+        ModelTarget::rigid(Plane {
             point: [0.0; 3],
             normal: [0.0, 0.0, 1.0],
         }),
-        law: Law::Displacement(Displacement::default()),
-        sliding: Sliding::Small,
-        integration: Integration::Node,
-        massless: false,
-        friction: 0.0,
-        initial: Initial::Keep,
-        depth: None,
-    };
+        Law::Displacement(Displacement::default()),
+    );
     let model = Model {
-        bodies: vec![body],
         supports: Vec::<Support>::new(),
         gravity: [0.0, 0.0, -9.81],
         contacts: if plane { vec![ground] } else { Vec::new() },
-        scheme: Scheme::Newmark(Newmark {
-            beta: 0.49,
-            gamma: 0.9,
-        }),
-        dt: 1e-4,
-        adaptive: None,
-        nonlinear: carom_dynamics::Nonlinear::default(),
-        mesh,
+        ..Model::new(
+            vec![body],
+            mesh,
+            Scheme::Newmark(Newmark {
+                beta: 0.49,
+                gamma: 0.9,
+            }),
+            1e-4,
+        )
     };
     System::new(model).unwrap()
 }

@@ -6,8 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
-use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, MassKind};
-use carom_contact::{Initial, Integration, Sliding};
+use carom_bodies::{BodySpec, CellWeights, Kinematics};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Stepper,
@@ -59,20 +58,14 @@ fn two_bars() -> Zoned {
         let weights = overlap.weights(&Weighting::default()).unwrap();
         let body = |name: &str, cells: &[ElementId], weights: carom_arlequin::CellWeights| {
             Some(ModelBody {
-                spec: BodySpec {
-                    name: name.to_owned(),
-                    cells: cells.to_vec(),
-                    kinematics: Kinematics::Bar { area: AREA },
-                    material: STEEL.into(),
-                    formulation: Formulation::Full,
+                velocity: [speed, 0.0, 0.0],
+                ..ModelBody::new(BodySpec {
                     weights: Some(CellWeights {
                         inertia: weights.inertia,
                         stiffness: weights.stiffness,
                     }),
-                },
-                mass: MassKind::Lumped,
-                velocity: [speed, 0.0, 0.0],
-                displacement: [0.0; 3],
+                    ..BodySpec::new(name, cells.to_vec(), Kinematics::Bar { area: AREA }, STEEL)
+                })
             })
         };
         bodies[k] = body(inner, overlap.cells(Side::Inner), weights.inner);
@@ -87,18 +80,12 @@ fn two_bars() -> Zoned {
     let surface = |group: &str, body: &ModelBody| {
         Surface::new(&mesh, &mesh.groups[group], &body.spec.cells).unwrap()
     };
-    let contacts = vec![ModelContact {
-        name: "shock".to_owned(),
-        secondary: surface("striker-tip.right", &bodies[0]),
-        primary: ModelTarget::Surface(surface("target-tip.left", &bodies[1])),
-        law: models::velocity_law(),
-        sliding: Sliding::Small,
-        integration: Integration::Node,
-        massless: false,
-        friction: 0.0,
-        initial: Initial::Keep,
-        depth: None,
-    }];
+    let contacts = vec![ModelContact::new(
+        "shock",
+        surface("striker-tip.right", &bodies[0]),
+        ModelTarget::Surface(surface("target-tip.left", &bodies[1])),
+        models::velocity_law(),
+    )];
     let zone = |name: &str, bodies, scheme, substeps| ModelZone {
         name: name.to_owned(),
         bodies,
@@ -120,15 +107,8 @@ fn two_bars() -> Zoned {
         links,
         kind: LinkKind::PrakashHjelmstad,
         model: Model {
-            bodies,
-            supports: Vec::new(),
-            gravity: [0.0; 3],
             contacts,
-            scheme: rest,
-            dt: 0.5 * h / models::wave_speed(),
-            adaptive: None,
-            nonlinear: carom_dynamics::Nonlinear::default(),
-            mesh,
+            ..Model::new(bodies, mesh, rest, 0.5 * h / models::wave_speed())
         },
     }
 }

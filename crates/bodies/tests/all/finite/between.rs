@@ -1,14 +1,18 @@
 //! Algorithmic forces between two displacements: exact work, no resultant, no moment.
 
 use carom_bodies::{Error, Formulation, Kinematics};
+use carom_materials::{Elastic, Law, NeoHooke};
+use carom_testing::Random;
 
-use super::{Step, displacement, elastic, rotation, samples};
-use crate::sample::{Sample, distance, dot, largest};
+use super::{Step, displacement, elastic, inelastic, rotation, samples};
+use crate::sample::{MATERIAL, Sample, distance, dot, largest};
 
-/// A displacement turned by 0.4 from the other one, and strained otherwise.
+/// A displacement turned by 0.4 from the other one, and strained otherwise, by a fifth on the whole.
 fn ends(sample: &Sample) -> (Vec<f64>, Vec<f64>) {
     let begin = displacement(sample, 21);
     let mut end = displacement(sample, 22);
+    let strain = sample.field(|x| [0.2 * x[0], -0.15 * x[1], 0.1 * x[2]]);
+    end.iter_mut().zip(strain).for_each(|(u, more)| *u += more);
     if sample.body.kinematics() != Kinematics::Axisymmetric {
         let turn = rotation(sample, 0.4);
         end.iter_mut().zip(turn).for_each(|(u, turn)| *u += turn);
@@ -16,10 +20,24 @@ fn ends(sample: &Sample) -> (Vec<f64>, Vec<f64>) {
     (begin, end)
 }
 
+/// Every law, a nearly incompressible one too.
+fn laws() -> Vec<(&'static str, Law)> {
+    let initial = Elastic {
+        poisson: 0.499,
+        ..MATERIAL
+    };
+    let nearly = ("nearly incompressible", Law::NeoHooke(NeoHooke { initial }));
+    elastic().into_iter().chain([nearly]).collect()
+}
+
+/// Every law, kind and formulation, plain and with random weights.
 fn conserving() -> Vec<Sample> {
-    let all = elastic();
-    let all = all.iter().flat_map(samples);
-    all.filter(|sample| !sample.name.contains("BBar")).collect()
+    let all = laws();
+    let weighted = all.iter().flat_map(samples).map(|sample| {
+        let weights = sample.random_weights(25);
+        sample.weighted(weights)
+    });
+    all.iter().flat_map(samples).chain(weighted).collect()
 }
 
 #[test]
@@ -98,10 +116,100 @@ fn tangent_is_the_symmetric_part_of_the_derivative_by_the_end() {
 }
 
 #[test]
-fn mean_dilatation_has_no_conserving_stress_and_says_so() {
-    let (name, mesh, kinematics) = crate::sample::shapes().remove(0);
-    let sample = Sample::of(name, mesh, kinematics, elastic()[0].1, Formulation::BBar);
-    let from = vec![0.0; sample.n];
-    let error = Step::between(&sample, &from).run(&from).unwrap_err();
-    assert!(matches!(error, Error::NoBetween { .. }), "{error}");
+fn tangent_in_space_is_the_symmetric_part_of_slopes_along_two_directions() {
+    const STEP: f64 = 1e-5;
+    for sample in conserving().iter().filter(|sample| sample.dim() == 3) {
+        let (begin, end) = ends(sample);
+        let step = Step::between(sample, &begin);
+        let [v, w] = [26, 27].map(|seed| Random(seed).vector(sample.n));
+        let slope = |of: &[f64], along: &[f64]| {
+            let at = |side: f64| -> Vec<f64> {
+                let moved = end.iter().zip(along);
+                moved.map(|(u, v)| u + side * STEP * v).collect()
+            };
+            (dot(of, &step.force(&at(1.0))) - dot(of, &step.force(&at(-1.0)))) / (2.0 * STEP)
+        };
+        let k = step.tangent(&end);
+        let rows = k.chunks_exact(sample.n).zip(&v);
+        let found: f64 = rows.map(|(row, v)| v * dot(row, &w)).sum();
+        let part = 0.5 * (slope(&v, &w) + slope(&w, &v));
+        // as above, of a sum of random signs
+        let scale = largest(&k) * (sample.n as f64).sqrt();
+        let error = (found - part).abs();
+        assert!(error < 1e-7 * scale, "{}: {error}", sample.name);
+    }
+}
+
+fn with(formulation: Formulation) -> Vec<Sample> {
+    let all = laws();
+    let all = all.iter().flat_map(samples);
+    all.filter(|sample| sample.formulation == formulation)
+        .collect()
+}
+
+#[test]
+fn mean_dilatation_has_half_its_tangent_in_a_step_of_no_size_and_no_noise_in_a_small_one() {
+    for sample in with(Formulation::BBar) {
+        let u = displacement(&sample, 23);
+        let here = Step::new(&sample);
+        let still = Step::between(&sample, &u);
+        let (f, scale) = (here.force(&u), largest(&here.tangent(&u)));
+        // strains and stresses of a tenth, rounded, times moduli
+        let rounding = 1e-15 * scale;
+        let error = distance(&still.force(&u), &f);
+        assert!(error < rounding, "{}: {error:e}", sample.name);
+        if sample.dim() == 2 {
+            let half: Vec<f64> = here.tangent(&u).iter().map(|k| 0.5 * k).collect();
+            let error = distance(&still.tangent(&u), &half);
+            assert!(error < 1e-14 * scale, "{}: {error:e}", sample.name);
+        }
+        for size in [1e-3, 1e-6, 1e-9, 1e-12] {
+            let along = Random(24).vector(sample.n);
+            let at = |share: f64| -> Vec<f64> {
+                let moved = u.iter().zip(&along);
+                moved.map(|(u, more)| u + share * size * more).collect()
+            };
+            let between = Step::between(&sample, &u).force(&at(1.0));
+            // both are means of the step of second order; gradients are up to ten times the displacement
+            let error = distance(&between, &here.force(&at(0.5)));
+            let bound = 1e3 * scale * size * size + rounding;
+            assert!(error < bound, "{}: {error:e} at {size:e}", sample.name);
+        }
+    }
+}
+
+#[test]
+fn mean_dilatation_between_affine_motions_is_full_integration() {
+    let pairs = with(Formulation::Full)
+        .into_iter()
+        .zip(with(Formulation::BBar));
+    for (full, dilated) in pairs {
+        // in axisymmetry those that keep the volume ratio the same at all radii
+        let shear = match full.body.kinematics() {
+            Kinematics::Axisymmetric => 0.0,
+            _ => 0.3,
+        };
+        let begin = full.field(|x| [0.1 * x[0] - shear * x[1], 0.2 * x[1], -0.1 * x[2]]);
+        let end = full.field(|x| [-0.05 * x[0], 0.1 * x[1] + shear * x[0], 0.2 * x[2]]);
+        let f = Step::between(&full, &begin).force(&end);
+        let error = distance(&Step::between(&dilated, &begin).force(&end), &f);
+        // sums of the forces of the elements around a node
+        let bound = 1e-14 * full.n as f64 * largest(&f);
+        assert!(error < bound, "{}: {error:e}", dilated.name);
+    }
+}
+
+#[test]
+fn laws_that_dissipate_have_no_conserving_stress_and_say_so() {
+    for law in inelastic() {
+        for sample in samples(&law) {
+            let from = vec![0.0; sample.n];
+            let step = Step::between(&sample, &from);
+            let error = step.run(&from).unwrap_err();
+            assert!(matches!(error, Error::NoBetween { .. }), "{error}");
+            let mut matrix = sample.pattern();
+            let added = sample.body.add_tangent(&step.at(&from), 1.0, &mut matrix);
+            assert!(matches!(added, Err(Error::NoBetween { .. })));
+        }
+    }
 }

@@ -69,12 +69,8 @@ fn what_makes_no_sense_at_finite_strain_is_refused() {
     let number: Vec<u32> = (0..4).collect();
     let refusal = |kinematics, material, formulation| {
         let spec = BodySpec {
-            name: "arm".to_owned(),
-            cells: cells(&mesh, 2),
-            kinematics,
-            material,
             formulation,
-            weights: None,
+            ..BodySpec::new("arm", cells(&mesh, 2), kinematics, material)
         };
         Body::new(&mesh, spec, &number).unwrap_err()
     };
@@ -101,12 +97,13 @@ fn reduced_integration_of_a_quadratic_element_is_refused() {
     let number: Vec<u32> = (0..8).collect();
     mesh.push(Kind::Quad8, &number);
     let spec = BodySpec {
-        name: "arm".to_owned(),
-        cells: cells(&mesh, 2),
-        kinematics: Kinematics::PlaneStrain { thickness: 1.0 },
-        material: elastic()[0].1,
         formulation: super::HOURGLASS,
-        weights: None,
+        ..BodySpec::new(
+            "arm",
+            cells(&mesh, 2),
+            Kinematics::PlaneStrain { thickness: 1.0 },
+            elastic()[0].1,
+        )
     };
     let error = Body::new(&mesh, spec, &number).unwrap_err();
     assert!(

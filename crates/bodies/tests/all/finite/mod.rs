@@ -9,7 +9,9 @@ mod patch;
 mod pressure;
 
 use carom_bodies::{Error, Formulation, Kinematics, Placement, Scratch, Stored};
-use carom_materials::{Branch, J2Plasticity, Law, Maxwell, NeoHooke, StVenantKirchhoff};
+use carom_materials::{
+    Branch, J2Plasticity, Law, Maxwell, MooneyRivlin, NeoHooke, StVenantKirchhoff,
+};
 use carom_testing::Random;
 
 use crate::sample::{MATERIAL, Sample, dense, shapes};
@@ -24,6 +26,15 @@ fn elastic() -> Vec<(&'static str, Law)> {
         (
             "st-venant-kirchhoff",
             Law::StVenantKirchhoff(StVenantKirchhoff { initial }),
+        ),
+        (
+            "mooney-rivlin",
+            Law::MooneyRivlin(MooneyRivlin {
+                density: MATERIAL.density,
+                c10: 0.2,
+                c01: 0.05,
+                bulk: 1.1,
+            }),
         ),
     ]
 }

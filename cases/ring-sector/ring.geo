@@ -1,14 +1,15 @@
 // A ring about the origin whose impact side is a mesh of its own, in m: outer radius 1, thickness 0.1, the sector
-// within 30 degrees of the x axis finer than the rest. The ring meets a wall x = 1 or beyond.
+// within 30 degrees of the x axis finer than the rest. The ring meets a wall x = 1 or beyond. Quadrilaterals.
 // Groups: rest, sector (cells); for each .outer, .inner, .first (end at -30 degrees), .last (end at 30 degrees).
-// The ends of the sector have their own nodes, except with joined = 1.
+// The ends of the sector have their own nodes. With joined = 1 they do not: groups ring (cells), sector.outer.
 //
-// Made with Gmsh 4.15.2 by: gmsh sector.geo -2 -format msh41 -bin -o sector.msh
-//   sector.msh          rest 2 x 60, sector 4 x 24 elements
-//   sector-joined.msh   one mesh as fine as the sector all round, 4 x 144: -setnumber joined 1
+// Made with Gmsh 4.15.2 by: gmsh ring.geo -2 -format msh41 -bin -o ring.msh
+//   ring.msh          rest 2 x 120, sector 4 x 24 elements (wall, round)
+//   ring-single.msh   one mesh as fine as the sector all round, 4 x 144: -setnumber joined 1
 DefineConstant[
   across = 2     // elements through the thickness of the rest
-  round = 60     // elements of the rest, a multiple of 3
+  round = 120    // elements of the rest, a multiple of 3
+  fine = 24      // elements of the sector, a multiple of 3; twice as many through its thickness as in the rest
   joined = 0     // 1: one mesh, as fine as the sector
 ];
 radius = 1;
@@ -61,30 +62,34 @@ turn = -Pi / 6;
 Call Cut;
 ends[] = {inside, outside, cut};
 turn = Pi / 6;
-count = 2 * round / 5;
+count = fine;
 Call Part;
-Physical Surface("sector") = {cells[]};
 Physical Curve("sector.outer") = {outer[]};
-Physical Curve("sector.inner") = {inner[]};
-Physical Curve("sector.first") = {ends[2]};
-Physical Curve("sector.last") = {cut};
-
-cells[] = {};
-inner[] = {};
-outer[] = {};
-count = 2 * round / 3;
 If (joined == 0)
+  Physical Surface("sector") = {cells[]};
+  Physical Curve("sector.inner") = {inner[]};
+  Physical Curve("sector.first") = {ends[2]};
+  Physical Curve("sector.last") = {cut};
+  cells[] = {};
+  inner[] = {};
+  outer[] = {};
   count = round / 3;
   layers = across;
   Call Cut;
+  Physical Curve("rest.last") = {cut};
+Else
+  count = 5 * fine / 3;
 EndIf
-Physical Curve("rest.last") = {cut};
 For i In {1 : 3}
   turn = Pi / 6 + i * 5 * Pi / 9;
   close = joined * (i == 3);
   Call Part;
 EndFor
-Physical Surface("rest") = {cells[]};
-Physical Curve("rest.outer") = {outer[]};
-Physical Curve("rest.inner") = {inner[]};
-Physical Curve("rest.first") = {cut};
+If (joined == 0)
+  Physical Surface("rest") = {cells[]};
+  Physical Curve("rest.outer") = {outer[]};
+  Physical Curve("rest.inner") = {inner[]};
+  Physical Curve("rest.first") = {cut};
+Else
+  Physical Surface("ring") = {cells[]};
+EndIf

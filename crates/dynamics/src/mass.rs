@@ -1,0 +1,78 @@
+//! The mass matrix of a system.
+
+use std::ops::Range;
+
+use carom_algebra::csr::Csr;
+use carom_algebra::pattern::Cliques;
+use carom_bodies::{Body, MassKind};
+
+use crate::model::ModelBody;
+use crate::system::push_cliques;
+
+/// Mass of the system: a diagonal, and the consistent part where there is one.
+#[derive(Debug)]
+pub struct Mass {
+    /// Row sums of the lumped bodies, kg, one entry per unknown.
+    pub lumped: Vec<f64>,
+    /// Consistent mass of the other bodies.
+    pub consistent: Option<Csr>,
+}
+
+impl Mass {
+    /// y = M x.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        match &self.consistent {
+            Some(matrix) => matrix.multiply(x, y),
+            None => y.fill(0.0),
+        }
+        for i in 0..y.len() {
+            y[i] += self.lumped[i] * x[i];
+        }
+    }
+
+    /// That of bodies on `nodes` nodes.
+    pub(crate) fn of(bodies: &[Body], specs: &[ModelBody], dim: usize, nodes: usize) -> Mass {
+        let mut lumped = vec![0.0; dim * nodes];
+        let mut cliques = Cliques::new();
+        let mut consistent = Vec::new();
+        for (body, spec) in bodies.iter().zip(specs) {
+            match spec.mass {
+                MassKind::Lumped => body.add_lumped_mass(&mut lumped),
+                MassKind::Consistent => {
+                    push_cliques(body, dim, &(0..dim * nodes), &mut cliques);
+                    consistent.push(body);
+                }
+            }
+        }
+        if consistent.is_empty() {
+            return Mass {
+                lumped,
+                consistent: None,
+            };
+        }
+        let mut matrix = Csr::from_cliques(dim * nodes, &cliques);
+        for body in consistent {
+            body.assemble(0.0, 1.0, &(0..dim * nodes), &mut matrix);
+        }
+        Mass {
+            lumped,
+            consistent: Some(matrix),
+        }
+    }
+
+    /// Adds factor · M to a matrix over the unknowns of `part`, counted from its first.
+    pub(crate) fn add_to(&self, factor: f64, part: &Range<usize>, a: &mut Csr) {
+        for (i, m) in self.lumped[part.clone()].iter().enumerate() {
+            a.add(i, i, factor * m);
+        }
+        let Some(mass) = &self.consistent else {
+            return;
+        };
+        for i in part.clone() {
+            let (columns, values) = mass.row(i);
+            for (&j, m) in columns.iter().zip(values).filter(|(_, m)| **m != 0.0) {
+                a.add(i - part.start, j as usize - part.start, factor * m);
+            }
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Everything from which a system is built.
+
+use carom_bodies::{BodySpec, MassKind};
+use carom_contact::{Initial, Integration, Law, Obstacle, Sliding};
+use carom_mesh::{Mesh, Surface};
+
+use crate::nonlinear::Nonlinear;
+use crate::{Adaptive, Scheme};
+
+/// Everything from which a system is built; names are those of the case file.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The mesh, in m.
+    pub mesh: Mesh,
+    /// Bodies.
+    pub bodies: Vec<ModelBody>,
+    /// Supports.
+    pub supports: Vec<Support>,
+    /// Acceleration of gravity, m/s².
+    pub gravity: [f64; 3],
+    /// Contacts.
+    pub contacts: Vec<ModelContact>,
+    /// Time scheme.
+    pub scheme: Scheme,
+    /// Step in s; the largest of an adaptive step.
+    pub dt: f64,
+    /// Rules of an adaptive step; `None` for equal steps.
+    pub adaptive: Option<Adaptive>,
+    /// Loads and motions in time, damping, a static stage, and how nonlinear steps are solved.
+    pub nonlinear: Nonlinear,
+}
+
+impl Model {
+    /// Bodies that nothing holds, loads or touches, in equal steps of `dt` (s).
+    pub fn new(bodies: Vec<ModelBody>, mesh: Mesh, scheme: Scheme, dt: f64) -> Model {
+        Model {
+            mesh,
+            bodies,
+            supports: Vec::new(),
+            gravity: [0.0; 3],
+            contacts: Vec::new(),
+            scheme,
+            dt,
+            adaptive: None,
+            nonlinear: Nonlinear::default(),
+        }
+    }
+}
+
+/// A body and its initial state.
+#[derive(Clone, Debug)]
+pub struct ModelBody {
+    /// Elements, kinematics, material.
+    pub spec: BodySpec,
+    /// Lumped or consistent mass.
+    pub mass: MassKind,
+    /// Initial velocity of all its nodes, m/s.
+    pub velocity: [f64; 3],
+    /// Initial displacement of all its nodes, m.
+    pub displacement: [f64; 3],
+}
+
+impl ModelBody {
+    /// A body at rest, with lumped mass.
+    pub fn new(spec: BodySpec) -> ModelBody {
+        ModelBody {
+            spec,
+            mass: MassKind::Lumped,
+            velocity: [0.0; 3],
+            displacement: [0.0; 3],
+        }
+    }
+}
+
+/// Nodes that cannot move in some directions.
+#[derive(Clone, Debug)]
+pub struct Support {
+    /// Nodes of the mesh.
+    pub nodes: Vec<u32>,
+    /// Directions held.
+    pub fix: [bool; 3],
+}
+
+/// A contact before numbering.
+#[derive(Clone, Debug)]
+pub struct ModelContact {
+    /// Name as in the case file.
+    pub name: String,
+    /// Surface whose nodes carry the contact forces.
+    pub secondary: Surface,
+    /// What it faces.
+    pub primary: ModelTarget,
+    /// The law.
+    pub law: Law,
+    /// Extent of the sliding.
+    pub sliding: Sliding,
+    /// Where the law holds.
+    pub integration: Integration,
+    /// Whether the nodes of both surfaces give their mass to the other nodes of their bodies.
+    pub massless: bool,
+    /// Coefficient of Coulomb's friction; zero for none.
+    pub friction: f64,
+    /// What is done about penetrations at the start.
+    pub initial: Initial,
+    /// Largest penetration that is a contact, m: points see only faces turned against them and not further away inside than
+    /// this ([`Sight`](carom_contact::Sight)). `None`: they see everything, unless the surface faces itself.
+    pub depth: Option<f64>,
+}
+
+impl ModelContact {
+    /// A contact at nodes, of small sliding, without friction, and with penetrations at the start as they are.
+    pub fn new(
+        name: impl Into<String>,
+        secondary: Surface,
+        primary: ModelTarget,
+        law: Law,
+    ) -> ModelContact {
+        ModelContact {
+            name: name.into(),
+            secondary,
+            primary,
+            law,
+            sliding: Sliding::Small,
+            integration: Integration::Node,
+            massless: false,
+            friction: 0.0,
+            initial: Initial::Keep,
+            depth: None,
+        }
+    }
+}
+
+/// What a secondary surface faces.
+#[derive(Clone, Debug)]
+pub enum ModelTarget {
+    /// A surface of deformable bodies.
+    Surface(Surface),
+    /// A rigid obstacle.
+    Rigid(Obstacle),
+}
+
+impl ModelTarget {
+    /// A rigid obstacle, at rest if it is given by its shape.
+    pub fn rigid(obstacle: impl Into<Obstacle>) -> ModelTarget {
+        ModelTarget::Rigid(obstacle.into())
+    }
+}
