@@ -102,6 +102,8 @@ struct Vectors {
     begun: Vec<f64>,
     /// A configuration or a velocity.
     place: Vec<f64>,
+    /// Displacement at the end of the step, predicted; empty where no contact is paired ahead.
+    ahead: Vec<f64>,
     work: Vec<f64>,
     /// Histories of the bodies at the end of the attempt.
     history: Vec<f64>,
@@ -157,6 +159,7 @@ impl Newton {
                 free: zeros(),
                 begun: zeros(),
                 place: zeros(),
+                ahead: Vec::new(),
                 work: zeros(),
                 history: state.motion.history.clone(),
             },
