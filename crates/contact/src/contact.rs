@@ -4,7 +4,7 @@ use carom_elements::MAX_FACE_NODES;
 use carom_mesh::{Face, Projection};
 
 use crate::sight::View;
-use crate::{Basis, Distance, Law, Mortar, Obstacle, Point, Rows, Search, Sight};
+use crate::{Basis, Distance, Held, Law, Mortar, Obstacle, Point, Rows, Search, Shape, Sight};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,6 +132,17 @@ impl Contact {
         }
     }
 
+    /// The points that the iterations of a step have made stay with a face ([`Search::begin_step`]). `search` is that of
+    /// these places.
+    pub fn held(&self, places: &Places, search: &Search) -> Vec<Held> {
+        match &self.target {
+            Target::Rigid(_) => Vec::new(),
+            Target::Surface(faces) => {
+                search.held(places, faces, |point| self.points[point].place(places))
+            }
+        }
+    }
+
     /// Brings the search to a configuration.
     pub(crate) fn renew(&self, places: &Places, search: &mut Search) {
         if let Target::Surface(faces) = &self.target {
@@ -152,6 +163,13 @@ impl Contact {
     /// What is added to the gap of a point, m.
     pub(crate) fn offset(&self, point: usize) -> f64 {
         self.offsets.get(point).copied().unwrap_or(0.0)
+    }
+
+    /// Whether rows depend on the places of the points: with finite sliding, and on anything but a rigid plane.
+    pub fn turns(&self) -> bool {
+        let plane =
+            matches!(&self.target, Target::Rigid(rigid) if matches!(rigid.shape, Shape::Plane(_)));
+        self.sliding == Sliding::Finite && !plane
     }
 
     /// Whether the target moves by itself: gaps then have a rate at bodies at rest ([`Rows::rate`]).

@@ -27,6 +27,6 @@ pub use obstacle::{
 pub use pairing::{Basis, Mortar, Pairing, Tie};
 pub use point::Point;
 pub use rows::Rows;
-pub use search::Search;
+pub use search::{Held, Search};
 pub use sight::Sight;
 pub use weak::Weak;

@@ -97,8 +97,13 @@ impl Rows {
     pub fn append_moved(&mut self, initial: &Rows, u: &[f64]) {
         let first = self.len();
         self.append(initial);
-        for (point, gap) in self.gaps[first..].iter_mut().enumerate() {
-            *gap += initial.product(point, u);
+        self.move_from(first, u);
+    }
+
+    /// Moves the gaps of the points from `first` on by N u, u in m, as if the rows stood.
+    pub fn move_from(&mut self, first: usize, u: &[f64]) {
+        for point in first..self.len() {
+            self.gaps[point] += self.product(point, u);
         }
     }
 

@@ -23,7 +23,14 @@ const MANY: usize = 32;
 /// Sides of the tree's boxes, over those when it was built, from which on it is built anew.
 const LOOSE: f64 = 2.0;
 
-/// Memory of the search of one contact, renewed at each pairing. What it holds does not matter to results.
+/// Returns of a point, within one step, to a face that it has left in it, after which it stays with that face.
+const RETURNS: u32 = 2;
+
+/// Gap beyond which a point between two faces is left alone, over the diagonal of the face.
+const NEAR: f64 = 0.1;
+
+/// Memory of the search of one contact, renewed at each pairing. What it holds does not matter to results, but for the points
+/// that [`Search::begin_step`] lets it hold.
 #[derive(Debug, Default)]
 pub struct Search {
     tree: Option<BoxTree>,
@@ -46,6 +53,29 @@ pub struct Search {
     pub(crate) pairing: Pairing,
     /// Projections made since the last renewal.
     projections: usize,
+    /// For each query its way over the faces in the step; empty where none is looked at.
+    ways: Vec<Way>,
+    watches: bool,
+}
+
+/// The way of a point over the faces in the iterations of a step.
+#[derive(Clone, Debug, Default)]
+struct Way {
+    /// The faces, each once, that of the last iteration last.
+    faces: Vec<u32>,
+    returns: u32,
+    /// The face that it stays with.
+    held: Option<u32>,
+}
+
+/// A point that stays with a face until the step ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// Its place in the contact.
+    pub point: usize,
+    /// Gap to the plane of the face, or to the point of its rim where the point is beyond it, less that to the closest face,
+    /// over the diagonal of the face.
+    pub error: f64,
 }
 
 /// What one query remembers.
@@ -143,7 +173,15 @@ impl Search {
         self.skin = 0.5 * diagonals.sum::<f64>() / self.boxes.len().max(1) as f64;
     }
 
-    /// The closest point of a surface, if the point faces it.
+    /// Begins a step of several pairings. In a fold between two faces whose normals push a point each towards the other it
+    /// would go to and fro for ever: a point near its face that comes back a second time stays with the face, also where
+    /// its foot is beyond the rim, until the next call. Surfaces with a sight are left alone.
+    pub fn begin_step(&mut self) {
+        self.watches = true;
+        self.ways.clear();
+    }
+
+    /// The closest point of a surface, if the point faces it; on the face that holds it, if one does.
     pub(crate) fn facing<'a>(
         &mut self,
         places: &Places,
@@ -151,8 +189,47 @@ impl Search {
         view: Option<View>,
         x: &[f64; 3],
     ) -> Option<(Projection, &'a Face)> {
-        self.closest((places, faces), view, x, f64::INFINITY)
-            .filter(|(foot, face)| faces_point(foot, face))
+        let slot = self.next;
+        if let Some(held) = self.ways.get(slot).and_then(|way| way.held) {
+            self.next += 1;
+            return Some(foot_on(places, faces, held, x));
+        }
+        let watched = self.watches && view.is_none();
+        let found = self
+            .closest((places, faces), view, x, f64::INFINITY)
+            .filter(|(foot, face)| faces_point(foot, face));
+        if let (true, Some((foot, face)), Some(item)) = (watched, &found, self.kept[slot].face)
+            && foot.gap.abs() < NEAR * diagonal(places, face)
+        {
+            if self.ways.len() <= slot {
+                self.ways.resize(slot + 1, Way::default());
+            }
+            self.ways[slot].goes(item);
+        }
+        found
+    }
+
+    /// The points that stay with a face, and how far off they are in this configuration.
+    pub(crate) fn held(
+        &self,
+        places: &Places,
+        faces: &[Face],
+        place: impl Fn(usize) -> [f64; 3],
+    ) -> Vec<Held> {
+        let held = self.ways.iter().enumerate();
+        let of = |(point, way): (usize, &Way)| {
+            let x = place(point);
+            let (foot, face) = foot_on(places, faces, way.held?, &x);
+            let measure = |item| foot_on(places, faces, item, &x).0.distance;
+            let tree = self.tree.as_ref()?;
+            let (closest, _) = tree.closest(&x, f64::INFINITY, self.moved, measure)?;
+            let off = foot.gap - foot_on(places, faces, closest, &x).0.gap;
+            Some(Held {
+                point,
+                error: off / diagonal(places, face),
+            })
+        };
+        held.filter_map(of).collect()
     }
 
     /// The closest point of a surface, on the first of the faces that are closest; with a view, on the first of those that
@@ -173,10 +250,7 @@ impl Search {
         }
         let mut kept = std::mem::take(&mut self.kept[slot]);
         let mut count = 0;
-        let foot = |item: u32| {
-            let face = &faces[item as usize];
-            project(face, &positions(places, face)[..face.corners().len()], x)
-        };
+        let foot = |item: u32| foot_on(places, faces, item, x).0;
         let measure = |item: u32| {
             count += 1;
             let foot = foot(item);
@@ -307,6 +381,38 @@ impl Kept {
         self.faces.extend(near.iter().map(distance));
         (self.x, self.reach) = (*x, Some(reach));
     }
+}
+
+impl Way {
+    fn goes(&mut self, item: u32) {
+        if self.faces.last() == Some(&item) {
+            return;
+        }
+        if let Some(before) = self.faces.iter().position(|&face| face == item) {
+            self.faces.remove(before);
+            self.returns += 1;
+            self.held = (self.returns >= RETURNS).then_some(item);
+        }
+        self.faces.push(item);
+    }
+}
+
+/// The closest point of one of the faces.
+fn foot_on<'a>(
+    places: &Places,
+    faces: &'a [Face],
+    item: u32,
+    x: &[f64; 3],
+) -> (Projection, &'a Face) {
+    let face = &faces[item as usize];
+    let positions = positions(places, face);
+    (project(face, &positions[..face.corners().len()], x), face)
+}
+
+/// Diagonal of the box of a face, m.
+fn diagonal(places: &Places, face: &Face) -> f64 {
+    let bounds = hull(places, face);
+    squared(&bounds.min, &bounds.max).sqrt()
 }
 
 /// Positions of the nodes of a face, m.

@@ -7,7 +7,8 @@ use super::{End, Local, Status};
 /// When a point counts as closed (S_d): where the gap of this configuration is at most the tolerance.
 ///
 /// With v₀ the approach rate, a point that closes in a step penetrates by at most the bound given, in the limit of
-/// small steps (viability). The geometry is taken in the configuration that is tested, for the free motion in g_k.
+/// small steps (viability). The geometry is taken in the configuration that is tested, for the free motion in g_k; with an
+/// implicit step and rows that turn, in the one to which the step is predicted to lead up to the instant that is tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Capture {
     /// g_k, the newest known configuration. Penetration up to (2 - θ) v₀ dt.

@@ -216,3 +216,43 @@ fn memory_of_the_search_is_a_few_hundred_bytes_for_a_face() {
     let per_face = search.bytes() / scene.faces.len();
     assert!((200..280).contains(&per_face), "{per_face}");
 }
+
+#[test]
+fn a_point_that_comes_back_twice_in_a_step_stays_with_its_face() {
+    let x = vec![[-1.0, 0.1, 0.0], [0.0; 3], [1.0, 0.1, 0.0], [0.0; 3]];
+    let faces = vec![face(Kind::Bar2, &[1, 0]), face(Kind::Bar2, &[2, 1])];
+    let contact = contact(vec![Point::at_node(3, 1.0, 1.0)], Target::Surface(faces));
+    let normals = |search: &mut Search| {
+        let sides = [-0.01, 0.01, -0.01, 0.01, -0.01, -0.01];
+        sides.map(|side| {
+            let places = Places {
+                dim: 2,
+                time: 0.0,
+                x: &x,
+                u: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, side, 0.002],
+            };
+            let rows = paired(&contact, &places, search);
+            let held = contact.held(&places, search);
+            (rows.normal(0)[0] < 0.0, rows.gap(0), held)
+        })
+    };
+    let mut search = Search::default();
+    // the normal of the face to the right leans to the left
+    let free = [false, true, false, true, false, false];
+    assert_eq!(normals(&mut search).map(|(right, ..)| right), free);
+    search.begin_step();
+    let ways = normals(&mut search);
+    // to the right for the second time, it stays there
+    assert_eq!(
+        ways.clone().map(|(right, ..)| right),
+        [false, true, false, true, true, true]
+    );
+    let (_, gap, held) = &ways[5];
+    // over the line of the face to the right, where the face to the left is closer
+    let [left, right] = [-1.0, 1.0].map(|side: f64| (0.002 - side * 0.1 * -0.01) / 1.01_f64.sqrt());
+    assert!((gap - right).abs() < 1e-15, "{gap} {right}");
+    let error = (right - left) / 1.01_f64.sqrt();
+    assert!((held[0].error - error).abs() < 1e-15 && ways[2].2.is_empty());
+    search.begin_step();
+    assert_eq!(normals(&mut search)[..3], ways[..3], "a new step forgets");
+}

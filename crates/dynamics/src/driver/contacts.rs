@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use carom_contact::law::{End, Level, Local, Status};
-use carom_contact::{Places, Rows, Sliding};
+use carom_contact::{Contact, Law, Places, Rows, Sliding};
 
-use super::Driver;
+use super::{Driver, Vectors};
 use crate::error::Error;
 use crate::interface::{Candidate, Failure, InterfaceProblem};
 use crate::state::Motion;
@@ -63,17 +63,61 @@ impl Driver {
             match &self.initial_rows[k] {
                 Some(initial) => self.rows.append_moved(initial, u),
                 None => {
+                    let ahead = !now && looks_ahead(map, contact, &contact.law);
+                    if ahead {
+                        let end = &self.vectors.ahead;
+                        part_way(motion, end, &contact.law, &mut self.vectors.work);
+                    }
+                    let u = if ahead { &self.vectors.work } else { u };
                     let places = Places {
                         dim: system.dim,
                         time: 0.0,
                         x: &system.x,
                         u,
                     };
+                    let first = self.rows.len();
                     contact.pair(&places, &mut self.search[k], &mut self.rows);
+                    if ahead {
+                        let Vectors { known, work, .. } = &mut self.vectors;
+                        for (way, to) in work.iter_mut().zip(&*known) {
+                            *way = to - *way;
+                        }
+                        self.rows.move_from(first, work);
+                    }
                 }
             }
             self.captured.resize(self.rows.len(), place);
         }
+    }
+
+    /// Predicts the displacement at the end of the step with the forces of contacts and links of the step before, for contacts
+    /// that are paired ahead.
+    pub(super) fn look_ahead(&mut self) {
+        let system = &*self.system;
+        let ahead = |contact: &Contact| looks_ahead(&self.map, contact, &contact.law);
+        if !system.contacts.iter().any(ahead) {
+            return;
+        }
+        let motion = &self.state.motion;
+        let Vectors {
+            residual,
+            half,
+            x,
+            work,
+            ahead,
+            ..
+        } = &mut self.vectors;
+        for (i, r) in work.iter_mut().enumerate() {
+            let link = motion.link_force.get(i).unwrap_or(&0.0);
+            *r = match system.fixed[i] {
+                true => 0.0,
+                false => residual[i] + self.map.contact * motion.contact_force[i] + link,
+            };
+        }
+        self.operators.begin(work, half);
+        self.operators.end(half, x);
+        ahead.resize(x.len(), 0.0);
+        self.map.displacement.whole(motion, x, &[], ahead);
     }
 
     /// Points that may carry a force. Some laws say so from the captured gap; of others, those are taken that carried one or
@@ -317,6 +361,22 @@ impl Driver {
 /// sums the compliances of the step and of the mass.
 pub(super) fn sums_compliances(system: &System, map: &StepMap) -> bool {
     map.rate.c != 0.0 && system.scheme.get().takes(Level::Rate)
+}
+
+/// Whether a contact is paired where the step is predicted to lead, for a law that looks ahead, and not where the present
+/// velocity does. In a step much longer than a wave takes across an element the velocity of the shortest waves times dt/2
+/// leads much further than any node gets, and the turning of the rows would be that of an explicit step of the mass m of the
+/// surface nodes alone, unstable beyond dt² |P ∂²g/∂u²| = 4 m.
+pub(crate) fn looks_ahead(map: &StepMap, contact: &Contact, law: &Law) -> bool {
+    map.force.x != 0.0 && contact.turns() && law.get().capture() > 0.0
+}
+
+/// The part of the way from the start of the step to `end` at which a law takes the geometry.
+pub(crate) fn part_way(motion: &Motion, end: &[f64], law: &Law, out: &mut [f64]) {
+    let part = law.get().capture();
+    for (i, q) in out.iter_mut().enumerate() {
+        *q = (1.0 - part) * motion.u[i] + part * end[i];
+    }
 }
 
 /// N applied to a row of the step, for one point.

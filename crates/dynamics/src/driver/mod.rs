@@ -14,7 +14,7 @@ mod restoring;
 mod weak;
 
 pub(crate) use balance::{contact_report, crush_energy};
-pub(crate) use contacts::on_row;
+pub(crate) use contacts::{looks_ahead, on_row, part_way};
 pub(crate) use weak::{WeakForms, WithWeak};
 
 use std::sync::Arc;
@@ -118,6 +118,8 @@ struct Vectors {
     work: Vec<f64>,
     inertia: Vec<f64>,
     contact_acceleration: Vec<f64>,
+    /// Displacement at the end of the step, predicted; empty where no contact asks for it.
+    ahead: Vec<f64>,
 }
 
 /// Wall time spent so far by phase of the step.
@@ -261,6 +263,7 @@ impl Driver {
                 work: zeros(),
                 inertia: zeros(),
                 contact_acceleration: zeros(),
+                ahead: Vec::new(),
             },
             phases: Phases {
                 factorisation,
@@ -429,6 +432,7 @@ impl Driver {
         self.predicted = self.residual();
         self.renew_link();
         let forces = Instant::now();
+        self.look_ahead();
         self.place(false);
         self.choose_candidates();
         self.phases.forces += forces - begin;

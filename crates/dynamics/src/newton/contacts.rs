@@ -7,10 +7,13 @@ use carom_contact::{Contact, Law, Places, Sliding};
 
 use super::{Newton, Vectors};
 use crate::coulomb::Slip;
-use crate::driver::on_row;
+use crate::driver::{looks_ahead, on_row, part_way};
 use crate::error::Error;
 use crate::interface::{Candidate, Failure, InterfaceProblem};
 use crate::step_map::Row;
+
+/// Error of the gap of a point that stays with a face, over the face's diagonal, beyond which the step fails.
+const STRAYED: f64 = 0.01;
 
 /// Additions of missed candidates within one iteration.
 const ADDITIONS: usize = 10;
@@ -76,16 +79,83 @@ impl Newton {
         self.pairing.clear();
         for (k, contact) in system.contacts.iter().enumerate() {
             let row = self.paired_at(contact);
-            row.whole(
-                &self.state.motion,
-                &self.vectors.x,
-                &[],
-                &mut self.vectors.place,
-            );
+            let ahead = self.looks_ahead(contact) && !self.vectors.ahead.is_empty();
+            let motion = &self.state.motion;
+            let Vectors {
+                x,
+                place,
+                ahead: end,
+                ..
+            } = &mut self.vectors;
+            match ahead {
+                true => part_way(motion, end, &contact.law, place),
+                false => row.whole(motion, x, &[], place),
+            }
             self.pairing.span = self.span(contact);
+            let first = self.pairing.len();
             self.append(k, self.state.time + self.paired_after(contact));
+            if ahead {
+                self.move_gaps(first, &row);
+            }
         }
         self.stack();
+    }
+
+    /// Tells of the points that the iterations have made stay with a face.
+    ///
+    /// # Errors
+    /// One that has left its face so far that it does not stand for the surface.
+    pub(super) fn check_held(&mut self, passes: usize) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        for (k, contact) in system.contacts.iter().enumerate() {
+            let mut u = std::mem::take(&mut self.vectors.place);
+            let row = self.paired_at(contact);
+            row.whole(&self.state.motion, &self.vectors.x, &[], &mut u);
+            let places = Places {
+                dim: system.dim,
+                time: self.state.time + self.paired_after(contact),
+                x: &system.x,
+                u: &u,
+            };
+            let all = contact.held(&places, &self.search[k]);
+            self.vectors.place = u;
+            for held in all {
+                let name = self.name(system.first_point[k] + held.point);
+                tracing::debug!(
+                    "step {}: {name} went to and fro between faces and stays with one; its gap is off by {:.1e} of the face",
+                    self.state.step + 1,
+                    held.error
+                );
+                if held.error.abs() > STRAYED {
+                    return Err(self.strayed(&name, passes));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The error of a point that has left the face which it stays with.
+    fn strayed(&self, point: &str, passes: usize) -> Error {
+        let mut error = self.no_equilibrium(passes);
+        if let Error::Equilibrium { contact, .. } = &mut error {
+            *contact = format!("; {point} slides through the fold between two faces").into();
+        }
+        error
+    }
+
+    /// Whether a contact is paired where the step is predicted to lead.
+    pub(super) fn looks_ahead(&self, contact: &Contact) -> bool {
+        !self.between() && looks_ahead(&self.map, contact, &self.law(contact))
+    }
+
+    /// Moves the gaps of the points from `first` on, paired at the configuration in `place`, to another one.
+    fn move_gaps(&mut self, first: usize, to: &Row) {
+        let Vectors { x, place, work, .. } = &mut self.vectors;
+        to.whole(&self.state.motion, x, &[], work);
+        for (way, from) in work.iter_mut().zip(place) {
+            *way -= *from;
+        }
+        self.pairing.rows.move_from(first, work);
     }
 
     /// Appends a contact at the configuration in `place`; `time`, s: where obstacles are. With small sliding the points are
@@ -186,16 +256,20 @@ impl Newton {
             self.release();
             return Ok(());
         }
-        let free = self.vectors.dx.clone();
-        let begun = self.vectors.half.clone();
+        let mut free = std::mem::take(&mut self.vectors.free);
+        free.copy_from_slice(&self.vectors.dx);
+        self.vectors.begun.copy_from_slice(&self.vectors.half);
+        let mut solved = Ok(());
         for _ in 0..ADDITIONS {
-            self.vectors.half.copy_from_slice(&begun);
-            self.solve_candidates(&free)?;
-            if !self.add_missed() {
+            let Vectors { half, begun, .. } = &mut self.vectors;
+            half.copy_from_slice(begun);
+            solved = self.solve_candidates(&free);
+            if solved.is_err() || !self.add_missed() {
                 break;
             }
         }
-        Ok(())
+        self.vectors.free = free;
+        solved
     }
 
     fn choose_candidates(&mut self) {
@@ -218,7 +292,9 @@ impl Newton {
 
     fn solve_candidates(&mut self, free: &[f64]) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
-        let data = self.candidates.iter().map(|&point| {
+        let mut data = std::mem::take(&mut self.candidate_data);
+        data.clear();
+        data.extend(self.candidates.iter().map(|&point| {
             let at = point as usize;
             let step = self.pairing.rows.product(at, free);
             let (gap, rate) = self.now(at);
@@ -229,8 +305,8 @@ impl Newton {
                 status: self.next.interface.status[at],
                 faces_itself: system.point(at).0.faces_itself(),
             }
-        });
-        self.candidate_data = data.collect();
+        }));
+        self.candidate_data = data;
         if self.rubs() {
             return self.solve_with_friction(free);
         }

@@ -96,8 +96,14 @@ struct Vectors {
     contact: Vec<f64>,
     residual: Vec<f64>,
     half: Vec<f64>,
+    /// The unknown before an iteration, and its motion and begun solve without contact forces.
+    before: Vec<f64>,
+    free: Vec<f64>,
+    begun: Vec<f64>,
     /// A configuration or a velocity.
     place: Vec<f64>,
+    /// Displacement at the end of the step, predicted; empty where no contact is paired ahead.
+    ahead: Vec<f64>,
     work: Vec<f64>,
     /// Histories of the bodies at the end of the attempt.
     history: Vec<f64>,
@@ -149,7 +155,11 @@ impl Newton {
                 contact: zeros(),
                 residual: zeros(),
                 half: zeros(),
+                before: zeros(),
+                free: zeros(),
+                begun: zeros(),
                 place: zeros(),
+                ahead: Vec::new(),
                 work: zeros(),
                 history: state.motion.history.clone(),
             },
@@ -216,11 +226,13 @@ impl Newton {
     /// # Errors
     /// No equilibrium with the smallest part of the step, or one that is not stable; the state is then the one before the step.
     pub fn step(&mut self) -> Result<(), Error> {
-        let start = self.state.clone();
-        let (first, end, size) = (self.state.time, self.end_of_step(), self.size_of_step());
+        let (taken, first) = (self.state.step, self.state.time);
+        let (end, size) = (self.end_of_step(), self.size_of_step());
         let whole = self.stable_level(end - first)?;
         let mut control = self.state.control;
         let (mut done, mut level) = (0u64, whole);
+        // kept only by a step that goes in parts
+        let mut start: Option<State> = None;
         let parts = 1u64 << self.system.nonlinear.iteration.halvings;
         self.report.attempts = 0;
         while done < parts {
@@ -231,10 +243,11 @@ impl Newton {
                 Ok(()) => {
                     done += part;
                     if done < parts {
+                        start.get_or_insert_with(|| self.state.clone());
                         std::mem::swap(&mut self.state, &mut self.next);
                         self.state.time = to;
                         // parts of a step are of the same stage
-                        (self.state.step, self.state.control) = (start.step, control);
+                        (self.state.step, self.state.control) = (taken, control);
                     }
                     while level > whole
                         && done.is_multiple_of(2 * part)
@@ -244,18 +257,20 @@ impl Newton {
                     }
                 }
                 Err(error) if level < self.system.nonlinear.iteration.halvings => {
-                    tracing::debug!("step {}: {error}; taken in halves", start.step + 1);
+                    tracing::debug!("step {}: {error}; taken in halves", taken + 1);
                     control.failed += 1;
                     level += 1;
                 }
                 Err(error) => {
-                    self.state = start;
+                    if let Some(start) = start {
+                        self.state = start;
+                    }
                     return Err(error);
                 }
             }
         }
-        control.take(None, (start.step, first, end - first), self.system.dt);
-        self.next.step = start.step + 1;
+        control.take(None, (taken, first, end - first), self.system.dt);
+        self.next.step = taken + 1;
         self.next.time = end;
         control.pace = self.pace.fresh;
         self.next.control = control;

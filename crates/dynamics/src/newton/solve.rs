@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use carom_bodies::Body;
+use carom_contact::Search;
 use carom_mesh::ElementId;
 
 use super::effective::{At, Turning};
@@ -70,13 +71,19 @@ impl Newton {
         self.guess_slips();
         self.take_weak();
         self.evaluate(true)?;
+        self.vectors.ahead.clear();
+        self.search.iter_mut().for_each(Search::begin_step);
         self.pair(true);
+        if self.system.contacts.iter().any(|c| self.looks_ahead(c)) {
+            self.look_ahead()?;
+            self.pair(true);
+        }
         let mut standing = self.standing();
         for pass in 0..limit {
             let jumps = self.vectors.jump.iter().any(|jump| *jump != 0.0);
             self.residuals.push(standing.imbalance);
             if pass > 0 && !jumps && self.is_solved(&standing) {
-                return Ok(());
+                return self.check_held(pass);
             }
             if self.floats() && !jumps && self.approach(standing.scale)? {
                 standing = self.standing();
@@ -93,7 +100,7 @@ impl Newton {
             }
         }
         if self.is_solved(&standing) {
-            return Ok(());
+            return self.check_held(limit);
         }
         Err(self.no_equilibrium(limit))
     }
@@ -347,11 +354,49 @@ impl Newton {
         made
     }
 
+    /// Predicts the displacement at the end of the step: an iteration with the forces of contacts and links of the step
+    /// before.
+    fn look_ahead(&mut self) -> Result<(), Error> {
+        if self
+            .constant_key()
+            .is_none_or(|key| !self.effective.stands(key))
+        {
+            self.renew()?;
+        }
+        (self.pace.age, self.pace.made) = (1, 0);
+        let motion = &self.state.motion;
+        let vectors = &mut self.vectors;
+        for (i, r) in vectors.work.iter_mut().enumerate() {
+            let link = |force: &[f64]| force.get(i).copied().unwrap_or(0.0);
+            let change = link(&motion.link_force) - link(&self.link_force);
+            *r = match self.system.fixed[i] {
+                true => 0.0,
+                false => vectors.residual[i] + self.map.contact * motion.contact_force[i] + change,
+            };
+        }
+        self.free_motion();
+        let vectors = &mut self.vectors;
+        for (dx, x) in vectors.dx.iter_mut().zip(&vectors.x) {
+            *dx += x;
+        }
+        vectors.ahead.resize(vectors.x.len(), 0.0);
+        let end = &self.map.displacement;
+        end.whole(&self.state.motion, &vectors.dx, &[], &mut vectors.ahead);
+        Ok(())
+    }
+
     /// The motion `dx` of the iteration and the contact forces after it.
     fn motion_of_iteration(&mut self) -> Result<(), Error> {
-        let begin = Instant::now();
         let vectors = &mut self.vectors;
         vectors.work.copy_from_slice(&vectors.residual);
+        self.free_motion();
+        self.solve_interface()
+    }
+
+    /// The motion `dx` that the forces in `work` and the jump of the supports give, and its begun solve.
+    fn free_motion(&mut self) {
+        let begin = Instant::now();
+        let vectors = &mut self.vectors;
         if vectors.jump.iter().any(|jump| *jump != 0.0) {
             self.effective.load_of(&vectors.jump, &mut vectors.place);
             for (i, (r, k)) in vectors.work.iter_mut().zip(&vectors.place).enumerate() {
@@ -359,7 +404,7 @@ impl Newton {
             }
         }
         let Some((operators, _)) = self.effective.both() else {
-            return Ok(());
+            return;
         };
         operators.begin(&vectors.work, &mut vectors.half);
         vectors.work.copy_from_slice(&vectors.half);
@@ -368,17 +413,17 @@ impl Newton {
             *dx += jump;
         }
         self.phases.sweeps += begin.elapsed();
-        self.solve_interface()
     }
 
     /// Goes the way of the iteration, or as much of it as does not make things much worse.
     fn go(&mut self, before: &Standing, jumps: bool) -> Result<Standing, Error> {
-        let x = self.vectors.x.clone();
+        self.vectors.before.copy_from_slice(&self.vectors.x);
         let mut share = 1.0;
         let mut last = None;
         for _ in 0..=SHORTENINGS {
-            for (i, x_i) in self.vectors.x.iter_mut().enumerate() {
-                *x_i = x[i] + share * self.vectors.dx[i];
+            let vectors = &mut self.vectors;
+            for (i, x) in vectors.x.iter_mut().enumerate() {
+                *x = vectors.before[i] + share * vectors.dx[i];
             }
             match self.evaluate(false) {
                 Ok(()) => {
@@ -408,7 +453,7 @@ impl Newton {
         }
     }
 
-    fn no_equilibrium(&self, passes: usize) -> Error {
+    pub(super) fn no_equilibrium(&self, passes: usize) -> Error {
         let system = &*self.system;
         let vectors = &self.vectors;
         let imbalance = |i: usize| match system.fixed[i] {

@@ -6,6 +6,7 @@
 mod allocation;
 mod dense;
 mod floating;
+mod fold;
 mod friction;
 mod initial;
 mod interface;
@@ -18,6 +19,7 @@ mod quadrature;
 mod refusals;
 mod sliding;
 mod stability;
+mod trough;
 mod weak_form;
 mod whole;
 
