@@ -7,13 +7,10 @@ use carom_contact::{Contact, Law, Places, Sliding};
 
 use super::{Newton, Vectors};
 use crate::coulomb::Slip;
-use crate::driver::{looks_ahead, on_row, part_way};
+use crate::driver::{on_row, part_way};
 use crate::error::Error;
 use crate::interface::{Candidate, Failure, InterfaceProblem};
 use crate::step_map::Row;
-
-/// Error of the gap of a point that stays with a face, over the face's diagonal, beyond which the step fails.
-const STRAYED: f64 = 0.01;
 
 /// Additions of missed candidates within one iteration.
 const ADDITIONS: usize = 10;
@@ -21,7 +18,7 @@ const ADDITIONS: usize = 10;
 impl Newton {
     /// The law of a contact in the attempt under way. In a static stage nothing has a rate: a law in the rate holds in the
     /// gap there, as the displacement law.
-    fn law(&self, contact: &Contact) -> Law {
+    pub(super) fn law(&self, contact: &Contact) -> Law {
         match contact.law.get().level() {
             Level::Rate if self.map.inertia.x == 0.0 => {
                 Law::Displacement(Displacement { projection: false })
@@ -99,63 +96,6 @@ impl Newton {
             }
         }
         self.stack();
-    }
-
-    /// Tells of the points that the iterations have made stay with a face.
-    ///
-    /// # Errors
-    /// One that has left its face so far that it does not stand for the surface.
-    pub(super) fn check_held(&mut self, passes: usize) -> Result<(), Error> {
-        let system = Arc::clone(&self.system);
-        for (k, contact) in system.contacts.iter().enumerate() {
-            let mut u = std::mem::take(&mut self.vectors.place);
-            let row = self.paired_at(contact);
-            row.whole(&self.state.motion, &self.vectors.x, &[], &mut u);
-            let places = Places {
-                dim: system.dim,
-                time: self.state.time + self.paired_after(contact),
-                x: &system.x,
-                u: &u,
-            };
-            let all = contact.held(&places, &self.search[k]);
-            self.vectors.place = u;
-            for held in all {
-                let name = self.name(system.first_point[k] + held.point);
-                tracing::debug!(
-                    "step {}: {name} went to and fro between faces and stays with one; its gap is off by {:.1e} of the face",
-                    self.state.step + 1,
-                    held.error
-                );
-                if held.error.abs() > STRAYED {
-                    return Err(self.strayed(&name, passes));
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// The error of a point that has left the face which it stays with.
-    fn strayed(&self, point: &str, passes: usize) -> Error {
-        let mut error = self.no_equilibrium(passes);
-        if let Error::Equilibrium { contact, .. } = &mut error {
-            *contact = format!("; {point} slides through the fold between two faces").into();
-        }
-        error
-    }
-
-    /// Whether a contact is paired where the step is predicted to lead.
-    pub(super) fn looks_ahead(&self, contact: &Contact) -> bool {
-        !self.between() && looks_ahead(&self.map, contact, &self.law(contact))
-    }
-
-    /// Moves the gaps of the points from `first` on, paired at the configuration in `place`, to another one.
-    fn move_gaps(&mut self, first: usize, to: &Row) {
-        let Vectors { x, place, work, .. } = &mut self.vectors;
-        to.whole(&self.state.motion, x, &[], work);
-        for (way, from) in work.iter_mut().zip(place) {
-            *way -= *from;
-        }
-        self.pairing.rows.move_from(first, work);
     }
 
     /// Appends a contact at the configuration in `place`; `time`, s: where obstacles are. With small sliding the points are

@@ -9,11 +9,13 @@
 //! A is factorised at the start of a step, and again where keeping it would cost more. The step ends when the forces
 //! balance and every point obeys its law in the configuration reached. A step that finds no end is taken in halves.
 
+mod ahead;
 mod balance;
 mod contacts;
 mod effective;
 mod floating;
 mod friction;
+mod held;
 mod linked;
 mod loads;
 mod solve;

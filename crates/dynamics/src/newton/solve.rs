@@ -29,9 +29,9 @@ const TANGENT: f64 = 3.0;
 #[derive(Default)]
 pub(super) struct Pace {
     /// Iterations of this attempt with the factor at hand.
-    age: usize,
+    pub(super) age: usize,
     /// The iteration in which it was made.
-    made: usize,
+    pub(super) made: usize,
     /// Contraction with a factor made within the iterations of a step, between two states; zero while unknown.
     pub(super) fresh: f64,
 }
@@ -295,7 +295,7 @@ impl Newton {
     }
 
     /// What a matrix that does not change in the run depends on; none where it changes.
-    fn constant_key(&self) -> Option<[f64; 4]> {
+    pub(super) fn constant_key(&self) -> Option<[f64; 4]> {
         let system = &*self.system;
         let linear = system.bodies.iter().all(|body| body.is_linear()) || self.map.force.x == 0.0;
         let turns = system
@@ -309,7 +309,7 @@ impl Newton {
 
     /// Makes the effective matrix at x. Where it is not positive definite with the turning contact forces, it is made
     /// without them, and then with more of the proximal term: the iterations take longer, and the answer is the same.
-    fn renew(&mut self) -> Result<(), Error> {
+    pub(super) fn renew(&mut self) -> Result<(), Error> {
         let begin = Instant::now();
         let system = Arc::clone(&self.system);
         let constant = self.constant_key();
@@ -354,37 +354,6 @@ impl Newton {
         made
     }
 
-    /// Predicts the displacement at the end of the step: an iteration with the forces of contacts and links of the step
-    /// before.
-    fn look_ahead(&mut self) -> Result<(), Error> {
-        if self
-            .constant_key()
-            .is_none_or(|key| !self.effective.stands(key))
-        {
-            self.renew()?;
-        }
-        (self.pace.age, self.pace.made) = (1, 0);
-        let motion = &self.state.motion;
-        let vectors = &mut self.vectors;
-        for (i, r) in vectors.work.iter_mut().enumerate() {
-            let link = |force: &[f64]| force.get(i).copied().unwrap_or(0.0);
-            let change = link(&motion.link_force) - link(&self.link_force);
-            *r = match self.system.fixed[i] {
-                true => 0.0,
-                false => vectors.residual[i] + self.map.contact * motion.contact_force[i] + change,
-            };
-        }
-        self.free_motion();
-        let vectors = &mut self.vectors;
-        for (dx, x) in vectors.dx.iter_mut().zip(&vectors.x) {
-            *dx += x;
-        }
-        vectors.ahead.resize(vectors.x.len(), 0.0);
-        let end = &self.map.displacement;
-        end.whole(&self.state.motion, &vectors.dx, &[], &mut vectors.ahead);
-        Ok(())
-    }
-
     /// The motion `dx` of the iteration and the contact forces after it.
     fn motion_of_iteration(&mut self) -> Result<(), Error> {
         let vectors = &mut self.vectors;
@@ -394,7 +363,7 @@ impl Newton {
     }
 
     /// The motion `dx` that the forces in `work` and the jump of the supports give, and its begun solve.
-    fn free_motion(&mut self) {
+    pub(super) fn free_motion(&mut self) {
         let begin = Instant::now();
         let vectors = &mut self.vectors;
         if vectors.jump.iter().any(|jump| *jump != 0.0) {

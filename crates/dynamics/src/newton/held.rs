@@ -1,0 +1,55 @@
+//! Points that the iterations of a step have made stay with a face.
+
+use std::sync::Arc;
+
+use carom_contact::Places;
+
+use super::Newton;
+use crate::error::Error;
+
+/// Error of the gap of a point that stays with a face, over the face's diagonal, beyond which the step fails.
+const STRAYED: f64 = 0.01;
+
+impl Newton {
+    /// Tells of the points that the iterations have made stay with a face.
+    ///
+    /// # Errors
+    /// One that has left its face so far that it does not stand for the surface.
+    pub(super) fn check_held(&mut self, passes: usize) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        for (k, contact) in system.contacts.iter().enumerate() {
+            let mut u = std::mem::take(&mut self.vectors.place);
+            let row = self.paired_at(contact);
+            row.whole(&self.state.motion, &self.vectors.x, &[], &mut u);
+            let places = Places {
+                dim: system.dim,
+                time: self.state.time + self.paired_after(contact),
+                x: &system.x,
+                u: &u,
+            };
+            let all = contact.held(&places, &self.search[k]);
+            self.vectors.place = u;
+            for held in all {
+                let name = self.name(system.first_point[k] + held.point);
+                tracing::debug!(
+                    "step {}: {name} went to and fro between faces and stays with one; its gap is off by {:.1e} of the face",
+                    self.state.step + 1,
+                    held.error
+                );
+                if held.error.abs() > STRAYED {
+                    return Err(self.strayed(&name, passes));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The error of a point that has left the face which it stays with.
+    fn strayed(&self, point: &str, passes: usize) -> Error {
+        let mut error = self.no_equilibrium(passes);
+        if let Error::Equilibrium { contact, .. } = &mut error {
+            *contact = format!("; {point} slides through the fold between two faces").into();
+        }
+        error
+    }
+}
