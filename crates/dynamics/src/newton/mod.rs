@@ -271,14 +271,14 @@ impl Newton {
                 }
             }
         }
-        control.take(None, (taken, first, end - first), self.system.dt);
+        control.take(None, (taken, first, size), self.system.dt);
         self.next.step = taken + 1;
         self.next.time = end;
         control.pace = self.pace.fresh;
         self.next.control = control;
         self.failed = None;
         std::mem::swap(&mut self.state, &mut self.next);
-        self.tell(end - first);
+        self.tell(size);
         Ok(())
     }
 
