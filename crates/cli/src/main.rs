@@ -24,6 +24,10 @@ use clap::{Parser, Subcommand};
 #[derive(Parser)]
 #[command(name = "carom", version, about)]
 struct Arguments {
+    /// How much is told on stderr: `warn`, or `debug` for which factor an iteration keeps and why, steps taken in halves, points
+    /// that change their faces
+    #[arg(long, value_name = "LEVEL", default_value = "warn", global = true)]
+    log: tracing::Level,
     #[command(subcommand)]
     command: Command,
 }
@@ -78,11 +82,12 @@ const OUT_OF_BOUND: u8 = 4;
 const INTERRUPTED: u8 = 130;
 
 fn main() -> ExitCode {
+    let Arguments { log, command } = Arguments::parse();
     tracing_subscriber::fmt()
-        .with_max_level(tracing::Level::WARN)
+        .with_max_level(log)
         .with_writer(std::io::stderr)
         .init();
-    let code = match Arguments::parse().command {
+    let code = match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Study(arguments) => study::study(&arguments),

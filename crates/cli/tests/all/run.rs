@@ -264,3 +264,29 @@ fn a_static_load_that_no_contact_takes_ends_the_run_with_body_and_motion() {
         }
     }
 }
+
+#[test]
+fn the_log_tells_which_factor_an_iteration_takes_and_why() {
+    let work = tempfile::tempdir().unwrap();
+    case("hertz", work.path());
+    let mesh = project().join("cases/hertz/spheres-coarse.msh");
+    fs::copy(mesh, work.path().join("spheres-coarse.msh")).unwrap();
+    let run = [
+        "run",
+        "case.toml",
+        "--quiet",
+        "--set",
+        "mesh.file=spheres-coarse.msh",
+    ];
+    let told = |more: &[&str]| {
+        let output = carom(work.path(), &[&run[..], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let log = told(&["--log", "debug"]);
+    assert!(
+        log.contains("the factor is kept: ") && log.contains(" with a new one that costs "),
+        "{log}"
+    );
+    assert_eq!(told(&[]), "");
+}

@@ -18,6 +18,7 @@ mod friction;
 mod held;
 mod linked;
 mod loads;
+mod mixing;
 mod solve;
 mod stable;
 mod start;
@@ -38,6 +39,7 @@ use crate::step_map::StepMap;
 use crate::system::System;
 use effective::Effective;
 use floating::Floating;
+use mixing::Mixing;
 use solve::Pace;
 
 /// Takes steps of systems that are not linear.
@@ -68,6 +70,7 @@ pub struct Newton {
     /// Residuals of the iterations of the last attempt, relative.
     residuals: Vec<f64>,
     pace: Pace,
+    mixing: Mixing,
     failed: Option<InterfaceProblem>,
     state: State,
     next: State,
@@ -141,6 +144,7 @@ impl Newton {
             force_sweeps: 0,
             residuals: Vec::new(),
             pace: Pace::default(),
+            mixing: Mixing::default(),
             failed: None,
             report: StepReport {
                 contacts: vec![ContactReport::default(); system.contacts.len()],

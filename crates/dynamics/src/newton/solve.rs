@@ -19,11 +19,17 @@ const GROWTH: f64 = 4.0;
 /// Halvings of the motion of one iteration.
 const SHORTENINGS: u32 = 5;
 
+/// Imbalance over that one iteration ago up to which the iteration was a gain.
+const GAIN: f64 = 0.5;
+
 /// Iterations that a fresh factor is counted to need.
 const FRESH: f64 = 2.0;
 
 /// Cost of a new tangent beside its factorisation, in iterations with the old one.
 const TANGENT: f64 = 3.0;
+
+/// Imbalance over what may be rounding from which on iterations are mixed: below, their changes are noise.
+const NOISY: f64 = 100.0;
 
 /// How fast the iterations go.
 #[derive(Default)]
@@ -42,6 +48,8 @@ struct Standing {
     imbalance: f64,
     /// Largest defect of a contact law, in tolerances.
     defect: f64,
+    /// What of the imbalance may be rounding, relative.
+    rounding: f64,
     /// Largest of the forces that balance, N.
     scale: f64,
 }
@@ -65,6 +73,7 @@ impl Newton {
         self.residuals.clear();
         (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
         self.floating.weight = WEIGHT;
+        self.mixing.clear();
         self.predict();
         let interface = &mut self.next.interface;
         interface.clone_from(&self.state.interface);
@@ -81,11 +90,13 @@ impl Newton {
         let mut standing = self.standing();
         for pass in 0..limit {
             let jumps = self.vectors.jump.iter().any(|jump| *jump != 0.0);
+            let before = self.residuals.last().copied();
             self.residuals.push(standing.imbalance);
-            if pass > 0 && !jumps && self.is_solved(&standing) {
+            if pass > 0 && !jumps && self.is_solved(&standing, before) {
                 return self.check_held(pass);
             }
             if self.floats() && !jumps && self.approach(standing.scale)? {
+                self.mixing.clear();
                 standing = self.standing();
             }
             if self.wants_factor(pass) {
@@ -94,20 +105,33 @@ impl Newton {
             }
             self.pace.age += 1;
             self.motion_of_iteration()?;
+            if !jumps && standing.imbalance > NOISY * standing.rounding {
+                self.mix();
+            }
             standing = self.go(&standing, jumps)?;
             if self.is_affine() {
                 return Ok(());
             }
         }
-        if self.is_solved(&standing) {
+        let before = self.residuals.last().copied();
+        if self.is_solved(&standing, before) {
             return self.check_held(limit);
         }
         Err(self.no_equilibrium(limit))
     }
 
-    fn is_solved(&self, standing: &Standing) -> bool {
+    /// Whether iterations may end. `before`: the imbalance one iteration ago. Within what rounding leaves they end where they
+    /// gain no more, not where they get there: what is left would be of one sign step after step, and add up.
+    fn is_solved(&self, standing: &Standing, before: Option<f64>) -> bool {
+        let Standing {
+            imbalance,
+            rounding,
+            defect,
+            ..
+        } = *standing;
+        let gains = before.is_none_or(|before| imbalance < GAIN * before);
         let tolerance = self.system.nonlinear.iteration.tolerance;
-        standing.imbalance <= tolerance && standing.defect <= 1.0
+        (imbalance <= tolerance || imbalance <= rounding && !gains) && defect <= 1.0
     }
 
     /// Whether all is linear in the unknown, so that one iteration is all.
@@ -187,7 +211,7 @@ impl Newton {
     }
 
     /// How far forces and contacts are from what they must be. Forces are compared with the largest of those that balance,
-    /// and with the momentum per step; what rounding leaves of the internal forces counts as nothing.
+    /// and with the momentum per step.
     fn standing(&mut self) -> Standing {
         self.spread();
         let factor = self.map.contact;
@@ -207,13 +231,11 @@ impl Newton {
         if self.map.inertia.x != 0.0 {
             scale = scale.max(self.momentum_scale());
         }
-        let least = self.rounding();
-        let imbalance: f64 = imbalance.sqrt();
+        let scale = scale.max(f64::MIN_POSITIVE);
+        let [imbalance, rounding] = [imbalance.sqrt(), self.rounding()].map(|force| force / scale);
         Standing {
-            imbalance: match imbalance <= least {
-                true => 0.0,
-                false => imbalance / scale.max(f64::MIN_POSITIVE),
-            },
+            imbalance,
+            rounding,
             defect: self.worst_point().map_or(0.0, |(_, defect)| defect),
             scale,
         }
@@ -417,6 +439,10 @@ impl Newton {
             *jump *= rest;
         }
         match last {
+            Some(Ok(standing)) if share < 1.0 || standing.imbalance > before.imbalance => {
+                self.mixing.clear();
+                Ok(standing)
+            }
             Some(outcome) => outcome,
             None => Err(self.no_equilibrium(0)),
         }
