@@ -48,6 +48,7 @@ mod blocks;
 mod blocks_as_bars;
 mod closed_field_as_printed;
 mod contact_patch;
+mod conveyor;
 mod crushed_stop;
 mod crushed_tube;
 mod energy_identity;
@@ -136,6 +137,7 @@ registry! {
     breathing_tube
     closed_field_as_printed
     contact_patch
+    conveyor
     crushed_stop
     crushed_tube
     energy_identity

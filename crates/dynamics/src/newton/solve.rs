@@ -121,7 +121,8 @@ impl Newton {
     }
 
     /// Whether iterations may end. `before`: the imbalance one iteration ago. Within what rounding leaves they end where they
-    /// gain no more, not where they get there: what is left would be of one sign step after step, and add up.
+    /// gain no more, not where they get there: what is left would be of one sign step after step, and add up. Not so under the
+    /// forces of links, whose passes need answers that are smooth in them.
     fn is_solved(&self, standing: &Standing, before: Option<f64>) -> bool {
         let Standing {
             imbalance,
@@ -130,6 +131,7 @@ impl Newton {
             ..
         } = *standing;
         let gains = before.is_none_or(|before| imbalance < GAIN * before);
+        let gains = gains && self.link_force.is_empty();
         let tolerance = self.system.nonlinear.iteration.tolerance;
         (imbalance <= tolerance || imbalance <= rounding && !gains) && defect <= 1.0
     }
