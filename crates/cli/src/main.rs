@@ -85,6 +85,7 @@ fn main() -> ExitCode {
     let Arguments { log, command } = Arguments::parse();
     tracing_subscriber::fmt()
         .with_max_level(log)
+        .with_ansi(std::io::stderr().is_terminal())
         .with_writer(std::io::stderr)
         .init();
     let code = match command {
