@@ -8,11 +8,11 @@
 //! momentum here too, and θ > 1/2 brakes the spin itself.
 //! Tolerances: 1e-10 of the momenta and 1e-8 of the energy over the whole run, as the issue states; iterations end where rounding
 //! lets them gain no more, since what they leave adds up over 40000 steps. What the others do is bounded from
-//! below, at half of what was measured.
+//! below, at half of what was measured. Iterations: 12.7 a step are found, 15.5 where they are not mixed.
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Model, ModelBody, Newton, Scheme, System};
+use carom_dynamics::{Iteration, Model, ModelBody, Newton, Scheme, System};
 use carom_materials::{Elastic, Law, NeoHooke};
 use carom_mesh::generate;
 
@@ -30,10 +30,12 @@ const LENGTH: f64 = 1.0;
 const HEIGHT: f64 = 0.1;
 /// Angular velocity: one revolution per second.
 const SPIN: f64 = 2.0 * std::f64::consts::PI;
+/// Tolerance that no iteration reaches.
+const ROUNDING: f64 = 1e-15;
 /// Steps a revolution.
 const STEPS: usize = 40;
 
-fn newton(scheme: Scheme) -> Result<Newton, Error> {
+fn newton(scheme: Scheme, tolerance: f64) -> Result<Newton, Error> {
     let corner = [-0.5 * LENGTH, -0.5 * HEIGHT];
     let mesh = generate::rectangle("bar", corner, [LENGTH, HEIGHT], [10, 1], false);
     let mut model = Model::new(
@@ -47,7 +49,7 @@ fn newton(scheme: Scheme) -> Result<Newton, Error> {
         scheme,
         1.0 / STEPS as f64,
     );
-    model.nonlinear.iteration.tolerance = 1e-15;
+    model.nonlinear.iteration.tolerance = tolerance;
     let system = System::new(model)?;
     let spin = |node: &[f64; 3]| [-SPIN * node[1], SPIN * node[0]];
     let velocity: Vec<f64> = system.x.iter().flat_map(spin).collect();
@@ -59,7 +61,7 @@ fn newton(scheme: Scheme) -> Result<Newton, Error> {
 
 /// Spins the bar for some revolutions.
 fn spin(scheme: Scheme, revolutions: usize) -> Result<Kept, Error> {
-    let mut newton = newton(scheme)?;
+    let mut newton = newton(scheme, ROUNDING)?;
     let mass = newton.system().body_mass(0);
     let kept = Kept::new(newton.system(), newton.state());
     // half the bar has the momentum m/2 ω L/4
@@ -69,6 +71,18 @@ fn spin(scheme: Scheme, revolutions: usize) -> Result<Kept, Error> {
         kept.follow(newton.state());
     }
     Ok(kept)
+}
+
+/// Iterations a step of the energy-momentum scheme in two revolutions, to the default tolerance.
+fn iterations() -> Result<f64, Error> {
+    let scheme = Scheme::EnergyMomentum(EnergyMomentum);
+    let mut newton = newton(scheme, Iteration::default().tolerance)?;
+    let mut count = 0;
+    for _ in 0..2 * STEPS {
+        newton.step()?;
+        count += newton.residuals().len();
+    }
+    Ok(count as f64 / (2 * STEPS) as f64)
 }
 
 pub(crate) const CHECK: Check = Check {
@@ -91,6 +105,12 @@ pub(crate) const CHECK: Check = Check {
             1e-10,
         ));
         rows.push(Row::at_most(row(&name, "energy"), kept.energy, 1e-8));
+        let iterations = iterations()?;
+        rows.push(Row::at_most(
+            "energy-momentum: iterations a step",
+            iterations,
+            14.0,
+        ));
         let name = format!("newmark, {few} revolutions");
         let kept = spin(newmark(0.25, 0.5), few)?;
         rows.push(Row::at_least(
