@@ -50,6 +50,9 @@ const COLUMNS: [(&str, &str, f64); 6] = [
     ("persistency_defect_j", "persistency defect, J", 1.0),
 ];
 
+/// Examples of the verification crate that print a table, and its file.
+const EXAMPLES: [(&str, &str); 2] = [("long_run", "long-run.md"), ("rings", "rings.md")];
+
 /// Writes `docs/tables` and the picture; what went wrong, if anything.
 pub fn write(root: &Path) -> Result<(), String> {
     let work = root.join("target/chapter");
@@ -63,7 +66,7 @@ pub fn write(root: &Path) -> Result<(), String> {
     let picture = fs::read_to_string(work.join("picture/plots/force.svg"))
         .map_err(|cause| cause.to_string())?;
     save(&root.join("docs/src/pictures/schemes-force.svg"), &picture)?;
-    for (example, file) in [("long_run", "long-run.md"), ("rings", "rings.md")] {
+    for (example, file) in EXAMPLES {
         save(&tables.join(file), &printed(root, example)?)?;
     }
     Ok(())
@@ -188,6 +191,18 @@ fn digits(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_table_has_its_example() {
+        let examples =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/verification/examples");
+        for (example, _) in EXAMPLES {
+            assert!(
+                examples.join(example).with_extension("rs").is_file(),
+                "{example}"
+            );
+        }
+    }
 
     #[test]
     fn a_quoted_comma_ends_no_field() {
