@@ -12,6 +12,7 @@
 //! D. G. Anderson (1965), J. ACM 12; H. F. Walker, P. Ni (2011), SIAM J. Numer. Anal. 49.
 
 use carom_algebra::dense::DenseCholesky;
+use carom_algebra::reduce::{dot, norm_squared};
 use carom_contact::law::Status;
 
 use super::Newton;
@@ -70,9 +71,7 @@ impl Mixing {
         let [last, before, ..] = &self.kept[..self.count] else {
             return None;
         };
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let square = dot(&last.motion, &last.motion);
-        if square <= SLOW * SLOW * dot(&before.motion, &before.motion) {
+        if norm_squared(&last.motion) <= SLOW * SLOW * norm_squared(&before.motion) {
             return None;
         }
         let products: Vec<f64> = (0..self.count * self.count)
