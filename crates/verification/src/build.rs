@@ -6,7 +6,7 @@ use carom_contact::law::{Adhesion, Capture, Compliance, Damped, Displacement, Re
 use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Scheme, Support, ZoneDriver, Zones};
-use carom_materials::Elastic;
+use carom_materials::{Elastic, Law as Material, NeoHooke};
 use carom_mesh::{Group, Mesh, Surface};
 
 use crate::Error;
@@ -86,6 +86,18 @@ pub(crate) fn body(
         kinematics,
         material,
     )))
+}
+
+/// A body at finite strain, neo-Hooke with these constants.
+pub(crate) fn neo_hooke(
+    mesh: &Mesh,
+    name: &str,
+    kinematics: Kinematics,
+    initial: Elastic,
+) -> Result<ModelBody, Error> {
+    let mut made = body(mesh, name, kinematics, initial)?;
+    made.spec.material = Material::NeoHooke(NeoHooke { initial });
+    Ok(made)
 }
 
 /// Two bodies, inner and outer, glued where they overlap with linear weights and the coarse L2 mediator, and the rows.

@@ -5,11 +5,11 @@ use std::path::Path;
 use carom_bodies::Kinematics;
 use carom_contact::{Integration, Law};
 use carom_dynamics::{Model, ModelBody, ModelTarget, Nonlinear, Scheme};
-use carom_materials::{Elastic, Law as Material, NeoHooke};
+use carom_materials::Elastic;
 use carom_mesh::{Mesh, read};
 
 use crate::Error;
-use crate::build::{body, contact, surface};
+use crate::build::{contact, neo_hooke, surface};
 
 /// Residual at which iterations end, of the forces.
 const TOLERANCE: f64 = 1e-11;
@@ -63,10 +63,6 @@ impl Collision {
     }
 
     fn body(&self, mesh: &Mesh, k: usize) -> Result<ModelBody, Error> {
-        let mut body = body(mesh, self.bodies[k], self.kinematics, self.material)?;
-        body.spec.material = Material::NeoHooke(NeoHooke {
-            initial: self.material,
-        });
-        Ok(body)
+        neo_hooke(mesh, self.bodies[k], self.kinematics, self.material)
     }
 }

@@ -18,12 +18,12 @@ use carom_bodies::Kinematics;
 use carom_contact::{Motion, Obstacle, Plane, RigidSurface, Translation};
 use carom_dynamics::{Model, ModelTarget, Newton, System};
 use carom_exact::friction::Incline;
-use carom_materials::{Elastic, Law as Material, NeoHooke};
+use carom_materials::Elastic;
 use carom_mesh::read::read;
 use carom_mesh::{Mesh, Surface};
 
 use crate::Error;
-use crate::build::{NOW, body, contact, group, surface, theta};
+use crate::build::{NOW, contact, group, neo_hooke, surface, theta};
 use crate::check::{Check, Row};
 use crate::sliding_block::{GRAVITY, balances, place};
 
@@ -38,13 +38,12 @@ const STEP: f64 = 1e-3;
 const STEPS: usize = 800;
 
 fn newton(mesh: Mesh, belt: Obstacle) -> Result<Newton, Error> {
-    let mut crate_ = body(
+    let crate_ = neo_hooke(
         &mesh,
         "crate",
         Kinematics::PlaneStrain { thickness: 1.0 },
         RUBBER,
     )?;
-    crate_.spec.material = Material::NeoHooke(NeoHooke { initial: RUBBER });
     let belt = Obstacle {
         motion: Motion {
             translation: Some(Translation::Velocity([BELT, 0.0, 0.0])),

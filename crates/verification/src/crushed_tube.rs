@@ -20,11 +20,11 @@ use std::sync::Arc;
 use carom_bodies::Kinematics;
 use carom_dynamics::scheme::EnergyMomentum;
 use carom_dynamics::{Model, ModelTarget, Newton, Nonlinear, Scheme, System};
-use carom_materials::{Elastic, Law as Material, NeoHooke};
+use carom_materials::Elastic;
 use carom_mesh::read::read;
 
 use crate::Error;
-use crate::build::{NOW, body, contact, plane, surface};
+use crate::build::{NOW, contact, neo_hooke, plane, surface};
 use crate::check::{Check, Row, Size};
 
 const RUBBER: Elastic = Elastic {
@@ -41,13 +41,12 @@ const BALANCE: f64 = 1e-9;
 fn newton(mesh: &str, facing_itself: bool) -> Result<Newton, Error> {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/crushed-tube");
     let mesh = read(&cases.join(mesh))?;
-    let mut tube = body(
+    let mut tube = neo_hooke(
         &mesh,
         "tube",
         Kinematics::PlaneStrain { thickness: 1.0 },
         RUBBER,
     )?;
-    tube.spec.material = Material::NeoHooke(NeoHooke { initial: RUBBER });
     tube.velocity = [0.0, -SPEED, 0.0];
     let mut contacts = vec![contact(
         surface(&mesh, "tube.outer", &tube)?,

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use carom_bodies::Kinematics;
 use carom_contact::{Integration, Law};
 use carom_dynamics::{Model, ModelTarget, Newton, Nonlinear, Scheme, System};
-use carom_materials::{Elastic, Law as Material, NeoHooke};
+use carom_materials::Elastic;
 use carom_mesh::{Group, Mesh, generate};
 
 use crate::Error;
-use crate::build::{body, contact, plane, support, surface};
+use crate::build::{contact, neo_hooke, plane, support, surface};
 
 pub(crate) const RUBBER: Elastic = Elastic {
     density: 1000.0,
@@ -68,8 +68,7 @@ impl Hairpin {
             2 => Kinematics::PlaneStrain { thickness: 1.0 },
             _ => Kinematics::Solid,
         };
-        let mut strip = body(&mesh, "strip", kinematics, RUBBER)?;
-        strip.spec.material = Material::NeoHooke(NeoHooke { initial: RUBBER });
+        let strip = neo_hooke(&mesh, "strip", kinematics, RUBBER)?;
         let skin = surface(&mesh, "skin", &strip)?;
         let (up, mut supports) = (self.dim - 1, Vec::new());
         let target = match self.half {

@@ -33,11 +33,11 @@ use carom_dynamics::{
     Amplitude, Iteration, Model, ModelBody, ModelTarget, Newton, Nonlinear, Preload, Prescribed,
     System,
 };
-use carom_materials::{Elastic, Law as Material, NeoHooke};
+use carom_materials::Elastic;
 use carom_mesh::{Mesh, read};
 
 use crate::Error;
-use crate::build::{DISPLACEMENT, body, contact, group, newmark, support, surface};
+use crate::build::{DISPLACEMENT, contact, group, neo_hooke, newmark, support, surface};
 use crate::check::{Check, Row, Size};
 
 const MM: f64 = 1e-3;
@@ -61,20 +61,14 @@ struct Run {
     residual: f64,
 }
 
-fn neo_hooke(mesh: &Mesh, name: &str, young: f64) -> Result<ModelBody, Error> {
+fn elastic(mesh: &Mesh, name: &str, young: f64) -> Result<ModelBody, Error> {
     let elastic = Elastic {
         density: 1000.0,
         young,
         poisson: 0.32,
     };
-    let mut made = body(
-        mesh,
-        name,
-        Kinematics::PlaneStrain { thickness: MM },
-        elastic,
-    )?;
-    made.spec.material = Material::NeoHooke(NeoHooke { initial: elastic });
-    Ok(made)
+    let kinematics = Kinematics::PlaneStrain { thickness: MM };
+    neo_hooke(mesh, name, kinematics, elastic)
 }
 
 /// The model, one second to a step.
@@ -83,8 +77,8 @@ fn model(file: &str, friction: f64, integration: Integration, slides: u64) -> Re
     let mut mesh = read::read(&cases.join(file))?;
     mesh.scale(MM);
     let bodies = vec![
-        neo_hooke(&mesh, "block", 68.96e7)?,
-        neo_hooke(&mesh, "indenter", 68.96e8)?,
+        elastic(&mesh, "block", 68.96e7)?,
+        elastic(&mesh, "indenter", 68.96e8)?,
     ];
     let foot = surface(&mesh, "indenter.contact", &bodies[1])?;
     let mut iron = contact(

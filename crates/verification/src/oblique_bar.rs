@@ -23,11 +23,11 @@ use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
 use carom_dynamics::{Model, Newton, Nonlinear, Scheme, System};
-use carom_materials::{Elastic, Law as Material, NeoHooke};
+use carom_materials::Elastic;
 use carom_mesh::read::read;
 
 use crate::Error;
-use crate::build::{DISPLACEMENT, NOW, body, contact, newmark, plane, surface, theta};
+use crate::build::{DISPLACEMENT, NOW, contact, neo_hooke, newmark, plane, surface, theta};
 use crate::check::{Check, Row, Size};
 
 const RUBBER: Elastic = Elastic {
@@ -57,8 +57,7 @@ fn model(size: Size, scheme: Scheme, law: Law, integration: Integration) -> Resu
     let mut mesh = read(&cases.join(file))?;
     mesh.scale(1e-3);
     let kinematics = Kinematics::PlaneStrain { thickness: 1.0 };
-    let mut bar = body(&mesh, "bar", kinematics, RUBBER)?;
-    bar.spec.material = Material::NeoHooke(NeoHooke { initial: RUBBER });
+    let mut bar = neo_hooke(&mesh, "bar", kinematics, RUBBER)?;
     bar.velocity = [VELOCITY[0], -VELOCITY[1], 0.0];
     let mut wall = contact(surface(&mesh, "bar.surface", &bar)?, plane(1, 1.0), law);
     wall.integration = integration;

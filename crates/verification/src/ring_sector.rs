@@ -21,11 +21,11 @@ use carom_dynamics::{
     LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, Newton, Scheme, System, Zoned,
     Zones, mortar_rows,
 };
-use carom_materials::{Elastic, Law, NeoHooke};
+use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
 
 use crate::Error;
-use crate::build::{CENTRAL, NOW, body, contact, newmark, surface, theta, welded};
+use crate::build::{CENTRAL, NOW, contact, neo_hooke, newmark, surface, theta, welded};
 use crate::check::{Check, Row, Size};
 
 const RUBBER: Elastic = Elastic {
@@ -180,8 +180,7 @@ fn part(name: &str, [from, to]: [f64; 2], n: [usize; 2]) -> Mesh {
 
 fn ring_body(mesh: &Mesh, name: &str) -> Result<ModelBody, Error> {
     let kinematics = Kinematics::PlaneStrain { thickness: 1.0 };
-    let mut body = body(mesh, name, kinematics, RUBBER)?;
-    body.spec.material = Law::NeoHooke(NeoHooke { initial: RUBBER });
+    let mut body = neo_hooke(mesh, name, kinematics, RUBBER)?;
     body.velocity = [0.2, 0.0, 0.0];
     Ok(body)
 }
