@@ -1,7 +1,7 @@
 //! The executable: `carom run`, `compare`, `study`, `check`, `schema`, `new`, `verify`.
 //!
-//! Exit codes: 0 done and the verdict good, 2 bad input, 3 the run failed with the last good state on disk, 4 done but a
-//! balance is out of its bound, 130 interrupted.
+//! Exit codes: 0 done and the verdict `good` or `look`, 2 bad input, 3 the run failed with the last good state on disk, 4 done but
+//! the verdict bad, 130 interrupted.
 // The program talks to people: printing is its job.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
@@ -77,7 +77,7 @@ const BAD_INPUT: u8 = 2;
 /// Exit code of a run that failed.
 const FAILED: u8 = 3;
 /// Exit code of a run or a verification with a quantity out of its bound.
-const OUT_OF_BOUND: u8 = 4;
+const BAD: u8 = 4;
 /// Exit code of an interrupted run.
 const INTERRUPTED: u8 = 130;
 
@@ -182,7 +182,7 @@ fn verify(name: Option<&str>, quick: bool) -> u8 {
             eprintln!("error: no check of this name");
             BAD_INPUT
         }
-        Ok(_) => OUT_OF_BOUND,
+        Ok(_) => BAD,
         Err(error) => {
             eprintln!("error: {error}");
             FAILED

@@ -6,12 +6,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_case::{Built, Finished, Input, schema::Case};
-use carom_output::Summary;
+
 use carom_output::plot::quantity;
 use carom_output::summary::{NONLINEAR_WORKS, Newton};
+use carom_output::{Grade, Summary};
 
 use crate::progress::Progress;
-use crate::{FAILED, INTERRUPTED, OUT_OF_BOUND};
+use crate::{BAD, FAILED, INTERRUPTED};
 
 /// Arguments of `carom run`.
 #[derive(clap::Args)]
@@ -45,10 +46,10 @@ pub fn run(arguments: &Arguments) -> u8 {
     match march(&input, &case, &built, folder.clone(), arguments.quiet) {
         Ok(finished) => {
             print(&finished.summary, &folder);
-            match (finished.interrupted, finished.summary.verdict.good) {
+            match (finished.interrupted, finished.summary.verdict.grade) {
                 (true, _) => INTERRUPTED,
-                (false, true) => 0,
-                (false, false) => OUT_OF_BOUND,
+                (false, Grade::Good | Grade::Look) => 0,
+                (false, Grade::Bad) => BAD,
             }
         }
         Err(error) => {
@@ -257,9 +258,23 @@ fn cost(summary: &Summary) -> String {
     )
 }
 
+/// The grade, the lines that are not good, and what could not be checked.
 fn verdict(summary: &Summary) -> String {
-    match summary.verdict.good {
-        true => "verdict: good, every balance within its bound".to_string(),
-        false => format!("verdict: BAD: {}", summary.verdict.reasons.join("; ")),
-    }
+    let verdict = &summary.verdict;
+    let head = match verdict.grade {
+        Grade::Good => "verdict: good, every line within its bounds".to_string(),
+        Grade::Look => "verdict: LOOK".to_string(),
+        Grade::Bad => "verdict: BAD".to_string(),
+    };
+    let unfinished = verdict.unfinished.iter().map(|why| format!("bad: {why}"));
+    let of = |grade: Grade| verdict.lines.iter().filter(move |line| line.grade == grade);
+    let lines = of(Grade::Bad).chain(of(Grade::Look));
+    let lines = lines.map(|line| format!("{}: {}", line.grade.word(), line.text()));
+    let unchecked = verdict.unchecked.iter();
+    let unchecked = unchecked.map(|what| format!("not checked: {what}"));
+    let all = unfinished.chain(lines).chain(unchecked);
+    std::iter::once(head)
+        .chain(all)
+        .collect::<Vec<_>>()
+        .join("\n    ")
 }

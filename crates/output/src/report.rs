@@ -9,7 +9,7 @@ use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 
 use crate::plot::{digits, quantity, scientific};
-use crate::summary::{Check, Summary};
+use crate::summary::Summary;
 use crate::{Error, ImpactRow, atomic};
 
 /// What stands for a value that does not exist.
@@ -36,13 +36,6 @@ impl Report<'_> {
     pub fn html(&self) -> Result<String, Error> {
         let mut environment = environment()?;
         environment.add_template("report.html", include_str!("../templates/report.html"))?;
-        let holding: Vec<bool> = self
-            .summary
-            .verdict
-            .checks
-            .iter()
-            .map(Check::holds)
-            .collect();
         let figures: Vec<Value> = self
             .figures
             .iter()
@@ -56,7 +49,6 @@ impl Report<'_> {
             impacts => Serde(self.impacts),
             hidden => impacts.saturating_sub(self.impacts.len()),
             figures,
-            holding,
             case => self.case,
         })?;
         Ok(page)

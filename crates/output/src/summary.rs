@@ -8,6 +8,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::verdict::Verdict;
 use crate::{Error, atomic};
 
 /// Everything that `summary.json` says.
@@ -19,7 +20,7 @@ pub struct Summary {
     pub title: String,
     /// [`hash`] of the text of the case file.
     pub case_hash: String,
-    /// Whether the result can be relied on, and why not.
+    /// Whether the result can be relied on, line by line.
     pub verdict: Verdict,
     /// The mesh and its unknowns.
     pub model: Model,
@@ -49,60 +50,6 @@ pub struct Summary {
     pub warnings: Vec<String>,
     /// Files of the results folder, relative to it, but those that `fields.pvd` names.
     pub outputs: Vec<String>,
-}
-
-/// Whether the result can be relied on.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Verdict {
-    /// True if the run reached its end and every check is within its bound.
-    pub good: bool,
-    /// Why not, one sentence each; empty when good.
-    pub reasons: Vec<String>,
-    /// What was checked.
-    pub checks: Vec<Check>,
-}
-
-impl Verdict {
-    /// The verdict on a run that came to its end (`unfinished` is `None`) or did not (`unfinished` says why): good
-    /// if it did and every check holds.
-    pub fn new(unfinished: Option<String>, checks: Vec<Check>) -> Verdict {
-        let failed = checks.iter().filter(|check| !check.holds());
-        let sentence = |check: &Check| {
-            format!(
-                "{} is {:.3e}; its bound is {:.1e}",
-                check.quantity, check.value, check.bound
-            )
-        };
-        let reasons: Vec<String> = unfinished.into_iter().chain(failed.map(sentence)).collect();
-        Verdict {
-            good: reasons.is_empty(),
-            reasons,
-            checks,
-        }
-    }
-}
-
-/// Name of the check on the energy residual; not among the checks of a scheme without an energy identity, whose residual
-/// holds what the scheme dissipates.
-pub const ENERGY_CHECK: &str = "energy residual / largest energy";
-
-/// A quantity with the bound that it must not pass.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Check {
-    /// What is checked, with what it is relative to: `energy residual / initial energy`.
-    pub quantity: String,
-    /// Its value.
-    #[serde(with = "float")]
-    pub value: f64,
-    /// The bound on its magnitude.
-    pub bound: f64,
-}
-
-impl Check {
-    /// |value| <= bound; false for NaN.
-    pub fn holds(&self) -> bool {
-        self.value.abs() <= self.bound
-    }
 }
 
 /// The mesh and its unknowns.
@@ -302,6 +249,8 @@ pub struct Energy {
     /// `largest_residual` over the largest kinetic and strain energy of the run; what the check bounds.
     #[serde(with = "float")]
     pub relative_residual: f64,
+    /// Whether an energy identity of the scheme is known; without one what the scheme dissipates is in the residual.
+    pub identity: bool,
 }
 
 /// Balance of linear momentum, N s.
@@ -456,7 +405,7 @@ pub(crate) fn hash_bytes(bytes: &[u8]) -> String {
 
 /// Numbers that may be NaN or infinite exactly when something went wrong: JSON has no word for them but `null`, so
 /// they are read back as NaN.
-mod float {
+pub(crate) mod float {
     use serde::{Deserialize, Deserializer, Serializer};
 
     pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {

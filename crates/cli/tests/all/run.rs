@@ -48,7 +48,7 @@ fn main_job_leaves_its_results_and_agrees_with_the_exact_solution() {
     }
     assert!(fs::read_dir(results.join("plots")).unwrap().count() >= 2);
     let summary = summary(work.path());
-    assert_eq!(summary["verdict"]["good"], true);
+    assert_eq!(summary["verdict"]["grade"], "good");
     // Z v0 / 2 with Z = A sqrt(E rho): the front rises over some steps, so the mean over the contact is a little less
     let exact = 0.5 * 645e-6 * (207e9_f64 * 7844.0).sqrt() * 5.1359;
     let mean = summary["contacts"]["shock"]["mean_force"].as_f64().unwrap();
@@ -95,7 +95,7 @@ fn a_full_disk_ends_the_run_with_its_cause_and_leaves_whole_rows() {
     assert!(text(&output).contains("histories.csv"), "{}", text(&output));
     let rows = rows(work.path());
     assert!(rows > 10, "{rows} rows before the disk was full");
-    assert_eq!(summary(work.path())["verdict"]["good"], false);
+    assert_eq!(summary(work.path())["verdict"]["grade"], "bad");
 }
 
 #[test]
@@ -125,9 +125,9 @@ fn an_interrupted_run_leaves_a_summary_that_says_so() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert!(rows(work.path()) > 10);
     let verdict = summary(work.path())["verdict"].clone();
-    assert_eq!(verdict["good"], false);
+    assert_eq!(verdict["grade"], "bad");
     assert!(
-        verdict["reasons"][0]
+        verdict["unfinished"]
             .as_str()
             .unwrap()
             .contains("interrupted"),
@@ -166,7 +166,7 @@ fn a_contact_problem_without_solution_ends_the_run_and_is_kept() {
     let kept = fs::read(work.path().join("case.carom/interface-1.json")).unwrap();
     let problem: serde_json::Value = serde_json::from_slice(&kept).unwrap();
     assert_eq!(problem["compliance"].as_array().unwrap().len(), 4);
-    assert_eq!(summary(work.path())["verdict"]["good"], false);
+    assert_eq!(summary(work.path())["verdict"]["grade"], "bad");
     assert!(
         work.path()
             .join("case.carom/checkpoints/last.state")
@@ -201,8 +201,8 @@ fn an_adaptive_step_that_cannot_go_on_ends_the_run_with_its_cause_and_what_was_c
     assert!(time["rejected"]["energy_growth"].as_u64().unwrap() > 0);
     assert!(time["end"].as_f64().unwrap() < 5.8e-3);
     let verdict = &summary["verdict"];
-    assert_eq!(verdict["good"], false);
-    let reason = verdict["reasons"][0].as_str().unwrap();
+    assert_eq!(verdict["grade"], "bad");
+    let reason = verdict["unfinished"].as_str().unwrap();
     assert!(
         reason.contains("the energy grows without a load"),
         "{reason}"

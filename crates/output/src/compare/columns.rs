@@ -1,10 +1,9 @@
 //! The columns of the table of a comparison, each once: text, CSV and page are made from this list.
 
 use crate::compare::{Done, Variant};
-use crate::plot::quantity;
-use crate::report::{NOTHING, percent};
+use crate::form::Form;
+use crate::report::NOTHING;
 use crate::rows::Cell;
-use crate::summary::ENERGY_CHECK;
 use crate::table::Table;
 
 /// A column.
@@ -18,17 +17,6 @@ pub struct Column {
     pub form: Form,
     /// Its value for a variant; `None` where it does not exist.
     pub value: fn(&Done) -> Option<f64>,
-}
-
-/// How a number is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// A part, as per cent.
-    Percent,
-    /// A count.
-    Count,
-    /// A quantity of this unit.
-    Quantity(&'static str),
 }
 
 const fn column(
@@ -156,8 +144,7 @@ fn energy_change(done: &Done) -> Option<f64> {
 
 /// What the scheme lost; not told apart from the residual where no energy identity is known of it.
 fn dissipation(done: &Done) -> Option<f64> {
-    let checks = &done.summary.verdict.checks;
-    let known = checks.iter().any(|check| check.quantity == ENERGY_CHECK);
+    let known = done.summary.energy.identity;
     let gain = work(done, "dissipation of the scheme").filter(|_| known)?;
     Some(0.0 - gain)
 }
@@ -177,15 +164,8 @@ fn restitution(done: &Done) -> Option<f64> {
     exact.or_else(|| done.contact()?.restitution)
 }
 
-impl Form {
-    fn show(self, value: Option<f64>) -> String {
-        match (value, self) {
-            (None, _) => NOTHING.to_owned(),
-            (Some(value), Form::Percent) => percent(value),
-            (Some(value), Form::Count) => format!("{value}"),
-            (Some(value), Form::Quantity(unit)) => quantity(value, unit),
-        }
-    }
+fn show(form: Form, value: Option<f64>) -> String {
+    value.map_or_else(|| NOTHING.to_owned(), |value| form.show(value))
 }
 
 /// The table for people: the columns with a head, between the names and the verdicts.
@@ -195,7 +175,7 @@ pub(crate) fn table(variants: &[Variant]) -> Table {
     let row = |variant: &Variant| {
         let done = variant.done();
         let cells = shown().map(|(c, _)| match done {
-            Some(done) => c.form.show((c.value)(done)),
+            Some(done) => show(c.form, (c.value)(done)),
             None => String::new(),
         });
         let name = std::iter::once(variant.name.clone());

@@ -9,7 +9,7 @@ mod figures;
 mod history;
 pub(crate) mod page;
 
-pub use columns::{COLUMNS, Column, Form};
+pub use columns::{COLUMNS, Column};
 pub use history::{History, Recorder, StepForce};
 
 use crate::results::Reference;
@@ -98,11 +98,13 @@ impl Variant {
         }
     }
 
-    /// One word and the reason for it: `good`, `bad`, `refused`, `failed`, `stopped`.
+    /// One word and the reason for it: `good`, `look`, `bad`, `refused`, `failed`, `stopped`.
     pub fn verdict(&self) -> (&'static str, String) {
         match &self.outcome {
-            Outcome::Done(done) if done.summary.verdict.good => ("good", String::new()),
-            Outcome::Done(done) => ("bad", done.summary.verdict.reasons.join("; ")),
+            Outcome::Done(done) => {
+                let verdict = &done.summary.verdict;
+                (verdict.grade.word(), verdict.reasons().join("; "))
+            }
             Outcome::Refused(reason) => ("refused", reason.clone()),
             Outcome::Failed(reason) => ("failed", reason.clone()),
             Outcome::Stopped => ("stopped", "the comparison was interrupted".to_owned()),

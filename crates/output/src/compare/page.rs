@@ -58,7 +58,7 @@ impl Comparison {
                     cells => inner(cells),
                     verdict,
                     reason,
-                    page => verdict == "good" || verdict == "bad",
+                    page => done.is_some(),
                     scheme => done.map(|done| done.summary.scheme.clone()),
                     law => done.and_then(|done| Some(done.contact()?.law.clone())),
                 }

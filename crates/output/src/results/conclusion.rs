@@ -9,22 +9,13 @@ use crate::plot::model_figure;
 use crate::results::costs::{counts, newton, timings};
 use crate::results::exact;
 use crate::results::impacts::ContactTotals;
+use crate::results::lines::{Evidence, judge};
 use crate::results::{Comparison, Ending, Last, Results};
 use crate::summary::{
-    Angular, Check, Contact, ENERGY_CHECK, Energy, Exact, Friction, Model, Momentum,
-    NONLINEAR_WORKS, Rejected, Summary, Time, Verdict, Zones, hash,
+    Angular, Contact, Energy, Exact, Friction, Model, Momentum, NONLINEAR_WORKS, Rejected, Summary,
+    Time, Zones, hash,
 };
 use crate::{Error, Report, atomic};
-
-/// Bound of the energy residual relative to the largest energy, and of the momentum residual relative to the largest
-/// momentum. Both balances are identities of the linear step; what is left is the rounding of the solves, some 1e-16
-/// a step, summed over up to a million steps.
-const BOUND: f64 = 1e-9;
-
-/// Bound of the energy that appears without work of the loads, relative to the largest energy. No law and no scheme has
-/// a right to any; what the residual cannot show is a contact that makes energy with its ledger closed, as the
-/// trapezoid with the displacement law does.
-const GAIN: f64 = 0.01;
 
 /// Writes figures, report and summary. Everything is tried; the first error is returned.
 pub(crate) fn conclude(mut results: Results, ending: &Ending) -> Result<Summary, Error> {
@@ -42,8 +33,7 @@ pub(crate) fn conclude(mut results: Results, ending: &Ending) -> Result<Summary,
             case: &results.settings.case_text,
         };
         if let Err(error) = report.write(&path) {
-            summary.verdict.good = false;
-            summary.verdict.reasons.push(error.to_string());
+            summary.verdict.incomplete(error.to_string());
             errors.push(error);
         }
     }
@@ -101,30 +91,20 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         ..
     } = results;
     let zones = ending.zones.as_ref();
-    let energy = energy(last, zones.is_some());
+    let energy = energy(system, last, zones);
     let momentum = momentum(system, last, zones.is_some());
-    let check = |quantity: &str, value, bound| Check {
-        quantity: quantity.to_owned(),
-        value,
-        bound,
+    let comparison = results.comparison.as_ref();
+    let exact = comparison.map(|comparison| against_exact(results, comparison));
+    let evidence = Evidence {
+        system,
+        last,
+        totals,
+        zones,
+        energy: &energy,
+        momentum: &momentum,
+        exact: exact.as_ref(),
     };
-    let mut warnings = settings.warnings.clone();
-    let mut checks = Vec::new();
-    match without_identity(system, zones) {
-        None => checks.push(check(ENERGY_CHECK, energy.relative_residual, BOUND)),
-        Some(scheme) => warnings.push(format!(
-            "no energy identity is known of the scheme {scheme}: the energy residual holds what the scheme dissipates, and is not checked"
-        )),
-    }
-    checks.extend([
-        check(
-            "momentum residual / largest momentum",
-            momentum.relative_residual,
-            BOUND,
-        ),
-        check("energy gained / largest energy", gained(system, last), GAIN),
-        check("states that are not finite", totals.not_finite as f64, 0.0),
-    ]);
+    let verdict = judge(&evidence, unfinished);
     let names = results.folder.names().map(str::to_owned);
     let own = ["report.html", "summary.json"];
     // the collection names the field files, which may be thousands
@@ -135,7 +115,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         version: settings.version.clone(),
         title: settings.title.clone(),
         case_hash: hash(&settings.case_text),
-        verdict: Verdict::new(unfinished, checks),
+        verdict,
         model: model(system),
         scheme: settings.scheme.clone(),
         time: time(system, last, zones),
@@ -143,49 +123,13 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         contacts: contacts(results),
         energy,
         momentum,
-        exact: results
-            .comparison
-            .as_ref()
-            .map(|comparison| against_exact(results, comparison)),
+        exact,
         counts: counts(ending.costs, totals.passes),
         newton: (system.is_nonlinear() && zones.is_none()).then(|| newton(results, ending)),
         timings: timings(results, ending),
-        warnings,
+        warnings: settings.warnings.clone(),
         outputs: names.filter(there).collect(),
     }
-}
-
-/// A scheme of the run whose energy residual says nothing.
-fn without_identity<'a>(system: &System, zones: Option<&'a Zones>) -> Option<&'a str> {
-    let scheme = system.scheme.get();
-    match zones {
-        Some(zones) => {
-            let mut zones = zones.zones.iter();
-            zones
-                .find(|zone| !zone.has_identity)
-                .map(|zone| zone.scheme.as_str())
-        }
-        None if scheme.energy_identity(system.dt).is_some() => None,
-        None => Some(scheme.name()),
-    }
-}
-
-/// Kinetic and strain energy that loads, supports and moving obstacles have not given, relative to the largest; zero for a
-/// loss.
-fn gained(system: &System, last: &Last) -> f64 {
-    let Ledger {
-        initial,
-        balance,
-        largest_energy,
-        ..
-    } = &last.ledger;
-    let obstacles = match system.contacts.iter().any(|contact| contact.moves()) {
-        true => balance.work_contact.max(0.0),
-        false => 0.0,
-    };
-    let given = balance.work_loads + balance.work_supports + obstacles;
-    let gain = balance.energy() - initial.energy() - given;
-    gain.max(0.0) / largest_energy.max(f64::MIN_POSITIVE)
 }
 
 fn model(system: &System) -> Model {
@@ -300,7 +244,11 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
     all.enumerate().map(one).collect()
 }
 
-fn energy(last: &Last, linked: bool) -> Energy {
+fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {
+    let identity = match zones {
+        Some(zones) => zones.zones.iter().all(|zone| zone.has_identity),
+        None => system.scheme.get().energy_identity(system.dt).is_some(),
+    };
     let ledger = &last.ledger;
     let (start, end) = (&ledger.initial, &ledger.balance);
     let mut works = BTreeMap::from([
@@ -311,7 +259,7 @@ fn energy(last: &Last, linked: bool) -> Energy {
             0.0 - end.dissipation_scheme,
         ),
     ]);
-    if linked {
+    if zones.is_some() {
         works.insert("work of links".to_owned(), end.work_links);
     }
     // what linear runs have not is named only where there is some
@@ -345,6 +293,7 @@ fn energy(last: &Last, linked: bool) -> Energy {
         residual: end.energy_residual,
         largest_residual: largest,
         relative_residual: relative(largest, ledger.largest_energy),
+        identity,
     }
 }
 

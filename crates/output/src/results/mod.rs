@@ -16,6 +16,7 @@ mod figures;
 mod film;
 mod histories;
 mod impacts;
+mod lines;
 pub(crate) mod sensor;
 pub(crate) mod trace;
 mod zoning;

@@ -2,15 +2,24 @@
 
 use std::collections::BTreeMap;
 
-use carom_output::summary::{self, Check, Contact, Energy, Exact, Momentum, Verdict};
+use carom_output::form::Form;
+use carom_output::summary::{self, Contact, Energy, Exact, Momentum};
+use carom_output::verdict::{Bounds, Grade, Line, Verdict};
 use carom_output::{ImpactRow, Report, Summary};
 
-fn check(value: f64) -> Check {
-    Check {
-        quantity: "energy residual / initial energy".to_owned(),
-        value,
-        bound: 1e-9,
-    }
+fn line(value: f64, bounds: Bounds) -> Line {
+    let quantity = "energy residual over the largest energy";
+    Line::new(
+        "energy-residual",
+        (quantity, value, Form::Power),
+        bounds,
+        "a smaller step",
+    )
+}
+
+/// The verdict on one line, bad above 1e-9.
+fn verdict(value: f64) -> Verdict {
+    Verdict::new(None, vec![line(value, Bounds::Bad(1e-9))], Vec::new())
 }
 
 fn sample(verdict: Verdict) -> Summary {
@@ -60,40 +69,75 @@ fn sample(verdict: Verdict) -> Summary {
 }
 
 #[test]
-fn the_verdict_is_good_only_if_the_run_is_complete_and_every_check_holds() {
-    assert!(Verdict::new(None, vec![check(1e-9), check(-1e-10)]).good);
-    for value in [1.1e-9, -1.1e-9, f64::NAN, f64::INFINITY] {
-        let verdict = Verdict::new(None, vec![check(0.0), check(value)]);
-        assert!(!verdict.good);
-        assert_eq!(verdict.reasons.len(), 1);
-        assert!(verdict.reasons[0].starts_with("energy residual / initial energy is "));
+fn a_line_is_graded_by_its_bounds_and_what_is_no_number_is_bad() {
+    let both = Bounds::Both(1e-9, 1e-6);
+    for (value, bounds, grade) in [
+        (1e-9, Bounds::Bad(1e-9), Grade::Good),
+        (-1.1e-9, Bounds::Bad(1e-9), Grade::Bad),
+        (-1e-9, both, Grade::Good),
+        (1.1e-9, both, Grade::Look),
+        (-1e-6, both, Grade::Look),
+        (1.1e-6, both, Grade::Bad),
+        (1e300, Bounds::Look(1.0), Grade::Look),
+        (f64::NAN, Bounds::Look(1.0), Grade::Bad),
+        (f64::NAN, both, Grade::Bad),
+        (f64::INFINITY, Bounds::Bad(1e-9), Grade::Bad),
+    ] {
+        assert_eq!(line(value, bounds).grade, grade, "{value} {bounds:?}");
     }
-    let cut = Verdict::new(Some("stopped by the user".to_owned()), vec![check(0.0)]);
-    assert!(!cut.good);
-    assert_eq!(cut.reasons, ["stopped by the user"]);
+    let line = line(2e-9, both);
+    assert_eq!(
+        line.text(),
+        "energy residual over the largest energy: 2.0·10⁻⁹ (look above 1.0·10⁻⁹, bad above 1.0·10⁻⁶); a smaller step"
+    );
+}
+
+#[test]
+fn the_verdict_is_the_worst_of_its_lines_and_bad_if_the_run_is_not_complete() {
+    let bounds = Bounds::Both(1e-9, 1e-6);
+    let of = |values: &[f64]| {
+        let lines = values.iter().map(|value| line(*value, bounds)).collect();
+        Verdict::new(None, lines, vec!["mesh".to_owned()])
+    };
+    assert_eq!(of(&[0.0, 1e-10]).grade, Grade::Good);
+    assert!(of(&[0.0, 1e-10]).reasons().is_empty());
+    assert_eq!(of(&[0.0, 1e-8, 0.0]).grade, Grade::Look);
+    let bad = of(&[1e-8, 0.0, 1.0, 1e-7]);
+    assert_eq!(bad.grade, Grade::Bad);
+    let reasons = bad.reasons();
+    assert_eq!(reasons.len(), 3);
+    assert!(
+        reasons[0].contains(": 1.0 (") || reasons[0].contains(": 1.0·10⁰ ("),
+        "{}",
+        reasons[0]
+    );
+    let mut cut = of(&[0.0]);
+    cut.incomplete("stopped by the user".to_owned());
+    assert_eq!(cut.grade, Grade::Bad);
+    assert_eq!(cut.reasons(), ["stopped by the user"]);
 }
 
 #[test]
 fn a_summary_comes_back_from_its_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("summary.json");
-    let summary = sample(Verdict::new(None, vec![check(1e-12)]));
+    let summary = sample(verdict(1e-12));
     summary.write(&path).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     assert_eq!(Summary::from_json(&text).unwrap(), summary);
     assert!(text.contains("\"first_closing\": null"));
-    assert!(text.contains("\"good\": true"));
+    assert!(text.contains("\"grade\": \"good\""));
 }
 
 #[test]
 fn a_residual_that_is_not_a_number_is_null_and_read_as_such() {
-    let mut summary = sample(Verdict::new(None, vec![check(f64::NAN)]));
+    let mut summary = sample(verdict(f64::NAN));
     summary.energy.residual = f64::INFINITY;
     let text = summary.to_json().unwrap();
     assert!(text.contains("\"residual\": null") && text.contains("\"value\": null"));
     let read = Summary::from_json(&text).unwrap();
-    assert!(read.energy.residual.is_nan() && read.verdict.checks[0].value.is_nan());
-    assert!(!read.verdict.good);
+    assert!(read.energy.residual.is_nan() && read.verdict.lines[0].value.is_nan());
+    assert_eq!(read.verdict.grade, Grade::Bad);
 }
 
 #[test]
@@ -118,11 +162,7 @@ fn page(summary: &Summary, impacts: &[ImpactRow], figures: &[String]) -> String 
 #[test]
 fn the_report_says_what_the_summary_says() {
     let figures = ["<svg><!-- one --></svg>".to_owned()];
-    let html = page(
-        &sample(Verdict::new(None, vec![check(1e-12)])),
-        &[],
-        &figures,
-    );
+    let html = page(&sample(verdict(1e-12)), &[], &figures);
     for text in [
         "Good: the run is complete",
         "74.6 kN",
@@ -139,9 +179,12 @@ fn the_report_says_what_the_summary_says() {
         assert!(html.contains(text), "{text}");
     }
     assert!(!html.contains("Impacts"), "no table without rows");
-    let bad = page(&sample(Verdict::new(None, vec![check(1.0)])), &[], &figures);
-    assert!(bad.contains("Not to be relied on") && bad.contains("is 1.000e0; its bound is 1.0e-9"));
-    assert!(bad.contains(">fails<") && html.contains(">holds<"));
+    let bad = page(&sample(verdict(1.0)), &[], &figures);
+    assert!(
+        bad.contains("Not to be relied on")
+            && bad.contains("What would put it right: a smaller step")
+    );
+    assert!(bad.contains(">bad</b> energy residual") && html.contains(">good</b> energy residual"));
 }
 
 #[test]

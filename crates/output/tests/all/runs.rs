@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use carom_dynamics::{Driver, Error, Observer, State, StepReport, Stepper, System, march};
-use carom_output::{Ending, Results, Settings, Summary};
+use carom_output::{Ending, Grade, Results, Settings, Summary};
 
 use crate::models::{self, AREA, LENGTH, SPEED};
 use crate::{grids, tables};
@@ -105,7 +105,11 @@ fn two_bars_leave_a_row_per_step_and_figures_that_follow_from_the_rows() {
     settings.reference = Some(models::exact(end + dt));
     settings.probes = vec![models::probe(&system, "Tip", "striker.right")];
     let (reports, summary) = run(&system, settings, end);
-    assert!(summary.verdict.good, "{:?}", summary.verdict);
+    assert!(
+        summary.verdict.grade == Grade::Good,
+        "{:?}",
+        summary.verdict
+    );
     assert_eq!(read_summary(&folder), summary);
     assert_eq!(
         fs::read_to_string(folder.join("case.toml")).unwrap(),
@@ -210,7 +214,11 @@ fn fields_of_a_block_carry_its_contact_force_and_its_motion() {
     settings.fields = models::all_fields(every);
     let end = 5e-3;
     let (reports, summary) = run(&system, settings, end);
-    assert!(summary.verdict.good, "{:?}", summary.verdict);
+    assert!(
+        summary.verdict.grade == Grade::Good,
+        "{:?}",
+        summary.verdict
+    );
 
     let entries = collection(&folder);
     let times: Vec<f64> = entries.iter().filter(|e| e.1 == 0).map(|e| e.0).collect();
@@ -282,7 +290,7 @@ fn a_probe_is_the_mean_of_its_nodes_and_is_drawn_where_there_is_no_contact() {
     let mut settings = models::settings(&folder);
     settings.probes = vec![models::probe(&system, "top", "block.top")];
     let (_, summary) = run(&system, settings, 0.01);
-    assert!(summary.verdict.good && summary.contacts.is_empty());
+    assert!(summary.verdict.grade == Grade::Good && summary.contacts.is_empty());
     let table = columns(&folder.join("histories.csv"));
     let (t, z) = (&table["time_s"], &table["probe.top.displacement_z_m"]);
     for (t, z) in t.iter().zip(z) {
@@ -364,8 +372,8 @@ fn a_field_file_that_cannot_be_written_ends_the_run_and_the_rest_stays_readable(
     // everything else is written, and the summary names the cause
     let summary = summary.unwrap();
     assert_eq!(read_summary(&folder), summary);
-    assert!(!summary.verdict.good);
-    assert_eq!(summary.verdict.reasons, [said]);
+    assert!(summary.verdict.grade == Grade::Bad);
+    assert_eq!(summary.verdict.reasons(), [said]);
     let report = fs::read_to_string(folder.join("report.html")).unwrap();
     assert!(report.contains("Not to be relied on") && report.contains("bodies-000003.vtu"));
     let table = columns(&folder.join("histories.csv"));
@@ -392,7 +400,7 @@ fn a_run_stopped_by_the_user_has_a_summary_that_says_so() {
     };
     // before the first state, even
     let summary = results.conclude(&ending).unwrap();
-    assert_eq!(summary.verdict.reasons, ["stopped by the user"]);
+    assert_eq!(summary.verdict.reasons(), ["stopped by the user"]);
     assert_eq!(read_summary(&folder), summary);
 }
 
@@ -431,7 +439,7 @@ fn a_full_disk_ends_the_run_and_what_was_written_before_is_readable() {
         "{said}"
     );
     let summary = read_summary(&folder);
-    assert!(!summary.verdict.good && summary.verdict.reasons[0] == said);
+    assert!(summary.verdict.grade == Grade::Bad && summary.verdict.unfinished == Some(said));
     let times = &columns(&folder.join("histories.csv"))["time_s"];
     assert!(times.len() > 300);
     let dt = models::two_bars(100).dt;

@@ -1,0 +1,31 @@
+//! How a number is shown to people.
+
+use crate::plot::{quantity, scientific};
+use crate::report::percent;
+
+/// How a number is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// A part, as per cent.
+    Percent,
+    /// A count.
+    Count,
+    /// A pure number, as a power of ten.
+    Power,
+    /// A quantity of this unit.
+    Quantity(&'static str),
+}
+
+impl Form {
+    /// The number as text.
+    pub fn show(self, value: f64) -> String {
+        match self {
+            _ if !value.is_finite() => value.to_string(),
+            Form::Percent => percent(value),
+            Form::Count => format!("{value}"),
+            Form::Power if value == 0.0 => "0".to_owned(),
+            Form::Power => scientific(value, 1),
+            Form::Quantity(unit) => quantity(value, unit),
+        }
+    }
+}

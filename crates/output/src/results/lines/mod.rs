@@ -1,0 +1,56 @@
+//! The lines of the verdict of a run, one function each. To add one: a function from the evidence to what it finds, in the
+//! file of its topic, and its name in [`ALL`].
+
+mod convergence;
+mod energy;
+mod finite;
+mod momentum;
+
+use carom_dynamics::System;
+
+use crate::results::{Last, Totals};
+use crate::summary::{Energy, Exact, Momentum, Zones};
+use crate::verdict::{Line, Verdict};
+
+/// What a line looks at.
+pub(crate) struct Evidence<'a> {
+    pub(crate) system: &'a System,
+    pub(crate) last: &'a Last,
+    pub(crate) totals: &'a Totals,
+    pub(crate) zones: Option<&'a Zones>,
+    pub(crate) energy: &'a Energy,
+    pub(crate) momentum: &'a Momentum,
+    pub(crate) exact: Option<&'a Exact>,
+}
+
+/// What a line finds.
+pub(crate) enum Finding {
+    /// A number with its grade.
+    Line(Line),
+    /// What cannot be checked in this run, and why.
+    Unchecked(String),
+    /// Nothing: the run has none of what the line is about.
+    Absent,
+}
+
+/// All lines, in the order in which they are shown.
+const ALL: &[fn(&Evidence) -> Finding] = &[
+    energy::residual,
+    momentum::residual,
+    energy::gain,
+    finite::states,
+    convergence::of_mesh_and_step,
+];
+
+/// The verdict on a run that came to its end (`unfinished` is `None`) or did not (`unfinished` says why).
+pub(crate) fn judge(evidence: &Evidence, unfinished: Option<String>) -> Verdict {
+    let (mut lines, mut unchecked) = (Vec::new(), Vec::new());
+    for line in ALL {
+        match line(evidence) {
+            Finding::Line(line) => lines.push(line),
+            Finding::Unchecked(why) => unchecked.push(why),
+            Finding::Absent => {}
+        }
+    }
+    Verdict::new(unfinished, lines, unchecked)
+}

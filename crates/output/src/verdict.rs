@@ -1,0 +1,167 @@
+//! Whether a result can be relied on: graded lines, each with its number, its bounds and what would put it right.
+
+use serde::{Deserialize, Serialize};
+
+use crate::form::Form;
+
+/// How far something can be relied on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Grade {
+    /// Within its bounds.
+    #[default]
+    Good,
+    /// Somebody should look at it before the result is used.
+    Look,
+    /// Not to be relied on.
+    Bad,
+}
+
+impl Grade {
+    /// In one word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Grade::Good => "good",
+            Grade::Look => "look",
+            Grade::Bad => "bad",
+        }
+    }
+}
+
+/// Bounds of the magnitude of a number, at least one of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bounds {
+    /// Bad above it.
+    Bad(f64),
+    /// To be looked at above it, never bad.
+    Look(f64),
+    /// To be looked at above the first, bad above the second.
+    Both(f64, f64),
+}
+
+impl Bounds {
+    /// The bound of `look` and that of `bad`.
+    fn pair(self) -> [Option<f64>; 2] {
+        match self {
+            Bounds::Bad(bad) => [None, Some(bad)],
+            Bounds::Look(look) => [Some(look), None],
+            Bounds::Both(look, bad) => [Some(look), Some(bad)],
+        }
+    }
+
+    /// The grade of a number; what is not a number is bad.
+    pub fn grade(self, value: f64) -> Grade {
+        let [look, bad] = self
+            .pair()
+            .map(|bound| bound.is_some_and(|bound| value.abs() > bound));
+        match (look, bad || value.is_nan()) {
+            (_, true) => Grade::Bad,
+            (true, false) => Grade::Look,
+            (false, false) => Grade::Good,
+        }
+    }
+}
+
+/// One line of a verdict: a number with its bounds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Line {
+    /// Name for scripts: `energy-residual`.
+    pub name: String,
+    /// Its grade.
+    pub grade: Grade,
+    /// Its number.
+    #[serde(with = "crate::summary::float")]
+    pub value: f64,
+    /// To be looked at above it.
+    pub look: Option<f64>,
+    /// Bad above it.
+    pub bad: Option<f64>,
+    /// What the number is, the number and its bounds, in a sentence.
+    pub sentence: String,
+    /// What would put it right.
+    pub remedy: String,
+}
+
+impl Line {
+    /// The line on `quantity` (a noun phrase) of value `value`, which people read in `form`.
+    pub fn new(
+        name: &str,
+        (quantity, value, form): (&str, f64, Form),
+        bounds: Bounds,
+        remedy: &str,
+    ) -> Line {
+        let [look, bad] = bounds.pair();
+        let of = |word: &str, bound: Option<f64>| {
+            bound.map(|bound| format!("{word} above {}", form.show(bound)))
+        };
+        let told: Vec<String> = [of("look", look), of("bad", bad)]
+            .into_iter()
+            .flatten()
+            .collect();
+        Line {
+            name: name.to_owned(),
+            grade: bounds.grade(value),
+            value,
+            look,
+            bad,
+            sentence: format!("{quantity}: {} ({})", form.show(value), told.join(", ")),
+            remedy: remedy.to_owned(),
+        }
+    }
+
+    /// The sentence, and where something is wrong what would put it right.
+    pub fn text(&self) -> String {
+        match self.grade {
+            Grade::Good => self.sentence.clone(),
+            Grade::Look | Grade::Bad => format!("{}; {}", self.sentence, self.remedy),
+        }
+    }
+}
+
+/// Whether the result can be relied on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// The worst grade of the lines; bad if the run is not complete.
+    pub grade: Grade,
+    /// Why the run is not complete; `None` if it is.
+    pub unfinished: Option<String>,
+    /// What was checked.
+    pub lines: Vec<Line>,
+    /// What could not be checked, and why, one sentence each.
+    pub unchecked: Vec<String>,
+}
+
+impl Verdict {
+    /// The verdict on a run that came to its end (`unfinished` is `None`) or did not (`unfinished` says why).
+    pub fn new(unfinished: Option<String>, lines: Vec<Line>, unchecked: Vec<String>) -> Verdict {
+        let worst = lines.iter().map(|line| line.grade).max();
+        let grade = match unfinished {
+            Some(_) => Grade::Bad,
+            None => worst.unwrap_or_default(),
+        };
+        Verdict {
+            grade,
+            unfinished,
+            lines,
+            unchecked,
+        }
+    }
+
+    /// Makes it that of a run that is not complete, for this reason; an earlier reason stays.
+    pub fn incomplete(&mut self, why: String) {
+        self.grade = Grade::Bad;
+        self.unfinished.get_or_insert(why);
+    }
+
+    /// Why it is not good, the worst first; empty when good.
+    pub fn reasons(&self) -> Vec<String> {
+        let of = |grade: Grade| self.lines.iter().filter(move |line| line.grade == grade);
+        let lines = of(Grade::Bad).chain(of(Grade::Look)).map(Line::text);
+        self.unfinished.iter().cloned().chain(lines).collect()
+    }
+
+    /// The line of this name.
+    pub fn line(&self, name: &str) -> Option<&Line> {
+        self.lines.iter().find(|line| line.name == name)
+    }
+}
