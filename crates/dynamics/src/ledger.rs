@@ -343,6 +343,14 @@ impl Ledger {
         self.hardening = beyond.hardening;
     }
 
+    /// Adds an impulse of supports at the start of the step that [`Ledger::add`] then closes.
+    pub(crate) fn kick(&mut self, impulse: &Resultant) {
+        for i in 0..3 {
+            self.impulses[2][i].add(impulse.linear[i]);
+            self.impulses[2][3 + i].add(impulse.angular[i]);
+        }
+    }
+
     /// Adds a step of length `dt`: works on Δu of loads, contacts and links, squares of the scheme's dissipation, resultants of the forces.
     pub(crate) fn add(
         &mut self,

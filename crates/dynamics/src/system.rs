@@ -149,10 +149,12 @@ impl System {
             }
         }
         let nonlinear = NumberedNonlinear::new(&model, &number, &bodies, &fixed)?;
+        let (mut initial_displacement, initial_velocity) =
+            initial(&model, &body_masses, &fixed, dim);
         for follows in &nonlinear.follows {
             fixed[follows.unknown as usize] = true;
+            initial_displacement[follows.unknown as usize] = 0.0;
         }
-        let (initial_displacement, initial_velocity) = initial(&model, &body_masses, &fixed, dim);
         let mut contacts: Vec<Contact> = model
             .contacts
             .iter()

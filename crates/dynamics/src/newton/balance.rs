@@ -135,7 +135,8 @@ impl Newton {
         let [load, touch, support, inertia, internal, damping] =
             [0, 1, 2, 3, 4, 5].map(|k| way(&means[k]));
         let start = &self.state.ledger.balance;
-        let gained = energies.kinetic - start.kinetic;
+        // what supports that jump give is no inertia of the step
+        let gained = energies.kinetic - start.kinetic - self.jump.work;
         let stored = energies.strain - start.strain + self.stored.hardening - start.hardening;
         let scheme = inertia - gained + internal - stored - self.stored.dissipated;
         let places = [&old.u[..], &new.u[..]];
@@ -152,8 +153,9 @@ impl Newton {
             false => Vec::new(),
         };
         self.next.ledger.clone_from(&self.state.ledger);
+        self.next.ledger.kick(&self.jump.impulse);
         self.next.ledger.go_beyond(&Beyond {
-            work_supports: support,
+            work_supports: support + self.jump.work,
             dissipation_material: self.stored.dissipated,
             dissipation_damping: damping,
             dissipation_friction: -friction,

@@ -22,6 +22,7 @@ mod mixing;
 mod solve;
 mod stable;
 mod start;
+mod supports;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -41,6 +42,7 @@ use effective::Effective;
 use floating::Floating;
 use mixing::Mixing;
 use solve::Pace;
+use supports::Jump;
 
 /// Takes steps of systems that are not linear.
 pub struct Newton {
@@ -71,6 +73,7 @@ pub struct Newton {
     residuals: Vec<f64>,
     pace: Pace,
     mixing: Mixing,
+    jump: Jump,
     failed: Option<InterfaceProblem>,
     state: State,
     next: State,
@@ -145,6 +148,7 @@ impl Newton {
             residuals: Vec::new(),
             pace: Pace::default(),
             mixing: Mixing::default(),
+            jump: Jump::default(),
             failed: None,
             report: StepReport {
                 contacts: vec![ContactReport::default(); system.contacts.len()],
@@ -318,11 +322,15 @@ impl Newton {
         let before = self.phases;
         self.size(dt);
         self.begin_stage()?;
-        self.solve()?;
-        let solved = Instant::now();
-        self.advance()?;
-        self.balance();
-        self.record();
+        let mut solved = begin;
+        self.from_the_jump(|newton| {
+            newton.solve()?;
+            solved = Instant::now();
+            newton.advance()?;
+            newton.balance();
+            newton.record();
+            Ok(())
+        })?;
         self.next
             .motion
             .finite(self.state.step + 1, self.state.time)?;

@@ -13,8 +13,9 @@ use crate::state::empty_state;
 use crate::system::System;
 
 impl Newton {
-    /// Begins anew from another initial motion: displacement in m and velocity in m/s, one entry per unknown; those of
-    /// held unknowns are their prescribed ones whatever is given. With a static stage velocities are those of its end.
+    /// Begins anew from another initial motion: displacement in m and velocity in m/s, one entry per unknown. Held
+    /// unknowns are where their supports are, whatever is given; the velocity of those that move as prescribed is the one
+    /// before the support takes hold of them, in the first step. With a static stage velocities are those of its end.
     ///
     /// # Errors
     /// As [`Newton::new`].
@@ -23,7 +24,12 @@ impl Newton {
         self.state = empty_state(&system);
         self.state.motion.link_force.clone_from(&self.link_force);
         let motion = &mut self.state.motion;
-        for i in (0..system.unknowns()).filter(|&i| !system.fixed[i]) {
+        let follows = system.nonlinear.follows.iter();
+        let prescribed = follows.map(|follows| follows.unknown as usize);
+        for i in (0..system.unknowns())
+            .filter(|&i| !system.fixed[i])
+            .chain(prescribed)
+        {
             motion.u[i] = displacement[i];
             if system.nonlinear.preload.is_none() {
                 motion.v[i] = velocity[i];

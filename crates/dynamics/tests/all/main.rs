@@ -19,6 +19,7 @@ mod quadrature;
 mod refusals;
 mod sliding;
 mod stability;
+mod supports;
 mod trough;
 mod weak_form;
 mod whole;

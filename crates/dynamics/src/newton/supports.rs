@@ -1,0 +1,123 @@
+//! Supports that move: the jump of their velocity at the start of a step.
+//!
+//! A prescribed displacement ū(t) has one rate over a step, its mean `V = (ū₊ - ū)/dt`, with which every scheme has the uniform
+//! motion `u₊ = u + dt V`, `v₊ = V`, `a₊ = 0`. Where V is not the rate before, the held unknowns h jump to it at the start
+//! of the step, and with a consistent mass the free ones f with them:
+//!
+//! `M_ff Δv_f = -M_fh Δv_h`, with the impulse `J = M Δv` of the supports (zero on f) and its work `J · (v + ½ Δv)`, which is
+//! the change of the kinetic energy.
+
+use std::sync::Arc;
+
+use super::Newton;
+use crate::error::Error;
+use crate::ledger::Resultant;
+use crate::operator::Operators;
+use crate::system::System;
+
+/// Jump over what rounding of the displacements leaves in a rate, below which there is none.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// The jump of an attempt at a step.
+#[derive(Default)]
+pub(super) struct Jump {
+    /// Impulse of the supports.
+    pub(super) impulse: Resultant,
+    /// Its work, J.
+    pub(super) work: f64,
+    /// Velocity at the start: before the jump while an attempt is under way, after it otherwise.
+    velocity: Vec<f64>,
+    /// Factor of the mass; none where it is diagonal, or before the first jump.
+    mass: Option<Operators>,
+    change: Vec<f64>,
+    momentum: Vec<f64>,
+}
+
+impl Newton {
+    /// Runs an attempt of this size (s) from the velocity after the jump; the state keeps the one before it.
+    pub(super) fn from_the_jump(
+        &mut self,
+        attempt: impl FnOnce(&mut Newton) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        if !self.jump()? {
+            return attempt(self);
+        }
+        std::mem::swap(&mut self.state.motion.v, &mut self.jump.velocity);
+        let outcome = attempt(self);
+        std::mem::swap(&mut self.state.motion.v, &mut self.jump.velocity);
+        outcome
+    }
+
+    /// Computes the jump at the start of the step; tells whether there is one.
+    fn jump(&mut self) -> Result<bool, Error> {
+        let system = Arc::clone(&self.system);
+        let (motion, dt, jump) = (&self.state.motion, self.dt, &mut self.jump);
+        (jump.impulse, jump.work) = (Resultant::default(), 0.0);
+        if self.map.inertia.x == 0.0 || system.nonlinear.follows.is_empty() {
+            return Ok(false);
+        }
+        let n = system.unknowns();
+        jump.change.clear();
+        jump.change.resize(n, 0.0);
+        jump.momentum.resize(n, 0.0);
+        let end = &mut jump.momentum;
+        system.nonlinear.prescribe(self.state.time + dt, end);
+        let mut jumps = false;
+        for follows in &system.nonlinear.follows {
+            let i = follows.unknown as usize;
+            let change = (end[i] - motion.u[i]) / dt - motion.v[i];
+            let rounding = ROUNDING * (end[i].abs() + motion.u[i].abs()) / dt;
+            if change.abs() > rounding {
+                jump.change[i] = change;
+                jumps = true;
+            }
+        }
+        if jumps {
+            jump.carry_along(&system)?;
+            jump.add_up(&system, motion);
+        }
+        Ok(jumps)
+    }
+}
+
+impl Jump {
+    /// Completes the change of the velocity by that of the free unknowns, and finds the impulse.
+    fn carry_along(&mut self, system: &System) -> Result<(), Error> {
+        system.mass.multiply(&self.change, &mut self.momentum);
+        if system.mass.consistent.is_none() {
+            return Ok(());
+        }
+        let mut mass = match self.mass.take() {
+            Some(mass) => mass,
+            None => Operators::new(system, 1.0, 0.0, "mass matrix")?,
+        };
+        for (p, fixed) in self.momentum.iter_mut().zip(&system.fixed) {
+            *p = if *fixed { 0.0 } else { -*p };
+        }
+        let mut half = vec![0.0; self.momentum.len()];
+        let mut carried = vec![0.0; self.momentum.len()];
+        mass.begin(&self.momentum, &mut half);
+        mass.end(&mut half, &mut carried);
+        self.mass = Some(mass);
+        for (i, change) in self.change.iter_mut().enumerate() {
+            if !system.fixed[i] {
+                *change = carried[i];
+            }
+        }
+        system.mass.multiply(&self.change, &mut self.momentum);
+        Ok(())
+    }
+
+    /// Impulse and work of the supports, and the velocity after the jump.
+    fn add_up(&mut self, system: &System, motion: &crate::state::Motion) {
+        self.velocity.clone_from(&motion.v);
+        for (i, p) in self.momentum.iter_mut().enumerate() {
+            if !system.fixed[i] {
+                *p = 0.0;
+            }
+            self.work += *p * (motion.v[i] + 0.5 * self.change[i]);
+            self.velocity[i] += self.change[i];
+        }
+        self.impulse = Resultant::at(system, &[&motion.u], &self.momentum);
+    }
+}
