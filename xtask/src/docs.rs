@@ -1,13 +1,14 @@
 //! The documentation: links that lead somewhere, included files that exist, pages that the book lists, paths and
 //! commands that are true.
 //!
-//! Markdown is read as far as this needs: fenced blocks, code spans, inline links, headings, `{{#include}}`.
+//! Markdown is read as far as this needs: fenced blocks, code spans, inline links, headings, included files (`pages`).
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use crate::files::{is, list};
+use crate::pages;
 use crate::{RUN, TEST};
 
 /// Folder of the book's pages.
@@ -25,7 +26,7 @@ const COMMANDS: [&str; 2] = ["README.md", ".ci/run"];
 struct Page {
     /// Targets of links.
     links: Vec<String>,
-    /// Files of `{{#include}}`.
+    /// Files that it includes.
     includes: Vec<String>,
     /// Code spans.
     codes: Vec<String>,
@@ -48,16 +49,7 @@ pub fn check(root: &Path) -> Vec<String> {
         .iter()
         .flat_map(|(file, page)| page.includes.iter().map(|target| beside(file, target)))
         .collect();
-    let mut problems: Vec<String> = included
-        .iter()
-        .filter(|file| !root.join(file).is_file())
-        .map(|file| {
-            format!(
-                "{}: a page includes it, but it is not there",
-                file.display()
-            )
-        })
-        .collect();
+    let mut problems = pages::check(root);
     for (file, page) in &pages {
         let wrong = page
             .links
@@ -85,9 +77,8 @@ fn parse(text: &str) -> Page {
     let mut page = Page::default();
     let mut fenced = false;
     for line in text.lines() {
-        for rest in line.split("{{#include ").skip(1) {
-            let target = rest.split(['}', ':']).next().unwrap_or_default();
-            page.includes.push(target.trim().to_owned());
+        if let Some(target) = pages::included(line) {
+            page.includes.push(target.to_owned());
         }
         if line.trim_start().starts_with("```") {
             fenced = !fenced;
@@ -131,7 +122,7 @@ fn anchor(title: &str) -> String {
 }
 
 /// The path of `target` as seen from `file`, without `.` and `..`.
-fn beside(file: &Path, target: &str) -> PathBuf {
+pub fn beside(file: &Path, target: &str) -> PathBuf {
     let mut path = PathBuf::new();
     for part in file
         .parent()
@@ -170,16 +161,7 @@ fn link_problem(root: &Path, file: &Path, link: &str, included: bool) -> Option<
     if fragment.is_empty() {
         return None;
     }
-    let page = read(root, &path);
-    let inner = page
-        .includes
-        .iter()
-        .map(|target| read(root, &beside(&path, target)));
-    let anchors: BTreeSet<String> = inner
-        .flat_map(|inner| inner.anchors)
-        .chain(page.anchors)
-        .collect();
-    (!anchors.contains(fragment)).then(|| {
+    (!read(root, &path).anchors.contains(fragment)).then(|| {
         format!(
             "links to {link}, but {} has no such heading",
             path.display()
@@ -257,7 +239,7 @@ mod tests {
     #[test]
     fn links_includes_and_code_are_told_apart() {
         let page = parse(
-            "# A `b` c\n[x](a.md#b) and `[y](no.md)`\n```\n[z](no.md)\n{{#include ../c.toml}}\n```\n",
+            "# A `b` c\n[x](a.md#b) and `[y](no.md)`\n<!-- include ../c.toml -->\n```\n[z](no.md)\n```\n<!-- end -->\n",
         );
         assert_eq!(page.links, ["a.md#b"]);
         assert_eq!(page.includes, ["../c.toml"]);

@@ -1,5 +1,5 @@
 //! The project's checks: `cargo xtask check` is what a contributor runs before a commit and what CI runs. `cargo xtask
-//! chapter` makes the measured tables of the manual anew.
+//! chapter` makes the measured tables of the manual anew, `cargo xtask pages` the texts that pages include.
 //!
 //! Quick things first: what the repository holds (`files`), the documentation (`docs`), who uses whom (`layers`), format,
 //! lints, pages of the API, one build of the dependencies for all commands (`builds`), then the README's test command.
@@ -12,6 +12,7 @@ mod chapter;
 mod docs;
 mod files;
 mod layers;
+mod pages;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -44,20 +45,25 @@ fn main() -> ExitCode {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     match arguments.first().map(String::as_str) {
         Some("check") => check(&root, &arguments[1..]),
-        Some("chapter") => match chapter::write(&root) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => {
-                eprintln!("error: {error}");
-                ExitCode::FAILURE
-            }
-        },
+        Some("chapter") => written(chapter::write(&root)),
+        Some("pages") => written(pages::write(&root)),
         _ => {
             let names: Vec<&str> = CHECKS.iter().map(|(name, _)| *name).collect();
             eprintln!(
-                "usage: cargo xtask check [NAME]... | chapter\nchecks: {}",
+                "usage: cargo xtask check [NAME]... | chapter | pages\nchecks: {}",
                 names.join(", ")
             );
             ExitCode::from(2)
+        }
+    }
+}
+
+fn written(outcome: Result<(), String>) -> ExitCode {
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
         }
     }
 }

@@ -358,11 +358,11 @@ fn every_key_of_the_schema_is_described_and_stands_in_the_manual() {
 
 #[test]
 fn the_manual_holds_the_page_that_the_schema_gives() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/reference.md");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/src/reference.md");
     let page = std::fs::read_to_string(path).unwrap();
     assert!(
         page == reference_page(),
-        "docs/reference.md is out of date: carom schema --reference > docs/reference.md"
+        "docs/src/reference.md is out of date: carom schema --reference > docs/src/reference.md"
     );
 }
 
