@@ -84,8 +84,8 @@ fn conclude(
     let kept = match run.failed_problem() {
         Some(problem) => {
             let text =
-                serde_json::to_string_pretty(problem).unwrap_or_else(|cause| cause.to_string());
-            results.attach(&format!("interface-{}.json", problem.step), &text)
+                serde_json::to_string_pretty(&problem).unwrap_or_else(|cause| cause.to_string());
+            results.attach(&format!("interface-{}.json", problem.step()), &text)
         }
         None => Ok(()),
     };

@@ -1,5 +1,8 @@
 //! The loop over the steps.
 
+use serde::Serialize;
+
+use crate::coulomb::FrictionProblem;
 use crate::driver::{Costs, Driver};
 use crate::error::Error;
 use crate::interface::InterfaceProblem;
@@ -26,8 +29,28 @@ pub trait Stepper {
     fn saved(&self) -> Result<Vec<u8>, Error>;
     /// What the run cost so far.
     fn costs(&self) -> Costs;
-    /// The interface problem that made the last step fail.
-    fn failed_problem(&self) -> Option<&InterfaceProblem>;
+    /// The contact problem that made the last step fail.
+    fn failed_problem(&self) -> Option<FailedProblem<'_>>;
+}
+
+/// The contact problem of a step that failed.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(untagged)]
+pub enum FailedProblem<'a> {
+    /// Normal forces alone.
+    Normal(&'a InterfaceProblem),
+    /// With friction.
+    Friction(&'a FrictionProblem),
+}
+
+impl FailedProblem<'_> {
+    /// Number of the step.
+    pub fn step(&self) -> u64 {
+        match self {
+            FailedProblem::Normal(problem) => problem.step,
+            FailedProblem::Friction(problem) => problem.step,
+        }
+    }
 }
 
 impl Stepper for Driver {
@@ -55,8 +78,8 @@ impl Stepper for Driver {
         self.costs()
     }
 
-    fn failed_problem(&self) -> Option<&InterfaceProblem> {
-        self.failed_problem()
+    fn failed_problem(&self) -> Option<FailedProblem<'_>> {
+        self.failed_problem().map(FailedProblem::Normal)
     }
 }
 

@@ -93,6 +93,8 @@ pub struct FrictionProblem {
     pub compliance: Vec<f64>,
     /// Factors [s_g, s_v, s_t] of D p in the gap, in the rate, and in the sliding quantity.
     pub factors: [f64; 3],
+    /// Defect over the largest force with which forces are taken where no nearer ones are found.
+    pub tolerance: f64,
 }
 
 /// Solution of a problem with friction.
@@ -137,11 +139,13 @@ impl FrictionProblem {
             tangents: self.tangents,
             d: &self.compliance,
             s: self.factors,
+            tolerance: self.tolerance,
         }
     }
 }
 
-/// Largest defect of a solution, relative to the terms that should balance.
+/// Largest defect of a solution, relative to the terms that should balance in its candidate. Passes go on to it where they
+/// can; where they bring nothing more, [`Posed::tolerance`] decides.
 const TOLERANCE: f64 = 1e-12;
 /// Newton passes without progress before sweeps.
 const PATIENCE: usize = 10;
@@ -195,6 +199,10 @@ impl Coulomb {
                 return Ok(());
             }
             self.trial = self.best.clone();
+            if self.trial.is_near(problem) {
+                self.finish(problem);
+                return Ok(());
+            }
             for _ in 0..SWEEPS << round {
                 sweep::sweep(problem, &mut self.trial);
             }
@@ -202,7 +210,7 @@ impl Coulomb {
             self.trial.measure(problem, &self.reversals);
             self.best = self.trial.clone();
         }
-        if self.best.worst.0 <= TOLERANCE {
+        if self.trial.worst.0 <= TOLERANCE || self.trial.is_near(problem) {
             self.finish(problem);
             return Ok(());
         }

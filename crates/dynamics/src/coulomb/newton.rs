@@ -17,9 +17,9 @@ const REFINEMENTS: usize = 6;
 ///
 /// Points that are open lose their forces at once. In a point that slips, with Π = I - e eᵀ and c = b/|t - ρ q|,
 /// ```text
-/// δt - μ e δP - c Π (δt - ρ s_t D_t δp) = -(t - μ e P)
+/// δt - μ e δP - c Π M (δt - ρ s_t D_t δp) = -(t - μ e P)
 /// ```
-/// where b = μ (P - R) is replaced by the μ P to which it is equal once R = 0.
+/// with M the projector on the tangents that no support holds, where b = μ (P - R) is replaced by the μ P to which it is equal once R = 0.
 pub(super) fn step(
     problem: &Posed,
     trial: &Trial,
@@ -81,25 +81,26 @@ fn equation(problem: &Posed, trial: &Trial, row: usize, line: &mut [f64]) -> f64
         return trial.defects[row];
     }
     let factor = problem.weight(i) * problem.s[2];
-    if trial.slips[i] == Slip::Stick {
-        set(line, factor, problem.d(row));
-        return trial.defects[row];
-    }
-    let (normal, e, mu) = (
-        problem.normal(i),
-        trial.directions[i],
-        problem.friction[i].mu,
-    );
+    let (normal, mobile) = (problem.normal(i), problem.mobile(i));
+    let (e, mu) = (trial.directions[i], problem.friction[i].mu);
+    let sticks = trial.slips[i] == Slip::Stick;
     line.fill(0.0);
     for l in 1..=problem.tangents {
         let unit = if l == k { 1.0 } else { 0.0 };
-        let projection = trial.curvatures[i] * (unit - e[k - 1] * e[l - 1]);
+        let along = e[0] * mobile[0][l - 1] + e[1] * mobile[1][l - 1];
+        let projection = match sticks {
+            true => mobile[k - 1][l - 1],
+            false => trial.curvatures[i] * (mobile[k - 1][l - 1] - e[k - 1] * along),
+        };
         if projection != 0.0 {
             for (line, d) in line.iter_mut().zip(problem.d(normal + l)) {
                 *line += projection * factor * d;
             }
         }
         line[normal + l] += unit - projection;
+    }
+    if sticks {
+        return trial.defects[row];
     }
     line[normal] -= mu * e[k - 1];
     trial.p[row] - mu * e[k - 1] * trial.p[normal]

@@ -2,6 +2,10 @@
 
 use carom_contact::law::{End, Relation, Status};
 
+/// Mobility over that of the whole candidate up to which a direction counts as held, and the square of the part of the
+/// sliding that may be along it.
+const HELD: f64 = 1e-9;
+
 use super::Tangential;
 use crate::interface::Candidate;
 
@@ -19,6 +23,8 @@ pub(crate) struct Posed<'a> {
     pub(crate) d: &'a [f64],
     /// [s_g, s_v, s_t], the factors of D p in the gap, in the rate, and in the sliding quantity.
     pub(crate) s: [f64; 3],
+    /// Defect over the largest force with which forces are taken where no nearer ones are found.
+    pub(crate) tolerance: f64,
 }
 
 impl<'a> Posed<'a> {
@@ -84,6 +90,49 @@ impl<'a> Posed<'a> {
         if slope > 0.0 { 1.0 / slope } else { 1.0 }
     }
 
+    /// Projector on the tangents along which forces of candidate `i` move it while its normal relation holds.
+    ///
+    /// A node on a plane of symmetry moves in that plane alone. Its rows of D are then dependent, but for what rounding of
+    /// places leaves, and tangential forces across the plane, which the support takes, are not decided by anything. They
+    /// are zero here. With S the tangential block of D less what the normal force takes back,
+    /// `S = D_tt - f D_tn D_nt / (f D_nn + compliance)`, held are eigenvectors of S of (nearly) no mobility along which
+    /// there is no sliding either: a surface whose motion is prescribed slides, and has friction.
+    pub(super) fn mobile(&self, i: usize) -> [[f64; 2]; 2] {
+        let row = self.normal(i);
+        let relation = self.relation(i, Status::Closed);
+        let back = self.factor(&relation) / self.slope(i, &relation);
+        let pressed = self.s[2] * self.free(i, &relation) / self.slope(i, &relation);
+        let (mut s, mut sliding, mut size, mut trace) = ([[0.0; 2]; 2], [0.0; 2], 0.0, 0.0);
+        for k in 0..self.tangents {
+            let d = self.d(row + 1 + k);
+            for l in 0..self.tangents {
+                s[k][l] = d[row + 1 + l] - back * d[row] * self.d(row)[row + 1 + l];
+            }
+            let free = self.friction[i].free[k];
+            sliding[k] = free - pressed * d[row];
+            size += free.powi(2) + (pressed * d[row]).powi(2);
+            trace += d[row + 1 + k];
+        }
+        let least = HELD * (trace + self.d(row)[row]);
+        let slides = |along: f64| along.powi(2) > HELD * size;
+        let mut mobile = [[1.0, 0.0], [0.0, 1.0]];
+        if least == 0.0 {
+            return mobile;
+        }
+        for (value, vector) in eigen(&s, self.tangents) {
+            let along = vector[0] * sliding[0] + vector[1] * sliding[1];
+            if value > least || slides(along) {
+                continue;
+            }
+            for k in 0..2 {
+                for l in 0..2 {
+                    mobile[k][l] -= vector[k] * vector[l];
+                }
+            }
+        }
+        mobile
+    }
+
     /// End of the step in candidate `i` with the force `force`, with (D p)_n in all, and without its own forces.
     pub(super) fn end(&self, i: usize, force: f64, product: f64, others: f64) -> End {
         let candidate = &self.candidates[i];
@@ -102,4 +151,19 @@ impl<'a> Posed<'a> {
             .map(|column| self.d(row)[column] * p[column])
             .sum()
     }
+}
+
+/// Eigenvalues and unit eigenvectors of a symmetric matrix of `n` rows, one or two.
+fn eigen(s: &[[f64; 2]; 2], n: usize) -> impl Iterator<Item = (f64, [f64; 2])> {
+    let (mean, half) = (0.5 * (s[0][0] + s[1][1]), 0.5 * (s[0][0] - s[1][1]));
+    let radius = half.hypot(s[0][1]);
+    let angle = 0.5 * s[0][1].atan2(half);
+    let pairs = match n {
+        1 => [(s[0][0], [1.0, 0.0]), (f64::INFINITY, [0.0; 2])],
+        _ => [
+            (mean + radius, [angle.cos(), angle.sin()]),
+            (mean - radius, [-angle.sin(), angle.cos()]),
+        ],
+    };
+    pairs.into_iter()
 }

@@ -75,6 +75,7 @@ fn closed(problem: &Posed, i: usize, relation: &Relation, others: &[f64; 3]) -> 
                 _ => point.free[k - 1],
             };
     }
+    hold(&problem.mobile(i), scale, (&mut a, &mut rhs));
     a[0][0] += relation.compliance;
     let frictionless = [rhs[0] / problem.slope(i, relation), 0.0, 0.0];
     if point.mu == 0.0 {
@@ -109,6 +110,20 @@ fn closed(problem: &Posed, i: usize, relation: &Relation, others: &[f64; 3]) -> 
     match low > 0.0 {
         true => at(scale * (1.0 - low) / low),
         false => frictionless,
+    }
+}
+
+/// Replaces the equations of tangents that supports hold by those of no force there.
+fn hold(mobile: &[[f64; 2]; 2], scale: f64, (a, rhs): (&mut [[f64; 3]; 3], &mut [f64; 3])) {
+    let (full, right) = (*a, *rhs);
+    for k in 0..2 {
+        let [first, second] = mobile[k];
+        for l in 0..3 {
+            let unit = if l == k + 1 { 1.0 } else { 0.0 };
+            let held = if l == 0 { 0.0 } else { unit - mobile[k][l - 1] };
+            a[k + 1][l] = first * full[1][l] + second * full[2][l] + scale * held;
+        }
+        rhs[k + 1] = first * right[1] + second * right[2];
     }
 }
 

@@ -12,7 +12,8 @@ use super::{Posed, Slip};
 /// stick, |t - ρ q| <= b:   ρ q = 0
 /// slip,  |t - ρ q| > b:    t - b e = 0,   e = (t - ρ q)/|t - ρ q|,   b = μ (P - R)
 /// ```
-/// of which the second is t less the projection of t - ρ q on the disc of radius b. For laws that are complementarity of
+/// of which the second is t less the projection of t - ρ q on the disc of radius b. Where supports hold a tangent
+/// ([`Posed::mobile`]), t - ρ q is its part along the others. For laws that are complementarity of
 /// the force and one quantity the defects are continuous in the forces.
 #[derive(Clone, Default)]
 pub(super) struct Trial {
@@ -69,9 +70,10 @@ impl Trial {
             }
             let row = problem.normal(i);
             self.defects[row] = self.relation_defect(problem, i, &mut 0.0);
-            let weight = problem.weight(i);
+            let (weight, mobile) = (problem.weight(i), problem.mobile(i));
             for k in 0..problem.tangents {
-                self.defects[row + 1 + k] = weight * point.free[k];
+                let slid = mobile[k][0] * point.free[0] + mobile[k][1] * point.free[1];
+                self.defects[row + 1 + k] = weight * slid;
             }
         }
     }
@@ -110,6 +112,13 @@ impl Trial {
                 }
             }
         }
+    }
+
+    /// Whether no defect is larger than the tolerance that was asked for, of the largest force. A candidate that hardly
+    /// carries anything may be far from its laws in its own measure, and no step is the better for more.
+    pub(super) fn is_near(&self, problem: &Posed) -> bool {
+        let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        self.worst.0.is_finite() && largest(&self.defects) <= problem.tolerance * largest(&self.p)
     }
 
     /// Status and defect of the normal; P - R, zero in an open point.
@@ -158,6 +167,7 @@ impl Trial {
             y[k] = t[k] - weight * (point.free[k] + problem.s[2] * self.product[row + k]);
             sizes[k] = t[k].abs() + weight * (point.free[k].abs() + problem.s[2] * sizes[k]);
         }
+        let y = problem.mobile(i).map(|row| row[0] * y[0] + row[1] * y[1]);
         let (bound, size) = (point.mu * pressed.max(0.0), y[0].hypot(y[1]));
         self.curvatures[i] = 0.0;
         self.slips[i] = if self.statuses[i] == Status::Open {

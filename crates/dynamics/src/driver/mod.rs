@@ -131,8 +131,10 @@ pub struct Phases {
     pub forces: Duration,
     /// Forward and backward sweeps of the free motion and the correction.
     pub sweeps: Duration,
-    /// Pairing, columns, interface problem.
+    /// Pairing, columns, interface problem without friction.
     pub contact: Duration,
+    /// Columns and interface problem of contacts with friction.
+    pub friction: Duration,
     /// Balance, records, vector updates.
     pub balance: Duration,
 }
@@ -181,6 +183,7 @@ impl Costs {
         phases.forces += its.forces;
         phases.sweeps += its.sweeps;
         phases.contact += its.contact;
+        phases.friction += its.friction;
         phases.balance += its.balance;
     }
 

@@ -5,12 +5,13 @@
 //! in a closed contact a rigid rotation gives no slip.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use carom_contact::Contact;
 use carom_contact::law::{Level, Status};
 
 use super::Newton;
-use crate::coulomb::{FrictionFailure, Posed, Slip, Tangential};
+use crate::coulomb::{FrictionFailure, FrictionProblem, Posed, Slip, Tangential};
 use crate::driver::on_row;
 use crate::error::Error;
 use crate::state::ContactReport;
@@ -135,6 +136,7 @@ impl Newton {
         let Some((operators, compliance)) = self.effective.both() else {
             return Ok(());
         };
+        let begin = Instant::now();
         compliance.update(&stacked, &self.stacked, &system.fixed, operators);
         let posed = Posed {
             candidates: &self.candidate_data,
@@ -142,8 +144,13 @@ impl Newton {
             tangents,
             d: &compliance.matrix,
             s,
+            tolerance: system.nonlinear.iteration.tolerance,
         };
-        if let Err(failure) = self.coulomb.solve(&posed) {
+        let solved = self.coulomb.solve(&posed);
+        self.phases.friction += begin.elapsed();
+        if let Err(failure) = solved {
+            let compliance = posed.d.to_vec();
+            self.keep_failed(friction, compliance, s);
             return Err(self.friction_error(failure));
         }
         let interface = &mut self.next.interface;
@@ -165,6 +172,21 @@ impl Newton {
         }
         self.end_iteration();
         Ok(())
+    }
+
+    /// Keeps the problem that was not solved.
+    fn keep_failed(&mut self, friction: Vec<Tangential>, compliance: Vec<f64>, factors: [f64; 3]) {
+        let name = |&point: &u32| self.name(point as usize);
+        self.failed_friction = Some(FrictionProblem {
+            step: self.state.step + 1,
+            names: self.candidates.iter().map(name).collect(),
+            candidates: self.candidate_data.clone(),
+            friction,
+            tangents: self.system.tangents(),
+            compliance,
+            factors,
+            tolerance: self.system.nonlinear.iteration.tolerance,
+        });
     }
 
     fn friction_error(&self, failure: FrictionFailure) -> Error {

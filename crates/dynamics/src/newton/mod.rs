@@ -30,11 +30,11 @@ use std::time::Instant;
 use carom_bodies::{Placement, Scratch, Stored};
 use carom_contact::{Pairing, Rows, Search};
 
-use crate::coulomb::{Coulomb, Slip};
+use crate::coulomb::{Coulomb, FrictionProblem, Slip};
 use crate::driver::{Costs, Phases, WeakForms, WithWeak};
 use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
-use crate::march::Stepper;
+use crate::march::{FailedProblem, Stepper};
 use crate::state::{ContactReport, State, StepReport, empty_state};
 use crate::step_map::StepMap;
 use crate::system::System;
@@ -75,6 +75,7 @@ pub struct Newton {
     mixing: Mixing,
     jump: Jump,
     failed: Option<InterfaceProblem>,
+    failed_friction: Option<FrictionProblem>,
     state: State,
     next: State,
     report: StepReport,
@@ -150,6 +151,7 @@ impl Newton {
             mixing: Mixing::default(),
             jump: Jump::default(),
             failed: None,
+            failed_friction: None,
             report: StepReport {
                 contacts: vec![ContactReport::default(); system.contacts.len()],
                 ..StepReport::default()
@@ -284,7 +286,6 @@ impl Newton {
         self.next.time = end;
         control.pace = self.pace.fresh;
         self.next.control = control;
-        self.failed = None;
         std::mem::swap(&mut self.state, &mut self.next);
         self.tell(size);
         Ok(())
@@ -318,27 +319,34 @@ impl Newton {
 
     /// Computes the next state from the state, a step of `dt` further.
     fn attempt(&mut self, dt: f64) -> Result<(), Error> {
-        let begin = Instant::now();
-        let before = self.phases;
+        (self.failed, self.failed_friction) = (None, None);
         self.size(dt);
         self.begin_stage()?;
-        let mut solved = begin;
         self.from_the_jump(|newton| {
-            newton.solve()?;
-            solved = Instant::now();
+            newton.solve_on_the_clock()?;
+            let (solved, forces) = (Instant::now(), newton.phases.forces);
             newton.advance()?;
             newton.balance();
             newton.record();
+            let forces = newton.phases.forces - forces;
+            newton.phases.balance += solved.elapsed().saturating_sub(forces);
             Ok(())
         })?;
         self.next
             .motion
-            .finite(self.state.step + 1, self.state.time)?;
-        self.phases.balance += solved.elapsed();
-        let counted = |phases: &Phases| phases.factorisation + phases.forces + phases.sweeps;
-        let other = (solved - begin).saturating_sub(counted(&self.phases) - counted(&before));
-        self.phases.contact += other;
-        Ok(())
+            .finite(self.state.step + 1, self.state.time)
+    }
+
+    /// Solves, and counts as contact the time that is not counted elsewhere; that of attempts that fail too.
+    fn solve_on_the_clock(&mut self) -> Result<(), Error> {
+        let (begin, before) = (Instant::now(), self.phases);
+        let solved = self.solve();
+        let counted = |phases: &Phases| {
+            phases.factorisation + phases.forces + phases.sweeps + phases.friction
+        };
+        let counted = counted(&self.phases) - counted(&before);
+        self.phases.contact += begin.elapsed().saturating_sub(counted);
+        solved
     }
 
     /// Internal forces of all bodies where `place` says, into `out`; histories into the scratch history.
@@ -415,7 +423,9 @@ impl Stepper for Newton {
         self.costs()
     }
 
-    fn failed_problem(&self) -> Option<&InterfaceProblem> {
-        self.failed.as_ref()
+    fn failed_problem(&self) -> Option<FailedProblem<'_>> {
+        let friction = self.failed_friction.as_ref();
+        let normal = self.failed.as_ref().map(FailedProblem::Normal);
+        normal.or(friction.map(FailedProblem::Friction))
     }
 }

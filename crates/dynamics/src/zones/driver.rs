@@ -6,8 +6,7 @@ use super::origin::Origin;
 use crate::driver::linked::LinkRow;
 use crate::driver::{Costs, Driver};
 use crate::error::Error;
-use crate::interface::InterfaceProblem;
-use crate::march::Stepper;
+use crate::march::{FailedProblem, Stepper};
 use crate::newton::Newton;
 use crate::state::{State, StepReport};
 use crate::system::System;
@@ -59,8 +58,8 @@ impl ZoneDriver {
         either!(self, driver => driver.costs())
     }
 
-    pub(super) fn failed_problem(&self) -> Option<&InterfaceProblem> {
-        either!(self, driver => driver.failed_problem())
+    pub(super) fn failed_problem(&self) -> Option<FailedProblem<'_>> {
+        either!(self, driver => Stepper::failed_problem(&**driver))
     }
 
     pub(super) fn restart(&mut self, u: &[f64], v: &[f64]) -> Result<(), Error> {

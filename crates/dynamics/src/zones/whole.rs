@@ -14,9 +14,8 @@ use super::{Zoned, Zones, ZonesState};
 use crate::control::Control;
 use crate::driver::Costs;
 use crate::error::Error;
-use crate::interface::InterfaceProblem;
 use crate::ledger::{Balance, Ledger};
-use crate::march::Stepper;
+use crate::march::{FailedProblem, Stepper};
 use crate::records::{ContactRecord, Records};
 use crate::state::{ContactReport, ContactSample, Motion, State, StepReport, empty_state};
 use crate::system::System;
@@ -416,7 +415,7 @@ impl Stepper for Whole {
         costs
     }
 
-    fn failed_problem(&self) -> Option<&InterfaceProblem> {
+    fn failed_problem(&self) -> Option<FailedProblem<'_>> {
         self.zones
             .drivers
             .iter()

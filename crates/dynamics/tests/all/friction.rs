@@ -295,3 +295,11 @@ fn a_block_pressed_on_a_rough_plane_sticks_inside_and_slips_at_its_edges_alike()
     // what the sides pull cancels
     assert!(newton.report().contacts[0].friction < 1e-8 * total);
 }
+
+#[test]
+fn the_time_of_the_problems_with_friction_is_counted() {
+    let mut newton = turned(Integration::Node, [100.0, 300.0]);
+    newton.step().unwrap();
+    let phases = newton.costs().phases;
+    assert!(phases.friction > std::time::Duration::ZERO);
+}

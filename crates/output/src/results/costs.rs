@@ -47,6 +47,7 @@ pub(super) fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f6
         ("internal forces", phases.forces),
         ("triangular sweeps", phases.sweeps),
         ("contact", phases.contact),
+        ("friction", phases.friction),
         ("balance", phases.balance),
         ("output", results.totals.spent),
     ];
@@ -54,7 +55,8 @@ pub(super) fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f6
         .map(|(name, time)| (name.to_owned(), time.as_secs_f64()))
         .into();
     if results.last.step > 0 {
-        let steps = phases.forces + phases.sweeps + phases.contact + phases.balance;
+        let steps =
+            phases.forces + phases.sweeps + phases.contact + phases.friction + phases.balance;
         let per_step = steps.as_secs_f64() / results.last.step as f64;
         timings.insert("per step".to_owned(), per_step);
     }
