@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_contact::{Places, Rows, Search};
+use carom_contact::{Contact, Integration, Places, Rows, Search, Sliding, Target};
 use carom_dynamics::{LinkKind, ModelLink, ModelZone, System, Zoned, step_count};
 
 use crate::build::Built;
@@ -186,11 +186,16 @@ pub(crate) struct Approach {
 }
 
 pub(crate) fn approach(system: &System, contact: usize) -> Approach {
+    approach_from(system, contact, &system.initial_displacement)
+}
+
+/// The same from another displacement, m.
+pub(crate) fn approach_from(system: &System, contact: usize, u: &[f64]) -> Approach {
     let places = Places {
         dim: system.dim,
         time: 0.0,
         x: &system.x,
-        u: &system.initial_displacement,
+        u,
     };
     let mut rows = Rows::default();
     rows.clear();
@@ -215,13 +220,53 @@ pub(crate) fn approach(system: &System, contact: usize) -> Approach {
 
 fn contact_facts(system: &System, contact: usize) -> String {
     let approach = approach(system, contact);
-    let law = system.contacts[contact].law.get().name();
+    let pair = &system.contacts[contact];
+    let law = pair.law.get().name();
+    let sliding = match pair.sliding {
+        Sliding::Small => "small",
+        Sliding::Finite => "finite",
+    };
+    let gap = match approach.gap.is_finite() {
+        true => format!("least gap {:.4e} m", approach.gap),
+        false => "nothing opposite at the start".to_string(),
+    };
     let impact = match approach.impact.is_finite() {
         true => format!("first possible impact at {:.4e} s", approach.impact),
         false => "nothing approaches at the start".to_string(),
     };
     format!(
-        "{law} law, {} points, least gap {:.4e} m, {impact}",
-        approach.points, approach.gap
+        "{law} law, {} points {}, {sliding} sliding, {gap}, {impact}{}",
+        approach.points,
+        where_it_holds(system, contact),
+        touching(pair)
     )
+}
+
+/// Where the law of a contact holds, and whether its faces are quadratic, which decides the default.
+fn where_it_holds(system: &System, contact: usize) -> String {
+    let pair = &system.contacts[contact];
+    let place = match pair.integration {
+        Integration::Node => "at nodes",
+        Integration::Points => "at Gauss points",
+        Integration::Weak { .. } => "at Gauss points in the weak form",
+        Integration::Mortar { .. } => "by mortar",
+    };
+    let primary = match &pair.target {
+        Target::Surface(faces) => &faces[..],
+        Target::Rigid(_) => &[],
+    };
+    let mut faces = system.secondary_faces[contact].iter().chain(primary);
+    match faces.any(|face| face.kind.table().is_quadratic()) {
+        true => format!("{place} (quadratic faces)"),
+        false => place.to_string(),
+    }
+}
+
+/// Mean gaps that count from where they are.
+fn touching(pair: &Contact) -> String {
+    let deepest = pair.offsets.iter().copied().fold(0.0, f64::max);
+    match deepest > 0.0 {
+        true => format!(", mean gaps down to -{deepest:.4e} m at the start count as none"),
+        false => String::new(),
+    }
 }

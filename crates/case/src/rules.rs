@@ -143,7 +143,7 @@ fn check_vectors(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
 
 /// An r that is only given for another law.
 fn check_r(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
-    let Integration::With(IntegrationWith::Quadrature(given)) = contact.integration else {
+    let Some(Integration::With(IntegrationWith::Quadrature(given))) = contact.integration else {
         return;
     };
     let used = match &contact.law {

@@ -1,6 +1,6 @@
 //! Surfaces that overlap before anything has moved, and what is done about it.
 
-use crate::{Contact, Places, Rows, Search};
+use crate::{Contact, Pairing, Places, Search};
 
 /// What is done about points that penetrate at the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -8,7 +8,10 @@ pub enum Initial {
     /// Nothing: the law pushes them out.
     #[default]
     Keep,
-    /// The model is refused.
+    /// Where surfaces touch, negative mean gaps of multipliers count from where they are ([`Contact::offset_touching`]). What
+    /// penetrates is kept: the caller refuses it.
+    Touch,
+    /// The model is refused, but not for surfaces that touch.
     Refuse,
     /// Their gaps count from where they are: the overlap stays and carries no force ([`Contact::offsets`]).
     Offset,
@@ -30,27 +33,50 @@ pub struct Penetration {
 }
 
 impl Contact {
-    /// The points deeper than `slack` (m) at a configuration, in their order.
+    /// The points that penetrate by more than `slack` (m) at a configuration, in their order.
+    ///
+    /// The gap of a multiplier of the dual basis is a mean with weights of both signs: of surfaces that touch and part as
+    /// x²/2R over faces of length h it is -h²/12R at the node that touches. A multiplier therefore penetrates only where a
+    /// place of the surface that it averages over does ([`Contact::offset_touching`] for the others).
     pub fn penetrations(&self, places: &Places, slack: f64) -> Vec<Penetration> {
-        let mut rows = Rows::default();
-        rows.clear();
-        self.pair(places, &mut Search::default(), &mut rows);
-        let deep = (0..rows.len()).filter(|&point| rows.gap(point) < -slack);
-        deep.map(|point| Penetration {
+        self.below(places, slack, true)
+    }
+
+    /// Takes the gaps below `-slack` (m) at a configuration as zero from now on, those of surfaces that touch too.
+    pub fn offset_penetrations(&mut self, places: &Places, slack: f64) {
+        self.offset_all(self.below(places, slack, true));
+        self.offset_touching(places, slack);
+    }
+
+    /// Takes the mean gaps below `-slack` (m) at a configuration as zero from now on where no place of the surface penetrates
+    /// by that much.
+    pub fn offset_touching(&mut self, places: &Places, slack: f64) {
+        self.offset_all(self.below(places, slack, false));
+    }
+
+    fn offset_all(&mut self, found: Vec<Penetration>) {
+        for found in found {
+            self.offsets.resize(self.points.len(), 0.0);
+            self.offsets[found.point] += found.depth;
+        }
+    }
+
+    /// The points with a gap below `-slack` around which some place, or no place, is as deep.
+    fn below(&self, places: &Places, slack: f64, deep: bool) -> Vec<Penetration> {
+        let mut pairing = Pairing::default();
+        pairing.clear();
+        self.pair_fully(places, &mut Search::default(), &mut pairing);
+        let rows = &pairing.rows;
+        let below = (0..rows.len()).filter(|&point| rows.gap(point) < -slack);
+        let least = |point: usize| pairing.least_gap(point) + self.offset(point);
+        let kept = below.filter(|&point| (least(point) < -slack) == deep);
+        kept.map(|point| Penetration {
             point,
             node: self.points[point].node(),
             depth: -rows.gap(point),
             normal: rows.normal(point),
         })
         .collect()
-    }
-
-    /// Takes the penetrations at a configuration, those deeper than `slack` (m), as gaps of zero from now on.
-    pub fn offset_penetrations(&mut self, places: &Places, slack: f64) {
-        for found in self.penetrations(places, slack) {
-            self.offsets.resize(self.points.len(), 0.0);
-            self.offsets[found.point] += found.depth;
-        }
     }
 }
 

@@ -118,8 +118,12 @@ pub(crate) fn settle(
     let slack = slack(size);
     for (contact, way) in contacts.iter_mut().zip(ways) {
         match way {
-            Initial::Keep | Initial::Remove => {}
-            Initial::Refuse => check(contact, places, mesh_node, slack)?,
+            Initial::Keep => {}
+            Initial::Touch | Initial::Remove => contact.offset_touching(places, slack),
+            Initial::Refuse => {
+                check(contact, places, mesh_node, slack)?;
+                contact.offset_touching(places, slack);
+            }
             Initial::Offset => contact.offset_penetrations(places, slack),
         }
     }

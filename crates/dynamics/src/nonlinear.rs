@@ -287,10 +287,7 @@ impl NumberedNonlinear {
             numbered.histories.push(first..first + body.history_len());
             first += body.history_len();
         }
-        numbered.needed = given.asks()
-            || bodies.iter().any(|body| !body.is_linear())
-            || model.scheme.get().is_between()
-            || model.contacts.iter().any(needs_newton);
+        numbered.needed = model.is_nonlinear();
         Ok(numbered)
     }
 
@@ -348,6 +345,17 @@ fn numbered_force(load: &Load, model: &Model, number: &[u32]) -> NumberedForce {
             }
             NumberedForce::Dead(forces)
         }
+    }
+}
+
+impl Model {
+    /// Whether its steps are not linear, so that it needs the nonlinear solver, [`Newton`](crate::Newton).
+    pub fn is_nonlinear(&self) -> bool {
+        let finite = |body: &ModelBody| body.spec.material.finite().is_some();
+        self.nonlinear.asks()
+            || self.bodies.iter().any(finite)
+            || self.scheme.get().is_between()
+            || self.contacts.iter().any(needs_newton)
     }
 }
 

@@ -7,7 +7,7 @@ use carom_algebra::pattern::Cliques;
 use carom_bodies::{Body, Kinematics, MassKind};
 use carom_contact::law::Level;
 use carom_contact::{Contact, Initial, Places};
-use carom_mesh::{Face, Mesh};
+use carom_mesh::{Face, Mesh, Parts};
 
 use crate::contacts::{numbered, renumbered, sides};
 use crate::initial::settle;
@@ -361,20 +361,11 @@ impl System {
 /// System numbers of the mesh nodes, mesh nodes of the system numbers, and node ranges of the connected parts.
 fn numbering(model: &Model) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
     let count = model.mesh.nodes.len();
-    let mut root: Vec<u32> = (0..count as u32).collect();
-    let mut used = vec![false; count];
-    for &cell in model.bodies.iter().flat_map(|body| &body.spec.cells) {
-        let nodes = model.mesh.element_nodes(cell);
-        for &node in nodes {
-            used[node as usize] = true;
-            let (a, b) = (find(&mut root, nodes[0]), find(&mut root, node));
-            // the smaller number leads, so parts come in the order of their first node
-            root[a.max(b) as usize] = a.min(b);
-        }
-    }
+    let cells = model.bodies.iter().flat_map(|body| &body.spec.cells);
+    let joined = Parts::new(&model.mesh, cells.copied());
+    // parts come in the order of their first node, which leads
     let mut nodes: Vec<(u32, u32)> = (0..count as u32)
-        .filter(|&node| used[node as usize])
-        .map(|node| (find(&mut root, node), node))
+        .filter_map(|node| Some((joined.of(node)?, node)))
         .collect();
     nodes.sort_unstable();
     let mut number = vec![u32::MAX; count];
@@ -391,14 +382,6 @@ fn numbering(model: &Model) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
         nodes.into_iter().map(|(_, node)| node).collect(),
         parts,
     )
-}
-
-fn find(root: &mut [u32], mut node: u32) -> u32 {
-    while root[node as usize] != node {
-        root[node as usize] = root[root[node as usize] as usize];
-        node = root[node as usize];
-    }
-    node
 }
 
 fn node_masses(body: &Body, dim: usize, nodes: usize) -> Vec<(u32, f64)> {

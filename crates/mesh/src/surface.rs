@@ -39,6 +39,26 @@ impl Face {
     pub fn corners(&self) -> &[u32] {
         &self.nodes[..self.kind.table().nodes]
     }
+
+    /// Mean length of its edges, the lines between their ends, in m; of a line its own, of a point zero. `x`: coordinates by
+    /// the numbers of its nodes.
+    pub fn length(&self, x: &[[f64; 3]]) -> f64 {
+        let table = self.kind.table();
+        let between = |a: usize, b: usize| {
+            let [a, b] = [a, b].map(|k| x[self.nodes[k] as usize]);
+            let squares = (0..3).map(|i| (a[i] - b[i]).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        match table.dim {
+            0 => 0.0,
+            1 => between(0, 1),
+            _ => {
+                let edges = table.faces.iter();
+                let lengths = edges.map(|edge| between(edge.nodes[0], edge.nodes[1]));
+                lengths.sum::<f64>() / table.faces.len() as f64
+            }
+        }
+    }
 }
 
 /// A list of nodes as in [`Face::nodes`]: entries that are not used are the largest number, so that sorted lists

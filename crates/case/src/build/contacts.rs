@@ -9,7 +9,7 @@ use carom_mesh::{ElementId, Mesh, Surface};
 use super::Builder;
 use super::laws::{Side, sides};
 use crate::error::Problem;
-use crate::facts::approach;
+use crate::facts::{approach, approach_from};
 use crate::schema::{self, Basis, Friction, IntegrationName, IntegrationWith, Penetration, Scheme};
 
 impl Builder<'_> {
@@ -49,8 +49,19 @@ impl Builder<'_> {
                 continue;
             };
             let sliding = match contact.sliding {
-                schema::Sliding::Small => Sliding::Small,
-                schema::Sliding::Finite => Sliding::Finite,
+                // the default waits for what makes the steps linear or not
+                Some(schema::Sliding::Small) | None => Sliding::Small,
+                Some(schema::Sliding::Finite) => Sliding::Finite,
+            };
+            let quadratic = has_quadratic_faces(&secondary, &primary);
+            self.warn_of_nodes(name, contact.integration, quadratic);
+            let integration = match contact.integration {
+                Some(given) => integration(given, &law, &sides),
+                None if quadratic => {
+                    self.mortared.push(name.to_string());
+                    mortar(Basis::default())
+                }
+                None => Integration::Node,
             };
             contacts.push(ModelContact {
                 name: name.to_string(),
@@ -58,14 +69,15 @@ impl Builder<'_> {
                 primary,
                 law,
                 sliding,
-                integration: integration(contact.integration, &law, &sides),
+                integration,
                 massless: contact.nodes == schema::Nodes::Massless,
                 friction: contact
                     .friction
                     .map_or(0.0, |Friction::Coulomb(coefficient)| coefficient),
                 // a contact that may not penetrate is looked at here, where more can be said
                 initial: match contact.initial {
-                    Penetration::Refuse | Penetration::Keep => Initial::Keep,
+                    Penetration::Refuse => Initial::Touch,
+                    Penetration::Keep => Initial::Keep,
                     Penetration::Offset => Initial::Offset,
                     Penetration::Remove => Initial::Remove,
                 },
@@ -129,6 +141,47 @@ impl Builder<'_> {
         }
     }
 
+    /// Warns where forces at the nodes of quadratic faces are asked for: a uniform pressure gives the corners of a segment 1/6 of its
+    /// force and the middle 4/6, where they stand for 1/4 and 1/2 of its length; corners in space get nothing, or tension.
+    fn warn_of_nodes(&mut self, name: &str, given: Option<schema::Integration>, quadratic: bool) {
+        if quadratic && given == Some(schema::Integration::Named(IntegrationName::Node)) {
+            self.warnings.push(format!(
+                "contact `{name}`: integration = \"node\" on quadratic faces: pressures swing by a third and more between corners and midside nodes; leave the key out, or say integration = \"mortar\""
+            ));
+        }
+    }
+
+    /// Gives contacts that do not say how far they slide their default: finite where the steps are not linear anyway.
+    pub(super) fn default_sliding(&self, contacts: &mut [ModelContact], nonlinear: &[bool]) {
+        for (contact, nonlinear) in contacts.iter_mut().zip(nonlinear) {
+            let given = self.case.contact.get(&contact.name);
+            if *nonlinear && given.is_some_and(|given| given.sliding.is_none()) {
+                contact.sliding = Sliding::Finite;
+            }
+        }
+    }
+
+    /// Refuses contacts that can never act: points that face nothing at their reference places face nothing ever, unless they slide
+    /// or the obstacle moves.
+    pub(super) fn able_to_act(&mut self, system: &System) {
+        for (k, contact) in system.contacts.iter().enumerate() {
+            if contact.sliding == Sliding::Finite || contact.moves() {
+                continue;
+            }
+            let at_rest = vec![0.0; system.unknowns()];
+            if approach_from(system, k, &at_rest).gap < f64::INFINITY {
+                continue;
+            }
+            let message = "this contact can never act: at the start no point of the secondary surface has anything opposite it, and with small sliding none ever will";
+            let problem = Problem::new(format!("contact.{}", contact.name), message);
+            self.problems.push(
+                problem
+                    .found("sliding = \"small\"")
+                    .accepted(["sliding = \"finite\"", "surfaces that face each other"]),
+            );
+        }
+    }
+
     /// What is strange about contacts and schemes, without being wrong.
     pub(super) fn advise(&mut self, system: &System) {
         if self.plan.zones.is_empty() {
@@ -165,6 +218,16 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// Whether a side of a contact has quadratic faces.
+fn has_quadratic_faces(secondary: &Surface, primary: &ModelTarget) -> bool {
+    let primary = match primary {
+        ModelTarget::Surface(surface) => &surface.faces[..],
+        ModelTarget::Rigid(_) => &[],
+    };
+    let mut faces = secondary.faces.iter().chain(primary);
+    faces.any(|face| face.kind.table().is_quadratic())
 }
 
 /// Where the law holds: at Gauss points in its weak form if there is a multiplier, r from the softer side unless given.

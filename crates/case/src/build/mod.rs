@@ -10,6 +10,7 @@ mod mesh;
 mod nonlinear;
 mod obstacles;
 mod penetration;
+mod pieces;
 mod reference;
 mod refused;
 mod supports;
@@ -75,6 +76,7 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
         problems: Vec::new(),
         warnings: Vec::new(),
         springs: Vec::new(),
+        mortared: Vec::new(),
         plan: Plan {
             zones: Vec::new(),
             kind: LinkKind::GravouilCombescure,
@@ -99,6 +101,8 @@ struct Builder<'a> {
     warnings: Vec<String>,
     /// Name of each contact with the damped law, and twice the rate of its spring against the elements behind it, 1/s.
     springs: Vec<(String, f64)>,
+    /// Names of the contacts that are integrated by mortar because their faces are quadratic.
+    mortared: Vec<String>,
     /// The zones of the case.
     plan: Plan,
     /// Path of the case file.
@@ -122,6 +126,7 @@ impl Builder<'_> {
         if !self.problems.is_empty() {
             return None;
         }
+        self.pieces(&mesh, &bodies);
         let joints = self.joints_of(&mesh, &mut bodies, &supports);
         let cells: Vec<Vec<carom_mesh::ElementId>> =
             bodies.iter().map(|body| body.spec.cells.clone()).collect();
@@ -148,6 +153,8 @@ impl Builder<'_> {
         let nodes = model.mesh.nodes.clone();
         let mut zoned = None;
         if self.plan.zones.is_empty() {
+            let nonlinear = vec![model.is_nonlinear(); model.contacts.len()];
+            self.default_sliding(&mut model.contacts, &nonlinear);
             model.dt = self.step(&model.mesh, &model.bodies, || {
                 System::new(model.clone()).map(|system| vec![system])
             })?;
@@ -159,6 +166,11 @@ impl Builder<'_> {
                 links: joints.links,
                 kind: self.plan.kind,
             };
+            // sides in different zones are refused before
+            let nonlinear = parts.nonlinear_contacts().unwrap_or_default();
+            for contacts in [&mut model.contacts, &mut parts.model.contacts] {
+                self.default_sliding(contacts, &nonlinear);
+            }
             model.dt = self.step(&model.mesh, &model.bodies, || parts.systems())?;
             parts.model.dt = model.dt;
             zoned = Some(parts);
@@ -177,6 +189,7 @@ impl Builder<'_> {
                 return None;
             }
         };
+        self.able_to_act(&system);
         self.penetration(&system);
         self.moved(&system, &nodes);
         self.startable(&system);

@@ -64,7 +64,12 @@ impl Builder<'_> {
                     "a gap of {:.4e} m at node {node}, ({:.6}, {:.6}, {:.6}) m",
                     -deepest.depth, x[0], x[1], x[2]
                 ))
-                .accepted([format!("gaps of at least -{slack:.1e} m")]);
+                .accepted([
+                    format!("gaps of at least -{slack:.1e} m"),
+                    "initial = \"offset\" (the overlap stays and carries no force, as for facets of round surfaces)".to_string(),
+                    "initial = \"remove\" (nodes are moved)".to_string(),
+                    "initial = \"keep\" (the law pushes them out)".to_string(),
+                ]);
             self.problems.push(problem);
         }
     }

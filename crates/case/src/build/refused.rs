@@ -73,7 +73,14 @@ impl Builder<'_> {
             Refused::Damping(body) => format!("body.{body}.damping.stiffness"),
             Refused::Motion { .. } => "support".to_string(),
         };
-        Problem::new(path, format!("{what}: {why}"))
+        let problem = Problem::new(path, format!("{what}: {why}"));
+        match self.mortared.is_empty() {
+            true => problem,
+            false => problem.note(format!(
+                "contact `{}` has quadratic faces, whose default is mortar, and with mortar steps are not linear; integration = \"node\" keeps them so, with pressures that swing by a third and more",
+                self.mortared.join("`, `")
+            )),
+        }
     }
 
     /// The problem behind an error of a zone's system.

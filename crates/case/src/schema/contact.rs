@@ -27,12 +27,13 @@ pub struct Contact {
     pub itself: Option<bool>,
     /// Contact law.
     pub law: Law,
-    /// Whether the pairing of the two surfaces follows their motion.
-    #[serde(default)]
-    pub sliding: Sliding,
-    /// Where the contact condition is imposed.
-    #[serde(default)]
-    pub integration: Integration,
+    /// Whether the pairing of the two surfaces follows their motion. Default: `finite` where the steps are not linear anyway (finite
+    /// strain, plasticity, friction, obstacles or supports that move, loads in time, damping, static stages, mortar); `small`
+    /// elsewhere.
+    pub sliding: Option<Sliding>,
+    /// Where the contact condition is imposed. Default: `node` on linear faces, `mortar` where faces are quadratic: forces at the nodes
+    /// of quadratic faces give no pressure.
+    pub integration: Option<Integration>,
     /// Friction. Default: none.
     pub friction: Option<Friction>,
     /// What is done where the surfaces penetrate at the start.
@@ -263,11 +264,10 @@ pub enum Sign {
 }
 
 /// Whether the pairing follows the motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sliding {
     /// Points keep the partner and the normal of the initial configuration.
-    #[default]
     Small,
     /// The closest points are found again at each step.
     Finite,
@@ -281,12 +281,6 @@ pub enum Integration {
     Named(IntegrationName),
     /// With parameters.
     With(IntegrationWith),
-}
-
-impl Default for Integration {
-    fn default() -> Integration {
-        Integration::Named(IntegrationName::Node)
-    }
 }
 
 /// Where the contact condition is imposed.

@@ -4,6 +4,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod compare;
+mod defaults;
+mod grades;
 mod large;
 mod quadrature;
 mod refine;

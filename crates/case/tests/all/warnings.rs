@@ -84,3 +84,59 @@ time = {{ end = 2.0, step = {step}, scheme.theta.theta = 0.5 }}
     // what moves away does not pass through
     assert!(told(-1.5, 0.5).is_empty());
 }
+
+/// Two squares of one body on each other, with nodes of their own where they meet, or `apart` (m) above.
+fn two_pieces(apart: f64, tied: bool) -> Vec<String> {
+    let text = format!(
+        r#"
+carom = 1
+mesh.file = "pieces.msh"
+material.m = {{ density = 1000.0, elastic = {{ young = 1e8, poisson = 0.3 }} }}
+body.a = {{ region = "a", material = "m", section.plane-strain.thickness = 1.0 }}
+{}
+time = {{ end = 0.1, step = 1e-4, scheme.theta = {{}} }}
+"#,
+        match tied {
+            true =>
+                "body.b = { region = \"b\", material = \"m\", section.plane-strain.thickness = 1.0 }",
+            false => "",
+        }
+    );
+    let between = match tied {
+        true => "\n3 3 2 2 2 1 2 6 5",
+        false => "",
+    };
+    let mesh = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"a\"\n2 2 \"b\"\n$EndPhysicalNames\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 -1 0\n4 0 -1 0\n5 0 {apart} 0\n6 1 {apart} 0\n7 1 2 0\n8 0 2 0\n$EndNodes\n$Elements\n{}\n1 3 2 1 1 4 3 2 1\n2 3 2 1 1 5 6 7 8{between}\n$EndElements\n",
+        if tied { 3 } else { 2 }
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("case.toml");
+    std::fs::write(&file, text).unwrap();
+    std::fs::write(folder.path().join("pieces.msh"), mesh).unwrap();
+    let input = Input::read(&file, &[]).unwrap();
+    let (case, locator) = parse(&input).unwrap();
+    build(&case, &locator, &input).unwrap().warnings
+}
+
+#[test]
+fn a_body_in_pieces_is_told_with_the_closest_nodes_unless_another_body_joins_them() {
+    let told = two_pieces(0.0, false);
+    let [warning] = &told[..] else {
+        panic!("{told:?}");
+    };
+    for word in [
+        "body `a`",
+        "2 pieces",
+        "0 at (0.000000, 0.000000, 0.000000) m and 4,",
+        "merge the nodes",
+    ] {
+        assert!(warning.contains(word), "{word}: {warning}");
+    }
+    let told = two_pieces(0.5, false);
+    assert!(
+        told[0].contains("are 5.0000e-1 m apart") && told[0].contains("a body of its own"),
+        "{told:?}"
+    );
+    assert_eq!(two_pieces(0.5, true), Vec::<String>::new());
+}

@@ -164,6 +164,13 @@ impl Pairing {
         }
     }
 
+    /// Least gap of the places that a point is the mean of, m, offsets left out; infinite of a point that faces nothing.
+    pub(crate) fn least_gap(&self, point: usize) -> f64 {
+        let terms = self.terms(point).iter();
+        let gaps = terms.map(|(stencil, _)| self.stencils[*stencil as usize].gap().0);
+        gaps.fold(f64::INFINITY, f64::min)
+    }
+
     fn terms(&self, point: usize) -> &[(u32, f64)] {
         let begin = match point {
             0 => 0,

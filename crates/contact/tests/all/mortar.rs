@@ -539,3 +539,51 @@ fn a_pairing_depends_on_nothing_before_it_and_a_second_one_allocates_nothing() {
         assert_eq!(allocations() - before, 0);
     }
 }
+
+/// Curved edges of three nodes on y = x²/2R over flat ones: they touch in one node, where the dual functions of a face of length
+/// h have the mean gap -h²/12R, the exact integral of (2 - 3s) s² h²/2R over s in [0, 1].
+#[test]
+fn surfaces_that_touch_do_not_penetrate_though_a_dual_mean_is_negative() {
+    let (h, radius) = (0.1, 2.0);
+    let ends: Vec<f64> = (-4..=4).map(|k| h * f64::from(k)).collect();
+    let mut pair = lines(&ends, &[-1.0, -0.45, 0.07, 0.6, 1.0], 0.0, Kind::Bar3);
+    let curved: Vec<u32> = pair
+        .secondary
+        .iter()
+        .flat_map(|f| f.corners().to_vec())
+        .collect();
+    for node in curved {
+        let x = &mut pair.x[node as usize];
+        x[1] = x[0] * x[0] / (2.0 * radius);
+    }
+    let u = vec![0.0; 2 * pair.x.len()];
+    let slack = 1e-9;
+    let least = |contact: &Contact, u: &[f64]| {
+        let rows = paired(contact, &pair.places(u)).rows;
+        (0..rows.len())
+            .map(|k| rows.gap(k))
+            .fold(f64::INFINITY, f64::min)
+    };
+    let mut dual = pair.contact(Basis::Dual, 1.0);
+    // normals of the arc lean by h/R: the cubic terms that this leaves are h/R times smaller, squared
+    assert!((least(&dual, &u) / (-h * h / (12.0 * radius)) - 1.0).abs() < 1e-2);
+    for basis in BASES {
+        let contact = pair.contact(basis, 1.0);
+        assert_eq!(contact.penetrations(&pair.places(&u), slack), []);
+    }
+    dual.offset_touching(&pair.places(&u), slack);
+    assert!(least(&dual, &u).abs() < 1e-15);
+    // and what penetrates is found: the arc moved down by a tenth of its height over a face
+    let depth = 0.1 * h * h / (2.0 * radius);
+    let mut down = u.clone();
+    for face in &pair.secondary {
+        for &node in face.corners() {
+            down[2 * node as usize + 1] = -depth;
+        }
+    }
+    let mut dual = pair.contact(Basis::Dual, 1.0);
+    let found = dual.penetrations(&pair.places(&down), slack);
+    assert!(!found.is_empty());
+    dual.offset_touching(&pair.places(&down), slack);
+    assert_eq!(dual.penetrations(&pair.places(&down), slack), found);
+}

@@ -78,6 +78,21 @@ impl Zoned {
         contacts.iter().enumerate().map(system).collect()
     }
 
+    /// For each contact of the model, whether the steps of its zone are not linear.
+    ///
+    /// # Errors
+    /// A contact whose sides are in different zones.
+    pub fn nonlinear_contacts(&self) -> Result<Vec<bool>, Error> {
+        let mut nonlinear = vec![false; self.model.contacts.len()];
+        for (k, contacts) in self.contacts()?.iter().enumerate() {
+            let zone = self.zone(k, contacts).is_nonlinear();
+            for &contact in contacts {
+                nonlinear[contact] = zone;
+            }
+        }
+        Ok(nonlinear)
+    }
+
     /// The contacts of each zone.
     ///
     /// # Errors

@@ -1,0 +1,133 @@
+//! Grades of runs that leave what their assumptions allow.
+
+use carom_case::{Input, build, parse, run};
+use carom_output::verdict::{Grade, Verdict};
+
+use crate::compare::Nobody;
+
+fn verdict(text: &str) -> Verdict {
+    let input = Input::from_text("case.toml", text, &[]);
+    let (case, locator) = parse(&input).unwrap();
+    let built = build(&case, &locator, &input).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path().join("results");
+    let finished = run((&input, &case, &built), folder, &mut Nobody, &|| false).unwrap();
+    finished.summary.verdict
+}
+
+fn grade(verdict: &Verdict, line: &str) -> Grade {
+    verdict.line(line).unwrap().grade
+}
+
+/// A block that comes down on a ball under one edge, at some speed.
+fn block_on_an_edge(speed: f64) -> String {
+    format!(
+        r#"
+carom = 1
+mesh.generate.b.rectangle = {{ origin = [0, 0.001], size = [0.1, 0.02], elements = [10, 2] }}
+material.m = {{ density = 1000, elastic = {{ young = "1 GPa", poisson = 0.3 }} }}
+body.b = {{ region = "b", material = "m", section.plane-strain.thickness = 0.1, initial.velocity = [0, {speed:?}] }}
+contact.anvil = {{ secondary = "b.bottom", obstacle.sphere = {{ centre = [0.01, -0.02], radius = 0.02 }}, law.velocity = {{}} }}
+time = {{ end = "10 ms", step = "20 us", scheme.theta = {{}} }}
+"#
+    )
+}
+
+#[test]
+fn a_small_strain_body_that_turns_is_graded_and_told_its_material() {
+    // it turns at about v/l: 100 rad/s at 5 m/s make 45° in 8 ms, 1.3 rad/s at 0.065 m/s nothing
+    let fast = verdict(&block_on_an_edge(-5.0));
+    assert_eq!(fast.grade, Grade::Bad);
+    let line = fast.line("small-strain-rotation").unwrap();
+    assert!(line.grade == Grade::Bad && line.value > 0.4, "{line:?}");
+    let told = "neo-hooke = { young = 1e9, poisson = 0.3 } in place of elastic";
+    assert!(line.remedy.contains(told), "{line:?}");
+    let slow = verdict(&block_on_an_edge(-0.065));
+    assert_eq!(slow.grade, Grade::Good, "{:?}", slow.reasons());
+}
+
+/// Two bars of which one comes at a part of the wave speed.
+fn bars(part: f64) -> Verdict {
+    let speed = part * (2e11_f64 / 7800.0).sqrt();
+    verdict(&format!(
+        r#"
+carom = 1
+mesh.generate.a.line = {{ from = [-1.0], to = [0.0], elements = 10 }}
+mesh.generate.b.line = {{ from = [0.0], to = [1.0], elements = 10 }}
+material.m = {{ density = 7800.0, elastic = {{ young = 2e11, poisson = 0.0 }} }}
+body.a = {{ region = "a", material = "m", section.bar.area = 1e-4, initial.velocity = [{speed:?}] }}
+body.b = {{ region = "b", material = "m", section.bar.area = 1e-4 }}
+contact.c = {{ secondary = "a.right", primary = "b.left", law.velocity = {{}} }}
+time = {{ end = 5e-4, step.courant = 0.5, scheme.theta = {{}} }}
+"#
+    ))
+}
+
+#[test]
+fn a_small_strain_bar_is_graded_by_its_strain() {
+    // half the speed over that of waves is the strain behind the shock; the mesh makes up to a third more of it
+    for (part, expected) in [
+        (0.02, Grade::Good),
+        (0.1, Grade::Look),
+        (0.4, Grade::Bad),
+        (40.0, Grade::Bad),
+    ] {
+        let verdict = bars(part);
+        let line = verdict.line("small-strain").unwrap();
+        assert_eq!(line.grade, expected, "{line:?}");
+        assert!((line.value / (0.5 * part) - 1.17).abs() < 0.17, "{line:?}");
+        assert_eq!(verdict.grade, expected, "{:?}", verdict.reasons());
+    }
+}
+
+/// A block thrown at a plate of rubber.
+fn thrown(x: f64, velocity: [f64; 2], sliding: &str) -> Verdict {
+    verdict(&format!(
+        r#"
+carom = 1
+mesh.generate.a.rectangle = {{ origin = [{x:?}, 1.5], size = [1.0, 1.0], elements = [4, 4] }}
+mesh.generate.b.rectangle = {{ origin = [0.0, 0.0], size = [4.0, 1.0], elements = [8, 2] }}
+material.m = {{ density = 1000.0, neo-hooke = {{ young = 1e6, poisson = 0.3 }} }}
+body.a = {{ region = "a", material = "m", section.plane-strain.thickness = 1.0, initial.velocity = {velocity:?} }}
+body.b = {{ region = "b", material = "m", section.plane-strain.thickness = 1.0 }}
+contact.c = {{ secondary = "a.bottom", primary = "b.top", law.velocity = {{}}{sliding} }}
+time = {{ end = 0.7, step = 4e-3, scheme.theta.theta = 0.6 }}
+"#
+    ))
+}
+
+#[test]
+fn contacts_that_small_sliding_loses_or_invents_are_bad_and_the_default_has_none() {
+    let small = ", sliding = 'small'";
+    let lost = thrown(-0.6, [10.0, -3.0], small);
+    assert_eq!(
+        grade(&lost, "small-sliding-lost"),
+        Grade::Bad,
+        "{:?}",
+        lost.reasons()
+    );
+    let line = lost.line("small-sliding-lost").unwrap();
+    assert!(
+        line.remedy.contains("contact.c.sliding = \"finite\""),
+        "{line:?}"
+    );
+    let invented = thrown(3.0, [10.0, -1.0], small);
+    assert_eq!(
+        grade(&invented, "small-sliding-invented"),
+        Grade::Bad,
+        "{:?}",
+        invented.reasons()
+    );
+    // steps are not linear: the default slides
+    for (x, velocity) in [(-0.6, [10.0, -3.0]), (3.0, [10.0, -1.0])] {
+        let verdict = thrown(x, velocity, "");
+        assert!(
+            verdict
+                .lines
+                .iter()
+                .all(|line| !line.name.starts_with("small-")),
+            "{verdict:?}"
+        );
+        assert_ne!(verdict.grade, Grade::Bad, "{:?}", verdict.reasons());
+    }
+}

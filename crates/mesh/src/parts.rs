@@ -1,0 +1,97 @@
+//! Which nodes cells join: connected parts, and the closest nodes of two of them.
+
+use crate::{Bounds, BoxTree, ElementId, Mesh};
+
+/// Nodes by connected part.
+#[derive(Clone, Debug)]
+pub struct Parts {
+    /// For each node the way to the least node of its part; `u32::MAX` where no cell has it.
+    root: Vec<u32>,
+}
+
+impl Parts {
+    /// The parts of some cells: those that share nodes are together.
+    pub fn new(mesh: &Mesh, cells: impl Iterator<Item = ElementId>) -> Parts {
+        let mut root = vec![u32::MAX; mesh.nodes.len()];
+        for cell in cells {
+            let nodes = mesh.element_nodes(cell);
+            for &node in nodes {
+                if root[node as usize] == u32::MAX {
+                    root[node as usize] = node;
+                }
+                let (a, b) = (find(&mut root, nodes[0]), find(&mut root, node));
+                // the smaller number leads
+                root[a.max(b) as usize] = a.min(b);
+            }
+        }
+        for node in 0..root.len() as u32 {
+            if root[node as usize] != u32::MAX {
+                root[node as usize] = find(&mut root, node);
+            }
+        }
+        Parts { root }
+    }
+
+    /// The least node of the part that a node is in; none where no cell has it.
+    pub fn of(&self, node: u32) -> Option<u32> {
+        let root = self.root[node as usize];
+        (root != u32::MAX).then_some(root)
+    }
+}
+
+fn find(root: &mut [u32], mut node: u32) -> u32 {
+    while root[node as usize] != node {
+        root[node as usize] = root[root[node as usize] as usize];
+        node = root[node as usize];
+    }
+    node
+}
+
+impl Mesh {
+    /// The closest nodes of two lists and their distance in m, the first of equals in the order of `other`; none where a list
+    /// is empty.
+    pub fn closest_nodes(&self, one: &[u32], other: &[u32]) -> Option<([u32; 2], f64)> {
+        let place = |node: u32| self.nodes[node as usize];
+        let boxes: Vec<Bounds> = one.iter().map(|&n| Bounds::of(&[place(n)])).collect();
+        let tree = BoxTree::new(&boxes);
+        let mut best: Option<([u32; 2], f64)> = None;
+        for &node in other {
+            let x = place(node);
+            let within = best.map_or(f64::INFINITY, |(_, distance)| distance);
+            let distance = |item: u32| boxes[item as usize].distance_squared(&x).sqrt();
+            if let Some((item, found)) = tree.closest(&x, within, 0.0, distance)
+                && best.is_none_or(|(_, least)| found < least)
+            {
+                best = Some(([one[item as usize], node], found));
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate::rectangle;
+
+    #[test]
+    fn parts_share_no_node_and_their_closest_nodes_are_found() {
+        let mut mesh = rectangle("a", [0.0; 2], [1.0, 1.0], [2, 2], false);
+        let other = rectangle("b", [1.25, 0.0], [1.0, 1.0], [2, 3], false);
+        mesh.merge("b", other).unwrap();
+        let cells = |name: &str| mesh.groups[name].elements.clone();
+        let parts = Parts::new(&mesh, cells("a").into_iter().chain(cells("b")));
+        let (a, b): (Vec<u32>, Vec<u32>) = (0..21).partition(|&node| parts.of(node) == Some(0));
+        assert_eq!((a.len(), b.len()), (9, 12));
+        assert!(b.iter().all(|&node| parts.of(node) == Some(9)));
+        // the corners below on the right and on the left
+        let (nodes, distance) = mesh.closest_nodes(&a, &b).unwrap();
+        assert_eq!(
+            (nodes.map(|n| mesh.nodes[n as usize]), distance),
+            ([[1.0, 0.0, 0.0], [1.25, 0.0, 0.0]], 0.25)
+        );
+        let parts = Parts::new(&mesh, cells("a").into_iter());
+        assert_eq!(parts.of(9), None);
+        assert_eq!(mesh.closest_nodes(&a, &[]), None);
+    }
+}
