@@ -64,6 +64,8 @@ macro_rules! by_nodes {
     };
 }
 
+pub(crate) use by_nodes;
+
 /// What is called for each element.
 pub(crate) type Visit<'a> = dyn FnMut(&Matrices) + 'a;
 
@@ -79,7 +81,7 @@ pub(crate) enum Physics {
 pub(crate) struct Block {
     pub(crate) kind: Kind,
     pub(crate) physics: Physics,
-    stiffness_points: Points,
+    pub(crate) stiffness_points: Points,
     mass_points: Points,
     pub(crate) chunks: Vec<Chunk>,
 }
@@ -92,7 +94,7 @@ pub(crate) struct Chunk {
     /// Coordinates of the nodes in m.
     x: Vec<[f64; 3]>,
     /// Nodes of each element, as places in `nodes`.
-    connectivity: Vec<u32>,
+    pub(crate) connectivity: Vec<u32>,
     weights: Option<ChunkWeights>,
 }
 
@@ -180,6 +182,11 @@ impl Block {
         }
         let chunks = self.chunks.par_iter().zip(forces).zip(energies);
         chunks.for_each(chunk);
+    }
+
+    /// Elements of all chunks but the last.
+    pub(crate) fn chunk_length(&self) -> usize {
+        chunk_length(self.kind)
     }
 
     /// Number of elements.
@@ -429,7 +436,7 @@ impl Sweep<'_> {
 }
 
 impl Chunk {
-    fn gather<const N: usize>(
+    pub(crate) fn gather<const N: usize>(
         &self,
         element: &[u32],
         dim: usize,

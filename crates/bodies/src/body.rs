@@ -198,6 +198,11 @@ impl Body {
         &self.cells
     }
 
+    /// Elements by kind, in the order of [`Body::cells`].
+    pub(crate) fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
     /// Unknowns of a node.
     pub(crate) fn dim(&self) -> usize {
         self.dim

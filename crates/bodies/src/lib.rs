@@ -7,6 +7,7 @@ mod bar;
 mod block;
 mod body;
 mod continuum;
+mod distortion;
 mod error;
 mod finite;
 mod force;
@@ -20,6 +21,7 @@ mod weights;
 
 pub use block::Scratch;
 pub use body::{Body, BodySpec};
+pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};
 pub use kinematics::{Kinematics, MassKind};

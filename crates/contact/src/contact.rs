@@ -167,9 +167,17 @@ impl Contact {
 
     /// Whether rows depend on the places of the points: with finite sliding, and on anything but a rigid plane.
     pub fn turns(&self) -> bool {
-        let plane =
-            matches!(&self.target, Target::Rigid(rigid) if matches!(rigid.shape, Shape::Plane(_)));
-        self.sliding == Sliding::Finite && !plane
+        self.sliding == Sliding::Finite && !self.faces_plane()
+    }
+
+    /// Whether points keep the partner and the normal of their first pairing where another pairing would differ: with small
+    /// sliding, on anything but a rigid plane.
+    pub fn pairs_once(&self) -> bool {
+        self.sliding == Sliding::Small && !self.faces_plane()
+    }
+
+    fn faces_plane(&self) -> bool {
+        matches!(&self.target, Target::Rigid(rigid) if matches!(rigid.shape, Shape::Plane(_)))
     }
 
     /// Whether the target moves by itself: gaps then have a rate at bodies at rest ([`Rows::rate`]).

@@ -22,6 +22,7 @@ mod nonlinear;
 mod operator;
 mod records;
 pub mod scheme;
+mod small;
 mod stability;
 mod state;
 mod step_map;
@@ -43,6 +44,7 @@ pub use nonlinear::{
 };
 pub use records::{ContactRecord, Impact, Records};
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
+pub use small::{Largest, SmallSliding, SmallStrain, Smallness};
 pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, StepReport};
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::System;

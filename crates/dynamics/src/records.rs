@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::ledger::Sum;
+use crate::small::Smallness;
 use crate::state::{ContactReport, State};
 use crate::step_map::Impulse;
 use crate::system::System;
@@ -14,6 +15,8 @@ pub struct Records {
     pub contacts: Vec<ContactRecord>,
     /// Impacts that have ended, in the order of their end.
     pub impacts: Vec<Impact>,
+    /// Whether what is assumed small has stayed small.
+    pub small: Smallness,
 }
 
 /// Record of one contact.
@@ -117,10 +120,20 @@ pub(crate) struct Step<'a> {
 }
 
 impl Records {
+    /// Nothing yet.
+    pub(crate) fn of(system: &System) -> Records {
+        Records {
+            contacts: vec![ContactRecord::default(); system.contacts.len()],
+            impacts: Vec::new(),
+            small: Smallness::of(system),
+        }
+    }
+
     /// Makes these the records of the state before the step, of which they are those of one step earlier or of an
     /// attempt given up: the impacts of both begin alike, and only the last are copied.
     pub(crate) fn follow(&mut self, before: &Records) {
         self.contacts.clone_from(&before.contacts);
+        self.small.follow(&before.small);
         self.impacts.truncate(before.impacts.len());
         self.impacts
             .extend_from_slice(&before.impacts[self.impacts.len()..]);

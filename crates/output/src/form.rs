@@ -12,6 +12,10 @@ pub enum Form {
     Count,
     /// A pure number, as a power of ten.
     Power,
+    /// A pure number of order one.
+    Number,
+    /// An angle, given in rad, in degrees.
+    Degrees,
     /// A quantity of this unit.
     Quantity(&'static str),
 }
@@ -25,6 +29,8 @@ impl Form {
             Form::Count => format!("{value}"),
             Form::Power if value == 0.0 => "0".to_owned(),
             Form::Power => scientific(value, 1),
+            Form::Number => format!("{value:.3}"),
+            Form::Degrees => format!("{:.2}°", value.to_degrees()),
             Form::Quantity(unit) => quantity(value, unit),
         }
     }

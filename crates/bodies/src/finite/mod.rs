@@ -73,6 +73,11 @@ impl Body {
         self.finite.is_none()
     }
 
+    /// Whether its kinematics goes with laws at finite strain: neither a bar nor plane stress.
+    pub fn takes_finite_strain(&self) -> bool {
+        self.kinematics().plane() == carom_materials::Plane::Full
+    }
+
     /// Numbers that the integration points keep from one step to the next.
     pub fn history_len(&self) -> usize {
         self.finite.as_ref().map_or(0, Finite::history_len)

@@ -7,6 +7,7 @@ mod allocation;
 mod axisymmetry;
 mod bars;
 mod derivatives;
+mod distortion;
 mod finite;
 mod mass;
 mod patch;

@@ -209,6 +209,7 @@ impl Driver {
             records.add(&system, k, &step, &self.state, &motion.v);
             self.report.contacts[k] = report;
         }
+        self.watch.look(&system, self.next.step, &mut self.next);
     }
 
     /// Completes the report of the state just accepted.

@@ -31,8 +31,9 @@ use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::ledger::{Energies, Ledger, Resultant, reactions};
 use crate::operator::Operators;
-use crate::records::{ContactRecord, Records};
+use crate::records::Records;
 use crate::scheme::EnergyIdentity;
+use crate::small::Watch;
 use crate::state::{ContactReport, State, StepReport, empty_state};
 use crate::step_map::{Row, StepMap};
 use crate::system::System;
@@ -73,6 +74,7 @@ pub struct Driver {
     /// Rows at zero displacement of contacts with small sliding.
     initial_rows: Vec<Option<Rows>>,
     search: Vec<Search>,
+    watch: Watch,
     rows: Rows,
     /// For each point, the configuration in which it is paired.
     captured: Vec<Row>,
@@ -245,6 +247,7 @@ impl Driver {
             restoring: Restoring::default(),
             initial_rows: Vec::new(),
             search: system.contacts.iter().map(|_| Search::default()).collect(),
+            watch: Watch::new(&system),
             rows: Rows::default(),
             captured: Vec::new(),
             candidates: Vec::new(),
@@ -408,10 +411,7 @@ impl Driver {
         let forces = [loads, none, supports, none, link];
         self.state.ledger = Ledger::start(&energies, &identity, forces);
         self.state.control = Control::start(system.dt);
-        self.state.records = Records {
-            contacts: vec![ContactRecord::default(); system.contacts.len()],
-            impacts: Vec::new(),
-        };
+        self.state.records = Records::of(&system);
         self.place(true);
         for point in 0..system.points() {
             self.state.interface.gap[point] = self.rows.gap(point);

@@ -219,6 +219,8 @@ impl Newton {
                 .add(&system, k, &step, &self.state, &self.next.motion.v);
             self.report.contacts[k] = report;
         }
+        self.watch
+            .look(&system, self.state.step + 1, &mut self.next);
     }
 
     /// Completes the report of the state just accepted. `dt`: the whole step, s.

@@ -35,6 +35,7 @@ use crate::driver::{Costs, Phases, WeakForms, WithWeak};
 use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::march::{FailedProblem, Stepper};
+use crate::small::Watch;
 use crate::state::{ContactReport, State, StepReport, empty_state};
 use crate::step_map::StepMap;
 use crate::system::System;
@@ -57,6 +58,7 @@ pub struct Newton {
     /// Contacts with small sliding where all nodes are at their reference places; empty until they are paired.
     initial: Vec<Pairing>,
     search: Vec<Search>,
+    watch: Watch,
     /// Points that may carry a force, ascending.
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,
@@ -137,6 +139,7 @@ impl Newton {
             pairing: Pairing::default(),
             initial: vec![Pairing::default(); system.contacts.len()],
             search: system.contacts.iter().map(|_| Search::default()).collect(),
+            watch: Watch::new(&system),
             candidates: Vec::new(),
             candidate_data: Vec::new(),
             coulomb: Coulomb::default(),

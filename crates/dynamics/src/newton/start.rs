@@ -7,7 +7,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::ledger::{Energies, Ledger, Resultant};
 use crate::operator::Operators;
-use crate::records::{ContactRecord, Records};
+use crate::records::Records;
 use crate::scheme::EnergyIdentity;
 use crate::state::empty_state;
 use crate::system::System;
@@ -45,12 +45,8 @@ impl Newton {
         self.size(system.dt);
         self.next.clone_from(&self.state);
         self.begin()?;
-        let n = system.contacts.len();
         self.state.control = Control::start(system.dt);
-        self.state.records = Records {
-            contacts: vec![ContactRecord::default(); n],
-            impacts: Vec::new(),
-        };
+        self.state.records = Records::of(&system);
         self.vectors.x.fill(0.0);
         self.pair_now();
         for point in 0..system.points() {

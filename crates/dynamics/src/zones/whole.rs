@@ -16,7 +16,7 @@ use crate::driver::Costs;
 use crate::error::Error;
 use crate::ledger::{Balance, Ledger};
 use crate::march::{FailedProblem, Stepper};
-use crate::records::{ContactRecord, Records};
+use crate::records::Records;
 use crate::state::{ContactReport, ContactSample, Motion, State, StepReport, empty_state};
 use crate::system::System;
 
@@ -26,6 +26,8 @@ pub struct Whole {
     system: Arc<System>,
     names: Vec<String>,
     links: Vec<[usize; 2]>,
+    /// Bodies of each zone.
+    bodies: Vec<Vec<usize>>,
     places: Vec<Places>,
     /// Impacts of each zone that the records hold.
     impacts: Vec<usize>,
@@ -103,13 +105,11 @@ impl Whole {
         });
         let mut state = empty_state(&system);
         state.motion.link_force = vec![0.0; system.unknowns()];
-        state.records = Records {
-            contacts: vec![ContactRecord::default(); system.contacts.len()],
-            impacts: Vec::new(),
-        };
+        state.records = Records::of(&system);
         Whole {
             names: zoned.zones.iter().map(|zone| zone.name.clone()).collect(),
             links: zoned.links.iter().map(|link| link.zones).collect(),
+            bodies: zoned.zones.iter().map(|zone| zone.bodies.clone()).collect(),
             places: places.collect(),
             impacts: vec![0; zones.drivers.len()],
             placed: vec![0; zones.drivers.len()],
@@ -221,6 +221,8 @@ impl Whole {
             for (record, contact) in records.contacts.iter().zip(contacts) {
                 whole.contacts[*contact].clone_from(record);
             }
+            let numbers = (&self.bodies[k][..], &contacts[..]);
+            whole.small.gather(&records.small, numbers);
             for impact in &records.impacts[self.impacts[k]..] {
                 let mut impact = impact.clone();
                 impact.contact = contacts[impact.contact as usize] as u32;

@@ -18,6 +18,7 @@ mod newton;
 mod quadrature;
 mod refusals;
 mod sliding;
+mod small;
 mod stability;
 mod supports;
 mod trough;

@@ -127,7 +127,15 @@ fn the_whole_is_the_zones_node_by_node_and_contact_by_contact() {
     assert!(forces[0] * forces[1] < 0.0);
     // sums over the zones, to rounding of four hundred steps
     let tip = &whole.zones().drivers()[0].state().records;
-    assert_eq!(state.records, *tip, "the one contact is the first of both");
+    let records = &state.records;
+    let of_contacts = (&records.contacts, &records.impacts, &records.small.contacts);
+    let of_tip = (&tip.contacts, &tip.impacts, &tip.small.contacts);
+    assert_eq!(of_contacts, of_tip, "the one contact is the first of both");
+    // the tip is the second body
+    for (body, driver) in [1, 0].into_iter().zip(whole.zones().drivers()) {
+        let own = &driver.state().records.small.bodies[0];
+        assert!(own.strain.value > 0.0 && records.small.bodies[body] == *own);
+    }
     let record = &state.records.contacts[0];
     assert!(closed > 0.0 && (record.impulse() / impulse - 1.0).abs() < 1e-12);
     assert_eq!(state.records.impacts.len(), 1);

@@ -268,12 +268,12 @@ fn a_linear_run_that_hardly_moves_has_no_film_and_no_further_columns() {
     for key in [
         "newton",
         "angular",
-        "friction",
         "work of supports",
         "stored in hardening",
     ] {
         assert!(!text.contains(&format!("\"{key}\"")), "{key}");
     }
+    assert!(summary.contacts.values().all(|c| c.friction.is_none()));
     let table = columns(&still.join("histories.csv"));
     assert!(
         table

@@ -5,6 +5,7 @@ mod convergence;
 mod energy;
 mod finite;
 mod momentum;
+mod small;
 
 use carom_dynamics::System;
 
@@ -39,6 +40,12 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     momentum::residual,
     energy::gain,
     finite::states,
+    small::rotation,
+    small::strain,
+    small::slide,
+    small::turn,
+    small::invented,
+    small::lost,
     convergence::of_mesh_and_step,
 ];
 

@@ -1,0 +1,175 @@
+//! Whether what is assumed small has stayed small: strain and rotation of bodies at small strain, sliding of contacts.
+
+use carom_dynamics::{Largest, SmallSliding, SmallStrain, System};
+
+use crate::form::Form;
+use crate::results::lines::{Evidence, Finding};
+use crate::verdict::{Bounds, Line};
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// Small strain drops half the square of a rotation beside the strain: 1.4e-3 at 3°, 1.5e-2 at 10°, which is a body that grows by
+/// as much.
+const ROTATION: Bounds = Bounds::Both(3.0 * DEGREE, 10.0 * DEGREE);
+
+/// It drops half the square of a strain beside the strain: a part of 1 % of it at 2 %, of 5 % at 10 %.
+const STRAIN: Bounds = Bounds::Both(0.02, 0.1);
+
+/// Beyond half a face a force enters another face than the one that it belongs to, beyond two it is in no neighbour of it.
+const SLIDE: Bounds = Bounds::Both(0.5, 2.0);
+
+/// The part of a force that points in a wrong direction: the sine, 0.09 at 5°, 0.26 at 15°.
+const TURN: Bounds = Bounds::Both(5.0 * DEGREE, 15.0 * DEGREE);
+
+/// Gaps and depths that small sliding does not know of, in faces.
+const APART: Bounds = Bounds::Both(0.1, 0.5);
+
+/// Rotation of the elements of bodies at small strain.
+pub(super) fn rotation(evidence: &Evidence) -> Finding {
+    let quantity = "rotation of an element at small strain";
+    of_bodies(
+        evidence,
+        ("small-strain-rotation", quantity, Form::Degrees),
+        ROTATION,
+        |found| found.rotation,
+    )
+}
+
+/// Strain of the elements of bodies at small strain.
+pub(super) fn strain(evidence: &Evidence) -> Finding {
+    let quantity = "strain of an element at small strain";
+    of_bodies(
+        evidence,
+        ("small-strain", quantity, Form::Percent),
+        STRAIN,
+        |found| found.strain,
+    )
+}
+
+/// Way of points with a force along the surface that they were paired with.
+pub(super) fn slide(evidence: &Evidence) -> Finding {
+    let quantity = "faces that a point with a force has slid over under small sliding";
+    of_contacts(
+        evidence,
+        ("small-sliding", quantity, Form::Number),
+        SLIDE,
+        |found| found.slide,
+    )
+}
+
+/// Turn of normals since points were paired.
+pub(super) fn turn(evidence: &Evidence) -> Finding {
+    let quantity = "turn of a normal under small sliding";
+    of_contacts(
+        evidence,
+        ("small-sliding-normal", quantity, Form::Degrees),
+        TURN,
+        |found| found.turn,
+    )
+}
+
+/// Forces in points that are apart from what they press on.
+pub(super) fn invented(evidence: &Evidence) -> Finding {
+    let quantity =
+        "gap, in faces, of a point that small sliding presses on (inf: nothing is opposite it)";
+    of_contacts(
+        evidence,
+        ("small-sliding-invented", quantity, Form::Number),
+        APART,
+        |found| found.invented,
+    )
+}
+
+/// Points that penetrate without a force.
+pub(super) fn lost(evidence: &Evidence) -> Finding {
+    let quantity = "depth, in faces, of a point that small sliding lets through";
+    of_contacts(
+        evidence,
+        ("small-sliding-lost", quantity, Form::Number),
+        APART,
+        |found| found.lost,
+    )
+}
+
+/// The worst of all bodies at small strain.
+fn of_bodies(
+    evidence: &Evidence,
+    (name, quantity, form): (&str, &str, Form),
+    bounds: Bounds,
+    of: fn(&SmallStrain) -> Largest,
+) -> Finding {
+    let found = &evidence.last.records.small.bodies;
+    let system = evidence.system;
+    let small = (0..found.len()).filter(|&body| system.bodies[body].is_linear());
+    let worst = small.max_by(|&a, &b| of(&found[a]).value.total_cmp(&of(&found[b]).value));
+    let Some(body) = worst else {
+        return Finding::Absent;
+    };
+    let largest = of(&found[body]);
+    let quantity = format!(
+        "{quantity}, body `{}`{}",
+        system.bodies[body].name(),
+        when(&largest)
+    );
+    let remedy = instead(system, body);
+    Finding::Line(Line::new(
+        name,
+        (&quantity, largest.value, form),
+        bounds,
+        &remedy,
+    ))
+}
+
+/// What to write for a body that turns or stretches.
+fn instead(system: &System, body: usize) -> String {
+    let body = &system.bodies[body];
+    let (name, elastic) = (body.name(), body.material().initial());
+    match (body.takes_finite_strain(), body.kinematics().dim()) {
+        (true, _) => format!(
+            "in the material of `{name}` neo-hooke = {{ young = {:e}, poisson = {:?} }} in place of elastic",
+            elastic.young, elastic.poisson
+        ),
+        (false, 1) => {
+            format!("`{name}` as plane or solid cells of neo-hooke: bars know small strain only")
+        }
+        (false, _) => format!(
+            "`{name}` with section.plane-strain, or as solid cells, and neo-hooke: plane stress knows small strain only"
+        ),
+    }
+}
+
+/// The worst of all contacts of small sliding; absent where there is none, or only against planes.
+fn of_contacts(
+    evidence: &Evidence,
+    (name, quantity, form): (&str, &str, Form),
+    bounds: Bounds,
+    of: fn(&SmallSliding) -> Largest,
+) -> Finding {
+    let found = &evidence.last.records.small.contacts;
+    let contacts = evidence.system.contacts.iter().zip(found);
+    let watched = contacts.filter(|(contact, _)| contact.pairs_once());
+    let worst = watched.max_by(|a, b| of(a.1).value.total_cmp(&of(b.1).value));
+    let Some((contact, found)) = worst else {
+        return Finding::Absent;
+    };
+    let largest = of(found);
+    let quantity = match largest.value > 0.0 {
+        true => format!(
+            "{quantity}, contact `{}`, node {}{}",
+            contact.name,
+            largest.place,
+            when(&largest)
+        ),
+        false => format!("{quantity}, contact `{}`", contact.name),
+    };
+    let remedy = format!("contact.{}.sliding = \"finite\"", contact.name);
+    let line = Line::new(name, (&quantity, largest.value, form), bounds, &remedy);
+    Finding::Line(line)
+}
+
+fn when(largest: &Largest) -> String {
+    match largest.value > 0.0 {
+        true => format!(" at {}", Form::Quantity("s").show(largest.time)),
+        false => String::new(),
+    }
+}
