@@ -11,7 +11,7 @@
 use crate::wave::{Line, Wave};
 use crate::{Bar, Error, Motion};
 
-/// Most pieces a solution may have; beyond, a run of very unequal bars would fill the memory.
+/// Most pieces of time a solution may have; beyond, a run of very unequal bars would fill the memory.
 const MAX_PIECES: usize = 1 << 20;
 
 /// Relative size below which times, velocities and gaps count as round-off.
@@ -263,11 +263,11 @@ impl Recursion {
     }
 
     fn run(mut self, end_time: f64) -> Result<Solution, Error> {
-        let mut t = 0.0;
+        let (mut t, mut steps) = (0.0, 0);
         while t < end_time {
             t = self.step(t, end_time);
-            let pieces = |m: &Motion| m.wave().len();
-            if self.solution.motions.iter().map(pieces).max() > Some(MAX_PIECES) {
+            steps += 1;
+            if steps > MAX_PIECES {
                 return Err(Error::TooManyPieces {
                     limit: MAX_PIECES,
                     time: t,
@@ -285,30 +285,69 @@ impl Recursion {
 
     /// Adds the next piece, up to the first of: an arrival, a closing, a release, the end time. Returns its end.
     fn step(&mut self, t: f64, end_time: f64) -> f64 {
-        let arrivals = self
-            .solution
-            .motions
-            .iter()
-            .map(|m| m.next_arrival(t, self.tolerance.time));
-        let horizon = arrivals.fold(end_time, f64::min);
-        // Arrivals that differ by round-off leave slivers: the piece is the one in force at mid-step.
-        let inside = 0.5 * (t + horizon);
+        let mut piece = self.piece(t, self.horizon(t, end_time, |_| true));
+        // Bars whose waves stay what they are hear of no arrival: without this a run of very many round trips would take one
+        // step for each.
+        let changes = |bar: usize| !self.is_steady(bar, t, &piece);
+        let far = self.horizon(t, end_time, changes);
+        if far > piece.horizon {
+            let longer = self.piece(t, far);
+            let steady = |bar| changes(bar) || self.is_steady(bar, t, &longer);
+            if (0..self.solution.motions.len()).all(steady) {
+                piece = longer;
+            }
+        }
+        let event = match piece.force {
+            Some(_) => release(piece.rate),
+            None => closing(piece.gap, piece.rate),
+        };
+        let end = event.map_or(piece.horizon, |dt| piece.horizon.min(t + dt));
+        self.emit(end, &piece);
+        let rate = match piece.force {
+            Some(_) => Line::ZERO,
+            None => piece.rate,
+        };
+        self.solution.gap_rate.push(end, rate, self.merge());
+        self.solution.record(t, end, piece.force);
+        end
+    }
+
+    /// The next arrival after `t`, or `end_time`; at bars without one on its way, that of what is emitted at `t` if it `changes`
+    /// the wave of the bar.
+    fn horizon(&self, t: f64, end_time: f64, changes: impl Fn(usize) -> bool) -> f64 {
+        let motions = self.solution.motions.iter().enumerate();
+        let arrivals = motions.filter_map(|(bar, motion)| {
+            let arrival = motion.next_arrival(t, self.tolerance.time);
+            arrival.or_else(|| changes(bar).then(|| t + motion.bar().round_trip()))
+        });
+        arrivals.fold(end_time, f64::min)
+    }
+
+    /// Whether no arrival is on its way in a bar, and none will be while it emits what the piece says.
+    fn is_steady(&self, bar: usize, t: f64, piece: &Piece) -> bool {
+        let motion = &self.solution.motions[bar];
+        motion.next_arrival(t, self.tolerance.time).is_none()
+            && motion.is_steady(piece.emitted(t, motion), self.merge())
+    }
+
+    /// What happens from `t` on, if nothing arrives before `horizon`.
+    fn piece(&self, t: f64, horizon: f64) -> Piece {
+        // Arrivals that differ by round-off leave slivers: the piece is the one in force at mid-step. What is on its way
+        // longer than a round trip is not known yet: it is steady then, and the first round trip tells it.
+        let shortest = self.solution.motions.iter().map(|m| m.bar().round_trip());
+        let ahead = shortest.fold(horizon - t, f64::min);
+        let inside = t + 0.5 * ahead;
         let rate = self.free_rate(t, inside, horizon);
         let gap = self.solution.gap(t);
         let touching = gap <= self.tolerance.gap;
         let closed = touching && (rate.value < 0.0 || rate.value == 0.0 && rate.slope < 0.0);
-        let event = if closed {
-            release(rate)
-        } else {
-            closing(if touching { 0.0 } else { gap }, rate)
-        };
-        let end = event.map_or(horizon, |dt| horizon.min(t + dt));
-        let force = closed.then(|| rate.scaled(-self.impedance));
-        self.emit(t, end, inside, force);
-        let rate = if closed { Line::ZERO } else { rate };
-        self.solution.gap_rate.push(end, rate, self.merge());
-        self.solution.record(t, end, force);
-        end
+        Piece {
+            horizon,
+            inside,
+            rate,
+            gap: if touching { 0.0 } else { gap },
+            force: closed.then(|| rate.scaled(-self.impedance)),
+        }
     }
 
     /// Gap rate without contact force from `t` to `horizon`, with round-off set to zero: it must not open or close.
@@ -331,21 +370,43 @@ impl Recursion {
         }
     }
 
-    fn emit(&mut self, t: f64, end: f64, inside: f64, force: Option<Line>) {
+    fn emit(&mut self, end: f64, piece: &Piece) {
         let merge = self.merge();
-        let force = force.unwrap_or(Line::ZERO);
+        let t = self.solution.force.end();
         for motion in &mut self.solution.motions {
-            let wave = motion
-                .returning(t, inside)
-                .plus(force.scaled(1.0 / motion.bar().impedance()));
+            let wave = piece.emitted(t, motion);
             motion.emit(end, wave, merge);
         }
+        let force = piece.force.unwrap_or(Line::ZERO);
         self.solution.force.push(end, force, merge * self.impedance);
     }
 
     /// Jump of velocity below which two pieces are one, m/s.
     fn merge(&self) -> f64 {
         1e-2 * self.tolerance.velocity
+    }
+}
+
+/// What happens between two events, as lines anchored at its start.
+struct Piece {
+    /// The first arrival after the start, or the end time, s.
+    horizon: f64,
+    /// An instant within it, s.
+    inside: f64,
+    /// Gap rate without contact force.
+    rate: Line,
+    /// Gap at the start, m.
+    gap: f64,
+    /// Contact force; none while open.
+    force: Option<Line>,
+}
+
+impl Piece {
+    /// The wave that a bar emits from `t` on.
+    fn emitted(&self, t: f64, motion: &Motion) -> Line {
+        let force = self.force.unwrap_or(Line::ZERO);
+        let of_force = force.scaled(1.0 / motion.bar().impedance());
+        motion.returning(t, self.inside).plus(of_force)
     }
 }
 

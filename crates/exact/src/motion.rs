@@ -126,10 +126,18 @@ impl Motion {
         fronts
     }
 
-    /// Next time after `t` + `tolerance` at which the returning wave has a jump or a kink, s.
-    pub(crate) fn next_arrival(&self, t: f64, tolerance: f64) -> f64 {
+    /// Next time after `t` + `tolerance` at which the returning wave has a jump or a kink, s; `None` if no part of the wave
+    /// that is on its way has one.
+    pub(crate) fn next_arrival(&self, t: f64, tolerance: f64) -> Option<f64> {
         let delay = self.bar.round_trip();
-        self.wave.next_break(t - delay + tolerance) + delay
+        let emitted = self.wave.next_break(t - delay + tolerance);
+        emitted.map(|emitted| emitted + delay)
+    }
+
+    /// Whether the wave that is on its way is one constant, which `line`, emitted next, continues within `tolerance`: it then
+    /// returns unchanged for as long as that is emitted.
+    pub(crate) fn is_steady(&self, line: Line, tolerance: f64) -> bool {
+        self.wave.is_continued(line, tolerance)
     }
 
     /// The returning wave R P(t - T) as a line anchored at `t`, taken from the piece that holds time `inside`.

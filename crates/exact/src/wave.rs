@@ -107,15 +107,16 @@ impl Wave {
         }
     }
 
-    /// First breakpoint after time `t`, or the end of the wave.
-    pub(crate) fn next_break(&self, t: f64) -> f64 {
+    /// First breakpoint after time `t`.
+    pub(crate) fn next_break(&self, t: f64) -> Option<f64> {
         let after = self.pieces.partition_point(|p| p.start <= t);
-        self.pieces.get(after).map_or(self.end, |p| p.start)
+        self.pieces.get(after).map(|p| p.start)
     }
 
-    /// Number of pieces.
-    pub(crate) fn len(&self) -> usize {
-        self.pieces.len()
+    /// Whether the last piece is a constant that `line` continues within `tolerance`.
+    pub(crate) fn is_continued(&self, line: Line, tolerance: f64) -> bool {
+        let last = self.last().line;
+        last.slope == 0.0 && line.slope == 0.0 && (last.value - line.value).abs() <= tolerance
     }
 
     /// Start of the range, s.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use carom_bodies::Body;
+use carom_bodies::{Body, Kinematics};
 use carom_contact::{Places, Rows, Search};
 use carom_dynamics::{System, step_count};
 use carom_exact::{Bar, Impact, Solution};
@@ -133,14 +133,18 @@ fn solve(
     };
     let normal = rows.normal(0);
     let area: f64 = contact.points.iter().map(|point| point.area).sum();
+    let width = |body: usize| width(system.bodies[body].kinematics());
     let one = bar(system, &one, normal, (sides, area))?;
     let impact = match primary {
         None => Impact::Wall { bar: one, gap },
-        Some(_) => Impact::TwoBars {
-            secondary: one,
-            primary: bar(system, &other, normal.map(|n| -n), (sides, area))?,
-            gap,
-        },
+        Some(primary) => {
+            let area = area * width(primary) / width(secondary);
+            Impact::TwoBars {
+                secondary: one,
+                primary: bar(system, &other, normal.map(|n| -n), (sides, area))?,
+                gap,
+            }
+        }
     };
     // unequal steps end within one step of the end time
     let extra = u64::from(system.adaptive.is_some());
@@ -150,7 +154,16 @@ fn solve(
     Ok((solution, normal))
 }
 
-/// The bar that bodies make, whose contact end lies against `inward`, the unit vector from the contact into the bar.
+/// Area in m² that a unit of the end face of a body stands for, as far as a section does not vary over that face: two bars
+/// whose faces cover each other have sections in this ratio.
+fn width(kinematics: Kinematics) -> f64 {
+    match kinematics {
+        Kinematics::Axisymmetric | Kinematics::Solid => 1.0,
+        other => other.surface_factor(&[0.0; 3]),
+    }
+}
+
+/// The bar of the section `area` (m²) that bodies make, whose contact end lies against `inward`, the unit vector from the contact into the bar.
 fn bar(
     system: &System,
     indices: &[usize],
@@ -181,7 +194,7 @@ fn bar(
     let density = body.material().density();
     if (mass - density * area * length).abs() > 1e-6 * mass {
         return Err(format!(
-            "body `{}` is not a bar of the section of its contact",
+            "body `{}` is not a bar whose section, {area} m², meets the other side everywhere",
             body.name()
         ));
     }

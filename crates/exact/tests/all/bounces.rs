@@ -109,3 +109,36 @@ fn bars_that_never_meet_have_no_contact() {
     assert_eq!(solution.impulse(10.0), 0.0);
     assert!((solution.gap(10.0) - 1.0).abs() < 1e-14);
 }
+
+#[test]
+fn a_bar_falls_through_a_thousand_million_round_trips_at_once() {
+    // c = 10⁹ m/s, a round trip of 2 ns, and a fall of √2 s onto the ground: the events are the landing and what follows
+    let bar = Bar::new(1.0, 1.0, 1e18, 1.0).with_gravity(1.0);
+    let end = 2f64.sqrt() + 1e-8;
+    let solution = solve(&Impact::Wall { bar, gap: 1.0 }, end).unwrap();
+    let contact = solution.contacts()[0];
+    // the tolerance of times is four units of rounding of the end time
+    assert!((contact.start - 2f64.sqrt()).abs() < 2e-15 * end);
+    // a rigid motion until then: F = Z v = ρ c A g t
+    assert!((contact.peak_force / (1e9 * 2f64.sqrt()) - 1.0).abs() < 1e-8);
+    assert!((contact.end - contact.start - 2e-9).abs() < 4e-15);
+}
+
+#[test]
+fn a_thousand_million_round_trips_after_an_impact_change_nothing() {
+    let bar = Bar::new(1.0, 1.0, 1.0, 1.0);
+    let impact = Impact::TwoBars {
+        secondary: bar.with_velocity(-1.0),
+        primary: bar,
+        gap: 0.5,
+    };
+    let (short, long) = (solve(&impact, 10.0).unwrap(), solve(&impact, 2e9).unwrap());
+    assert_eq!(long.contacts().len(), 1);
+    // times to four units of rounding of the end time
+    for t in [1.0, 2.0, 3.0, 9.0] {
+        assert!((long.gap(t) - short.gap(t)).abs() < 4e-6);
+        assert!((long.impulse(t) - short.impulse(t)).abs() < 4e-6);
+    }
+    // the target moves at 1 m/s from 2.5 s on, the striker rests
+    assert!((long.gap(2e9) - (2e9 - 2.5)).abs() < 1e-5);
+}

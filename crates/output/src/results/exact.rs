@@ -116,12 +116,9 @@ pub(crate) fn motion_curves(solution: &Solution, body: usize, end: f64) -> [Poly
     for pair in instants(motion, end.min(solution.end_time())).windows(2) {
         let (from, to) = (pair[0], pair[1]);
         let at = |part: f64| from + part * (to - from);
-        for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
-            add(
-                &mut curves[0],
-                at(part),
-                displacement(solution, body, at(part)),
-            );
+        // both ends as they are: `at(1.0)` may lie beyond `to` by rounding, and the next sample then before it
+        for time in [from, at(0.25), at(0.5), at(0.75), to] {
+            add(&mut curves[0], time, displacement(solution, body, time));
         }
         // The velocity is linear between two instants, and may jump at both.
         let [a, b] = [0.25, 0.75].map(|part| sign(body) * motion.velocity(0.0, at(part)));
@@ -163,4 +160,41 @@ fn instants(motion: &Motion, end: f64) -> Vec<f64> {
     // Arrivals that differ by rounding are one.
     instants.dedup_by(|b, a| *b - *a <= 1e-9 * end);
     instants
+}
+
+#[cfg(test)]
+#[allow(
+    clippy::unwrap_used,
+    reason = "clippy sees only #[test] functions as tests"
+)]
+mod tests {
+    use super::*;
+    use carom_exact::{Bar, Impact, solve};
+
+    /// Two steel bars of 254 mm and 1 m, whose round trips divide nothing.
+    fn unequal() -> Solution {
+        let bar = |length| Bar::new(length, 6.45e-4, 2.07e11, 7844.0);
+        let impact = Impact::TwoBars {
+            secondary: bar(0.254).with_velocity(-5.1359),
+            primary: bar(1.0),
+            gap: 0.0,
+        };
+        solve(&impact, 5e-4).unwrap()
+    }
+
+    #[test]
+    fn exact_curves_never_go_back_and_end_at_the_end() {
+        let solution = unequal();
+        for k in 1..500 {
+            let end = f64::from(k) * 1e-6;
+            for body in [0, 1] {
+                for (x, y) in motion_curves(&solution, body, end) {
+                    assert_eq!(x.len(), y.len());
+                    assert!(x.windows(2).all(|pair| pair[0] <= pair[1]), "{end}");
+                    // arrivals that differ from the end by rounding are it
+                    assert!((x[x.len() - 1] - end).abs() <= 1e-9 * end);
+                }
+            }
+        }
+    }
 }
