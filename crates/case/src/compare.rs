@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use carom_output::compare::{Comparison, Standard};
+use carom_output::compare::{Comparison, Refined, Standard};
 
 use crate::error::Problem;
 use crate::input::{Input, Source};
-use crate::sweep::{Job, Sweep, SweepError, folder_name, prepare, run_all, unique_name};
+use crate::sweep::{Job, Sweep, SweepError, folder_name, prepare, run_all, sentence, unique_name};
 
 /// What the user wants compared.
 #[derive(Clone, Debug, Default)]
@@ -25,10 +25,11 @@ pub struct Choices {
 
 /// Word for the scheme or law of the case as it is.
 const AS_IT_IS: &str = "case";
-/// Name of the run with a quarter of the step.
+/// Name of the run with smaller elements and steps.
 const FINEST: &str = "finest";
-/// Steps of the finest run in one step of the case.
-const REFINEMENT: f64 = 4.0;
+/// How often elements and steps of the finest run are halved: twice in models of bars, whose cost grows with the square of
+/// the factor, once in others, where it grows with the third or fourth power.
+const HALVINGS: [u32; 2] = [2, 1];
 
 /// Runs every scheme with every law and writes the comparison into the folder of `sweep`; returns it with the path of its
 /// page. Pairs that the case does not allow, and runs that fail, keep their rows with the reason.
@@ -43,12 +44,13 @@ pub fn compare(
     let base = Job::new("", input, Vec::new())?;
     base.has_contact(sweep.contact)?;
     let mut jobs = variants(&base, input, choices)?;
-    let standard = standard(&base, input, choices, &mut jobs)?;
+    let (standard, refined) = standard(&base, input, choices, &mut jobs)?;
     let mut folder = prepare(&jobs, sweep)?;
     let mut ended = run_all(&jobs, sweep);
     let mut comparison = Comparison {
         title: base.title(),
         standard,
+        refined,
         exact: ended.iter_mut().find_map(|one| one.exact.take()),
         variants: ended.into_iter().map(|one| one.variant).collect(),
     };
@@ -127,19 +129,20 @@ fn standard(
     input: &Input,
     choices: &Choices,
     jobs: &mut Vec<Job>,
-) -> Result<Standard, SweepError> {
+) -> Result<(Standard, Option<Refined>), SweepError> {
     let exact = base.case.reference.is_some();
     let default = if exact { "exact" } else { FINEST };
     match choices.reference.as_deref().unwrap_or(default) {
-        "none" => Ok(Standard::Nothing),
-        "exact" if exact => Ok(Standard::Exact),
+        "none" => Ok((Standard::Nothing, None)),
+        "exact" if exact => Ok((Standard::Exact, None)),
         FINEST => {
-            let built = base.build().map_err(|problems| base.refuse(problems))?;
-            let step = format!("time.step={:?}", built.system.dt / REFINEMENT);
-            jobs.push(Job::new(FINEST, input, vec![step])?);
-            Ok(Standard::Run(FINEST.to_owned()))
+            let (job, refined) = finest(base, input)?;
+            jobs.push(job);
+            Ok((Standard::Run(FINEST.to_owned()), Some(refined)))
         }
-        name if jobs.iter().any(|job| job.name == name) => Ok(Standard::Run(name.to_owned())),
+        name if jobs.iter().any(|job| job.name == name) => {
+            Ok((Standard::Run(name.to_owned()), None))
+        }
         name => {
             let own = jobs.iter().map(|job| job.name.as_str());
             let names = own.chain([FINEST, "none"]).chain(exact.then_some("exact"));
@@ -156,4 +159,38 @@ fn standard(
             })
         }
     }
+}
+
+/// The case with smaller elements and steps; with smaller steps alone where its mesh cannot be refined.
+fn finest(base: &Job, input: &Input) -> Result<(Job, Refined), SweepError> {
+    let built = base.build().map_err(|problems| base.refuse(problems))?;
+    let bodies = built.system.bodies.iter();
+    let bars = bodies.map(|body| body.kinematics().dim()).max() == Some(1);
+    let halvings = HALVINGS[usize::from(!bars)];
+    let factor = 2u32.pow(halvings);
+    let step = format!("time.step={:?}", built.system.dt / f64::from(factor));
+    let mesh = &base.case.mesh;
+    let refine = format!("mesh.refine={}", mesh.refine + halvings);
+    let finer = Job::new(FINEST, input, vec![refine, step.clone()]);
+    let problems = match finer {
+        Ok(job) => match job.build() {
+            Ok(_) => {
+                let refined = Refined {
+                    factor,
+                    same_mesh: None,
+                    from_file: mesh.file.is_some(),
+                };
+                return Ok((job, refined));
+            }
+            Err(problems) => problems,
+        },
+        Err(SweepError::Input { problems, .. }) => problems,
+        Err(other) => return Err(other),
+    };
+    let refined = Refined {
+        factor,
+        same_mesh: Some(sentence(&problems)),
+        from_file: mesh.file.is_some(),
+    };
+    Ok((Job::new(FINEST, input, vec![step])?, refined))
 }

@@ -245,7 +245,7 @@ impl Observer for Watched {
 }
 
 /// All problems in one line.
-fn sentence(problems: &[Problem]) -> String {
+pub(crate) fn sentence(problems: &[Problem]) -> String {
     let one = |problem: &Problem| match &problem.found {
         Some(found) => format!("{problem} (found: {found})"),
         None => problem.to_string(),

@@ -20,7 +20,7 @@ pub struct Arguments {
     /// Other case files of the same problem, run as they are and put into the same table
     #[arg(long, num_args = 1.., value_name = "CASE")]
     beside: Vec<PathBuf>,
-    /// What to compare with: `exact`, `finest` (a run with a quarter of the step), `none`, or a variant of the table;
+    /// What to compare with: `exact`, `finest` (a run with smaller elements and steps), `none`, or a variant of the table;
     /// default: the exact solution that the case names, else `finest`
     #[arg(long, value_name = "NAME")]
     reference: Option<String>,
@@ -58,6 +58,9 @@ pub fn compare(arguments: &Arguments) -> u8 {
     let contact = sweep::contact(comparison.contact());
     println!("{contact}Errors against {}.\n", comparison.standard_text());
     println!("{}", comparison.table().text(sweep::WIDTH));
+    if let Some(unseen) = comparison.unseen() {
+        println!("  {unseen}");
+    }
     let variants = || comparison.variants.iter();
     sweep::reasons(variants());
     println!(

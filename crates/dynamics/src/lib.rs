@@ -10,6 +10,7 @@ mod control;
 mod coulomb;
 mod driver;
 mod error;
+mod impact;
 mod initial;
 mod interface;
 mod ledger;
@@ -33,6 +34,7 @@ pub use control::{Adaptive, Closing, Control};
 pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};
 pub use driver::{Costs, Driver, Phases, Work};
 pub use error::Error;
+pub use impact::Impact;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Resultant};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, march, step_count};
@@ -42,7 +44,7 @@ pub use newton::Newton;
 pub use nonlinear::{
     Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed, Refused,
 };
-pub use records::{ContactRecord, Impact, Records};
+pub use records::{ContactRecord, Records};
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use small::{Largest, SmallSliding, SmallStrain, Smallness};
 pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, StepReport};

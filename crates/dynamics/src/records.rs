@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::impact::{Given, Impact, OpenImpact};
 use crate::ledger::Sum;
 use crate::small::Smallness;
 use crate::state::{ContactReport, State};
@@ -13,7 +14,7 @@ use crate::system::System;
 pub struct Records {
     /// By contact.
     pub contacts: Vec<ContactRecord>,
-    /// Impacts that have ended, in the order of their end.
+    /// Impacts after which a flight has lasted, in the order of their end; see [`Records::ended`].
     pub impacts: Vec<Impact>,
     /// Whether what is assumed small has stayed small.
     pub small: Smallness,
@@ -40,7 +41,7 @@ pub struct ContactRecord {
     pub mixed: u64,
     /// Total force and force on the secondary body in the last step as they enter impulses, N.
     last: (f64, [f64; 3]),
-    /// The impact going on.
+    /// The impact going on, or whose flight does not last yet.
     open: Option<OpenImpact>,
     impulse: Sum,
     defect: Sum,
@@ -56,50 +57,6 @@ impl ContactRecord {
     pub fn persistency_defect(&self) -> f64 {
         self.defect.get()
     }
-}
-
-/// One impact: an interval of steps with a force in a contact.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Impact {
-    /// Index of the contact.
-    pub contact: u32,
-    /// Start of its first step, s.
-    pub start: f64,
-    /// Duration, s.
-    pub duration: f64,
-    /// Largest total force, N.
-    pub peak_force: f64,
-    /// Impulse on the secondary body, N s.
-    pub impulse: f64,
-    /// Speed at which the mean motions of the two bodies (one, on an obstacle) approached along the impulse, m/s.
-    pub approach: f64,
-    /// Speed at which they part, m/s; negative if they still approach.
-    pub rebound: f64,
-    /// Kinetic energy of the approach, ½ m w² with the reduced mass m of the two bodies, J.
-    pub energy_given: f64,
-    /// Energy lost in the contact, J: minus the work of its forces.
-    pub energy_lost: f64,
-    /// The part of it that is lost in crush, J; zero of laws without memory.
-    pub energy_crushed: f64,
-    /// Whether the run ended before the impact did.
-    pub unfinished: bool,
-}
-
-impl Impact {
-    /// Rebound over approach.
-    pub fn restitution(&self) -> f64 {
-        self.rebound / self.approach
-    }
-}
-
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct OpenImpact {
-    start: f64,
-    peak_force: f64,
-    impulse: [Sum; 3],
-    work: Sum,
-    velocity: [f64; 3],
-    crushed: Sum,
 }
 
 /// What a step adds to the record of a contact.
@@ -178,82 +135,45 @@ impl Records {
         if active {
             record.first_closing.get_or_insert(step.span[0]);
             record.last_force = Some(step.span[1]);
-            record.open.get_or_insert_with(|| OpenImpact {
-                start: step.span[0],
-                velocity: approach_velocity(system, contact, &old.motion.v),
-                ..OpenImpact::default()
-            });
         }
-        if let Some(open) = &mut record.open {
-            open.peak_force = open.peak_force.max(report.force);
-            open.work.add(step.work);
-            open.crushed.add(crushed);
-            for i in 0..3 {
-                open.impulse[i].add(mean(before.1[i], resultant[i]));
-                open.impulse[i].add(projected.1[i]);
-            }
-            if !active {
-                let impact = open.finished(system, contact, step.span[1], new_velocity);
-                self.impacts.push(impact);
-                self.contacts[contact].open = None;
-            }
-        }
-    }
-
-    /// All impacts, those that still go on at the end of the run included.
-    pub fn all_impacts(&self, system: &System, state: &State) -> Vec<Impact> {
-        let open = self
-            .contacts
-            .iter()
-            .enumerate()
-            .filter_map(|(contact, record)| {
-                let open = record.open.as_ref()?;
-                Some(Impact {
-                    unfinished: true,
-                    ..open.finished(system, contact, state.time, &state.motion.v)
-                })
-            });
-        self.impacts.iter().cloned().chain(open).collect()
-    }
-}
-
-impl OpenImpact {
-    fn finished(&self, system: &System, contact: usize, end: f64, v: &[f64]) -> Impact {
-        let impulse = self.impulse.map(|sum| sum.get());
-        let size = impulse.iter().map(|i| i * i).sum::<f64>().sqrt();
-        let after = approach_velocity(system, contact, v);
-        // along the force on the secondary body, which parts the two
-        let along = |w: [f64; 3]| match size > 0.0 {
-            true => (0..3).map(|i| w[i] * impulse[i]).sum::<f64>() / size,
-            false => 0.0,
+        let given = Given {
+            span: step.span,
+            active,
+            force: report.force,
+            impulse: [0, 1, 2].map(|i| mean(before.1[i], resultant[i]) + projected.1[i]),
+            work: step.work,
+            crushed,
         };
-        let approach = -along(self.velocity);
-        let (secondary, primary) = system.sides[contact];
-        let inverse = 1.0 / system.body_mass(secondary)
-            + primary.map_or(0.0, |body| 1.0 / system.body_mass(body));
-        Impact {
-            contact: contact as u32,
-            start: self.start,
-            duration: end - self.start,
-            peak_force: self.peak_force,
-            impulse: size,
-            approach,
-            rebound: along(after),
-            energy_given: 0.5 * approach * approach / inverse,
-            energy_lost: -self.work.get(),
-            energy_crushed: self.crushed.get(),
-            unfinished: false,
-        }
+        let velocities = [&old.motion.v[..], new_velocity];
+        let place = (system, contact);
+        let ended = OpenImpact::follow(&mut record.open, place, &given, velocities);
+        self.impacts.extend(ended);
     }
-}
 
-/// Mean velocity of the secondary body less that of the primary one, m/s.
-fn approach_velocity(system: &System, contact: usize, v: &[f64]) -> [f64; 3] {
-    let (secondary, primary) = system.sides[contact];
-    let mut relative = system.mean_velocity(secondary, v);
-    if let Some(primary) = primary {
-        let other = system.mean_velocity(primary, v);
-        relative = [0, 1, 2].map(|i| relative[i] - other[i]);
+    /// The impacts that have ended, those included whose last release is too short ago to tell that the flight lasts.
+    pub fn ended(&self) -> impl Iterator<Item = Impact> + '_ {
+        let flying = self.contacts.iter().enumerate();
+        let flying = flying.filter_map(|(contact, record)| {
+            let released = record.open.as_ref()?.released()?;
+            Some(Impact {
+                contact: contact as u32,
+                ..released.clone()
+            })
+        });
+        self.impacts.iter().cloned().chain(flying)
     }
-    relative
+
+    /// All impacts, those whose contact is closed at the end of the run included.
+    pub fn all_impacts(&self, system: &System, state: &State) -> Vec<Impact> {
+        let contacts = self.contacts.iter().enumerate();
+        let closed = contacts.filter_map(|(contact, record)| {
+            let open = record.open.as_ref()?;
+            open.released().is_none().then(|| Impact {
+                unfinished: true,
+                restitution: None,
+                ..open.impact(system, contact, state.time, &state.motion.v)
+            })
+        });
+        self.ended().chain(closed).collect()
+    }
 }

@@ -1,4 +1,4 @@
-//! The table of impacts: one row from closing to release of a contact.
+//! The table of impacts: one row from the first closing of a contact to the last release before a flight that lasts.
 
 use std::path::Path;
 
@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::Error;
 use crate::rows::{Cell, Rows};
 
-/// One impact: from the step at which a contact closes to the step at which its last point opens.
+/// One impact: from the first closing of a contact to its last release before a flight that lasts longer than a wave takes
+/// across the longer of the two bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImpactRow {
     /// Name of the contact.
@@ -25,25 +26,28 @@ pub struct ImpactRow {
     pub window: f64,
     /// ∫ F dt over the impact, N s.
     pub impulse: f64,
-    /// Speed at which the two bodies near each other before the impact, m/s, positive: of their mean velocities
-    /// (momentum / mass).
+    /// Speed at which the two bodies near each other before the impact, m/s, positive: of the mean velocities (momentum /
+    /// mass) of what no support holds.
     pub approach_speed: f64,
     /// Speed at which they part after it, m/s, positive when parting; `None` while still closed, and where links join
     /// further bodies to one of the two, whose motion it would leave out.
     pub rebound_speed: Option<f64>,
-    /// `rebound_speed / approach_speed`; `None` with that, or if there was no approach.
+    /// Rebound over approach, from the momenta of the bodies before and after the impact; `None` with `rebound_speed`, and
+    /// where it means nothing ([`carom_dynamics::Impact::restitution`]).
     pub restitution: Option<f64>,
     /// Kinetic energy of the approach, ½ m w² with w the approach speed and m the reduced mass of the two bodies
-    /// (the mass of the one on an obstacle; without what links join to them), J.
+    /// (the mass of the one on an obstacle; without what supports hold and what links join to them), J.
     pub energy_given: f64,
     /// Energy lost in the contact, minus the work of its forces, J, positive when lost.
     pub energy_lost: f64,
     /// The part of it that is lost in crush, J; zero of laws without memory.
     pub energy_crushed: f64,
+    /// Intervals with a force: more than one where the contact opens and closes within the impact.
+    pub intervals: u64,
 }
 
 /// Names of the columns of `impacts.csv`, with their units.
-pub const COLUMNS: [&str; 13] = [
+pub const COLUMNS: [&str; 14] = [
     "pair",
     "start_s",
     "duration_s",
@@ -57,6 +61,7 @@ pub const COLUMNS: [&str; 13] = [
     "energy_given_j",
     "energy_lost_j",
     "energy_crushed_j",
+    "intervals",
 ];
 
 /// The file `impacts.csv`, open for appending.
@@ -95,6 +100,7 @@ impl ImpactTable {
             Cell::Number(impact.energy_given),
             Cell::Number(impact.energy_lost),
             Cell::Number(impact.energy_crushed),
+            Cell::Number(impact.intervals as f64),
         ];
         self.rows.push(cells.into_iter())?;
         self.rows.flush()

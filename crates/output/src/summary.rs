@@ -199,10 +199,10 @@ pub struct Contact {
     /// Coulomb friction, where there is some.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
-    /// Impacts from closing to release.
+    /// Impacts, from the first closing to the last release before a flight that lasts.
     pub impacts: usize,
-    /// Restitution of the last complete impact, from the mean velocities (momentum / mass); `None` where links join
-    /// further bodies to one of the two.
+    /// Restitution of the last complete impact, from the momenta of the bodies before and after it; `None` where it means
+    /// nothing ([`carom_dynamics::Impact::restitution`]), or links join further bodies to one of the two.
     pub restitution: Option<f64>,
 }
 
@@ -313,7 +313,8 @@ pub struct Exact {
     /// Impulse / exact impulse - 1.
     #[serde(with = "float")]
     pub impulse_error: f64,
-    /// Speed at which the mean motions part at the end of the run over that at which they approach at its start.
+    /// Speed at which the mean motions part at the end of the run over that at which they approach at its start; `None`
+    /// while the exact contact is closed, and where a clamp or gravity changes the momenta too.
     pub restitution: Option<f64>,
     /// The same of the exact solution.
     pub exact_restitution: Option<f64>,

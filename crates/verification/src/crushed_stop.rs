@@ -168,7 +168,7 @@ fn rows(scheme: Scheme, tolerance: f64) -> Result<Vec<Row>, Error> {
         let state = driver.state();
         let (_, largest) = blow.course();
         let (ledger, record) = (&state.ledger, &state.records.contacts[0]);
-        let impact = state.records.impacts.last().cloned().unwrap_or_default();
+        let impact = state.records.ended().last().unwrap_or_default();
         let crush = state.interface.crush[0];
         let name = format!("{}, {name}", scheme.get().name());
         let row = |what: &str, value, bound| Row::at_most(format!("{name}: {what}"), value, bound);

@@ -81,8 +81,8 @@ pub struct Bounces {
     pub gain: f64,
     /// How late the last contact begins, in periods.
     pub late: f64,
-    /// Impacts found; chatter within a contact counts each time.
-    pub impacts: usize,
+    /// Intervals with a force; chatter within an impact counts each time.
+    pub intervals: u64,
 }
 
 /// Runs the bar; `None` where the scheme refuses the law.
@@ -150,7 +150,7 @@ pub fn bounces(
         drift: state.ledger.balance.energy() / ENERGY - 1.0,
         gain: gain.largest / ENERGY,
         late: last.map_or(f64::NAN, |impact| impact.start - exact) / PERIOD,
-        impacts: impacts.len(),
+        intervals: impacts.iter().map(|impact| impact.intervals).sum(),
     }))
 }
 
@@ -191,7 +191,7 @@ pub fn table(elements: usize, periods: usize) -> Result<String, Error> {
         ("velocity, half", velocity(Capture::Half)),
     ];
     let mut text = String::from(
-        "| scheme | law | energy drift | largest gain | last contact late by (periods) | impacts |\n|---|---|---|---|---|---|\n",
+        "| scheme | law | energy drift | largest gain | last contact late by (periods) | intervals with a force |\n|---|---|---|---|---|---|\n",
     );
     for scheme in Scheme::registered() {
         for (name, law) in laws {
@@ -200,7 +200,7 @@ pub fn table(elements: usize, periods: usize) -> Result<String, Error> {
                 Ok(None) => continue,
                 Ok(Some(b)) => format!(
                     "{:+.2e} | {:.1e} | {:+.4} | {}",
-                    b.drift, b.gain, b.late, b.impacts
+                    b.drift, b.gain, b.late, b.intervals
                 ),
                 Err(error) => format!("{error} | | | "),
             };

@@ -164,6 +164,68 @@ fn a_run_is_at_no_distance_from_itself_and_the_finest_has_a_quarter_of_the_step(
 }
 
 #[test]
+fn the_finest_run_is_nearer_to_the_exact_solution_than_the_case_and_says_what_it_cannot_see() {
+    let work = tempfile::tempdir().unwrap();
+    let choices = Choices {
+        schemes: words(&["case", "theta={theta=0.6}"]),
+        reference: Some("finest".to_owned()),
+        ..Choices::default()
+    };
+    let comparison = compared(&work.path().join("a"), &two_bars(40, EXACT), &choices);
+    let exact_error = |name: &str| {
+        let mut variants = comparison.variants.iter();
+        let done = variants.find(|v| v.name == name).unwrap().done().unwrap();
+        done.summary.exact.as_ref().unwrap().force_error.unwrap()
+    };
+    // elements and steps of a quarter; the force of two bars errs like n^-0.36, measured from n = 50 to 800: 0.61
+    let ratio = exact_error("finest") / exact_error("case");
+    assert!((0.55..0.67).contains(&ratio), "{ratio}");
+    let distance = value(&comparison, "case", "force_error").unwrap();
+    // what the distance cannot show is at least what two errors can differ by
+    let own = exact_error("finest");
+    assert!(distance >= exact_error("case") - own && distance <= exact_error("case") + own);
+    let unseen = comparison.unseen().unwrap();
+    let of = |p: f64| {
+        format!(
+            "{:.2} % of the force",
+            100.0 * distance / (4f64.powf(p) - 1.0)
+        )
+    };
+    for text in [
+        "1/4 of the size of its elements and of its step",
+        &of(1.0),
+        &of(1.0 / 3.0),
+    ] {
+        assert!(unseen.contains(text), "{text:?} in {unseen}");
+    }
+    let page = std::fs::read_to_string(work.path().join("a/report.html")).unwrap();
+    assert!(page.contains("Not seen: the error of"));
+}
+
+#[test]
+fn a_mesh_that_cannot_be_refined_leaves_its_error_unseen_and_the_table_says_why() {
+    let work = tempfile::tempdir().unwrap();
+    let choices = Choices {
+        reference: Some("finest".to_owned()),
+        ..Choices::default()
+    };
+    // 512 elements by nine halvings: ten are allowed
+    let text = two_bars(1, "").sources[0].text.clone();
+    let text = text.replace("carom = 1", "carom = 1\nmesh.refine = 9");
+    let input = Input::from_text("case.toml", &text, &[]);
+    let comparison = compared(&work.path().join("a"), &input, &choices);
+    let refined = comparison.refined.as_ref().unwrap();
+    assert!(refined.same_mesh.as_ref().unwrap().contains("mesh.refine"));
+    let unseen = comparison.unseen().unwrap();
+    assert!(
+        unseen.starts_with("Not seen: the error of the mesh."),
+        "{unseen}"
+    );
+    let steps = |name: &str| value(&comparison, name, "steps").unwrap();
+    assert_eq!((steps("finest") / 4.0).ceil(), steps("case"));
+}
+
+#[test]
 fn parallel_runs_give_the_numbers_of_runs_one_by_one() {
     let work = tempfile::tempdir().unwrap();
     let choices = Choices {

@@ -8,6 +8,7 @@ mod dense;
 mod floating;
 mod fold;
 mod friction;
+mod impacts;
 mod initial;
 mod interface;
 mod material_work;

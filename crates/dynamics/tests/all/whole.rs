@@ -138,7 +138,7 @@ fn the_whole_is_the_zones_node_by_node_and_contact_by_contact() {
     }
     let record = &state.records.contacts[0];
     assert!(closed > 0.0 && (record.impulse() / impulse - 1.0).abs() < 1e-12);
-    assert_eq!(state.records.impacts.len(), 1);
+    assert_eq!(state.records.ended().count(), 1);
     let ledger = &state.ledger;
     assert_eq!(ledger.balance, whole.zones().balance());
     assert_eq!(ledger.largest_energy_residual, largest);

@@ -12,6 +12,7 @@ pub(crate) mod page;
 pub use columns::{COLUMNS, Column};
 pub use history::{History, Recorder, StepForce};
 
+use crate::report::percent;
 use crate::results::Reference;
 use crate::summary::{Contact, Summary};
 
@@ -22,6 +23,8 @@ pub struct Comparison {
     pub title: String,
     /// What force, overshoot and impulse are compared with.
     pub standard: Standard,
+    /// How the run that is the standard was refined, if it was made for that.
+    pub refined: Option<Refined>,
     /// The exact solution, drawn under the curves; `None` where the case names none.
     pub exact: Option<Reference>,
     /// The variants.
@@ -37,6 +40,17 @@ pub enum Standard {
     Run(String),
     /// Nothing: the columns that need it stay empty.
     Nothing,
+}
+
+/// A run of the case with smaller elements and steps, made to be the standard.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refined {
+    /// Its elements and steps are those of the case over this number.
+    pub factor: u32,
+    /// Why its mesh is that of the case; `None` where the mesh is refined too.
+    pub same_mesh: Option<String>,
+    /// Whether borders may be curved, which a refined mesh does not follow.
+    pub from_file: bool,
 }
 
 /// One way to compute the model.
@@ -187,5 +201,44 @@ impl Comparison {
             Standard::Run(name) => format!("the run `{name}`"),
             Standard::Nothing => "nothing".to_owned(),
         }
+    }
+
+    /// What part of the error the table cannot show; `None` where the standard is exact, or there is none.
+    pub fn unseen(&self) -> Option<String> {
+        let Standard::Run(name) = &self.standard else {
+            return None;
+        };
+        let Some(Refined {
+            factor,
+            same_mesh,
+            from_file,
+        }) = &self.refined
+        else {
+            return Some(format!(
+                "Not seen: the error of `{name}` itself, and what the variants have in common with it, mesh and step included."
+            ));
+        };
+        if let Some(why) = same_mesh {
+            return Some(format!(
+                "Not seen: the error of the mesh. `{name}` has 1/{factor} of the step on the mesh of the case, which cannot be refined: {why}"
+            ));
+        }
+        let own = |p: f64| 1.0 / (f64::from(*factor).powf(p) - 1.0);
+        let as_it_is = self.variants.iter().find(|v| v.overrides.is_empty());
+        let distance = as_it_is.and_then(|v| v.done()?.errors.force);
+        let [smooth, jump] = match distance {
+            Some(d) => [1.0, 1.0 / 3.0].map(|p| format!("{} of the force", percent(d * own(p)))),
+            None => [1.0, 1.0 / 3.0]
+                .map(|p| format!("{} of the distance of the case from it", percent(own(p)))),
+        };
+        let mut text = format!(
+            "Not seen: the error of `{name}` itself, the case with 1/{factor} of the size of its elements and of its step. If \
+             errors fall like the size to the power p, that is {smooth} for p = 1, {jump} for p = 1/3, as where the exact \
+             force jumps."
+        );
+        if *from_file {
+            text += " Curved borders have the shape of the coarse mesh in both.";
+        }
+        Some(text)
     }
 }

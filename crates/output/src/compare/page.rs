@@ -73,6 +73,7 @@ impl Comparison {
             .render(context! {
                 title => self.title.clone(),
                 standard => self.standard_text(),
+                unseen => self.unseen(),
                 contact => self.contact(),
                 run => matches!(self.standard, Standard::Run(_)),
                 heads => inner(&table.heads),

@@ -204,8 +204,7 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
         let still_closed = results.last.closed.get(k) == Some(&true);
         let impacts = || {
             records
-                .impacts
-                .iter()
+                .ended()
                 .filter(|impact| impact.contact as usize == k)
         };
         (
@@ -235,9 +234,9 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                     .then_some(record.mixed),
                 impacts: impacts().count() + usize::from(still_closed),
                 restitution: impacts()
-                    .next_back()
-                    .filter(|impact| impact.approach > 0.0 && !totals.of_parts)
-                    .map(|impact| impact.restitution()),
+                    .last()
+                    .and_then(|impact| impact.restitution)
+                    .filter(|_| !totals.of_parts),
             },
         )
     };
@@ -367,6 +366,7 @@ fn against_exact(results: &Results, comparison: &Comparison) -> Exact {
     let record = results.last.records.contacts.get(k).unwrap_or(&none);
     let peak = exact::peak_force(solution, end);
     let over = |value: f64| (peak > 0.0).then(|| value / peak - 1.0);
+    let free = exact::parts_freely(solution, end);
     Exact {
         name: reference.name.clone(),
         contact: results.system.contacts[k].name.clone(),
@@ -380,19 +380,17 @@ fn against_exact(results: &Results, comparison: &Comparison) -> Exact {
             record.impulse() - solution.impulse(end),
             solution.impulse(end),
         ),
-        restitution: parting(
-            opening_speed(results, k, &results.last.velocities),
-            opening_speed(results, k, &results.start),
-        ),
-        exact_restitution: parting(
-            exact::opening_speed(solution, end),
-            exact::opening_speed(solution, 0.0),
-        ),
+        restitution: free
+            .then_some([&results.start, &results.last.velocities])
+            .and_then(|velocities| parting(velocities.map(|v| opening_speed(results, k, v)))),
+        exact_restitution: free
+            .then_some([0.0, end])
+            .and_then(|times| parting(times.map(|time| exact::opening_speed(solution, time)))),
     }
 }
 
-/// Speed of parting over that of approach, from the opening speeds at the end and at the start.
-fn parting(end: f64, start: f64) -> Option<f64> {
+/// Speed of parting over that of approach, from the opening speeds at the start and at the end.
+fn parting([start, end]: [f64; 2]) -> Option<f64> {
     (start < 0.0).then(|| -end / start)
 }
 

@@ -1,7 +1,7 @@
 //! The distance of the result from the exact solution, step by step.
 
 use carom_dynamics::{State, StepReport};
-use carom_exact::{Motion, Solution};
+use carom_exact::{FarEnd, Motion, Solution};
 
 use crate::results::Reference;
 use crate::results::sensor::ContactPoint;
@@ -95,6 +95,15 @@ fn sign(body: usize) -> f64 {
 pub(crate) fn opening_speed(solution: &Solution, t: f64) -> f64 {
     let motions = solution.motions().iter();
     motions.map(|m| m.momentum(t) / m.bar().mass()).sum()
+}
+
+/// Whether the bars have parted by a time, and nothing but the contact has changed their momenta: neither a clamp nor
+/// gravity.
+pub(crate) fn parts_freely(solution: &Solution, t: f64) -> bool {
+    let free =
+        |motion: &Motion| motion.bar().far_end == FarEnd::Free && motion.bar().acceleration == 0.0;
+    let parted = |contact: &carom_exact::Contact| contact.end < t;
+    solution.motions().iter().all(free) && solution.contacts().iter().all(parted)
 }
 
 /// Largest exact force up to a time, N.

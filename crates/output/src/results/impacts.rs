@@ -95,12 +95,13 @@ impl Impacts {
         Ok(())
     }
 
-    /// Adds the impacts that still go on and closes the file. Nothing to do the second time.
+    /// Adds the impacts that still go on, or whose flight does not last yet, and closes the file. Nothing to do the second time.
     pub(crate) fn finish(&mut self, system: &System, state: &State) -> Result<(), Error> {
         let all = state.records.all_impacts(system, state);
-        for impact in all.iter().filter(|impact| impact.unfinished) {
+        for impact in all.iter().skip(self.written) {
             self.push(system, impact)?;
         }
+        self.written = all.len();
         self.file.take().map_or(Ok(()), ImpactTable::finish)
     }
 
@@ -122,10 +123,11 @@ impl Impacts {
             impulse: impact.impulse,
             approach_speed: impact.approach,
             rebound_speed: parting(impact.rebound),
-            restitution: parting(impact.restitution()).filter(|_| impact.approach > 0.0),
+            restitution: impact.restitution.and_then(parting),
             energy_given: impact.energy_given,
             energy_lost: impact.energy_lost,
             energy_crushed: impact.energy_crushed,
+            intervals: impact.intervals,
         };
         let outcome = file.push(&row);
         if self.rows.len() < SHOWN {

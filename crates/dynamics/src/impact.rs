@@ -1,0 +1,326 @@
+//! Impacts: what the steps between the first closing of a contact and its last release come to.
+
+use serde::{Deserialize, Serialize};
+
+use crate::ledger::Sum;
+use crate::system::System;
+
+/// Part of the impulse of an impact that other forces may have while it counts as an impact of its two bodies alone.
+const OTHERS: f64 = 0.01;
+
+/// Magnitude of the impulse over the sum of the magnitudes of the steps' impulses, below which the contact has slid over a
+/// surface that turns: 0.99 is a force that swings by 8 degrees in the mean square.
+const STEADY: f64 = 0.99;
+
+/// One impact: from the first closing of a contact to the last release before a flight that lasts.
+///
+/// A flight lasts if it is longer than a wave takes across the longer of the two bodies. A contact that closes again earlier
+/// does so by the waves of that impact, or by the chatter of a scheme: it is the same impact.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Impact {
+    /// Index of the contact.
+    pub contact: u32,
+    /// Start of its first step, s.
+    pub start: f64,
+    /// From there to the last release, s.
+    pub duration: f64,
+    /// Intervals of steps with a force: more than one where the contact opens and closes within the impact.
+    pub intervals: u64,
+    /// Largest total force, N.
+    pub peak_force: f64,
+    /// Impulse on the secondary body, N s.
+    pub impulse: f64,
+    /// Speed at which the two bodies (one, on an obstacle) approached along the impulse, m/s: of the mean velocities of the
+    /// masses that no support holds.
+    pub approach: f64,
+    /// Speed at which they part, m/s; negative if they still approach.
+    pub rebound: f64,
+    /// Rebound over approach, from the momenta of the bodies before and after the impact. `None` where it means nothing: the
+    /// bodies did not approach, or do not part; other forces (of supports, loads, joints, further contacts) gave more than
+    /// 1 % of the impulse; the force turned, as where bodies slide over each other; the obstacle moves. A body that is held
+    /// and at rest stands for the ground: the speeds are then those of the other one.
+    pub restitution: Option<f64>,
+    /// Kinetic energy of the approach, ½ m w² with the reduced mass m of what no support holds of the two bodies, J.
+    pub energy_given: f64,
+    /// Energy lost in the contact, J: minus the work of its forces.
+    pub energy_lost: f64,
+    /// The part of it that is lost in crush, J; zero of laws without memory.
+    pub energy_crushed: f64,
+    /// Whether the run ended before the impact did.
+    pub unfinished: bool,
+}
+
+/// What a step gives to an impact.
+pub(crate) struct Given {
+    /// Time at its start and end, s.
+    pub(crate) span: [f64; 2],
+    /// Whether the contact has a force in it.
+    pub(crate) active: bool,
+    /// Total force, N.
+    pub(crate) force: f64,
+    /// Impulse on the secondary body, N s.
+    pub(crate) impulse: [f64; 3],
+    /// Work of the contact, J.
+    pub(crate) work: f64,
+    /// Energy lost in crush, J.
+    pub(crate) crushed: f64,
+}
+
+/// An impact that has begun, and whose flight after it, if there is one, does not last yet.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct OpenImpact {
+    start: f64,
+    intervals: u64,
+    peak_force: f64,
+    impulse: [Sum; 3],
+    /// Sum of the magnitudes of the impulses of the steps, N s.
+    pushed: Sum,
+    work: Sum,
+    crushed: Sum,
+    /// Mean velocities of the two sides before it, m/s.
+    before: [[f64; 3]; 2],
+    released: Option<Released>,
+}
+
+/// The last release of an impact.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Released {
+    /// The impact, if the flight lasts.
+    impact: Impact,
+    /// Until when it must last, s.
+    until: f64,
+}
+
+impl OpenImpact {
+    /// Adds a step to the impact of a contact that goes on or begins; the impact, once a flight has lasted. `velocities`: at
+    /// the start and the end of the step, m/s.
+    pub(crate) fn follow(
+        open: &mut Option<OpenImpact>,
+        (system, contact): (&System, usize),
+        given: &Given,
+        velocities: [&[f64]; 2],
+    ) -> Option<Impact> {
+        if given.active {
+            open.get_or_insert_with(|| OpenImpact {
+                start: given.span[0],
+                before: Sides::of(system, contact).velocities(velocities[0]),
+                ..OpenImpact::default()
+            });
+        }
+        let going = open.as_mut()?;
+        going.add(system, given);
+        match (&going.released, given.active) {
+            (None, true) if going.intervals == 0 => going.intervals = 1,
+            (None, true) => {}
+            (Some(_), true) => {
+                going.intervals += 1;
+                going.released = None;
+            }
+            (None, false) => {
+                going.released = Some(Released {
+                    impact: going.impact(system, contact, given.span[1], velocities[1]),
+                    until: given.span[1] + crossing(system, contact),
+                });
+            }
+            (Some(released), false) if given.span[1] >= released.until => {
+                return open.take()?.released.map(|released| released.impact);
+            }
+            (Some(_), false) => {}
+        }
+        None
+    }
+
+    /// The impact as it was at its last release; `None` while the contact is closed.
+    pub(crate) fn released(&self) -> Option<&Impact> {
+        self.released.as_ref().map(|released| &released.impact)
+    }
+
+    fn add(&mut self, system: &System, given: &Given) {
+        let mut impulse = given.impulse;
+        if system.axisymmetric {
+            // radial forces of a full turn cancel
+            impulse[0] = 0.0;
+        }
+        self.peak_force = self.peak_force.max(given.force);
+        self.work.add(given.work);
+        self.crushed.add(given.crushed);
+        self.pushed.add(norm(impulse));
+        for (sum, impulse) in self.impulse.iter_mut().zip(impulse) {
+            sum.add(impulse);
+        }
+    }
+
+    /// The impact up to the time `end` (s), with these velocities (m/s) then.
+    pub(crate) fn impact(&self, system: &System, contact: usize, end: f64, v: &[f64]) -> Impact {
+        let impulse = self.impulse.map(|sum| sum.get());
+        let size = norm(impulse);
+        let direction = match size > 0.0 {
+            true => impulse.map(|i| i / size),
+            false => [0.0; 3],
+        };
+        let sides = Sides::of(system, contact);
+        let along = Along {
+            masses: sides.masses(direction),
+            held: sides.held(direction),
+            before: self.before.map(|w| dot(w, direction)),
+            after: sides.velocities(v).map(|w| dot(w, direction)),
+            impulse: size,
+        };
+        let approach = along.before[1] - along.before[0];
+        let inverse: f64 = along.masses.iter().map(|m| 1.0 / m).sum();
+        let told = size >= STEADY * self.pushed.get() && !system.contacts[contact].moves();
+        Impact {
+            contact: contact as u32,
+            start: self.start,
+            duration: end - self.start,
+            intervals: self.intervals,
+            peak_force: self.peak_force,
+            impulse: size,
+            approach,
+            rebound: along.after[0] - along.after[1],
+            restitution: along.restitution().filter(|_| told),
+            energy_given: match inverse > 0.0 {
+                true => 0.5 * approach * approach / inverse,
+                false => 0.0,
+            },
+            energy_lost: -self.work.get(),
+            energy_crushed: self.crushed.get(),
+            unfinished: false,
+        }
+    }
+}
+
+/// Motions of the two sides of a contact along its impulse on the secondary side.
+struct Along {
+    /// Free masses, kg; infinite of the ground.
+    masses: [f64; 2],
+    /// Whether supports hold a part of a side.
+    held: [bool; 2],
+    /// Velocities before and after, m/s.
+    before: [f64; 2],
+    after: [f64; 2],
+    /// The impulse, N s.
+    impulse: f64,
+}
+
+impl Along {
+    fn restitution(&self) -> Option<f64> {
+        let ground = |side: usize| self.masses[side] == f64::INFINITY;
+        let sides = match [self.alone(0), self.alone(1)] {
+            [true, true] => [1.0, 1.0],
+            [true, false] if ground(1) || self.stands(1) => [1.0, 0.0],
+            [false, true] if self.stands(0) => [0.0, 1.0],
+            _ => return None,
+        };
+        let opening = |v: [f64; 2]| sides[0] * v[0] - sides[1] * v[1];
+        let (approach, rebound) = (-opening(self.before), opening(self.after));
+        (approach > 0.0 && rebound >= 0.0).then(|| rebound / approach)
+    }
+
+    /// Whether the contact alone has changed the momentum of a side.
+    fn alone(&self, side: usize) -> bool {
+        let gained = [1.0, -1.0][side] * self.masses[side] * (self.after[side] - self.before[side]);
+        !self.held[side] && (gained - self.impulse).abs() <= OTHERS * self.impulse
+    }
+
+    /// Whether a side is held, and was at rest beside the other one.
+    fn stands(&self, side: usize) -> bool {
+        self.held[side] && self.before[side].abs() <= OTHERS * self.before[1 - side].abs()
+    }
+}
+
+/// The masses of the two sides of a contact by direction, whole and without what supports hold, kg.
+struct Sides<'a> {
+    system: &'a System,
+    bodies: [Option<usize>; 2],
+    whole: [f64; 2],
+    free: [[f64; 3]; 2],
+}
+
+impl Sides<'_> {
+    fn of(system: &System, contact: usize) -> Sides<'_> {
+        let (secondary, primary) = system.sides[contact];
+        let bodies = [Some(secondary), primary];
+        let mut free = [[0.0; 3]; 2];
+        for (body, free) in bodies.iter().zip(&mut free) {
+            each_free(system, *body, |_, i, m| free[i] += m);
+        }
+        Sides {
+            system,
+            bodies,
+            whole: bodies.map(|body| body.map_or(f64::INFINITY, |body| system.body_mass(body))),
+            free,
+        }
+    }
+
+    /// Mean velocities Σ m v / Σ m over what no support holds, m/s.
+    fn velocities(&self, v: &[f64]) -> [[f64; 3]; 2] {
+        let mut means = [[0.0; 3]; 2];
+        for (side, mean) in means.iter_mut().enumerate() {
+            each_free(self.system, self.bodies[side], |unknown, i, m| {
+                mean[i] += m / self.free[side][i] * v[unknown];
+            });
+        }
+        means
+    }
+
+    /// Masses against a force in a direction, 1 / Σ n_i²/m_i.
+    fn masses(&self, direction: [f64; 3]) -> [f64; 2] {
+        [0, 1].map(|side| {
+            let moved = (0..3).filter(|&i| direction[i] != 0.0 && self.free[side][i] > 0.0);
+            let inverse: f64 = moved
+                .map(|i| direction[i].powi(2) / self.free[side][i])
+                .sum();
+            1.0 / inverse
+        })
+    }
+
+    /// Whether supports hold a part of a side in a direction.
+    fn held(&self, direction: [f64; 3]) -> [bool; 2] {
+        // a direction is one to the rounding of the sums of forces
+        let acts = |i: usize| direction[i].abs() > 1e-6;
+        [0, 1].map(|side| {
+            let whole = self.whole[side];
+            let less = |i: usize| self.free[side][i] < whole * (1.0 - 1e-12);
+            self.bodies[side].is_some() && (0..self.system.dim).any(|i| acts(i) && less(i))
+        })
+    }
+}
+
+/// Visits the unknowns of a body that no support holds, with their direction and mass.
+fn each_free(system: &System, body: Option<usize>, mut visit: impl FnMut(usize, usize, f64)) {
+    let nodes = body.map_or(&[][..], |body| &system.body_masses[body][..]);
+    for &(node, m) in nodes {
+        for i in 0..system.dim {
+            let unknown = system.dim * node as usize + i;
+            if !system.fixed[unknown] {
+                visit(unknown, i, m);
+            }
+        }
+    }
+}
+
+/// Time that a wave takes across the longer of the two bodies of a contact (the diagonal of its box), s.
+fn crossing(system: &System, contact: usize) -> f64 {
+    let (secondary, primary) = system.sides[contact];
+    let bodies = [Some(secondary), primary].into_iter().flatten();
+    let across = bodies.map(|body| {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &(node, _) in &system.body_masses[body] {
+            for i in 0..3 {
+                low[i] = low[i].min(system.x[node as usize][i]);
+                high[i] = high[i].max(system.x[node as usize][i]);
+            }
+        }
+        norm([0, 1, 2].map(|i| high[i] - low[i])) / system.bodies[body].wave_speed()
+    });
+    across.fold(0.0, f64::max)
+}
+
+fn norm(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
+}
