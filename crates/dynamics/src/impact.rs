@@ -8,14 +8,18 @@ use crate::system::System;
 /// Part of the impulse of an impact that other forces may have while it counts as an impact of its two bodies alone.
 const OTHERS: f64 = 0.01;
 
-/// Magnitude of the impulse over the sum of the magnitudes of the steps' impulses, below which the contact has slid over a
+/// Flight over the impact before it that ends the impact whatever waves do.
+const LONG: f64 = 10.0;
+
+/// Magnitude of the sum of the normal impulses of the steps over the sum of their magnitudes, below which the contact has slid over a
 /// surface that turns: 0.99 is a force that swings by 8 degrees in the mean square.
 const STEADY: f64 = 0.99;
 
 /// One impact: from the first closing of a contact to the last release before a flight that lasts.
 ///
-/// A flight lasts if it is longer than a wave takes across the longer of the two bodies. A contact that closes again earlier
-/// does so by the waves of that impact, or by the chatter of a scheme: it is the same impact.
+/// A flight lasts if it is longer than a wave takes across the longer of the two bodies: a contact that closes again earlier does
+/// so by the waves of that impact, or by the chatter of a scheme, and it is the same impact. It lasts too if it is ten times as
+/// long as the impact so far, for a body that stands for a mass on a spring, in which waves do not matter.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Impact {
     /// Index of the contact.
@@ -30,7 +34,7 @@ pub struct Impact {
     pub peak_force: f64,
     /// Impulse on the secondary body, N s.
     pub impulse: f64,
-    /// Speed at which the two bodies (one, on an obstacle) approached along the impulse, m/s: of the mean velocities of the
+    /// Speed at which the two bodies (one, on an obstacle) approached along the mean normal, m/s: of the mean velocities of the
     /// masses that no support holds.
     pub approach: f64,
     /// Speed at which they part, m/s; negative if they still approach.
@@ -60,6 +64,8 @@ pub(crate) struct Given {
     pub(crate) force: f64,
     /// Impulse on the secondary body, N s.
     pub(crate) impulse: [f64; 3],
+    /// That of the normal forces, as far as its direction goes, N s.
+    pub(crate) normal: [f64; 3],
     /// Work of the contact, J.
     pub(crate) work: f64,
     /// Energy lost in crush, J.
@@ -73,7 +79,8 @@ pub(crate) struct OpenImpact {
     intervals: u64,
     peak_force: f64,
     impulse: [Sum; 3],
-    /// Sum of the magnitudes of the impulses of the steps, N s.
+    /// Sums of the normal impulses of the steps and of their magnitudes, N s.
+    normal: [Sum; 3],
     pushed: Sum,
     work: Sum,
     crushed: Sum,
@@ -119,7 +126,7 @@ impl OpenImpact {
             (None, false) => {
                 going.released = Some(Released {
                     impact: going.impact(system, contact, given.span[1], velocities[1]),
-                    until: given.span[1] + crossing(system, contact),
+                    until: given.span[1] + lasting(system, contact, given.span[1] - going.start),
                 });
             }
             (Some(released), false) if given.span[1] >= released.until => {
@@ -136,46 +143,43 @@ impl OpenImpact {
     }
 
     fn add(&mut self, system: &System, given: &Given) {
-        let mut impulse = given.impulse;
+        let (mut impulse, mut normal) = (given.impulse, given.normal);
         if system.axisymmetric {
             // radial forces of a full turn cancel
-            impulse[0] = 0.0;
+            (impulse[0], normal[0]) = (0.0, 0.0);
         }
         self.peak_force = self.peak_force.max(given.force);
         self.work.add(given.work);
         self.crushed.add(given.crushed);
-        self.pushed.add(norm(impulse));
-        for (sum, impulse) in self.impulse.iter_mut().zip(impulse) {
-            sum.add(impulse);
+        self.pushed.add(norm(normal));
+        for i in 0..3 {
+            self.impulse[i].add(impulse[i]);
+            self.normal[i].add(normal[i]);
         }
     }
 
     /// The impact up to the time `end` (s), with these velocities (m/s) then.
     pub(crate) fn impact(&self, system: &System, contact: usize, end: f64, v: &[f64]) -> Impact {
-        let impulse = self.impulse.map(|sum| sum.get());
-        let size = norm(impulse);
-        let direction = match size > 0.0 {
-            true => impulse.map(|i| i / size),
-            false => [0.0; 3],
-        };
+        let [impulse, normal] = [&self.impulse, &self.normal].map(|sums| sums.map(|s| s.get()));
         let sides = Sides::of(system, contact);
+        let direction = sides.direction(normal);
         let along = Along {
             masses: sides.masses(direction),
             held: sides.held(direction),
             before: self.before.map(|w| dot(w, direction)),
             after: sides.velocities(v).map(|w| dot(w, direction)),
-            impulse: size,
+            impulse: dot(impulse, direction),
         };
         let approach = along.before[1] - along.before[0];
         let inverse: f64 = along.masses.iter().map(|m| 1.0 / m).sum();
-        let told = size >= STEADY * self.pushed.get() && !system.contacts[contact].moves();
+        let told = norm(normal) >= STEADY * self.pushed.get() && !system.contacts[contact].moves();
         Impact {
             contact: contact as u32,
             start: self.start,
             duration: end - self.start,
             intervals: self.intervals,
             peak_force: self.peak_force,
-            impulse: size,
+            impulse: norm(impulse),
             approach,
             rebound: along.after[0] - along.after[1],
             restitution: along.restitution().filter(|_| told),
@@ -190,7 +194,7 @@ impl OpenImpact {
     }
 }
 
-/// Motions of the two sides of a contact along its impulse on the secondary side.
+/// Motions of the two sides of a contact along its mean normal, towards the secondary side.
 struct Along {
     /// Free masses, kg; infinite of the ground.
     masses: [f64; 2],
@@ -199,7 +203,7 @@ struct Along {
     /// Velocities before and after, m/s.
     before: [f64; 2],
     after: [f64; 2],
-    /// The impulse, N s.
+    /// The impulse on the secondary side, N s.
     impulse: f64,
 }
 
@@ -264,15 +268,41 @@ impl Sides<'_> {
         means
     }
 
-    /// Masses against a force in a direction, 1 / Σ n_i²/m_i.
+    /// Masses against a force in a direction, 1 / Σ n_i²/m_i, kg; infinite where nothing is free.
     fn masses(&self, direction: [f64; 3]) -> [f64; 2] {
         [0, 1].map(|side| {
             let moved = (0..3).filter(|&i| direction[i] != 0.0 && self.free[side][i] > 0.0);
             let inverse: f64 = moved
                 .map(|i| direction[i].powi(2) / self.free[side][i])
                 .sum();
-            1.0 / inverse
+            match inverse > 0.0 {
+                true => 1.0 / inverse,
+                false => f64::INFINITY,
+            }
         })
+    }
+
+    /// The unit vector along the sum of the normal impulses; zero without any. What supports hold in a component, as a plane
+    /// of symmetry does, has no part in it, unless little else is left.
+    fn direction(&self, normal: [f64; 3]) -> [f64; 3] {
+        let mut free = normal;
+        for (i, n) in free.iter_mut().enumerate() {
+            let mut axis = [0.0; 3];
+            axis[i] = 1.0;
+            if self.held(axis).contains(&true) {
+                *n = 0.0;
+            }
+        }
+        let whole = dot(normal, normal);
+        let chosen = if dot(free, free) >= 0.5 * whole {
+            free
+        } else {
+            normal
+        };
+        match whole > 0.0 {
+            true => chosen.map(|n| n / norm(chosen)),
+            false => [0.0; 3],
+        }
     }
 
     /// Whether supports hold a part of a side in a direction.
@@ -298,6 +328,11 @@ fn each_free(system: &System, body: Option<usize>, mut visit: impl FnMut(usize, 
             }
         }
     }
+}
+
+/// How long a flight lasts that ends an impact of this duration, s.
+fn lasting(system: &System, contact: usize, duration: f64) -> f64 {
+    crossing(system, contact).min(LONG * duration)
 }
 
 /// Time that a wave takes across the longer of the two bodies of a contact (the diagonal of its box), s.

@@ -141,6 +141,7 @@ impl Records {
             active,
             force: report.force,
             impulse: [0, 1, 2].map(|i| mean(before.1[i], resultant[i]) + projected.1[i]),
+            normal: [0, 1, 2].map(|i| dt * report.normal[i] + projected.1[i]),
             work: step.work,
             crushed,
         };

@@ -204,6 +204,8 @@ pub struct ContactReport {
     pub force: f64,
     /// Force on the secondary body, N.
     pub resultant: [f64; 3],
+    /// The part of it of the normal forces, N.
+    pub normal: [f64; 3],
     /// Magnitude of the sum of the friction forces of its points, N.
     pub friction: f64,
     /// Points that slip with a friction force.

@@ -7,8 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::Error;
 use crate::rows::{Cell, Rows};
 
-/// One impact: from the first closing of a contact to its last release before a flight that lasts longer than a wave takes
-/// across the longer of the two bodies.
+/// One impact: from the first closing of a contact to its last release before a flight that lasts ([`carom_dynamics::Impact`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImpactRow {
     /// Name of the contact.

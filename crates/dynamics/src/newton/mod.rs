@@ -325,7 +325,7 @@ impl Newton {
         (self.failed, self.failed_friction) = (None, None);
         self.size(dt);
         self.begin_stage()?;
-        self.from_the_jump(|newton| {
+        self.attempt_after_jump(|newton| {
             newton.solve_on_the_clock()?;
             let (solved, forces) = (Instant::now(), newton.phases.forces);
             newton.advance()?;

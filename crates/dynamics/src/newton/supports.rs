@@ -35,7 +35,7 @@ pub(super) struct Jump {
 
 impl Newton {
     /// Runs an attempt of this size (s) from the velocity after the jump; the state keeps the one before it.
-    pub(super) fn from_the_jump(
+    pub(super) fn attempt_after_jump(
         &mut self,
         attempt: impl FnOnce(&mut Newton) -> Result<(), Error>,
     ) -> Result<(), Error> {

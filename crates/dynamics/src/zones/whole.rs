@@ -308,6 +308,7 @@ fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut C
         sum.force += dt * part.force;
         for i in 0..3 {
             sum.resultant[i] += dt * part.resultant[i];
+            sum.normal[i] += dt * part.normal[i];
         }
         sum.friction += dt * part.friction;
         sum.slipping = sum.slipping.max(part.slipping);
@@ -321,6 +322,7 @@ fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut C
         *whole = ContactReport {
             force: sum.force / length,
             resultant: sum.resultant.map(|r| r / length),
+            normal: sum.normal.map(|r| r / length),
             friction: sum.friction / length,
             ..sum
         };

@@ -5,7 +5,7 @@ use carom_contact::Law;
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_dynamics::scheme::{Newmark, Theta};
 use carom_dynamics::{
-    Driver, Impact, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System,
+    Driver, Impact, Model, ModelBody, ModelContact, ModelTarget, Newton, Scheme, Support, System,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface, generate};
@@ -219,3 +219,33 @@ fn a_body_that_is_held_and_rests_stands_for_the_ground() {
         "{last:?} {v}"
     );
 }
+
+#[test]
+fn an_oblique_impact_with_friction_has_the_approach_and_restitution_of_the_normal() {
+    let theta = Scheme::Theta(Theta { theta: 0.5 });
+    let mut model = super::newton::square(theta, HALF, super::newton::SOFT.into(), 4);
+    model.gravity = [0.0; 3];
+    model.bodies[0].velocity = [0.3, -0.2, 0.0];
+    model.contacts[0].friction = 0.3;
+    let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
+    for _ in 0..60 {
+        newton.step().unwrap();
+    }
+    let (system, state) = (newton.system(), newton.state());
+    let impacts = state.records.all_impacts(system, state);
+    let [impact] = &impacts[..] else {
+        panic!("{impacts:?}");
+    };
+    let v = system.mean_velocity(0, &state.motion.v);
+    assert!(v[0] < 0.29, "friction has acted: {v:?}");
+    // the plane is flat: its normal is that of the impact to rounding; sixty steps of Newton's iterations, 1e-10 each
+    assert!((impact.approach - 0.2).abs() < 1e-8, "{}", impact.approach);
+    assert!((impact.restitution.unwrap() - v[1] / 0.2).abs() < 1e-7);
+    assert!(
+        impact.impulse > SQUARE * (v[1] + 0.2) * 1.001,
+        "with that of friction"
+    );
+}
+
+/// Mass of the square, kg.
+const SQUARE: f64 = 2.0 * 0.5;
