@@ -65,7 +65,7 @@ impl Row {
         let body = |k: usize| ModelBody {
             velocity: [self.velocities[k], 0.0, 0.0],
             ..ModelBody::new(BodySpec::new(
-                &name(k),
+                name(k),
                 cells(k),
                 Kinematics::Bar { area: 1.0 },
                 material,
@@ -77,10 +77,10 @@ impl Row {
         };
         let contact = |k: usize| {
             ModelContact::new(
-                &format!("c{k}"),
+                format!("c{k}"),
                 side(k, "right"),
                 ModelTarget::Surface(side(k + 1, "left")),
-                self.law.clone(),
+                self.law,
             )
         };
         let supports = self.held.iter().map(|group| Support {
