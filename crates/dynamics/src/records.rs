@@ -53,7 +53,7 @@ impl ContactRecord {
         self.impulse.get()
     }
 
-    /// Σ |P ġ₊| dt, J.
+    /// Σ |P (ġ₊ + opening)| dt, J.
     pub fn persistency_defect(&self) -> f64 {
         self.defect.get()
     }

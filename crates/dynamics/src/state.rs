@@ -87,6 +87,9 @@ pub struct InterfaceState {
     pub gap: Vec<f64>,
     /// Gap rate that a law in the rate constrains, m/s, opening positive.
     pub rate: Vec<f64>,
+    /// What laws in the rate added to it in the last step, m/s: they hold `rate + opening`. Zero of other laws and where the gap did
+    /// not open at the start of the step ([`Local::start`](carom_contact::law::Local)).
+    pub opening: Vec<f64>,
     /// Status: the sign S_g of laws in the gap, S_v of laws in the rate.
     pub status: Vec<Status>,
     /// S_d: the point took part in the last step.
@@ -186,6 +189,7 @@ pub(crate) fn empty_state(system: &System) -> State {
             carried: vec![0.0; points],
             gap: vec![0.0; points],
             rate: vec![0.0; points],
+            opening: vec![0.0; points],
             status: vec![Status::Open; points],
             watched: vec![false; points],
             crush: vec![0.0; points],
@@ -218,7 +222,7 @@ pub struct ContactReport {
     pub closed: usize,
     /// Points whose force began or ended in this step.
     pub status_changes: usize,
-    /// Σ |P ġ₊| dt, J: zero when forces act on closed points only.
+    /// Σ |P (ġ₊ + opening)| dt, J: zero when forces act on closed points only.
     pub persistency_defect: f64,
     /// Nodes of the secondary surface whose supports are partly closed: there the pressure of the weak form depends on r.
     /// Zero with another integration.

@@ -191,6 +191,17 @@ impl StepMap {
             && forces_stand(&self.contact_impulse)
     }
 
+    /// What the velocity at the start adds to the rate that laws constrain, as a factor, in the way of the step: u₊ - u is a
+    /// positive multiple of `rate + start_in_way v`. Zero where it is no such sum.
+    pub fn start_in_way(&self) -> f64 {
+        let way = self.displacement.since(&Row::START);
+        let of_velocities = |row: &Row| row.x > 0.0 && [row.u, row.a, row.m, row.c] == [0.0; 4];
+        match [way, self.rate].iter().all(of_velocities) {
+            true => way.v * self.rate.x / way.x - self.rate.v,
+            false => 0.0,
+        }
+    }
+
     /// Whether the state has a memory.
     pub fn has_memory(&self) -> bool {
         self.memory != Row::default()

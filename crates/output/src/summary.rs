@@ -189,7 +189,7 @@ pub struct Contact {
     pub status_changes: u64,
     /// Largest penetration (minus the smallest gap), m, zero if never penetrated.
     pub max_penetration: f64,
-    /// Persistency defect: Σ |P · gap rate| dt over the steps, J.
+    /// Persistency defect: Σ |P · gap rate| dt over the steps, J, with the rate that the law holds.
     pub persistency_defect: f64,
     /// Energy lost in crush, J; zero of laws without memory.
     pub energy_crushed: f64,

@@ -74,6 +74,7 @@ mod sdnl111_bars;
 mod self_contact;
 mod shapes;
 mod sliding_block;
+mod sliding_work;
 mod spinning_bar;
 mod stick_slip;
 mod supports;
@@ -163,6 +164,7 @@ registry! {
     self_contact
     shapes
     sliding_block
+    sliding_work
     spinning_bar
     stick_slip
     supports

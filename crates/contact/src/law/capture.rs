@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{End, Local, Status};
 
-/// When a point counts as closed (S_d): where the gap of this configuration is at most the tolerance.
+/// When a point counts as closed (S_d): where the gap of this configuration, or that at the start of the step, is at most the
+/// tolerance. A point that is closed and leaves stays with its law.
 ///
 /// With v₀ the approach rate, a point that closes in a step penetrates by at most the bound given, in the limit of
 /// small steps (viability). The geometry is taken in the configuration that is tested, for the free motion in g_k; with an
@@ -45,10 +46,13 @@ impl Capture {
     }
 
     /// What the law adds to ġ₊, m/s: the relation is one of `ġ₊ + excess`.
+    ///
+    /// `max(0, start)`: where the gap opens at the start of the step a force keeps it from closing over the step, and does no work.
+    /// ġ₊ >= 0 there would do the work P (1 - θ) dt ġ > 0. The gap as target pushes out what has penetrated, and does the work of that.
     pub(super) fn excess(self, local: &Local) -> f64 {
         match self {
             Capture::GapTarget => local.gap / local.dt,
-            Capture::Now | Capture::Half | Capture::Full | Capture::Free => 0.0,
+            Capture::Now | Capture::Half | Capture::Full | Capture::Free => local.start.max(0.0),
         }
     }
 
@@ -105,6 +109,28 @@ mod tests {
             capture.status(Status::Closed, &pressed, &local(0.1), 0.0),
             Status::Open
         );
+    }
+
+    #[test]
+    fn a_gap_that_opens_at_the_start_may_close_again_by_as_much() {
+        // θ = 1/2: the way of the step is dt/2 (ġ + ġ₊)
+        let local = Local {
+            rate: 2.0,
+            start: 2.0,
+            dt: 1.0,
+            ..Local::default()
+        };
+        let status = |rate| {
+            let excess = Capture::Half.excess(&local);
+            Capture::Half.status(Status::Open, &End { rate, ..FALLING }, &local, excess)
+        };
+        assert_eq!(status(-1.9), Status::Open);
+        assert_eq!(status(-2.1), Status::Closed);
+        let approaching = Local {
+            start: -2.0,
+            ..local
+        };
+        assert_eq!(Capture::Half.excess(&approaching), 0.0);
     }
 
     #[test]

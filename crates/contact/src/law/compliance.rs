@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::{Capture, ContactLaw, End, Level, Local, Relation, Status};
 
 /// Compliance in velocity: on closed points, `p = C_n max(0, -ġ₊)` for the rate at the END of the step; the velocity
-/// law is its limit for C_n → ∞. One-sided, since a damper that also pulls glues.
+/// law is its limit for C_n → ∞. One-sided, since a damper that also pulls glues. Where the gap opens at the start of the step,
+/// ġ₊ has (1 - θ)/θ ġ beside it, as with the velocity law.
 ///
 /// With φ = C_n/(C_n + Z), Z = ρc/2 for two equal bars and ρc for one on a wall, the force is φ times that of the rigid
 /// contact, and the contact absorbs 2 φ (1 - φ), on a wall 4 φ (1 - φ), of the striker's energy: 1 % at C_n = 100 ρc and

@@ -55,6 +55,10 @@ pub struct Local {
     pub gap: f64,
     /// Gap rate at the start of the step, m/s.
     pub rate: f64,
+    /// What the start of the step adds to ġ₊ in the way of the gap, m/s: over the step the gap changes by a positive multiple
+    /// of ġ₊ + `start`. (1 - θ)/θ ġ with the theta scheme; zero where that way is no such sum.
+    #[serde(default)]
+    pub start: f64,
     /// Gap at the end of the step without any contact force, m.
     pub gap_free: f64,
     /// Length of the step, s.
@@ -230,6 +234,7 @@ mod tests {
         share: 1.0,
         gap: 0.0,
         rate: 0.0,
+        start: 0.0,
         gap_free: 0.0,
         dt: 1.0,
         tolerance: 0.0,

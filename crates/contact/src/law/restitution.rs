@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::{Capture, ContactLaw, End, Level, Local, Relation, Status};
 
 /// Newton's restitution in Moreau's form: on closed points, `0 <= ġ₊ + e ġ_k ⟂ P >= 0` with ġ₊ at the END of the step
-/// and ġ_k at its start; e = 0 is the velocity law.
+/// and ġ_k at its start, where they approach; where they part there, and for e = 0, it is the velocity law.
 ///
-/// Dissipative with the theta scheme for θ <= 1/(1 + e), where points that press approach. The coefficient belongs to
+/// Dissipative with the theta scheme for θ <= 1/(1 + e). The coefficient belongs to
 /// contact points: an elastic body has a rebound of its own besides, so that in bars only e = 0 gives the exact impact; e
 /// is for bodies that are rigid at the time scale of the step.
 ///
@@ -22,7 +22,7 @@ pub struct Restitution {
 
 impl Restitution {
     fn excess(&self, local: &Local) -> f64 {
-        self.coefficient * local.rate + self.capture.excess(local)
+        self.coefficient * local.rate.min(0.0) + self.capture.excess(local)
     }
 }
 

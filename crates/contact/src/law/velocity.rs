@@ -16,6 +16,8 @@ pub enum Reading {
 
 /// Velocity law: on closed points, `0 <= ġ₊ ⟂ P >= 0` for the rate at the END of the step, i.e.
 /// `P = S_d S_v (P - r_v ġ₊)` with S_v = 1 where `P - r_v ġ₊ > 0`. As with the displacement law nothing depends on r_v.
+/// Where the gap opens at the START of the step, `0 <= ġ₊ + (1 - θ)/θ ġ ⟂ P >= 0`: contact then does no positive work, whatever
+/// its rows.
 /// With the gap as target, `0 <= ġ₊ + g_k/dt ⟂ P >= 0` in all points.
 ///
 /// Source: Ben Dhia, Zammali, Voldoire, Lamarche (2003), equation (7).

@@ -356,7 +356,7 @@ pub(crate) fn contact_report(
         }
         report.closed += usize::from(force != 0.0);
         report.status_changes += usize::from((force != 0.0) != (old.force[point] != 0.0));
-        report.persistency_defect += (force * new.rate[point]).abs() * dt;
+        report.persistency_defect += (force * (new.rate[point] + new.opening[point])).abs() * dt;
     }
     report.normal = report.resultant;
     report

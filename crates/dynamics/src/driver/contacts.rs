@@ -128,11 +128,12 @@ impl Driver {
         for point in 0..system.points() {
             let gap = self.rows.gap(point);
             let law = system.point(point).0.law.get();
-            let chosen = match law.watches(gap, system.tolerance) {
+            let rate = self.rows.product(point, &self.state.motion.v);
+            let least = least_gap(gap, law.capture() * self.dt * rate);
+            let chosen = match law.watches(least, system.tolerance) {
                 _ if gap == f64::INFINITY => false,
                 Some(watched) => watched,
                 None => {
-                    let rate = self.rows.product(point, &self.state.motion.v);
                     self.state.interface.status[point] != Status::Open
                         || gap + 2.0 * self.dt * rate.min(0.0) <= system.tolerance
                 }
@@ -171,6 +172,7 @@ impl Driver {
                     share: carrier.share,
                     gap: self.rows.gap(at),
                     rate: nv,
+                    start: self.map.start_in_way() * nv,
                     gap_free: self.rows.gap(at) + value(&self.map.gap.since(&self.captured[at])),
                     dt: self.dt,
                     tolerance: system.tolerance,
@@ -338,9 +340,11 @@ impl Driver {
                 rate: rate - pull,
                 force: 0.0,
             };
+            let start = self.rows.product(point, &motion.v);
             let local = Local {
                 gap: captured,
-                rate: self.rows.product(point, &motion.v),
+                rate: start,
+                start: self.map.start_in_way() * start,
                 gap_free: gap,
                 dt: self.dt,
                 tolerance: self.system.tolerance,
@@ -369,6 +373,13 @@ pub(super) fn sums_compliances(system: &System, map: &StepMap) -> bool {
 /// surface nodes alone, unstable beyond dt² |P ∂²g/∂u²| = 4 m.
 pub(crate) fn looks_ahead(map: &StepMap, contact: &Contact, law: &Law) -> bool {
     map.force.x != 0.0 && contact.turns() && law.get().capture() > 0.0
+}
+
+/// The gap by which a law tells whether a point is closed (S_d): at the captured instant, `gap`, or at the start, a `way`
+/// (m) before it, whichever is less. A point that is closed and leaves stays with its law, which alone knows whether
+/// the step turns it back.
+pub(crate) fn least_gap(gap: f64, way: f64) -> f64 {
+    gap - way.max(0.0)
 }
 
 /// The part of the way from the start of the step to `end` at which a law takes the geometry.

@@ -14,7 +14,7 @@ mod restoring;
 mod weak;
 
 pub(crate) use balance::{contact_report, crush_energy};
-pub(crate) use contacts::{looks_ahead, on_row, part_way};
+pub(crate) use contacts::{least_gap, looks_ahead, on_row, part_way};
 pub(crate) use weak::{WeakForms, WithWeak};
 
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 
 use carom_algebra::solver::FactorStats;
 use carom_bodies::Scratch;
-use carom_contact::law::Status;
+use carom_contact::law::{Level, Status};
 use carom_contact::{Contact, Rows, Search};
 
 use crate::compliance::Compliance;
@@ -537,6 +537,10 @@ impl Driver {
             interface.rate[point] = match system.massless.is_empty() {
                 true => on_row(&self.rows, point, &map.rate, old, [x, c]),
                 false => self.rows.product(point, &new.v),
+            };
+            interface.opening[point] = match system.point(point).0.law.get().level() {
+                Level::Rate => (map.start_in_way() * self.rows.product(point, &old.v)).max(0.0),
+                Level::Gap | Level::GapAndRate => 0.0,
             };
         }
         self.next.step = self.state.step + 1;

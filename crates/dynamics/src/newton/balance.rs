@@ -6,6 +6,8 @@
 
 use std::sync::Arc;
 
+use carom_contact::law::Level;
+
 use super::start::energies;
 use super::{Newton, Which};
 use crate::driver::contact_report;
@@ -62,7 +64,15 @@ impl Newton {
             self.next.interface.gap[point] = rows.gap(point) + moved;
             self.next.interface.rate[point] = match self.map.rate == Default::default() {
                 true => 0.0,
-                false => crate::driver::on_row(rows, point, &self.map.rate, motion, xc),
+                false => {
+                    crate::driver::on_row(rows, point, &self.map.rate, motion, xc)
+                        + rows.rate(point)
+                }
+            };
+            self.next.interface.opening[point] = match self.law(system.point(point).0).get().level()
+            {
+                Level::Rate => (self.map.start_in_way() * self.rate_at_start(point)).max(0.0),
+                Level::Gap | Level::GapAndRate => 0.0,
             };
         }
         self.crush();

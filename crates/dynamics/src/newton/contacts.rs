@@ -7,7 +7,7 @@ use carom_contact::{Contact, Law, Places, Sliding};
 
 use super::{Newton, Vectors};
 use crate::coulomb::Slip;
-use crate::driver::{on_row, part_way};
+use crate::driver::{least_gap, on_row, part_way};
 use crate::error::Error;
 use crate::interface::{Candidate, Failure, InterfaceProblem};
 use crate::step_map::Row;
@@ -162,16 +162,24 @@ impl Newton {
             true => self.state.interface.gap[point],
             false => rows.gap(point),
         };
+        let rate = self.rate_at_start(point);
         Local {
             area: carrier.area,
             share: carrier.share,
             gap,
-            rate: rows.product(point, &self.state.motion.v) + rows.rate(point),
+            rate,
+            start: self.map.start_in_way() * rate,
             gap_free,
             dt: self.dt,
             tolerance: self.system.tolerance,
             crush: self.state.interface.crush[point],
         }
+    }
+
+    /// Gap rate at the start of the step, m/s, with the rows of the iteration.
+    pub(super) fn rate_at_start(&self, point: usize) -> f64 {
+        let rows = &self.pairing.rows;
+        rows.product(point, &self.state.motion.v) + rows.rate(point)
     }
 
     /// Whether a point takes part, where its law says so before the forces.
@@ -180,11 +188,14 @@ impl Newton {
         if gap == f64::INFINITY {
             return Some(false);
         }
+        let law = self.law(self.system.point(point).0);
         let gap = match self.between() {
             true => self.state.interface.gap[point],
-            false => gap,
+            false => {
+                let way = law.get().capture() * self.dt * self.rate_at_start(point);
+                least_gap(gap, way)
+            }
         };
-        let law = self.law(self.system.point(point).0);
         law.get().watches(gap, self.system.tolerance)
     }
 
@@ -382,16 +393,19 @@ impl Newton {
                     true => -gap / tolerance,
                     false => 0.0,
                 },
-                Status::Open => (-rate * self.dt / tolerance).max(0.0),
                 _ => {
-                    let relation = law.get().relation(status, &self.local(point, gap));
+                    let local = self.local(point, gap);
+                    let relation = match status {
+                        Status::Open => law.get().relation(Status::Closed, &local),
+                        _ => law.get().relation(status, &local),
+                    };
                     let left = relation.gap * gap
                         + relation.rate * rate
                         + relation.compliance * force
                         + relation.offset;
                     let scale = relation.gap.abs() + relation.rate.abs() / self.dt;
                     // a law that cuts tension off leaves a gap or a rate over where it would pull
-                    match law.get().clips() && force == 0.0 {
+                    match status == Status::Open || law.get().clips() && force == 0.0 {
                         true => (-left / scale / tolerance).max(0.0),
                         false => (left / scale / tolerance).abs(),
                     }

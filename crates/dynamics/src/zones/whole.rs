@@ -202,6 +202,7 @@ impl Whole {
                 whole.carried[to] = interface.carried[from];
                 whole.gap[to] = interface.gap[from];
                 whole.rate[to] = interface.rate[from];
+                whole.opening[to] = interface.opening[from];
                 whole.status[to] = interface.status[from];
                 whole.watched[to] = interface.watched[from];
                 if let Some(friction) = interface.friction.get(from) {
