@@ -241,9 +241,9 @@ pub struct CurvePoint {
 pub enum Capture {
     /// The gap at the beginning of the step.
     Now,
-    /// The gap predicted for the middle of the step.
+    /// The gap at the beginning of the step or the one predicted for its middle, whichever is less.
     Half,
-    /// The gap predicted for the end of the step from the gap rate at its start.
+    /// The gap at the beginning of the step or the one predicted for its end from the gap rate, whichever is less.
     Full,
     /// The gap at the end of the step without any contact force.
     Free,

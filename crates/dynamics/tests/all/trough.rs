@@ -32,7 +32,7 @@ fn in_trough(dt: f64, capture: Capture) -> Model {
 fn a_contact_that_curves_gains_no_energy_in_steps_of_many_elements() {
     // the corners carry half the weight each, and the turning of their normals, taken as that of an explicit step of their
     // mass alone, would be unstable beyond dt² P / (m R) = 128 g dt² / R = 4: 0.8 s, in which waves pass 15 elements
-    let captures = [Capture::Half, Capture::Now, Capture::Full, Capture::Free];
+    let captures = [Capture::Half, Capture::Now, Capture::Full];
     let cases = captures.map(|capture| [0.5, 1.4, 2.0].map(|dt| (dt, capture)));
     for (dt, capture) in cases.into_iter().flatten() {
         let system = System::new(in_trough(dt, capture)).unwrap();
