@@ -26,6 +26,22 @@ pub struct Candidate {
     pub status: Status,
     /// Whether its surface faces itself, so that other points may say the same as it does.
     pub faces_itself: bool,
+    /// Factors of D P in gap and rate of this candidate over those of the problem: those of the instant at which its law
+    /// holds, [`StepMap::compliant`](crate::step_map::StepMap::compliant).
+    #[serde(default = "whole")]
+    pub instant: [f64; 2],
+}
+
+/// A law at the end of the step.
+fn whole() -> [f64; 2] {
+    [1.0; 2]
+}
+
+impl Candidate {
+    /// Factors of D P in its gap and rate; `s`: those of the problem.
+    pub(crate) fn factors(&self, s: [f64; 2]) -> [f64; 2] {
+        [self.instant[0] * s[0], self.instant[1] * s[1]]
+    }
 }
 
 /// Why the problem was not solved.
@@ -231,11 +247,15 @@ impl Interface {
                 + relation.rate * candidate.rate_free
                 + relation.offset
         };
+        let scale = |i: u32, relation: &Relation| {
+            let [gap, rate] = candidates[i as usize].factors(s);
+            relation.gap * gap + relation.rate * rate
+        };
         // Where neither gap nor rate depends on the forces of the step, a compliant law says its force at once.
         self.coupled.clear();
         for &(i, status) in &self.closed {
             let relation = relation(i, status);
-            if scale(&relation, s) == 0.0 {
+            if scale(i, &relation) == 0.0 {
                 self.forces[i as usize] = -free(i, &relation) / relation.compliance;
             } else {
                 self.coupled.push((i, status));
@@ -245,7 +265,7 @@ impl Interface {
         if self.factor_of.0 != version || self.factor_of.1 != self.coupled {
             let own = |i: u32, status| {
                 let relation = relation(i, status);
-                relation.compliance / scale(&relation, s)
+                relation.compliance / scale(i, &relation)
             };
             let shared = |i: u32| candidates[i as usize].faces_itself;
             self.factor = factor(&self.coupled, d, n, own, shared)?;
@@ -257,7 +277,7 @@ impl Interface {
         self.rhs.clear();
         self.rhs.extend(self.coupled.iter().map(|&(i, status)| {
             let relation = relation(i, status);
-            -free(i, &relation) / scale(&relation, s) - self.product[i as usize]
+            -free(i, &relation) / scale(i, &relation) - self.product[i as usize]
         }));
         factor.solve(&mut self.rhs);
         for (&(i, _), &force) in self.coupled.iter().zip(&self.rhs) {
@@ -389,11 +409,6 @@ fn is_stuck(candidate: &Candidate, i: usize, d: &[f64], n: usize) -> bool {
     d[i * n + i] == 0.0 && relation.compliance == 0.0
 }
 
-/// Factor of D P in the relation of a law.
-fn scale(relation: &Relation, s: [f64; 2]) -> f64 {
-    relation.gap * s[0] + relation.rate * s[1]
-}
-
 fn end(
     candidate: &Candidate,
     i: usize,
@@ -403,6 +418,7 @@ fn end(
     product: &[f64],
 ) -> End {
     let own = d[i * forces.len() + i] * forces[i];
+    let s = candidate.factors(s);
     // In a closed point of an exact law the gap or the rate is zero by construction, and its sign but rounding: the
     // laws look at the force there.
     End {

@@ -27,6 +27,12 @@ impl Row {
         ..Row::NONE
     };
 
+    /// The velocity at the start, alone.
+    pub const MOVING: Row = Row {
+        v: 1.0,
+        ..Row::NONE
+    };
+
     /// The unknown alone.
     pub const UNKNOWN: Row = Row {
         x: 1.0,
@@ -51,6 +57,19 @@ impl Row {
             m: self.m - other.m,
             x: self.x - other.x,
             c: self.c - other.c,
+        }
+    }
+
+    /// This combination, and a part of the change to another one.
+    pub fn towards(&self, other: &Row, part: f64) -> Row {
+        let change = other.since(self);
+        Row {
+            u: self.u + part * change.u,
+            v: self.v + part * change.v,
+            a: self.a + part * change.a,
+            m: self.m + part * change.m,
+            x: self.x + part * change.x,
+            c: self.c + part * change.c,
         }
     }
 
@@ -176,6 +195,31 @@ impl StepMap {
             impulse: Impulse::weights(0.0, 1.0),
             contact_impulse: Impulse::weights(0.0, 1.0),
         }
+    }
+
+    /// Gap and rate that a law with a compliance holds for: those of the instant at which internal forces and dampers enter the
+    /// balance, so that such a contact is a spring beside the others, and a stop that dissipates nothing gives back what it
+    /// got. Exact laws bind the gap or the rate of the end instead ([`StepMap::gap`], [`StepMap::rate`]). The same where the
+    /// forces at the end are what the scheme balances, and in explicit steps.
+    pub fn compliant(&self) -> [Row; 2] {
+        if self.force.x == 0.0 {
+            return [self.gap, self.rate];
+        }
+        match self.force_fraction {
+            Some(1.0) => [self.gap, self.rate],
+            Some(part) => [
+                Row::START.towards(&self.displacement, part),
+                Row::MOVING.towards(&self.velocity, part),
+            ],
+            None => [self.force, self.rate],
+        }
+    }
+
+    /// The factors of x in [`StepMap::compliant`] over those in gap and rate.
+    pub fn compliant_factors(&self) -> [f64; 2] {
+        let [gap, rate] = self.compliant();
+        let over = |part: f64, all: f64| if all == 0.0 { 1.0 } else { part / all };
+        [over(gap.x, self.gap.x), over(rate.x, self.rate.x)]
     }
 
     /// Whether the momentum balance holds between acceleration and forces of the end of the step, whose weights in the

@@ -59,6 +59,7 @@ fn trials(n: usize, kind: Kind, random: &mut Random) -> Result<[Row; 2], Error> 
             rate_free: 0.0,
             status: Status::Open,
             faces_itself: false,
+            instant: [1.0; 2],
         };
         let problem = InterfaceProblem {
             step: 0,

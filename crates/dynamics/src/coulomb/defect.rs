@@ -55,7 +55,7 @@ impl FrictionProblem {
 
     fn normal_defect(&self, solution: &FrictionSolution, i: usize, dp: Line) -> f64 {
         let candidate = &self.candidates[i];
-        let [s_g, s_v, _] = self.factors;
+        let [s_g, s_v] = candidate.factors([self.factors[0], self.factors[1]]);
         let (law, force) = (candidate.law.get(), solution.forces[i]);
         let defect = |status: Status| {
             let closed = match status {

@@ -75,7 +75,7 @@ fn equation(problem: &Posed, trial: &Trial, row: usize, line: &mut [f64]) -> f64
     if k == 0 {
         let relation = problem.relation(i, trial.statuses[i]);
         let slope = problem.slope(i, &relation);
-        let factor = problem.factor(&relation) / slope;
+        let factor = problem.factor(i, &relation) / slope;
         set(line, factor, problem.d(row));
         line[row] += relation.compliance / slope;
         return trial.defects[row];

@@ -59,9 +59,15 @@ impl<'a> Posed<'a> {
         candidate.law.get().relation(status, &candidate.local)
     }
 
-    /// Factor of D p in a relation.
-    pub(super) fn factor(&self, relation: &Relation) -> f64 {
-        relation.gap * self.s[0] + relation.rate * self.s[1]
+    /// Factor of D p in a relation of candidate `i`.
+    pub(super) fn factor(&self, i: usize, relation: &Relation) -> f64 {
+        let [gap, rate] = self.factors(i);
+        relation.gap * gap + relation.rate * rate
+    }
+
+    /// Factors of D p in gap and rate of candidate `i`.
+    fn factors(&self, i: usize) -> [f64; 2] {
+        self.candidates[i].factors([self.s[0], self.s[1]])
     }
 
     /// What a relation says before the forces of the step.
@@ -76,7 +82,7 @@ impl<'a> Posed<'a> {
     /// newtons.
     pub(super) fn slope(&self, i: usize, relation: &Relation) -> f64 {
         let row = self.normal(i);
-        let slope = self.factor(relation) * self.d(row)[row] + relation.compliance;
+        let slope = self.factor(i, relation) * self.d(row)[row] + relation.compliance;
         if slope > 0.0 { slope } else { 1.0 }
     }
 
@@ -100,7 +106,7 @@ impl<'a> Posed<'a> {
     pub(super) fn mobile(&self, i: usize) -> [[f64; 2]; 2] {
         let row = self.normal(i);
         let relation = self.relation(i, Status::Closed);
-        let back = self.factor(&relation) / self.slope(i, &relation);
+        let back = self.factor(i, &relation) / self.slope(i, &relation);
         let pressed = self.s[2] * self.free(i, &relation) / self.slope(i, &relation);
         let (mut s, mut sliding, mut size, mut trace) = ([[0.0; 2]; 2], [0.0; 2], 0.0, 0.0);
         for k in 0..self.tangents {
@@ -136,10 +142,11 @@ impl<'a> Posed<'a> {
     /// End of the step in candidate `i` with the force `force`, with (D p)_n in all, and without its own forces.
     pub(super) fn end(&self, i: usize, force: f64, product: f64, others: f64) -> End {
         let candidate = &self.candidates[i];
+        let [gap, rate] = self.factors(i);
         End {
-            gap_released: candidate.local.gap_free + self.s[0] * others,
-            gap: candidate.local.gap_free + self.s[0] * product,
-            rate: candidate.rate_free + self.s[1] * product,
+            gap_released: candidate.local.gap_free + gap * others,
+            gap: candidate.local.gap_free + gap * product,
+            rate: candidate.rate_free + rate * product,
             force,
         }
     }

@@ -60,7 +60,7 @@ fn solve(problem: &Posed, i: usize, status: &mut Status, others: &[f64; 3]) -> [
 /// λ > 0 at which |t| = μ P. The equations are linear for a given λ; λ = 0 sticks, λ → ∞ is frictionless.
 fn closed(problem: &Posed, i: usize, relation: &Relation, others: &[f64; 3]) -> [f64; 3] {
     let (row, point) = (problem.normal(i), &problem.friction[i]);
-    let factor = problem.factor(relation);
+    let factor = problem.factor(i, relation);
     let scale = 1.0 / problem.weight(i);
     let mut a = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let mut rhs = [0.0; 3];

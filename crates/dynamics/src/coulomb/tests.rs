@@ -17,6 +17,7 @@ fn candidate(law: Law, gap_free: f64) -> Candidate {
         rate_free: 0.0,
         status: Status::Open,
         faces_itself: false,
+        instant: [1.0; 2],
     }
 }
 

@@ -152,7 +152,7 @@ impl Trial {
     fn relation_defect(&self, problem: &Posed, i: usize, size: &mut f64) -> f64 {
         let row = problem.normal(i);
         let relation = problem.relation(i, self.statuses[i]);
-        let (factor, slope) = (problem.factor(&relation), problem.slope(i, &relation));
+        let (factor, slope) = (problem.factor(i, &relation), problem.slope(i, &relation));
         let free = problem.free(i, &relation);
         *size = self.p[row].abs() + (factor * *size + free.abs()) / slope;
         (factor * self.product[row] + relation.compliance * self.p[row] + free) / slope

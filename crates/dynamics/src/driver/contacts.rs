@@ -163,7 +163,13 @@ impl Driver {
                 .free(point, &self.operators, &self.vectors.half);
             let [nu, nv, na] =
                 [&motion.u, &motion.v, &motion.a].map(|vector| self.rows.product(at, vector));
-            let value = |row: &Row| row.u * nu + row.v * nv + row.a * na + row.x * free;
+            let nm = match motion.memory.is_empty() {
+                true => 0.0,
+                false => self.rows.product(at, &motion.memory),
+            };
+            let value =
+                |row: &Row| row.u * nu + row.v * nv + row.a * na + row.m * nm + row.x * free;
+            let ([gap, rate], instant) = instant(&self.map, &contact.law);
             let carrier = &contact.points[place];
             self.candidate_data.push(Candidate {
                 law: contact.law,
@@ -173,14 +179,15 @@ impl Driver {
                     gap: self.rows.gap(at),
                     rate: nv,
                     start: self.map.start_in_way() * nv,
-                    gap_free: self.rows.gap(at) + value(&self.map.gap.since(&self.captured[at])),
+                    gap_free: self.rows.gap(at) + value(&gap.since(&self.captured[at])),
                     dt: self.dt,
                     tolerance: system.tolerance,
                     crush: self.state.interface.crush[at],
                 },
-                rate_free: value(&self.map.rate),
+                rate_free: value(&rate),
                 status: self.state.interface.status[at],
                 faces_itself: contact.faces_itself(),
+                instant,
             });
         }
         let factor = self.map.contact;
@@ -330,9 +337,10 @@ impl Driver {
             {
                 continue;
             }
-            let ahead = self.map.gap.since(&self.captured[point]);
+            let [gap, rate] = instant(&self.map, &self.system.point(point).0.law).0;
+            let ahead = gap.since(&self.captured[point]);
             let gap = captured + on_row(&self.rows, point, &ahead, motion, xc);
-            let rate = on_row(&self.rows, point, &self.map.rate, motion, xc);
+            let rate = on_row(&self.rows, point, &rate, motion, xc);
             let pull = self.weak.pull(&self.system, point);
             let end = End {
                 gap_released: gap - pull,
@@ -365,6 +373,14 @@ impl Driver {
 /// sums the compliances of the step and of the mass.
 pub(super) fn sums_compliances(system: &System, map: &StepMap) -> bool {
     map.rate.c != 0.0 && system.scheme.get().takes(Level::Rate)
+}
+
+/// Gap and rate that a law constrains, and their factors of x over those of the map.
+pub(crate) fn instant(map: &StepMap, law: &Law) -> ([Row; 2], [f64; 2]) {
+    match law.get().level() {
+        Level::GapAndRate => (map.compliant(), map.compliant_factors()),
+        Level::Gap | Level::Rate => ([map.gap, map.rate], [1.0; 2]),
+    }
 }
 
 /// Whether a contact is paired where the step is predicted to lead, for a law that looks ahead, and not where the present
@@ -402,6 +418,11 @@ pub(crate) fn on_row(
         + row.v * rows.product(point, &motion.v)
         + row.a * rows.product(point, &motion.a)
         + row.x * rows.product(point, x)
+        + if row.m == 0.0 {
+            0.0
+        } else {
+            row.m * rows.product(point, &motion.memory)
+        }
         + if row.c == 0.0 {
             0.0
         } else {

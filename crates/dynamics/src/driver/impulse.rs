@@ -147,6 +147,7 @@ impl Impulses {
                     false => Status::Open,
                 },
                 faces_itself: system.point(points[i] as usize).0.faces_itself(),
+                instant: [1.0; 2],
             });
         }
         self.interface

@@ -14,7 +14,7 @@ mod restoring;
 mod weak;
 
 pub(crate) use balance::{contact_report, crush_energy};
-pub(crate) use contacts::{least_gap, looks_ahead, on_row, part_way};
+pub(crate) use contacts::{instant, least_gap, looks_ahead, on_row, part_way};
 pub(crate) use weak::{WeakForms, WithWeak};
 
 use std::sync::Arc;

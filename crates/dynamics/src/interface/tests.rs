@@ -15,6 +15,7 @@ fn candidate(law: Law, gap_free: f64) -> Candidate {
         rate_free: 0.0,
         status: Status::Open,
         faces_itself: false,
+        instant: [1.0; 2],
     }
 }
 
@@ -72,6 +73,7 @@ fn points_of_a_surface_that_faces_itself_share_their_force_where_they_say_the_sa
     for gaps in [consistent, differing] {
         let candidates = gaps.map(|gap| Candidate {
             faces_itself: true,
+            instant: [1.0; 2],
             ..candidate(law, gap)
         });
         let mut interface = Interface::default();

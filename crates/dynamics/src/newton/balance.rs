@@ -96,9 +96,11 @@ impl Newton {
         let system = Arc::clone(&self.system);
         let impulse = &self.map.impulse;
         let plain = impulse.gain == 1.0 && impulse.carry == 0.0 && self.map.inertia.x != 0.0;
-        let weights = match plain {
-            true => [impulse.old, impulse.new],
-            false => [0.0, 1.0],
+        let weights = match (plain, self.map.inertia.x == 0.0) {
+            (true, _) => [impulse.old, impulse.new],
+            // along a static step forces go from one equilibrium to the next
+            (false, true) if !self.state.forces.is_empty() => [0.5, 0.5],
+            (false, _) => [0.0, 1.0],
         };
         let friction = self.friction_work(weights);
         let (old, new) = (&self.state.motion, &self.next.motion);
@@ -158,7 +160,7 @@ impl Newton {
             Resultant::at(&system, &places, &means[6])
                 .plus(&Resultant::at(&system, &places, &means[5]).reversed()),
         ];
-        self.next.forces = match weights[0] != 0.0 {
+        self.next.forces = match weights[0] != 0.0 || map.inertia.x == 0.0 {
             true => now.iter().map(|f| f.to_vec()).collect(),
             false => Vec::new(),
         };

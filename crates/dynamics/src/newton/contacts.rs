@@ -7,7 +7,7 @@ use carom_contact::{Contact, Law, Places, Sliding};
 
 use super::{Newton, Vectors};
 use crate::coulomb::Slip;
-use crate::driver::{least_gap, on_row, part_way};
+use crate::driver::{instant, least_gap, on_row, part_way};
 use crate::error::Error;
 use crate::interface::{Candidate, Failure, InterfaceProblem};
 use crate::step_map::Row;
@@ -52,7 +52,8 @@ impl Newton {
         }
         match law.get().level() {
             Level::Rate => captured,
-            Level::Gap | Level::GapAndRate => map.gap,
+            Level::Gap => map.gap,
+            Level::GapAndRate => map.compliant()[0],
         }
     }
 
@@ -131,7 +132,8 @@ impl Newton {
         match law.get().level() {
             _ if self.between() => 0.5 * self.dt,
             Level::Rate => law.get().capture() * self.dt,
-            Level::Gap | Level::GapAndRate => self.dt,
+            Level::Gap => self.dt,
+            Level::GapAndRate => self.instant() - self.state.time,
         }
     }
 
@@ -141,15 +143,28 @@ impl Newton {
         let (contact, _) = self.system.point(point);
         let motion = &self.state.motion;
         let xc = [&self.vectors.x[..], &[]];
-        let ahead = self.map.gap.since(&self.paired_at(contact));
+        let [gap, rate] = self.constrained(contact).0;
+        let ahead = gap.since(&self.paired_at(contact));
         let obstacle = rows.rate(point);
+        let until = match self.law(contact).get().level() {
+            Level::GapAndRate => self.instant() - self.state.time,
+            Level::Gap | Level::Rate => self.dt,
+        };
         let gap = rows.gap(point)
             + on_row(rows, point, &ahead, motion, xc)
-            + obstacle * (self.dt - self.paired_after(contact));
-        (
-            gap,
-            on_row(rows, point, &self.map.rate, motion, xc) + obstacle,
-        )
+            + obstacle * (until - self.paired_after(contact));
+        (gap, on_row(rows, point, &rate, motion, xc) + obstacle)
+    }
+
+    /// Gap and rate that the law of a contact constrains, and their factors of x over those of the map.
+    fn constrained(&self, contact: &Contact) -> ([Row; 2], [f64; 2]) {
+        instant(&self.map, &self.law(contact))
+    }
+
+    /// What a motion of the unknown along the row of a point adds to the gap and the rate that its law constrains.
+    fn added(&self, point: usize, step: f64) -> [f64; 2] {
+        let [gap, rate] = self.constrained(self.system.point(point).0).0;
+        [gap.x * step, rate.x * step]
     }
 
     /// What the law of a point may know before the forces.
@@ -231,7 +246,7 @@ impl Newton {
                 None => {
                     let step = self.pairing.rows.product(point, &self.vectors.dx);
                     self.next.interface.status[point] != Status::Open
-                        || self.now(point).0 + self.map.gap.x * step <= self.system.tolerance
+                        || self.now(point).0 + self.added(point, step)[0] <= self.system.tolerance
                 }
             };
             self.next.interface.watched[point] = chosen;
@@ -249,12 +264,14 @@ impl Newton {
             let at = point as usize;
             let step = self.pairing.rows.product(at, free);
             let (gap, rate) = self.now(at);
+            let [closing, approach] = self.added(at, step);
             Candidate {
                 law: self.law(system.point(at).0),
-                local: self.local(at, gap + self.map.gap.x * step),
-                rate_free: rate + self.map.rate.x * step,
+                local: self.local(at, gap + closing),
+                rate_free: rate + approach,
                 status: self.next.interface.status[at],
                 faces_itself: system.point(at).0.faces_itself(),
+                instant: self.constrained(system.point(at).0).1,
             }
         }));
         self.candidate_data = data;
@@ -344,7 +361,8 @@ impl Newton {
             }
             let step = self.pairing.rows.product(point, &self.vectors.dx);
             let (gap, rate) = self.now(point);
-            let ahead = (gap + self.map.gap.x * step, rate + self.map.rate.x * step);
+            let [closing, approach] = self.added(point, step);
+            let ahead = (gap + closing, rate + approach);
             let (gap, rate) = self.weakly(point, ahead);
             if self.asks(point, gap, rate) {
                 self.candidates.push(point as u32);

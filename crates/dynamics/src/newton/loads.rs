@@ -17,15 +17,7 @@ pub(super) fn damping_rate(map: &StepMap) -> Row {
             ..*velocity
         };
     }
-    let fraction = map.force_fraction.unwrap_or(1.0);
-    Row {
-        u: fraction * velocity.u,
-        v: 1.0 - fraction + fraction * velocity.v,
-        a: fraction * velocity.a,
-        m: 0.0,
-        x: fraction * velocity.x,
-        c: 0.0,
-    }
+    Row::MOVING.towards(velocity, map.force_fraction.unwrap_or(1.0))
 }
 
 impl Newton {

@@ -332,7 +332,9 @@ impl Newton {
     }
 
     /// Makes the effective matrix at x. Where it is not positive definite with the turning contact forces, it is made
-    /// without them, and then with more of the proximal term: the iterations take longer, and the answer is the same.
+    /// without them, then in the configuration at the start of the step, or with more of the proximal term: the iterations take
+    /// longer, and the answer is the same. A first guess that compresses what is nearly incompressible has pressures of many
+    /// times the shear modulus, whose stiffness is negative across them; the step itself has nothing of them.
     pub(super) fn renew(&mut self) -> Result<(), Error> {
         let begin = Instant::now();
         let system = Arc::clone(&self.system);
@@ -367,6 +369,10 @@ impl Newton {
         let mut made = self.effective.renew(&system, &at, &mut turning, constant);
         if made.is_err() && turning.forces.iter().any(|force| *force != 0.0) {
             turning.forces.fill(0.0);
+            made = self.effective.renew(&system, &at, &mut turning, constant);
+        }
+        if made.is_err() && self.map.inertia.x != 0.0 {
+            at.u = &motion.u;
             made = self.effective.renew(&system, &at, &mut turning, constant);
         }
         while made.is_err() && !floats.is_empty() && at.proximal.1 < LARGEST {

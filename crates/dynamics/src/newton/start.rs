@@ -100,15 +100,21 @@ impl Newton {
         Ok(())
     }
 
-    /// Forces that a scheme with a balance at both ends of a step begins with.
+    /// Forces that a step with a balance at both of its ends begins with: none where a static stage begins out of balance.
     fn forces_at_the_start(&mut self) {
+        self.state.forces.clear();
         let system = &*self.system;
-        if system.scheme.get().step_map(system.dt).impulse.old == 0.0 || self.is_static() {
+        let of_end = system.scheme.get().step_map(system.dt).impulse.old == 0.0;
+        if of_end && !self.is_static() {
             return;
         }
         let motion = &self.state.motion;
         let mut inertia = vec![0.0; system.unknowns()];
-        system.mass.multiply(&motion.a, &mut inertia);
+        if !self.is_static() {
+            system.mass.multiply(&motion.a, &mut inertia);
+        } else if !self.is_balanced() {
+            return;
+        }
         let (load, internal) = (&self.vectors.load, &motion.internal_force);
         let reaction = (0..system.unknowns()).map(|i| match system.fixed[i] {
             true => {
@@ -125,6 +131,19 @@ impl Newton {
             vec![0.0; system.unknowns()],
             (0..system.unknowns()).map(|i| motion.link_of(i)).collect(),
         ];
+    }
+
+    /// Whether loads and internal forces of the state balance where no support does it.
+    fn is_balanced(&self) -> bool {
+        let (load, internal) = (&self.vectors.load, &self.state.motion.internal_force);
+        let (mut left, mut size) = (0.0, 0.0);
+        for i in (0..load.len()).filter(|&i| !self.system.fixed[i]) {
+            let outside = load[i] + self.state.motion.contact_force[i];
+            left += (outside - internal[i]).powi(2);
+            size += load[i].powi(2) + internal[i].powi(2);
+        }
+        let tolerance = self.system.nonlinear.iteration.tolerance;
+        left <= tolerance * tolerance * size
     }
 
     /// At the end of the static stage bodies are given their velocities, and the balance begins anew.

@@ -303,3 +303,65 @@ fn the_time_of_the_problems_with_friction_is_counted() {
     let phases = newton.costs().phases;
     assert!(phases.friction > std::time::Duration::ZERO);
 }
+
+/// A block on a plane, its top pressed down and drawn sideways from nothing, in equal static steps; small strain, so that
+/// everything grows with the stage in proportion.
+fn drawn(steps: u64) -> Newton {
+    let mesh = generate::rectangle("a", [0.0; 2], [1.0, 0.5], [4, 2], false);
+    let kinematics = Kinematics::PlaneStrain { thickness: 1.0 };
+    let block = body(&mesh, "a", kinematics, Material::Elastic(SOFT));
+    let plane = Plane {
+        point: [0.0; 3],
+        normal: [0.0, 1.0, 0.0],
+    };
+    let contact = rubbing(&mesh, "a.bottom", &block, ModelTarget::rigid(plane));
+    let to = |value: f64| Amplitude::new(vec![[0.0, 0.0], [1.0, value]]).unwrap();
+    let model = Model {
+        contacts: vec![contact],
+        nonlinear: Nonlinear {
+            motions: vec![Prescribed {
+                nodes: mesh.group_nodes(&mesh.groups["a.top"]),
+                displacement: [Some(to(0.2)), Some(to(-0.02)), None],
+            }],
+            preload: Some(Preload { end: 1.0, steps }),
+            ..Nonlinear::default()
+        },
+        ..Model::new(
+            vec![block],
+            mesh,
+            Scheme::Theta(scheme::Theta { theta: 0.5 }),
+            1.0,
+        )
+    };
+    let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
+    for _ in 0..steps {
+        newton.step().unwrap();
+    }
+    newton
+}
+
+#[test]
+fn the_static_work_of_friction_does_not_depend_on_the_number_of_steps() {
+    let whole = drawn(1);
+    let motion = &whole.state().motion;
+    // force and way grow together: half of the product of their ends
+    let expected = 0.5
+        * (0..4 + 1)
+            .map(|point| {
+                let t = whole.state().interface.friction[point][0];
+                let contact = &whole.system().contacts[0];
+                let node = contact.points[point].node() as usize;
+                (t * motion.u[2 * node]).abs()
+            })
+            .sum::<f64>();
+    assert!(whole.report().contacts[0].slipping == 5 && expected > 0.0);
+    for steps in [1, 5, 50] {
+        let balance = drawn(steps).state().ledger.balance;
+        let work = balance.dissipation_friction.abs();
+        // the tolerance of the iterations, 1e-10 of forces, over few steps
+        assert!(
+            (work / expected - 1.0).abs() < 1e-8,
+            "{steps}: {work} {expected}"
+        );
+    }
+}

@@ -21,6 +21,7 @@ mod refusals;
 mod sliding;
 mod small;
 mod stability;
+mod stops;
 mod supports;
 mod trough;
 mod weak_form;

@@ -339,3 +339,57 @@ fn a_run_that_is_cut_goes_on_with_the_same_bits() {
     assert!(whole.state().records.contacts[0].impulse() > 0.0);
     assert_eq!(whole.state(), cut.state());
 }
+
+/// A cylinder of rubber, ν = 0.499, that meets a wall at 5 m/s.
+fn rubber() -> Model {
+    let mesh = generate::rectangle("bar", [0.0; 2], [0.025, 0.05], [10, 20], false);
+    let cells = mesh.groups["bar"].elements.clone();
+    let initial = Elastic {
+        density: 1000.0,
+        young: 3e6,
+        poisson: 0.499,
+    };
+    let mut spec = BodySpec::new(
+        "bar",
+        cells.clone(),
+        Kinematics::Axisymmetric,
+        Material::NeoHooke(carom_materials::NeoHooke { initial }),
+    );
+    spec.formulation = carom_bodies::Formulation::BBar;
+    let wall = Plane {
+        point: [0.0; 3],
+        normal: [0.0, 1.0, 0.0],
+    };
+    let end = Surface::new(&mesh, &mesh.groups["bar.bottom"], &cells).unwrap();
+    Model {
+        contacts: vec![ModelContact {
+            sliding: Sliding::Finite,
+            ..ModelContact::new("wall", end, ModelTarget::rigid(wall), VELOCITY)
+        }],
+        supports: vec![carom_dynamics::Support {
+            nodes: mesh.group_nodes(&mesh.groups["bar.left"]),
+            fix: [true, false, false],
+        }],
+        ..Model::new(
+            vec![ModelBody {
+                velocity: [0.0, -5.0, 0.0],
+                ..ModelBody::new(spec)
+            }],
+            mesh,
+            Scheme::EnergyMomentum(scheme::EnergyMomentum),
+            2e-5,
+        )
+    }
+}
+
+#[test]
+fn an_impact_of_rubber_needs_no_smaller_steps() {
+    let mut newton = Newton::new(System::new(rubber()).unwrap()).unwrap();
+    for _ in 0..100 {
+        newton.step().unwrap();
+    }
+    assert!(newton.report().contacts[0].force > 0.0);
+    // a first guess whose matrix is not positive definite is no reason to halve the step
+    assert_eq!(newton.state().control.failed, 0);
+    assert!(newton.costs().work.factorisations < 200);
+}

@@ -54,6 +54,7 @@ fn problem(q: &[f64], compliance: Vec<f64>, factor: f64) -> InterfaceProblem {
         rate_free: 0.0,
         status: Status::Open,
         faces_itself: false,
+        instant: [1.0; 2],
     };
     InterfaceProblem {
         step: 0,
