@@ -59,7 +59,8 @@ pub struct Local {
     /// of ġ₊ + `start`. (1 - θ)/θ ġ with the theta scheme; zero where that way is no such sum.
     #[serde(default)]
     pub start: f64,
-    /// Gap at the end of the step without any contact force, m.
+    /// Gap that the law looks at, without any contact force: at the end of the step, of a law with a compliance at the
+    /// instant of the internal forces, m.
     pub gap_free: f64,
     /// Length of the step, s.
     pub dt: f64,

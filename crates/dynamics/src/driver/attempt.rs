@@ -143,7 +143,7 @@ impl Driver {
             return gap;
         }
         match self.candidates.binary_search(&(point as u32)) {
-            Ok(k) => self.candidate_data[k].local.gap_free,
+            Ok(k) => self.free_gaps[k],
             Err(_) => self.next.interface.gap[point],
         }
     }

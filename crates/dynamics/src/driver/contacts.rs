@@ -155,6 +155,7 @@ impl Driver {
             &mut self.operators,
         );
         self.candidate_data.clear();
+        self.free_gaps.clear();
         for &point in &self.candidates {
             let at = point as usize;
             let (contact, place) = system.point(at);
@@ -170,6 +171,8 @@ impl Driver {
             let value =
                 |row: &Row| row.u * nu + row.v * nv + row.a * na + row.m * nm + row.x * free;
             let ([gap, rate], instant) = instant(&self.map, &contact.law);
+            let until = |gap: &Row| self.rows.gap(at) + value(&gap.since(&self.captured[at]));
+            self.free_gaps.push(until(&self.map.gap));
             let carrier = &contact.points[place];
             self.candidate_data.push(Candidate {
                 law: contact.law,
@@ -179,7 +182,7 @@ impl Driver {
                     gap: self.rows.gap(at),
                     rate: nv,
                     start: self.map.start_in_way() * nv,
-                    gap_free: self.rows.gap(at) + value(&gap.since(&self.captured[at])),
+                    gap_free: until(&gap),
                     dt: self.dt,
                     tolerance: system.tolerance,
                     crush: self.state.interface.crush[at],

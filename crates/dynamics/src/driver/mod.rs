@@ -80,6 +80,8 @@ pub struct Driver {
     captured: Vec<Row>,
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,
+    /// Gaps of the candidates at the end of the step without any contact force, m.
+    free_gaps: Vec<f64>,
     /// Strain energy where the residual was taken, J.
     predicted: f64,
     /// Forces of links in the step; none without links.
@@ -252,6 +254,7 @@ impl Driver {
             captured: Vec::new(),
             candidates: Vec::new(),
             candidate_data: Vec::new(),
+            free_gaps: Vec::new(),
             predicted: 0.0,
             linked: None,
             failed: None,
