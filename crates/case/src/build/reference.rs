@@ -10,7 +10,7 @@ use carom_materials::Plane;
 
 use super::Builder;
 use crate::error::Problem;
-use crate::schema::{Reference, Sides};
+use crate::schema::{Case, Reference, Sides};
 
 /// An exact solution and the contact that it belongs to.
 #[derive(Clone, Debug)]
@@ -32,7 +32,11 @@ impl Builder<'_> {
             Reference::BarOnWall(bar) => ("bar-on-wall", bar.sides, false),
         };
         let path = format!("reference.{name}");
-        match solve(system, (sides, two), end, |body| self.joined(body)) {
+        let solved = match foreign(self.case) {
+            Some(what) => Err(format!("the exact solution has no {what}")),
+            None => solve(system, (sides, two), end, |body| self.joined(body)),
+        };
+        match solved {
             Ok((solution, normal)) => Some(ExactReference {
                 name,
                 solution,
@@ -72,6 +76,27 @@ impl Builder<'_> {
             }
         }
         all
+    }
+}
+
+/// What a case has that acts on its bars and that the exact solution does not know.
+fn foreign(case: &Case) -> Option<&'static str> {
+    let mut bodies = case.body.iter();
+    let mut supports = case.support.iter();
+    let mut loads = case.load.iter();
+    let mut contacts = case.contact.iter();
+    if bodies.any(|(_, body)| body.damping.is_some()) {
+        Some("damping of a body")
+    } else if supports.any(|(_, support)| support.motion.is_some()) {
+        Some("support that moves")
+    } else if loads.any(|(_, load)| load.acceleration.is_none()) {
+        Some("load but gravity")
+    } else if case.time.stage.is_some() {
+        Some("static stage")
+    } else if contacts.any(|(_, contact)| contact.friction.is_some()) {
+        Some("friction")
+    } else {
+        None
     }
 }
 

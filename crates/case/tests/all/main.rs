@@ -8,6 +8,7 @@ mod defaults;
 mod grades;
 mod large;
 mod quadrature;
+mod reference;
 mod refine;
 mod stage_one;
 mod warnings;
