@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub enum Closing {
     /// Nothing.
     Pass,
-    /// The step is cut, so that the closing falls at its end.
+    /// The step is cut before a point in flight closes, so that the closing falls where scheme and law take it best.
     Cut,
 }
 
@@ -22,10 +22,11 @@ pub struct Adaptive {
     pub smallest: f64,
     /// What a closing contact does.
     pub closing: Closing,
-    /// A step after which kinetic and strain energy, less the work of the loads, exceed their value at the start by more than
-    /// this fraction of the largest energy so far is tried again with half the size.
+    /// A step after which the energy that the scheme balances, less the work of the loads, exceeds its value at the start by more
+    /// than this fraction of the largest energy so far is tried again with half the size.
     pub growth: Option<f64>,
-    /// Steps without event after which the size doubles.
+    /// Steps without event after which the size doubles. A point that has carried no force for so many steps of the largest size is
+    /// in flight.
     pub patience: u32,
 }
 
@@ -113,6 +114,14 @@ impl Control {
         Some(next)
     }
 
+    /// The size planned for the step after one that has no event, s. `largest`: the step of the model.
+    pub(crate) fn next(&self, rules: &Adaptive, largest: f64) -> f64 {
+        match self.quiet + 1 >= rules.patience {
+            true => (2.0 * self.dt).min(largest),
+            false => self.dt,
+        }
+    }
+
     /// Takes a step of size `dt` from step `step` at `time`. `largest`: the step of the model.
     pub(crate) fn take(
         &mut self,
@@ -129,10 +138,11 @@ impl Control {
             false => [self.range[0].min(dt), self.range[1].max(dt)],
         };
         let Some(rules) = rules else { return };
-        self.quiet += 1;
-        if self.quiet >= rules.patience && self.dt < largest {
-            self.quiet = 0;
-            self.dt = (2.0 * self.dt).min(largest);
-        }
+        let next = self.next(rules, largest);
+        self.quiet = match next == self.dt {
+            true => self.quiet.saturating_add(1),
+            false => 0,
+        };
+        self.dt = next;
     }
 }

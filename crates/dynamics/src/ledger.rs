@@ -218,6 +218,8 @@ pub struct Ledger {
     work_contact: Sum,
     work_links: Sum,
     dissipation: Sum,
+    /// What the scheme's own energy has lost by new sizes of the step, J.
+    resized: Sum,
     /// Works and dissipations of [`Beyond`], in its order.
     beyond: [Sum; 4],
     hardening: f64,
@@ -387,8 +389,16 @@ impl Ledger {
 
     /// The energy of the scheme has another term with the next size of the step: what it gains by that is no work.
     pub(crate) fn resize(&mut self, identity: &EnergyIdentity, energies: &Energies) {
-        self.dissipation
-            .add(self.balance.scheme_energy - identity.stored(energies));
+        let lost = self.balance.scheme_energy - identity.stored(energies);
+        self.dissipation.add(lost);
+        self.resized.add(lost);
+    }
+
+    /// What the energy that the scheme balances has gained since the start beyond the work of the loads, J; not by the size of
+    /// the step alone.
+    pub(crate) fn free_energy(&self) -> f64 {
+        let energy = |balance: &Balance| balance.energy() + balance.scheme_energy;
+        energy(&self.balance) - energy(&self.initial) - self.balance.work_loads + self.resized.get()
     }
 
     /// Adds a projection after the step just added.

@@ -45,12 +45,46 @@ pub struct ContactRecord {
     open: Option<OpenImpact>,
     impulse: Sum,
     defect: Sum,
+    forces: Sum,
+    jumps: Sum,
+    resizing: Sum,
+    /// The sum of these three as a vector on the secondary body.
+    exchanged: [Sum; 3],
+    /// What `last` gives after the step, over itself, s.
+    later: f64,
 }
 
 impl ContactRecord {
-    /// Impulse of the total normal force, N s.
+    /// Impulse of the total normal force, N s: what the contact has given to the momentum of the bodies so far.
     pub fn impulse(&self) -> f64 {
         self.impulse.get()
+    }
+
+    /// Σ P dt, the total forces reported times the lengths of their steps, N s.
+    pub fn impulse_of_forces(&self) -> f64 {
+        self.forces.get()
+    }
+
+    /// Impulses beside the forces, N s: those of the projection where points close, and of a second stage of the velocity.
+    pub fn impulse_of_jumps(&self) -> f64 {
+        self.jumps.get()
+    }
+
+    /// What the sizes of the steps around add to Σ P dt, N s: some schemes give a part of the impulse of a force in the steps
+    /// after it, which may be longer or shorter. Zero where sizes change in flight alone.
+    pub fn impulse_of_resizing(&self) -> f64 {
+        self.resizing.get()
+    }
+
+    /// What of these the bodies have not got yet, N s: zero once the contact is open, up to what a memory of the scheme still
+    /// holds. [`ContactRecord::impulse`] is the sum of the three less this.
+    pub fn impulse_to_come(&self) -> f64 {
+        self.later * self.last.0
+    }
+
+    /// Impulse on the secondary body as the forces reported, jumps and resizing tell it, less what is to come, N s.
+    pub(crate) fn exchanged(&self) -> [f64; 3] {
+        [0, 1, 2].map(|i| self.exchanged[i].get() - self.later * self.last.1[i])
     }
 
     /// Σ |P (ġ₊ + opening)| dt, J.
@@ -63,6 +97,8 @@ impl ContactRecord {
 pub(crate) struct Step<'a> {
     /// Time at its start and end, s.
     pub(crate) span: [f64; 2],
+    /// Its length, s: the difference of the two but for rounding.
+    pub(crate) dt: f64,
     /// How forces make impulses in the scheme.
     pub(crate) impulse: Impulse,
     /// What the contact did.
@@ -105,7 +141,7 @@ impl Records {
         old: &State,
         new_velocity: &[f64],
     ) {
-        let (report, dt) = (step.report, step.span[1] - step.span[0]);
+        let (report, dt) = (step.report, step.dt);
         let record = &mut self.contacts[contact];
         let impulse = step.impulse;
         let mean = |before: f64, now: f64| dt * (impulse.old * before + impulse.new * now);
@@ -120,6 +156,17 @@ impl Records {
         );
         record.impulse.add(mean(before.0, force));
         record.impulse.add(projected.0);
+        let later = dt * impulse.later();
+        record.forces.add(dt * report.force);
+        record.resizing.add((later - record.later) * before.0);
+        record.jumps.add(projected.0 + later * change.0);
+        for i in 0..3 {
+            let sum = &mut record.exchanged[i];
+            sum.add(dt * report.resultant[i]);
+            sum.add((later - record.later) * before.1[i]);
+            sum.add(projected.1[i] + later * change.1[i]);
+        }
+        record.later = later;
         record.defect.add(report.persistency_defect);
         record.status_changes += report.status_changes as u64;
         record.mixed = record.mixed.max(report.mixed as u64);

@@ -4,6 +4,7 @@ use carom_contact::law::Status;
 use serde::{Deserialize, Serialize};
 
 use crate::control::Control;
+use crate::exchange::Exchange;
 use crate::ledger::{Balance, Ledger};
 use crate::records::Records;
 use crate::{Error, System};
@@ -28,6 +29,8 @@ pub struct State {
     pub ledger: Ledger,
     /// Extrema, impulses and impacts since the start.
     pub records: Records,
+    /// Momentum that contacts have given to the bodies since the start.
+    pub exchange: Exchange,
 }
 
 /// Vectors of the system, one entry per unknown.
@@ -94,8 +97,23 @@ pub struct InterfaceState {
     pub status: Vec<Status>,
     /// S_d: the point took part in the last step.
     pub watched: Vec<bool>,
+    /// Time since the point last carried a force, s; infinite where it never did.
+    pub flight: Vec<f64>,
     /// Memory of the law: the largest penetration of the point so far, m; zero of laws without memory.
     pub crush: Vec<f64>,
+}
+
+impl InterfaceState {
+    /// Counts the time without force after a step of `dt` (s), from that of the state before.
+    pub(crate) fn count_flights(&mut self, before: &[f64], dt: f64) {
+        let points = self.flight.iter_mut().zip(&self.force).zip(before);
+        for ((flight, force), before) in points {
+            *flight = match *force == 0.0 {
+                true => before + dt,
+                false => 0.0,
+            };
+        }
+    }
 }
 
 impl Motion {
@@ -192,12 +210,14 @@ pub(crate) fn empty_state(system: &System) -> State {
             opening: vec![0.0; points],
             status: vec![Status::Open; points],
             watched: vec![false; points],
+            flight: vec![f64::INFINITY; points],
             crush: vec![0.0; points],
         },
         forces: Vec::new(),
         control: Control::start(system.dt),
         ledger: Ledger::default(),
         records: Records::default(),
+        exchange: Exchange::default(),
     }
 }
 

@@ -131,6 +131,12 @@ impl Impulse {
             carry: 0.0,
         }
     }
+
+    /// What R at the start of a step gives to the momentum, in it and, by its return in the R to come, in steps of the same length
+    /// after it, over dt.
+    pub(crate) fn later(&self) -> f64 {
+        (self.old - self.new * self.carry) / (1.0 + self.carry)
+    }
 }
 
 /// One step of a scheme: momentum balance `M inertia + f(force) = p_ext + contact Nᵀ P`, end values and contact quantities.
@@ -159,6 +165,8 @@ pub struct StepMap {
     pub gap: Row,
     /// The velocity that a contact law in the rate constrains.
     pub rate: Row,
+    /// Length of the step in which the points move with that rate, s: this one, or with an explicit scheme the next.
+    pub moves: f64,
     /// Memory at the end of the step; all zero for most schemes, which have none.
     pub memory: Row,
     /// Factor of the contact forces in the momentum balance; 1 for most schemes.
@@ -190,6 +198,7 @@ impl StepMap {
             placed: now,
             gap: end,
             rate: none,
+            moves: 0.0,
             memory: none,
             contact: 1.0,
             impulse: Impulse::weights(0.0, 1.0),

@@ -352,6 +352,12 @@ impl System {
         momentum.map(|p| p / total)
     }
 
+    /// An unknown of a body.
+    pub(crate) fn first_unknown(&self, body: usize) -> usize {
+        let node = self.body_masses[body].first().map_or(0, |(node, _)| *node);
+        self.dim * node as usize
+    }
+
     /// Mass of a body, kg.
     pub fn body_mass(&self, body: usize) -> f64 {
         self.body_masses[body].iter().map(|(_, m)| m).sum()

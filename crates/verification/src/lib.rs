@@ -21,6 +21,7 @@ mod hertz;
 mod kept;
 
 mod adaptive;
+mod adaptive_bars;
 mod arlequin_bars;
 mod arlequin_block;
 mod arlequin_energy;
@@ -110,6 +111,7 @@ macro_rules! registry {
 
 registry! {
     adaptive
+    adaptive_bars
     arlequin_bars
     arlequin_block
     arlequin_energy

@@ -115,15 +115,16 @@ pub struct Adaptive {
     pub largest: LargestStep,
     /// The smallest step; a thousandth of the largest if not given. A step that fails at this size ends the run.
     pub smallest: Option<Duration>,
-    /// What a contact that closes within a step does to it.
+    /// What a point that closes after a flight does to the steps before.
     #[serde(default)]
     pub closing: Closing,
-    /// A step after which the energy exceeds that of the start and the work of the loads by more than this fraction of the
-    /// largest energy is halved.
+    /// A step after which the energy that the scheme balances exceeds that of the start and the work of the loads by more than this
+    /// fraction of the largest energy is halved.
     #[serde(default = "hundredth")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub energy_growth: f64,
-    /// Steps without a halving after which the step doubles.
+    /// Steps without a halving after which the step doubles. A point that has carried no force for so many of the largest steps
+    /// is in flight: its next closing cuts.
     #[serde(default = "ten")]
     #[schemars(extend("minimum" = 1))]
     pub patience: u32,
@@ -153,7 +154,7 @@ pub enum MeshStep {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Closing {
-    /// The step is cut, so that the closing falls at its end.
+    /// The step is cut before a point in flight closes, so that the closing falls where scheme and law take it best.
     #[default]
     Cut,
     /// Nothing.

@@ -45,6 +45,15 @@ impl Capture {
         }
     }
 
+    /// [`ContactLaw::reach`](super::ContactLaw::reach).
+    pub(super) fn reach(self, known: f64) -> Option<f64> {
+        match self {
+            Capture::Now | Capture::Half | Capture::Full => Some(known + self.ahead()),
+            Capture::Free => Some(1.0),
+            Capture::GapTarget => None,
+        }
+    }
+
     /// What the law adds to ġ₊, m/s: the relation is one of `ġ₊ + excess`.
     ///
     /// `max(0, start)`: where the gap opens at the start of the step a force keeps it from closing over the step, and does no work.

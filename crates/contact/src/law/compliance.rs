@@ -38,6 +38,10 @@ impl ContactLaw for Compliance {
         self.capture.watches(gap, tolerance)
     }
 
+    fn reach(&self, known: f64) -> Option<f64> {
+        self.capture.reach(known)
+    }
+
     fn relation(&self, _status: Status, local: &Local) -> Relation {
         let damping = self.damping * local.area;
         Relation {

@@ -47,6 +47,10 @@ impl ContactLaw for Damped {
         None
     }
 
+    fn reach(&self, _known: f64) -> Option<f64> {
+        Some(1.0)
+    }
+
     fn relation(&self, status: Status, local: &Local) -> Relation {
         match status {
             Status::Corner => Relation::GAP,

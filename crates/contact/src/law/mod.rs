@@ -137,6 +137,12 @@ pub trait ContactLaw {
     /// S_d: whether a point with this gap (m) at the captured instant takes part in the step, `tolerance` in m; `None`
     /// where only the end of the step can tell, so that every point within reach is asked.
     fn watches(&self, gap: f64, tolerance: f64) -> Option<bool>;
+    /// The distance from the surface up to which a point that approaches is closed in the step, in ways of the approach over
+    /// the step; a point as far as this less one was closed in the step before. `known`: the part of the step over which
+    /// displacements are known before the forces, 1 of explicit schemes and 0 of the others. `None` of laws that no gap switches on.
+    fn reach(&self, _known: f64) -> Option<f64> {
+        None
+    }
     /// What holds in a point of this status other than open. Only the offset may change from step to step: the factors
     /// belong to a matrix that is kept while the statuses stand.
     fn relation(&self, status: Status, local: &Local) -> Relation;

@@ -31,6 +31,10 @@ impl ContactLaw for Penalty {
         self.0.watches(gap, tolerance)
     }
 
+    fn reach(&self, _known: f64) -> Option<f64> {
+        Some(1.0)
+    }
+
     fn relation(&self, status: Status, local: &Local) -> Relation {
         self.0.relation(status, local)
     }

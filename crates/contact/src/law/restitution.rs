@@ -43,6 +43,10 @@ impl ContactLaw for Restitution {
         self.capture.watches(gap, tolerance)
     }
 
+    fn reach(&self, known: f64) -> Option<f64> {
+        self.capture.reach(known)
+    }
+
     fn relation(&self, _status: Status, local: &Local) -> Relation {
         Relation {
             offset: self.excess(local),

@@ -111,6 +111,10 @@ impl ContactLaw for Stop {
         None
     }
 
+    fn reach(&self, _known: f64) -> Option<f64> {
+        Some(1.0)
+    }
+
     fn relation(&self, status: Status, local: &Local) -> Relation {
         let piece = match status {
             Status::Corner => {

@@ -49,6 +49,10 @@ impl ContactLaw for Velocity {
         }
     }
 
+    fn reach(&self, known: f64) -> Option<f64> {
+        self.capture.reach(known)
+    }
+
     fn relation(&self, _status: Status, local: &Local) -> Relation {
         Relation {
             offset: self.capture.excess(local),

@@ -2,12 +2,10 @@
 
 use std::time::Instant;
 
-use carom_contact::law::Status;
-
 use super::weak::WithWeak;
 use super::{Driver, Work};
 use crate::compliance::Compliance;
-use crate::control::{Adaptive, Closing, Control, Event};
+use crate::control::{Closing, Control, Event};
 use crate::error::Error;
 use crate::interface::Interface;
 use crate::operator::Operators;
@@ -19,12 +17,6 @@ const KEPT: usize = 3;
 
 /// Attempts at one step after which a closing cuts it no more.
 const CUTS: u32 = 10;
-
-/// Part of a step that a closing must leave before it for a cut: points that chatter would cut every step.
-const WORTH: f64 = 0.05;
-
-/// Penetration at which a cut step aims, in tolerances of a closed gap: rounding then leaves no gap that is open.
-const AIM: f64 = 10.0;
 
 /// What depends on the size of the step.
 pub(super) struct Sized {
@@ -46,16 +38,17 @@ impl Driver {
     /// the smallest. The state is then the one before the step.
     pub fn step(&mut self) -> Result<(), Error> {
         let mut control = self.state.control;
-        let mut dt = control.dt;
+        let mut dt = self.unplanned.take().unwrap_or(control.dt);
         let mut forced = self
             .forced
             .filter(|every| (self.state.step + 1).is_multiple_of(*every));
         self.report.attempts = 0;
         loop {
             self.size(dt)?;
+            self.look_beyond(&control);
             self.report.attempts += 1;
             let outcome = self.attempt();
-            match self.judge(outcome) {
+            match self.judge(outcome, control.dt) {
                 Ok(None) if forced.take().is_some() => self.forget_predictor(),
                 Ok(None) => {
                     self.accept(control);
@@ -84,21 +77,38 @@ impl Driver {
         }
     }
 
+    /// Makes the map that of a step before one of the size planned.
+    fn look_beyond(&mut self, control: &Control) {
+        if let Some(rules) = &self.system.adaptive {
+            let next = control.next(rules, self.system.dt);
+            self.map = self.system.scheme.get().step_map_before(self.dt, next);
+        }
+    }
+
+    /// Sets the size that the next step is tried with, s, for tests: what an event after the last step would do.
+    pub fn force_size(&mut self, dt: f64) {
+        self.unplanned = Some(dt);
+    }
+
     /// Tries every `every`-th step once more after dropping its first attempt, which must change no bit of the results: for
     /// tests.
     pub fn force_rejections(&mut self, every: u64) {
         self.forced = Some(every);
     }
 
-    /// What speaks against an attempt, and the size to go on from.
-    fn judge(&self, outcome: Result<(), Error>) -> Result<Option<(Event, f64)>, (Event, Error)> {
+    /// What speaks against an attempt, and the size to go on from. `planned`: the size of the steps after it, s.
+    fn judge(
+        &self,
+        outcome: Result<(), Error>,
+        planned: f64,
+    ) -> Result<Option<(Event, f64)>, (Event, Error)> {
         outcome.map_err(|error| (Event::Failure, error))?;
         let Some(rules) = &self.system.adaptive else {
             return Ok(None);
         };
         if rules.closing == Closing::Cut
             && self.report.attempts <= CUTS
-            && let Some(dt) = self.closing(rules)
+            && let Some(dt) = self.landing(rules, planned)
         {
             return Ok(Some((Event::Closing, dt)));
         }
@@ -106,46 +116,11 @@ impl Driver {
         Ok(grows.then_some((Event::Growth, self.dt)))
     }
 
-    /// Whether kinetic and strain energy less the work of the loads exceed their value at the start of the run by more than
-    /// this fraction of the largest energy.
+    /// Whether the energy that the scheme balances, less the work of the loads, exceeds its value at the start of the run by more
+    /// than this fraction of the largest energy.
     fn grows(&self, growth: f64) -> bool {
         let ledger = &self.next.ledger;
-        let free = ledger.balance.energy() - ledger.balance.work_loads;
-        free > ledger.initial.energy() + growth * ledger.largest_energy
-    }
-
-    /// The first instant within the step at which an open gap closes without the forces of the step, counted from its
-    /// start, if there is time for a step before it.
-    ///
-    /// The gap is the parabola through its value and rate at the start and its value at the end.
-    fn closing(&self, rules: &Adaptive) -> Option<f64> {
-        let aim = AIM * self.system.tolerance;
-        let mut first = f64::INFINITY;
-        for point in 0..self.system.points() {
-            let start = self.state.interface.gap[point];
-            let open = self.state.interface.status[point] == Status::Open;
-            let end = self.free_gap(point);
-            if !open || start <= self.system.tolerance || !start.is_finite() || end >= -2.0 * aim {
-                continue;
-            }
-            let slope = self.rows.product(point, &self.state.motion.v) * self.dt;
-            let bend = end - start - slope;
-            let root = root(start + aim, slope, bend);
-            first = first.min(root * self.dt);
-        }
-        let least = rules.smallest.max(WORTH * self.dt);
-        (first >= least && first < self.dt).then_some(first)
-    }
-
-    /// Gap of a point at the end of the step without its forces, m.
-    fn free_gap(&self, point: usize) -> f64 {
-        if let Some(gap) = self.predictor.gap(point) {
-            return gap;
-        }
-        match self.candidates.binary_search(&(point as u32)) {
-            Ok(k) => self.free_gaps[k],
-            Err(_) => self.next.interface.gap[point],
-        }
+        ledger.free_energy() > growth * ledger.largest_energy
     }
 
     /// The error of a step that was dropped at the smallest size.
@@ -233,30 +208,5 @@ impl Work {
             self.sweeps += stats.sweeps;
         }
         self.columns += compliance.columns_computed;
-    }
-}
-
-/// The least root in (0, 1] of `value + slope s + bend s²`, which is positive at 0 and not positive at 1.
-fn root(value: f64, slope: f64, bend: f64) -> f64 {
-    let discriminant = slope * slope - 4.0 * bend * value;
-    if discriminant < 0.0 {
-        return 1.0;
-    }
-    // of the two forms of the roots, the one without cancellation
-    let sum = slope + slope.signum() * discriminant.sqrt();
-    let roots = [-2.0 * value / sum, -sum / (2.0 * bend)];
-    let inside = roots.into_iter().filter(|root| *root > 0.0 && *root <= 1.0);
-    inside.fold(1.0, f64::min)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::root;
-
-    #[test]
-    fn the_first_root_of_a_parabola_is_found() {
-        assert_eq!(root(1.0, -2.0, 0.0), 0.5);
-        assert!((root(0.02, -0.3, 0.1) - (0.3 - 0.082f64.sqrt()) / 0.2).abs() < 1e-15);
-        assert!((root(1.0, 1.0, -6.0) - 0.5).abs() < 1e-15);
     }
 }

@@ -143,6 +143,10 @@ impl Driver {
         self.map.inertia.whole(old, x, c, known);
         system.mass.multiply(known, inertia);
         reactions(system, &self.map, old, new, inertia, work);
+        let exchange = &mut self.next.exchange;
+        exchange.follow(&self.state.exchange);
+        let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
+        exchange.add(system, (0, self.dt, &self.map.impulse), own);
         let supports = Resultant::of(system, work);
         if self.map.impulse == self.map.contact_impulse {
             return [supports, Resultant::default()];
@@ -153,6 +157,7 @@ impl Driver {
                 false => 0.0,
             };
         }
+        exchange.add(system, (1, self.dt, &self.map.contact_impulse), |i| half[i]);
         [supports, Resultant::of(system, half)]
     }
 
@@ -187,6 +192,7 @@ impl Driver {
             let interface = &self.next.interface;
             let step = Step {
                 span: [self.state.time, self.next.time],
+                dt: self.dt,
                 impulse: self.map.contact_impulse,
                 report: &report,
                 work: contact_work(&system, k, &self.rows, weights, (&self.state, &self.next))
@@ -210,6 +216,10 @@ impl Driver {
             self.report.contacts[k] = report;
         }
         self.watch.look(&system, self.next.step, &mut self.next);
+        let work = &mut self.vectors.work;
+        system.mass.multiply(&self.next.motion.v, work);
+        let records = &self.next.records.contacts;
+        self.next.exchange.close(&system, work, records);
     }
 
     /// Completes the report of the state just accepted.

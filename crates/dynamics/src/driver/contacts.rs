@@ -40,7 +40,7 @@ impl Driver {
     /// Pairs all contacts at their captured instant; `now` takes the state as it is.
     pub(super) fn place(&mut self, now: bool) {
         let system = Arc::clone(&self.system);
-        let (map, dt, motion) = (&self.map, self.dt, &self.state.motion);
+        let (map, dt, motion) = (&self.map, self.map.moves, &self.state.motion);
         self.rows.clear();
         self.captured.clear();
         let mut capture = f64::NAN;
@@ -129,7 +129,7 @@ impl Driver {
             let gap = self.rows.gap(point);
             let law = system.point(point).0.law.get();
             let rate = self.rows.product(point, &self.state.motion.v);
-            let least = least_gap(gap, law.capture() * self.dt * rate);
+            let least = least_gap(gap, law.capture() * self.map.moves * rate);
             let chosen = match law.watches(least, system.tolerance) {
                 _ if gap == f64::INFINITY => false,
                 Some(watched) => watched,
@@ -172,7 +172,7 @@ impl Driver {
                 |row: &Row| row.u * nu + row.v * nv + row.a * na + row.m * nm + row.x * free;
             let ([gap, rate], instant) = instant(&self.map, &contact.law);
             let until = |gap: &Row| self.rows.gap(at) + value(&gap.since(&self.captured[at]));
-            self.free_gaps.push(until(&self.map.gap));
+            self.free_gaps.push(until(&self.map.displacement));
             let carrier = &contact.points[place];
             self.candidate_data.push(Candidate {
                 law: contact.law,
@@ -183,7 +183,7 @@ impl Driver {
                     rate: nv,
                     start: self.map.start_in_way() * nv,
                     gap_free: until(&gap),
-                    dt: self.dt,
+                    dt: self.map.moves,
                     tolerance: system.tolerance,
                     crush: self.state.interface.crush[at],
                 },
@@ -357,7 +357,7 @@ impl Driver {
                 rate: start,
                 start: self.map.start_in_way() * start,
                 gap_free: gap,
-                dt: self.dt,
+                dt: self.map.moves,
                 tolerance: self.system.tolerance,
                 crush: self.state.interface.crush[point],
                 ..Local::default()

@@ -7,6 +7,7 @@ mod attempt;
 mod balance;
 mod contacts;
 mod impulse;
+mod landing;
 pub(crate) mod linked;
 mod predictor;
 mod projection;
@@ -28,6 +29,7 @@ use carom_contact::{Contact, Rows, Search};
 use crate::compliance::Compliance;
 use crate::control::Control;
 use crate::error::Error;
+use crate::exchange::Exchange;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::ledger::{Energies, Ledger, Resultant, reactions};
 use crate::operator::Operators;
@@ -65,6 +67,8 @@ pub struct Driver {
     retired: Work,
     /// Every which step is dropped once, in tests.
     forced: Option<u64>,
+    /// Size of the next step that an event forces, in tests, s.
+    unplanned: Option<f64>,
     forces: Forces,
     /// Solver of the stages with the mass alone; none where there is no such stage.
     impulses: Option<Impulses>,
@@ -239,6 +243,7 @@ impl Driver {
             kept: Vec::new(),
             retired: Work::default(),
             forced: None,
+            unplanned: None,
             forces: Forces {
                 scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
                 sweeps: 0,
@@ -408,6 +413,11 @@ impl Driver {
             work,
         );
         let supports = Resultant::of(&system, work);
+        for (i, force) in work.iter_mut().enumerate() {
+            *force += system.load[i] + motion.link_of(i);
+        }
+        system.mass.multiply(&motion.v, &mut self.vectors.known);
+        let exchange = Exchange::start(&system, &self.vectors.known, work);
         let loads = Resultant::of(&system, &system.load);
         let none = Resultant::default();
         let link = Resultant::of(&system, &self.state.motion.link_force);
@@ -415,6 +425,7 @@ impl Driver {
         self.state.ledger = Ledger::start(&energies, &identity, forces);
         self.state.control = Control::start(system.dt);
         self.state.records = Records::of(&system);
+        self.state.exchange = exchange;
         self.place(true);
         for point in 0..system.points() {
             self.state.interface.gap[point] = self.rows.gap(point);
@@ -533,6 +544,7 @@ impl Driver {
             interface.status[point as usize] = self.interface.statuses[k];
         }
         interface.carried.clone_from(&interface.force);
+        interface.count_flights(&self.state.interface.flight, self.dt);
         for point in 0..system.points() {
             let ahead = map.displacement.since(&self.captured[point]);
             interface.gap[point] =

@@ -105,7 +105,7 @@ impl Driver {
         predictor.present.clear();
         predictor.present.resize(predictor.points.len(), 0.0);
         let (values, present) = (&predictor.values, &predictor.present);
-        let dt = self.system.dt;
+        let dt = self.dt;
         let weak = (&self.weak, 0.5 * dt * dt);
         let points = &predictor.points;
         let solved = stage.solve(&self.system, weak, &self.rows, points, values, present);

@@ -86,6 +86,8 @@ impl Driver {
         let energies = energies(&system, new, strain, work, identity.inertia != 0.0);
         system.mass.multiply(&new.a, inertia);
         reactions(&system, &self.map, old, new, inertia, work);
+        let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
+        self.next.exchange.renew(&system, own);
         jump.forces = [
             Resultant::of(&system, &new.contact_force),
             Resultant::of(&system, work),
@@ -161,6 +163,7 @@ impl Driver {
                 0.0
             };
         }
+        self.next.exchange.jump(&system, work);
         [contact, Resultant::of(&system, work)]
     }
 

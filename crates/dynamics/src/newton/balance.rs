@@ -52,6 +52,7 @@ impl Newton {
         new.link_force.clone_from(&self.link_force);
         let interface = &mut self.next.interface;
         interface.carried.clone_from(&interface.force);
+        interface.count_flights(&self.state.interface.flight, self.dt);
         for point in 0..system.points() {
             let ahead = self
                 .map
@@ -220,6 +221,7 @@ impl Newton {
             });
             let step = Step {
                 span: [self.state.time, self.next.time],
+                dt: self.dt,
                 impulse,
                 report: &report,
                 work: work.sum(),

@@ -11,6 +11,7 @@ use crate::step_map::{Impulse, Row, StepMap};
 ///
 /// With `v_{k+1/2} = v + dt/2 a` this is the leapfrog `u₊ = u + dt v_{k+1/2}`, `M (v_{k+3/2} - v_{k+1/2}) = dt (p_ext - f(u₊)) + Nᵀ dt P`,
 /// and a law in the rate acts on `v_{k+3/2} = v + dt/2 a + dt a₊` where the gap at u₊ is closed (CD-Lagrange).
+/// Before a step of another length `next` the velocity of the half step to come is `v + dt/2 a + (dt + next)/2 a₊`.
 /// Stable for dt < 2/ω. Energy identity as Newmark's with β = 0, γ = ½: the scheme conserves E - dt²/8 |a|²_M.
 ///
 /// Source: Fekak, Brun, Gravouil, Depale, Computational Mechanics 60 (2017), the CD-Lagrange scheme.
@@ -23,6 +24,10 @@ impl TimeScheme for CentralDifference {
     }
 
     fn step_map(&self, dt: f64) -> StepMap {
+        self.step_map_before(dt, dt)
+    }
+
+    fn step_map_before(&self, dt: f64, next: f64) -> StepMap {
         let displacement = Row {
             u: 1.0,
             v: dt,
@@ -31,28 +36,27 @@ impl TimeScheme for CentralDifference {
             ..Row::default()
         };
         let acceleration = Row::UNKNOWN;
+        let velocity = Row {
+            u: 0.0,
+            v: 1.0,
+            a: 0.5 * dt,
+            x: 0.5 * dt,
+            ..Row::default()
+        };
         StepMap {
             inertia: acceleration,
             force: displacement,
             force_fraction: Some(1.0),
             displacement,
-            velocity: Row {
-                u: 0.0,
-                v: 1.0,
-                a: 0.5 * dt,
-                x: 0.5 * dt,
-                ..Row::default()
-            },
+            velocity,
             acceleration,
             placed: displacement,
             gap: displacement,
             rate: Row {
-                u: 0.0,
-                v: 1.0,
-                a: 0.5 * dt,
-                x: dt,
-                ..Row::default()
+                x: 0.5 * (dt + next),
+                ..velocity
             },
+            moves: next,
             memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(0.5, 0.5),

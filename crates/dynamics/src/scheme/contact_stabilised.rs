@@ -60,6 +60,7 @@ impl TimeScheme for ContactStabilised {
             placed: Row::START,
             gap: displacement,
             rate: velocity,
+            moves: dt,
             memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(0.0, 1.0),

@@ -123,6 +123,7 @@ impl Averaged {
             placed: Row::START,
             gap: displacement,
             rate: velocity,
+            moves: dt,
             memory: Row::default(),
             contact: 1.0,
             impulse,

@@ -85,6 +85,7 @@ impl TimeScheme for Krenk {
             placed: Row::START,
             gap: displacement,
             rate: velocity,
+            moves: dt,
             memory: Row {
                 m: (nu - 0.5) / kappa,
                 ..moved(displacement, 1.0 / (kappa * dt))

@@ -78,6 +78,11 @@ pub trait TimeScheme {
     fn name(&self) -> &'static str;
     /// How the step of length `dt` (s) depends on its unknown.
     fn step_map(&self, dt: f64) -> StepMap;
+    /// The same before a step of the length `next` (s). The forces of an explicit scheme move the points in the next step alone, so
+    /// that the rate which a law constrains is that of the next step.
+    fn step_map_before(&self, dt: f64, _next: f64) -> StepMap {
+        self.step_map(dt)
+    }
     /// Its energy balance for a step of length `dt` (s); `None` where none is known: the ledger then says so, and its
     /// residual holds what the scheme dissipates.
     fn energy_identity(&self, dt: f64) -> Option<EnergyIdentity>;

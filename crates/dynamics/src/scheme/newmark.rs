@@ -57,6 +57,7 @@ impl TimeScheme for Newmark {
             placed: Row::START,
             gap: displacement,
             rate: velocity,
+            moves: dt,
             memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(1.0 - gamma, gamma),

@@ -67,6 +67,7 @@ impl TimeScheme for PaoliSchatzman {
                 ..Row::default()
             },
             rate: velocity,
+            moves: dt,
             memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(0.0, 1.0),

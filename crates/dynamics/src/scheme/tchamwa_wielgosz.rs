@@ -14,6 +14,8 @@ use crate::step_map::{Impulse, Row, StepMap};
 /// vibration ends at Ω = 2/φ, and the scheme is stable for `Ω <= 2/sqrt(2 φ - 1)`. Of first order. A law in the rate acts
 /// on the next velocity, `v + dt a + dt a₊`, where the gap at u₊ is closed.
 ///
+/// Before a step of another length `next` the law acts on `v + dt a + next a₊`.
+///
 /// Energy identity: `ΔE = Δu · F_k - (φ - ½) |Δv|²_M + ½ |Δu|²_K`, from `Δu = dt v̄ + (φ - ½) dt Δv` with v̄ the mean of v
 /// and v₊, and `M Δv = dt (F_k - f_k)`. The two squares nearly cancel at low frequencies.
 ///
@@ -31,6 +33,10 @@ impl TimeScheme for TchamwaWielgosz {
     }
 
     fn step_map(&self, dt: f64) -> StepMap {
+        self.step_map_before(dt, dt)
+    }
+
+    fn step_map_before(&self, dt: f64, next: f64) -> StepMap {
         let displacement = Row {
             u: 1.0,
             v: dt,
@@ -52,7 +58,11 @@ impl TimeScheme for TchamwaWielgosz {
             acceleration,
             placed: displacement,
             gap: displacement,
-            rate: Row { x: dt, ..velocity },
+            rate: Row {
+                x: next,
+                ..velocity
+            },
+            moves: next,
             memory: Row::default(),
             contact: 1.0,
             impulse: Impulse::weights(1.0, 0.0),

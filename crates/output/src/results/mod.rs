@@ -172,6 +172,8 @@ struct Last {
     control: Control,
     ledger: Ledger,
     records: Records,
+    /// Largest residual of the momentum that contacts give, relative; `None` where it is not known.
+    exchange: Option<f64>,
     /// Mean velocity of the bodies, m/s.
     velocities: Vec<[f64; 3]>,
     /// Whether each contact has a force.
@@ -255,6 +257,7 @@ impl Results {
             control: state.control,
             ledger: state.ledger.clone(),
             records: state.records.clone(),
+            exchange: state.exchange.relative(),
             velocities: velocities(&self.system, &state.motion.v),
             closed: (0..self.system.contacts.len()).map(forces).collect(),
         };

@@ -38,6 +38,8 @@ pub(crate) enum Finding {
 const ALL: &[fn(&Evidence) -> Finding] = &[
     energy::residual,
     momentum::residual,
+    momentum::exchange,
+    momentum::resizing,
     energy::gain,
     finite::states,
     small::rotation,

@@ -21,3 +21,58 @@ pub(super) fn residual(evidence: &Evidence) -> Finding {
         "a smaller `time.newton.tolerance` where the run iterates; else a fault of the program",
     ))
 }
+
+/// What the contacts give to each body by the forces and impulses that they report, against what its momentum changes by. Between
+/// bodies the contact forces cancel in the sum.
+pub(super) fn exchange(evidence: &Evidence) -> Finding {
+    if evidence.system.contacts.is_empty() {
+        return Finding::Absent;
+    }
+    match evidence.last.exchange {
+        Some(residual) => Finding::Line(Line::new(
+            "contact-impulse",
+            (
+                "impulse of the contacts as reported, less what it gave to the bodies, over the largest momentum",
+                residual,
+                Form::Power,
+            ),
+            Bounds::Bad(RESIDUAL),
+            "a fault of the program",
+        )),
+        None => Finding::Unchecked(
+            "the impulse of the contacts against the momentum of each body: in zones and nonlinear runs only the momentum of the whole is balanced"
+                .to_owned(),
+        ),
+    }
+}
+
+/// Part of the impulse that forces times steps may miss where sizes change: a force that begins with one size of step and ends
+/// with the double one misses half a step in the hundreds of an impact.
+const RESIZING: f64 = 1e-3;
+
+/// The same where the history of the forces is no measure of the impulse.
+const MISSED: f64 = 0.05;
+
+/// What the sum of force times step misses of the impulse because the step changed its size in contact.
+pub(super) fn resizing(evidence: &Evidence) -> Finding {
+    if evidence.system.adaptive.is_none() {
+        return Finding::Absent;
+    }
+    let records = evidence.last.records.contacts.iter();
+    let parts = records
+        .filter(|record| record.impulse() != 0.0)
+        .map(|record| (record.impulse_of_resizing() / record.impulse()).abs());
+    match parts.reduce(f64::max) {
+        Some(part) => Finding::Line(Line::new(
+            "resizing",
+            (
+                "impulse that forces times steps miss because the step changed its size in contact, over the impulse",
+                part,
+                Form::Percent,
+            ),
+            Bounds::Both(RESIZING, MISSED),
+            "a scheme and law without chatter: its halvings change the step in contact; or a fixed step",
+        )),
+        None => Finding::Absent,
+    }
+}

@@ -1,0 +1,151 @@
+//! The momentum that contacts give to the bodies, told by the forces that they report.
+//!
+//! Between two bodies contact forces cancel in the momentum of the whole, so that its balance says nothing of their size.
+//! Here each connected part is balanced by itself: what its momentum has changed by, less the impulses of loads, supports and
+//! links, must be the impulse of the contacts on it as their records tell it,
+//! [`Σ P dt + jumps + resizing - what is to come`](crate::records::ContactRecord::impulse_of_forces).
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use crate::ledger::Sum;
+use crate::records::ContactRecord;
+use crate::step_map::Impulse;
+use crate::system::System;
+
+/// The exchange of momentum since the start.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Exchange {
+    parts: Vec<Part>,
+    /// Largest component of what is left over of a part's momentum so far, N s.
+    pub largest_residual: f64,
+    /// Largest component of the momentum of a part, or of the impulse of a contact, so far, N s.
+    pub largest_momentum: f64,
+}
+
+/// One connected part.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Part {
+    /// Momentum at the start.
+    start: [f64; 3],
+    /// Impulses of loads, supports and links.
+    own: [Sum; 3],
+    /// R of loads, supports and links, and of supports against contact forces that have an impulse of their own.
+    before: [[f64; 3]; 2],
+}
+
+/// Sum of the forces on the unknowns of a part; of an axisymmetric one only the axial sum is a force.
+fn total(system: &System, part: &Range<usize>, force: &impl Fn(usize) -> f64) -> [f64; 3] {
+    let mut total = [0.0; 3];
+    for unknown in part.clone() {
+        total[(unknown - part.start) % system.dim] += force(unknown);
+    }
+    axial(system, total)
+}
+
+fn sum(system: &System, part: &Range<usize>, forces: &[f64]) -> [f64; 3] {
+    total(system, part, &|unknown| forces[unknown])
+}
+
+fn axial(system: &System, mut force: [f64; 3]) -> [f64; 3] {
+    if system.axisymmetric {
+        force[0] = 0.0;
+    }
+    force
+}
+
+fn largest(of: &[f64; 3]) -> f64 {
+    of.iter().fold(0.0, |most, x| most.max(x.abs()))
+}
+
+impl Exchange {
+    /// At the start. `momentum`: of each unknown; `own`: forces of loads, supports and links.
+    pub(crate) fn start(system: &System, momentum: &[f64], own: &[f64]) -> Exchange {
+        let part = |part: &Range<usize>| Part {
+            start: sum(system, part, momentum),
+            before: [sum(system, part, own), [0.0; 3]],
+            ..Part::default()
+        };
+        let parts: Vec<Part> = system.parts.iter().map(part).collect();
+        Exchange {
+            largest_momentum: parts
+                .iter()
+                .map(|part| largest(&part.start))
+                .fold(0.0, f64::max),
+            parts,
+            largest_residual: 0.0,
+        }
+    }
+
+    /// Makes this the exchange of the state before the step.
+    pub(crate) fn follow(&mut self, before: &Exchange) {
+        self.parts.clone_from(&before.parts);
+        self.largest_residual = before.largest_residual;
+        self.largest_momentum = before.largest_momentum;
+    }
+
+    /// Adds the impulses of one kind of forces in a step of `dt`: 0 for loads, supports and links, 1 for supports against contact
+    /// forces. `force`: of each unknown.
+    pub(crate) fn add(
+        &mut self,
+        system: &System,
+        (kind, dt, impulse): (usize, f64, &Impulse),
+        force: impl Fn(usize) -> f64,
+    ) {
+        for (part, range) in self.parts.iter_mut().zip(&system.parts) {
+            let total = total(system, range, &force);
+            for i in 0..3 {
+                let before = part.before[kind][i];
+                let now = impulse.gain * total[i] - impulse.carry * before;
+                part.own[i].add(dt * (impulse.old * before + impulse.new * now));
+                part.before[kind][i] = now;
+            }
+        }
+    }
+
+    /// Adds impulses of supports that act at once, one of each unknown.
+    pub(crate) fn jump(&mut self, system: &System, impulses: &[f64]) {
+        for (part, range) in self.parts.iter_mut().zip(&system.parts) {
+            let jump = sum(system, range, impulses);
+            for i in 0..3 {
+                part.own[i].add(jump[i]);
+            }
+        }
+    }
+
+    /// Sets the forces of loads, supports and links that the next step begins with.
+    pub(crate) fn renew(&mut self, system: &System, force: impl Fn(usize) -> f64) {
+        for (part, range) in self.parts.iter_mut().zip(&system.parts) {
+            part.before[0] = total(system, range, &force);
+        }
+    }
+
+    /// Compares with the records of the contacts at the end of a step. `momentum`: of each unknown.
+    pub(crate) fn close(&mut self, system: &System, momentum: &[f64], records: &[ContactRecord]) {
+        for (part, range) in self.parts.iter().zip(&system.parts) {
+            let now = sum(system, range, momentum);
+            let mut given = [0.0; 3];
+            for (record, (secondary, primary)) in records.iter().zip(&system.sides) {
+                let impulse = axial(system, record.exchanged());
+                let on =
+                    |body: usize| f64::from(u8::from(range.contains(&system.first_unknown(body))));
+                let sign = on(*secondary) - primary.map_or(0.0, on);
+                for i in 0..3 {
+                    given[i] += sign * impulse[i];
+                }
+                self.largest_momentum = self.largest_momentum.max(largest(&impulse));
+            }
+            let left = [0, 1, 2].map(|i| now[i] - part.start[i] - part.own[i].get() - given[i]);
+            self.largest_residual = self.largest_residual.max(largest(&left));
+            self.largest_momentum = self.largest_momentum.max(largest(&now));
+        }
+    }
+
+    /// The largest residual over the largest momentum; `None` where nothing is compared: of nonlinear runs, of zones as a whole, or
+    /// where nothing has moved.
+    pub fn relative(&self) -> Option<f64> {
+        let compared = !self.parts.is_empty() && self.largest_momentum > 0.0;
+        compared.then(|| self.largest_residual / self.largest_momentum)
+    }
+}
