@@ -36,7 +36,7 @@ pub use driver::{Costs, Driver, Phases, Work};
 pub use error::Error;
 pub use impact::Impact;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
-pub use ledger::{Balance, Ledger, Resultant};
+pub use ledger::{Balance, Ledger, Resultant, Tolerated};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, march, step_count};
 pub use mass::Mass;
 pub use model::{Model, ModelBody, ModelContact, ModelTarget, Support};
