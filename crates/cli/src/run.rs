@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use carom_case::{Built, Finished, Input, schema::Case};
 
 use carom_output::plot::quantity;
-use carom_output::summary::{NONLINEAR_WORKS, Newton};
+use carom_output::summary::Newton;
 use carom_output::{Grade, Summary};
 
 use crate::progress::Progress;
@@ -143,7 +143,14 @@ fn print(summary: &Summary, folder: &Path) {
             (Some(first), None) => format!(", closed from {}", quantity(first, "s")),
             (None, _) => ", never closed".to_string(),
         };
-        println!("    impulse {}{times}", quantity(contact.impulse, "N s"));
+        let impulsive = match contact.impulsive == 0.0 {
+            true => String::new(),
+            false => format!(", of it in no force {}", quantity(contact.impulsive, "N s")),
+        };
+        println!(
+            "    impulse {}{impulsive}{times}",
+            quantity(contact.impulse, "N s")
+        );
         if let Some(friction) = contact.friction {
             println!(
                 "    friction {}, its largest force {}",
@@ -224,12 +231,23 @@ fn iterations(newton: &Newton) -> String {
     )
 }
 
-/// The terms of the energy balance that only runs have that are not linear; losses negative.
+/// The terms of the energy balance that only some runs have: works positive when the bodies gain, losses positive.
 fn further(summary: &Summary) -> Vec<String> {
-    let works = summary.energy.works.iter();
-    let own = works.filter(|(name, _)| NONLINEAR_WORKS.contains(&name.as_str()));
-    own.map(|(name, work)| format!("{name} {}", quantity(*work, "J")))
-        .collect()
+    let energy = &summary.energy;
+    let work = |name: &str| energy.works.get(name).map(|work| (name.to_string(), *work));
+    let works = ["supports", "obstacles"].into_iter().filter_map(work);
+    let works = works.map(|(name, work)| format!("work of {name} {}", quantity(work, "J")));
+    let lost = energy
+        .dissipations
+        .iter()
+        .filter(|(name, _)| *name != "scheme");
+    let lost = lost.map(|(name, lost)| format!("dissipated ({name}) {}", quantity(*lost, "J")));
+    let stored = energy
+        .stored
+        .get("hardening")
+        .map(|kept| quantity(*kept, "J"));
+    let stored = stored.map(|kept| format!("stored (hardening) {kept}"));
+    works.chain(lost).chain(stored).collect()
 }
 
 /// Factorisations, memory, time per step.

@@ -34,6 +34,8 @@ pub struct Impact {
     pub peak_force: f64,
     /// Impulse on the secondary body, N s.
     pub impulse: f64,
+    /// The part of it, along it, that is in no force of a step, N s: of a projection or another stage after a step.
+    pub impulsive: f64,
     /// Speed at which the two bodies (one, on an obstacle) approached along the mean normal, m/s: of the mean velocities of the
     /// masses that no support holds.
     pub approach: f64,
@@ -64,6 +66,8 @@ pub(crate) struct Given {
     pub(crate) force: f64,
     /// Impulse on the secondary body, N s.
     pub(crate) impulse: [f64; 3],
+    /// The part of it that is in no force, N s.
+    pub(crate) impulsive: [f64; 3],
     /// That of the normal forces, as far as its direction goes, N s.
     pub(crate) normal: [f64; 3],
     /// Work of the contact, J.
@@ -79,6 +83,7 @@ pub(crate) struct OpenImpact {
     intervals: u64,
     peak_force: f64,
     impulse: [Sum; 3],
+    impulsive: [Sum; 3],
     /// Sums of the normal impulses of the steps and of their magnitudes, N s.
     normal: [Sum; 3],
     pushed: Sum,
@@ -154,6 +159,7 @@ impl OpenImpact {
         self.pushed.add(norm(normal));
         for i in 0..3 {
             self.impulse[i].add(impulse[i]);
+            self.impulsive[i].add(given.impulsive[i]);
             self.normal[i].add(normal[i]);
         }
     }
@@ -180,6 +186,10 @@ impl OpenImpact {
             intervals: self.intervals,
             peak_force: self.peak_force,
             impulse: norm(impulse),
+            impulsive: match norm(impulse) > 0.0 {
+                true => dot(self.impulsive.each_ref().map(Sum::get), impulse) / norm(impulse),
+                false => 0.0,
+            },
             approach,
             rebound: along.after[0] - along.after[1],
             restitution: along.restitution().filter(|_| told),

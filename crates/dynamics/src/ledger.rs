@@ -129,8 +129,11 @@ pub struct Balance {
     pub scheme_energy: f64,
     /// Work of the loads.
     pub work_loads: f64,
-    /// Work of the contact forces, and of the impulses of a projection; minus the energy lost in impact.
+    /// Work of the contact forces, and of the impulses of a projection, beyond that of the obstacles; minus the energy lost in
+    /// impact.
     pub work_contact: f64,
+    /// Work of the obstacles that move: their forces on the bodies times their own motion.
+    pub work_obstacles: f64,
     /// Work of the links to other zones.
     pub work_links: f64,
     /// Work of the supports that move.
@@ -171,6 +174,7 @@ impl Balance {
             scheme_energy: self.scheme_energy + other.scheme_energy,
             work_loads: self.work_loads + other.work_loads,
             work_contact: self.work_contact + other.work_contact,
+            work_obstacles: self.work_obstacles + other.work_obstacles,
             work_links: self.work_links + other.work_links,
             work_supports: self.work_supports + other.work_supports,
             dissipation_scheme: self.dissipation_scheme + other.dissipation_scheme,
@@ -192,6 +196,26 @@ impl Balance {
     pub fn energy(&self) -> f64 {
         self.kinetic + self.strain
     }
+
+    /// The energy that the scheme balances, J: kinetic and strain energy, its own term, what hardening stores.
+    pub fn balanced(&self) -> f64 {
+        self.energy() + self.scheme_energy + self.hardening
+    }
+
+    /// Work from outside, J: of loads, supports and obstacles.
+    pub fn work_given(&self) -> f64 {
+        self.work_loads + self.work_supports + self.work_obstacles
+    }
+}
+
+/// What the iterations of a run may leave unbalanced at the tolerance that was asked for: the work and the impulse of a force
+/// of that size in every step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tolerated {
+    /// Σ r |Δu|, J, with r the Euclidean norm of the nodal forces that may be left over in the step.
+    pub energy: f64,
+    /// Σ dt r √n, N s, with n the number of nodes: a component of the sum of forces of that norm is no larger.
+    pub momentum: f64,
 }
 
 /// The balance with the memory that it needs.
@@ -208,6 +232,16 @@ pub struct Ledger {
     pub largest_momentum: f64,
     /// Largest component of the angular momentum, or of the moments' impulses so far, N m s.
     pub largest_angular_momentum: f64,
+    /// Largest energy so far beyond that at the start and the work from outside, J: what the scheme balances has gained.
+    pub largest_gain: f64,
+    /// Largest work of the contacts since the start so far, J.
+    pub largest_contact_work: f64,
+    /// Largest kinetic and strain energy so far beyond the energy that the scheme balances, J.
+    pub largest_excess: f64,
+    /// Whether the steps are those of a static stage, whose works are sums over the steps.
+    pub is_static: bool,
+    /// What the iterations may have left unbalanced so far.
+    pub tolerated: Tolerated,
     /// Largest absolute energy residual so far, J.
     pub largest_energy_residual: f64,
     /// Largest absolute component of the linear momentum residual so far, N s.
@@ -221,7 +255,7 @@ pub struct Ledger {
     /// What the scheme's own energy has lost by new sizes of the step, J.
     resized: Sum,
     /// Works and dissipations of [`Beyond`], in its order.
-    beyond: [Sum; 4],
+    beyond: [Sum; 5],
     hardening: f64,
     impulses: [[Sum; 6]; 5],
     forces: Forces,
@@ -232,6 +266,8 @@ pub struct Ledger {
 pub(crate) struct Beyond {
     /// Work of supports that move.
     pub(crate) work_supports: f64,
+    /// Work of obstacles that move.
+    pub(crate) work_obstacles: f64,
     /// Dissipation of the materials.
     pub(crate) dissipation_material: f64,
     /// Dissipation of the damping.
@@ -240,6 +276,8 @@ pub(crate) struct Beyond {
     pub(crate) dissipation_friction: f64,
     /// Energy that hardening stores at the end of the step.
     pub(crate) hardening: f64,
+    /// What the iterations of the step may leave unbalanced.
+    pub(crate) tolerated: Tolerated,
 }
 
 /// Resultants of the forces of a step: loads, contacts, supports, supports against contact forces where these have an
@@ -338,11 +376,14 @@ impl Ledger {
             beyond.dissipation_material,
             beyond.dissipation_damping,
             beyond.dissipation_friction,
+            beyond.work_obstacles,
         ];
         for (sum, term) in self.beyond.iter_mut().zip(terms) {
             sum.add(term);
         }
         self.hardening = beyond.hardening;
+        self.tolerated.energy += beyond.tolerated.energy;
+        self.tolerated.momentum += beyond.tolerated.momentum;
     }
 
     /// Adds an impulse of supports at the start of the step that [`Ledger::add`] then closes.
@@ -381,9 +422,10 @@ impl Ledger {
         self.close(energies, identity);
     }
 
-    /// Makes the work of the loads a size that residuals are compared with: in a static stage rigid motions take it, and leave
-    /// no energy.
-    pub(crate) fn compare_with_work(&mut self) {
+    /// A static step: the work of the loads is a size that residuals are compared with, as rigid motions take it, and leave no
+    /// energy.
+    pub(crate) fn end_static_step(&mut self) {
+        self.is_static = true;
         self.largest_energy = self.largest_energy.max(self.balance.work_loads.abs());
     }
 
@@ -423,14 +465,18 @@ impl Ledger {
 
     /// Makes this the ledger of several systems together, which have these balances at the start and now. The largest terms
     /// are those of the sums.
-    pub(crate) fn gather(&mut self, initial: Balance, balance: Balance) {
-        (self.initial, self.balance) = (initial, balance);
+    pub(crate) fn gather(&mut self, initial: Balance, balance: Balance, tolerated: Tolerated) {
+        (self.initial, self.balance, self.tolerated) = (initial, balance, tolerated);
         self.follow();
     }
 
     /// The largest terms so far.
     fn follow(&mut self) {
         self.largest_energy = self.largest_energy.max(self.balance.energy());
+        let gain = self.balance.balanced() - self.initial.balanced() - self.balance.work_given();
+        self.largest_gain = self.largest_gain.max(gain);
+        self.largest_contact_work = self.largest_contact_work.max(self.balance.work_contact);
+        self.largest_excess = self.largest_excess.max(-self.balance.scheme_energy);
         self.largest_energy_residual = self
             .largest_energy_residual
             .max(self.balance.energy_residual.abs());
@@ -480,8 +526,9 @@ impl Ledger {
             dissipation_material,
             dissipation_damping,
             dissipation_friction,
+            work_obstacles,
         ] = self.beyond.map(|sum| sum.get());
-        let works = work_loads + work_contact + work_links + work_supports;
+        let works = work_loads + work_contact + work_links + work_supports + work_obstacles;
         let dissipations =
             dissipation_scheme + dissipation_material + dissipation_damping + dissipation_friction;
         let [impulse_loads, impulse_contact] = [impulse(0), impulse(1)];
@@ -498,6 +545,7 @@ impl Ledger {
             scheme_energy,
             work_loads,
             work_contact,
+            work_obstacles,
             dissipation_scheme,
             work_links,
             impulse_links,

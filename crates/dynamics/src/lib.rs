@@ -38,7 +38,7 @@ pub use error::Error;
 pub use exchange::Exchange;
 pub use impact::Impact;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
-pub use ledger::{Balance, Ledger, Resultant};
+pub use ledger::{Balance, Ledger, Resultant, Tolerated};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, march, step_count};
 pub use mass::Mass;
 pub use model::{Model, ModelBody, ModelContact, ModelTarget, Support};

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::impact::{Given, Impact, OpenImpact};
 use crate::ledger::Sum;
+use crate::newton::Pushed;
 use crate::small::Smallness;
 use crate::state::{ContactReport, State};
 use crate::step_map::Impulse;
@@ -18,6 +19,8 @@ pub struct Records {
     pub impacts: Vec<Impact>,
     /// Whether what is assumed small has stayed small.
     pub small: Smallness,
+    /// Time at which the force of each contact point ended last, s.
+    opened: Vec<f64>,
 }
 
 /// Record of one contact.
@@ -33,6 +36,10 @@ pub struct ContactRecord {
     pub last_force: Option<f64>,
     /// How often a point's force began or ended.
     pub status_changes: u64,
+    /// How often a point's force began again sooner after it ended than mesh and step can tell ([`ContactRecord::chatter`]).
+    pub hasty_closings: u64,
+    /// How often a point's force began otherwise.
+    pub closings: u64,
     /// Largest penetration at the end of a step, m.
     pub penetration: f64,
     /// Energy lost in crush so far, J: what it took to crush the points, less what they can give back.
@@ -41,6 +48,8 @@ pub struct ContactRecord {
     pub mixed: u64,
     /// Total force and force on the secondary body in the last step as they enter impulses, N.
     last: (f64, [f64; 3]),
+    /// What the stage after the last step has changed in them.
+    changed: (f64, [f64; 3]),
     /// The impact going on, or whose flight does not last yet.
     open: Option<OpenImpact>,
     impulse: Sum,
@@ -52,7 +61,17 @@ pub struct ContactRecord {
     exchanged: [Sum; 3],
     /// What `last` gives after the step, over itself, s.
     later: f64,
+    /// Force of an obstacle that moves.
+    pub(crate) pushed: Pushed,
 }
+
+/// Elements and steps to a period, the least that mesh and step carry: two to a half-wave. What a point does in a shorter time is
+/// theirs and not that of the bodies.
+const RESOLVED: f64 = 4.0;
+
+/// Part of the largest force so far, shared by the closed points, below which a force that begins again is no chatter: what
+/// rests on a surface trembles there.
+const TREMBLE: f64 = 0.01;
 
 impl ContactRecord {
     /// Impulse of the total normal force, N s: what the contact has given to the momentum of the bodies so far.
@@ -87,10 +106,52 @@ impl ContactRecord {
         [0, 1, 2].map(|i| self.exchanged[i].get() - self.later * self.last.1[i])
     }
 
+    /// Changes of status to a closing that is due: 2 where each point closes once and opens once in an impact. A closing is
+    /// not due if the point opened less than four steps ago, or less than a wave needs to pass over four elements: mesh and step
+    /// carry nothing that fast. 0 where nothing ever closed.
+    pub fn chatter(&self) -> f64 {
+        match self.closings {
+            0 => 0.0,
+            due => 2.0 * (due + self.hasty_closings) as f64 / due as f64,
+        }
+    }
+
     /// Σ |P (ġ₊ + opening)| dt, J.
     pub fn persistency_defect(&self) -> f64 {
         self.defect.get()
     }
+}
+
+impl ContactRecord {
+    /// Counts the points whose force begins in a step. `opened`: when that of each point ended last, s.
+    fn count_closings(&mut self, system: &System, contact: usize, step: &Step, opened: &mut [f64]) {
+        let first = system.first_point[contact];
+        let ([start, end], [old, new]) = (step.span, step.forces);
+        let least = TREMBLE * self.peak_force / step.report.closed.max(1) as f64;
+        for (k, opened) in opened.iter_mut().enumerate() {
+            let point = first + k;
+            match (old[point] != 0.0, new[point] != 0.0) {
+                (true, false) => *opened = end,
+                (false, true) => {
+                    let soon = RESOLVED * f64::max(end - start, passage(system, contact));
+                    match start - *opened < soon {
+                        true => self.hasty_closings += u64::from(new[point] > least),
+                        false => self.closings += 1,
+                    }
+                }
+                (true, true) | (false, false) => {}
+            }
+        }
+    }
+}
+
+/// Time that a wave needs to pass over the smallest element, of the slower side of a contact, s.
+fn passage(system: &System, contact: usize) -> f64 {
+    let (secondary, primary) = system.sides[contact];
+    let sides = [Some(secondary), primary].into_iter().flatten();
+    let bodies = sides.map(|body| &system.bodies[body]);
+    let times = bodies.map(|body| body.smallest_size() / body.wave_speed());
+    times.fold(0.0, f64::max)
 }
 
 /// What a step adds to the record of a contact.
@@ -101,6 +162,8 @@ pub(crate) struct Step<'a> {
     pub(crate) dt: f64,
     /// How forces make impulses in the scheme.
     pub(crate) impulse: Impulse,
+    /// Normal forces of all points at the start and of the step, N.
+    pub(crate) forces: [&'a [f64]; 2],
     /// What the contact did.
     pub(crate) report: &'a ContactReport,
     /// Work of the contact's forces and impulses, J.
@@ -119,6 +182,7 @@ impl Records {
             contacts: vec![ContactRecord::default(); system.contacts.len()],
             impacts: Vec::new(),
             small: Smallness::of(system),
+            opened: vec![f64::NEG_INFINITY; system.points()],
         }
     }
 
@@ -127,6 +191,7 @@ impl Records {
     pub(crate) fn follow(&mut self, before: &Records) {
         self.contacts.clone_from(&before.contacts);
         self.small.follow(&before.small);
+        self.opened.clone_from(&before.opened);
         self.impacts.truncate(before.impacts.len());
         self.impacts
             .extend_from_slice(&before.impacts[self.impacts.len()..]);
@@ -150,6 +215,12 @@ impl Records {
         let force = taken(report.force, before.0);
         let resultant = [0, 1, 2].map(|i| taken(report.resultant[i], before.1[i]));
         let [projected, change] = step.jump;
+        // what the last stage changed in the force works in this step, and is in no force that was told
+        let carried = (
+            dt * impulse.old * record.changed.0,
+            record.changed.1.map(|force| dt * impulse.old * force),
+        );
+        record.changed = change;
         record.last = (
             force + change.0,
             [0, 1, 2].map(|i| resultant[i] + change.1[i]),
@@ -169,6 +240,8 @@ impl Records {
         record.later = later;
         record.defect.add(report.persistency_defect);
         record.status_changes += report.status_changes as u64;
+        let points = system.first_point[contact]..system.first_point[contact + 1];
+        record.count_closings(system, contact, step, &mut self.opened[points]);
         record.mixed = record.mixed.max(report.mixed as u64);
         if report.gap.is_finite() {
             record.penetration = record.penetration.max(-report.gap);
@@ -188,6 +261,7 @@ impl Records {
             active,
             force: report.force,
             impulse: [0, 1, 2].map(|i| mean(before.1[i], resultant[i]) + projected.1[i]),
+            impulsive: [0, 1, 2].map(|i| projected.1[i] + carried.1[i]),
             normal: [0, 1, 2].map(|i| dt * report.normal[i] + projected.1[i]),
             work: step.work,
             crushed,

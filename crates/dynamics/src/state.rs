@@ -226,6 +226,9 @@ pub(crate) fn empty_state(system: &System) -> State {
 pub struct ContactReport {
     /// Sum of the normal forces of its points, N, compressive positive.
     pub force: f64,
+    /// Impulse of the step that is in no force, N s: of a projection or another stage after a step, and of the force that it
+    /// changes at the beginning of the next. Force times step and this are the impulse.
+    pub impulsive: f64,
     /// Force on the secondary body, N.
     pub resultant: [f64; 3],
     /// The part of it of the normal forces, N.

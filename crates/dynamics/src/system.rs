@@ -4,9 +4,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use carom_algebra::pattern::Cliques;
-use carom_bodies::{Body, Kinematics, MassKind};
+use carom_bodies::{Body, Kinematics, MassKind, height};
 use carom_contact::law::Level;
-use carom_contact::{Contact, Initial, Places};
+use carom_contact::{Contact, Initial, Places, Target};
 use carom_mesh::{Face, Mesh, Parts};
 
 use crate::contacts::{numbered, renumbered, sides};
@@ -221,6 +221,26 @@ impl System {
             mesh: model.mesh,
         };
         Ok((system, model.bodies, model.contacts))
+    }
+
+    /// Smallest size of an element normal to the surfaces of a contact, of both its sides, m.
+    pub fn depth_of_elements(&self, contact: usize) -> f64 {
+        let primary = match &self.contacts[contact].target {
+            Target::Surface(faces) => &faces[..],
+            Target::Rigid(_) => &[],
+        };
+        let faces = self.secondary_faces[contact].iter().chain(primary);
+        let sizes = faces.map(|face| {
+            let nodes = face.corners().iter();
+            let nodes: Vec<u32> = nodes.map(|&node| self.mesh_node[node as usize]).collect();
+            height(&self.mesh, face.parent, face.kind, &nodes)
+        });
+        sizes.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether steps may end with impulses of a contact that are in no force.
+    pub fn has_impulses(&self, contact: usize) -> bool {
+        self.contacts[contact].law.projects() || self.scheme.get().restores_contact_work()
     }
 
     /// Refuses meshes that overlap themselves where a contact with [`Initial::Refuse`] faces itself.

@@ -23,7 +23,7 @@ pub struct ImpactRow {
     pub peak_mean_force: f64,
     /// Length of that window, s.
     pub window: f64,
-    /// ∫ F dt over the impact, N s.
+    /// Impulse of the impact, N s.
     pub impulse: f64,
     /// Speed at which the two bodies near each other before the impact, m/s, positive: of the mean velocities (momentum /
     /// mass) of what no support holds.
@@ -43,10 +43,12 @@ pub struct ImpactRow {
     pub energy_crushed: f64,
     /// Intervals with a force: more than one where the contact opens and closes within the impact.
     pub intervals: u64,
+    /// The part of the impulse that is in no force, N s: of a projection, or of another stage after a step.
+    pub impulsive: f64,
 }
 
 /// Names of the columns of `impacts.csv`, with their units.
-pub const COLUMNS: [&str; 14] = [
+pub const COLUMNS: [&str; 15] = [
     "pair",
     "start_s",
     "duration_s",
@@ -61,6 +63,7 @@ pub const COLUMNS: [&str; 14] = [
     "energy_lost_j",
     "energy_crushed_j",
     "intervals",
+    "impulsive_n_s",
 ];
 
 /// The file `impacts.csv`, open for appending.
@@ -100,6 +103,7 @@ impl ImpactTable {
             Cell::Number(impact.energy_lost),
             Cell::Number(impact.energy_crushed),
             Cell::Number(impact.intervals as f64),
+            Cell::Number(impact.impulsive),
         ];
         self.rows.push(cells.into_iter())?;
         self.rows.flush()

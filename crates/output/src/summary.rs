@@ -179,14 +179,19 @@ pub struct Contact {
     pub window: f64,
     /// `impulse` over the time spent closed, N; zero if never closed.
     pub mean_force: f64,
-    /// ∫ F dt over the run, N s.
+    /// Impulse over the run, N s: what the momentum of the bodies changes by.
     pub impulse: f64,
+    /// The part of it that is in no force, N s: impulses of a projection, or of another stage after a step. The rest is the
+    /// sum of forces times step.
+    pub impulsive: f64,
     /// Beginning of the first step with force, s.
     pub first_closing: Option<f64>,
     /// End of the last step with force, s; `None` if never closed or still closed.
     pub last_release: Option<f64>,
     /// Changes of status summed over the points.
     pub status_changes: u64,
+    /// Changes of status to a closing of a point that is due: 2 where each point closes and opens once in an impact.
+    pub chatter: f64,
     /// Largest penetration (minus the smallest gap), m, zero if never penetrated.
     pub max_penetration: f64,
     /// Persistency defect: Σ |P · gap rate| dt over the steps, J, with the rate that the law holds.
@@ -215,16 +220,6 @@ pub struct Friction {
     pub peak_force: f64,
 }
 
-/// Names of the [`Energy::works`] that only runs have that are not linear: of moving supports, of what materials, damping and
-/// friction dissipate, and of what hardening stores.
-pub const NONLINEAR_WORKS: [&str; 5] = [
-    "work of supports",
-    "dissipation of the materials",
-    "dissipation of the damping",
-    "dissipation of friction",
-    "stored in hardening",
-];
-
 /// Balance of energy, J. Each term has its own formula; nothing is found by subtraction but the residual.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
@@ -236,11 +231,16 @@ pub struct Energy {
     pub kinetic_final: f64,
     /// Strain energy at the end.
     pub strain_final: f64,
-    /// Further work and stored or lost energies over the run, by name, positive when the bodies *gain*: `work of
-    /// loads`, `work of contact`, `dissipation of the scheme`, `stored by the scheme` where its energy has a term
-    /// of its own, and in zones `work of links`; where there is some, those of [`NONLINEAR_WORKS`].
+    /// Works over the run, positive when the bodies gain: of `loads` and `contact`, in zones of `links`, and where there is
+    /// some of `supports` and `obstacles` that move.
     pub works: BTreeMap<String, f64>,
-    /// Final - initial - Σ works.
+    /// Energy lost over the run, positive when lost: by the `scheme`, and where there is some in `materials`, by `damping` and
+    /// by `friction`.
+    pub dissipations: BTreeMap<String, f64>,
+    /// Energy stored over the run beside strain energy, positive when stored, where there is some: in `hardening`, and by the
+    /// `scheme` in a term of its own.
+    pub stored: BTreeMap<String, f64>,
+    /// Final - initial - Σ works + Σ dissipations + Σ stored.
     #[serde(with = "float")]
     pub residual: f64,
     /// Largest magnitude of the residual over the run.
@@ -264,8 +264,10 @@ pub struct Momentum {
     pub impulses: BTreeMap<String, [f64; 3]>,
     /// Final - initial - Σ impulses.
     pub residual: [f64; 3],
-    /// Largest component of the residual over the run, relative to the largest momentum or impulse, or to sqrt(2 m E),
-    /// the momentum that its largest energy could hold, if that is larger; what the check bounds.
+    /// What the residual is relative to: the largest momentum or impulse, or sqrt(2 m E), the momentum that the largest energy
+    /// could hold, if that is larger.
+    pub size: f64,
+    /// Largest component of the residual over the run over `size`; what the verdict bounds.
     #[serde(with = "float")]
     pub relative_residual: f64,
     /// Angular momentum, in the moving configuration, of a run that is not linear.

@@ -118,6 +118,23 @@ impl Line {
     }
 }
 
+/// The line on the relative L² error of a contact force against `standard` (a noun phrase).
+///
+/// A force that vanishes, and one that is on and off by turns at twice its mean, have an error of 1: above half of that it is
+/// not the force. The front of the exact force of two bars, which no mesh has, costs 5 to 15 % on the meshes of the cases.
+pub fn force_error(standard: &str, error: f64) -> Line {
+    Line::new(
+        "force-error",
+        (
+            &format!("error of the contact force against {standard} (L²)"),
+            error,
+            Form::Percent,
+        ),
+        Bounds::Both(0.15, 0.5),
+        "a finer mesh with a shorter step; another scheme or contact law where that does not help",
+    )
+}
+
 /// Whether the result can be relied on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {

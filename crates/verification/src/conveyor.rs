@@ -97,7 +97,7 @@ pub(crate) const CHECK: Check = Check {
         let mut rows = vec![
             Row::near("way of the crate, m", x, exact, BELT * STEP),
             Row::relative("its speed at the end, m/s", v, BELT, 1e-4),
-            Row::relative("work of the belt, J", balance.work_contact, work, 2e-3),
+            Row::relative("work of the belt, J", balance.work_obstacles, work, 2e-3),
             Row::relative("heat, J", balance.dissipation_friction, 0.5 * work, 1e-2),
             Row::near("way less that on a plane, m", x - on_plane, 0.0, 1e-9),
         ];

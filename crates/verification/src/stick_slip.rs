@@ -195,7 +195,7 @@ fn belt(name: &str, law: Law, dt: f64) -> Result<Vec<Row>, Error> {
         ),
         Row::relative(
             format!("{name}: work of the belt, J"),
-            ledger.work_contact,
+            ledger.work_obstacles,
             given,
             0.01,
         ),

@@ -1,13 +1,13 @@
 //! Contacts: surfaces on the bodies, no penetration at the start, advice.
 
 use carom_contact::law::Level;
-use carom_contact::law::{Displacement, Reading, Restitution, Velocity};
+use carom_contact::law::{Reading, Restitution, Velocity};
 use carom_contact::{Initial, Integration, Law, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{ElementId, Mesh, Surface};
 
-use super::Builder;
 use super::laws::{Side, sides};
+use super::{Builder, advice};
 use crate::error::Problem;
 use crate::facts::{approach, approach_from};
 use crate::schema::{self, Basis, Friction, IntegrationName, IntegrationWith, Penetration, Scheme};
@@ -210,11 +210,12 @@ impl Builder<'_> {
                     1.0 / (1.0 + coefficient)
                 ));
             }
-            if let (Law::Displacement(Displacement { projection: false }), Scheme::Newmark(newmark)) =
-                (contact.law, &scheme)
-                && newmark.beta == 0.25
-            {
-                self.warnings.push(format!("contact `{name}`: the trapezoid with the displacement law gains energy below a Courant number of about 4; look at the ledger"));
+            if !self.case.time.is_static() {
+                let against = advice::against(&scheme, &contact.law);
+                let told = against.map(|reason| {
+                    format!("contact `{name}`: {reason}; the velocity law with the theta scheme does not")
+                });
+                self.warnings.extend(told);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Stage two: names resolved, meshes read, ranges that need the mesh checked; a system, or every problem found.
 
+mod advice;
 mod arlequin;
 mod bodies;
 mod contacts;

@@ -117,10 +117,7 @@ fn figures_of_a_variant_are_those_of_its_own_summary() {
         assert_eq!(of("penetration_m"), Some(shock.max_penetration));
         assert_eq!(of("persistency_defect_j"), Some(shock.persistency_defect));
         assert_eq!(of("release_s"), shock.last_release);
-        assert_eq!(
-            of("work_contact_j"),
-            Some(own.energy.works["work of contact"])
-        );
+        assert_eq!(of("work_contact_j"), Some(own.energy.works["contact"]));
         assert_eq!(of("steps"), Some(own.time.steps as f64));
         let start = own.energy.kinetic_initial + own.energy.strain_initial;
         let end = own.energy.kinetic_final + own.energy.strain_final;

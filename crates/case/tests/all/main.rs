@@ -11,5 +11,6 @@ mod quadrature;
 mod reference;
 mod refine;
 mod stage_one;
+mod verdict;
 mod warnings;
 mod zones;

@@ -140,3 +140,54 @@ fn a_body_in_pieces_is_told_with_the_closest_nodes_unless_another_body_joins_the
     );
     assert_eq!(two_pieces(0.5, true), Vec::<String>::new());
 }
+
+#[test]
+fn pairs_of_scheme_and_law_that_the_chapter_advises_against_are_told_with_the_reason() {
+    let told = |scheme: &str, law: &str| {
+        let text = format!(
+            r#"
+carom = 1
+mesh.generate.one.line = {{ from = [0.0], to = [1.0], elements = 10 }}
+mesh.generate.two.line = {{ from = [1.0], to = [2.0], elements = 10 }}
+material.soft = {{ density = 1.0, elastic = {{ young = 1.0, poisson = 0.0 }} }}
+body.one = {{ region = "one", material = "soft", section.bar.area = 1.0, initial.velocity = [0.1] }}
+body.two = {{ region = "two", material = "soft", section.bar.area = 1.0 }}
+contact.shock = {{ secondary = "one.right", primary = "two.left", law.{law} }}
+time = {{ end = 2.0, step.courant = 0.5, scheme.{scheme} }}
+"#
+        );
+        let input = Input::from_text("case.toml", &text, &[]);
+        let (case, locator) = parse(&input).unwrap();
+        build(&case, &locator, &input).unwrap().warnings
+    };
+    for (scheme, law, reason) in [
+        ("newmark = {}", "displacement = {}", "gains energy"),
+        ("newmark = {}", "velocity = {}", "every other step"),
+        ("theta = {}", "displacement = {}", "swing"),
+        ("laursen-chawla = {}", "velocity = {}", "flutters"),
+        ("laursen-love = {}", "displacement = {}", "flutters"),
+        ("hht = {}", "displacement = {}", "flutters"),
+    ] {
+        let warnings = told(scheme, law);
+        let [warning] = &warnings[..] else {
+            panic!("{scheme}, {law}: {warnings:?}");
+        };
+        assert!(
+            warning.contains("`shock`") && warning.contains(reason),
+            "{warning}"
+        );
+    }
+    for (scheme, law) in [
+        ("theta = {}", "velocity = {}"),
+        ("theta.theta = 1.0", "displacement = {}"),
+        ("newmark = {}", "displacement.projection = true"),
+        (
+            "newmark = { beta = 0.49, gamma = 0.9 }",
+            "displacement = {}",
+        ),
+        ("central-difference = {}", "velocity = {}"),
+        ("paoli-schatzman = {}", "displacement = {}"),
+    ] {
+        assert!(told(scheme, law).is_empty(), "{scheme}, {law}");
+    }
+}

@@ -77,6 +77,12 @@ impl Obstacle {
         }
     }
 
+    /// Displacement of its translation at a time in s, m.
+    pub fn displacement(&self, t: f64) -> [f64; 3] {
+        let translation = self.motion.translation.as_ref();
+        translation.map_or([0.0; 3], |translation| translation.at(t).0)
+    }
+
     /// Mean velocity in m/s, from one time to another, of the particle that is at x (m) at time `t`; its velocity then
     /// where both are the same. Times in s.
     pub fn mean_velocity(&self, x: &[f64; 3], t: f64, [from, to]: [f64; 2]) -> [f64; 3] {

@@ -47,7 +47,7 @@ pub(super) struct Pose {
 
 impl Translation {
     /// d and ḋ at a time; where a table bends, ḋ of what follows.
-    fn at(&self, t: f64) -> ([f64; 3], [f64; 3]) {
+    pub(super) fn at(&self, t: f64) -> ([f64; 3], [f64; 3]) {
         let table = match self {
             Translation::Velocity(v) => return (v.map(|v| v * t), *v),
             Translation::Table(table) => table,

@@ -189,29 +189,36 @@ impl Driver {
             let forces = &self.next.interface.force[points(&system, k)];
             report.mixed = self.weak.mixed(k, forces);
             let weights = self.work_weights();
-            let interface = &self.next.interface;
+            let before = &self.state.interface;
+            let projected = &self.projected;
+            let carried_on = |point: usize| {
+                let changed = before.carried[point] - before.force[point];
+                projected.impulse(point) + self.dt * self.map.contact_impulse.old * changed
+            };
+            report.impulsive = points(&system, k).map(carried_on).sum();
+            let work = contact_work(&system, k, &self.rows, weights, (&self.state, &self.next));
+            let time = self.next.time;
+            let State {
+                motion,
+                records,
+                interface,
+                ..
+            } = &mut self.next;
             let step = Step {
-                span: [self.state.time, self.next.time],
+                span: [self.state.time, time],
                 dt: self.dt,
                 impulse: self.map.contact_impulse,
+                forces: [&before.force, &interface.force],
                 report: &report,
-                work: contact_work(&system, k, &self.rows, weights, (&self.state, &self.next))
-                    + points(&system, k)
-                        .map(|point| self.projected.work(point))
-                        .sum::<f64>(),
+                work: work + points(&system, k).map(|p| projected.work(p)).sum::<f64>(),
                 crushed: crush_energy(&system, k, interface),
                 jump: [
-                    total(&system, k, &self.rows, |point| {
-                        self.projected.impulse(point)
-                    }),
+                    total(&system, k, &self.rows, |point| projected.impulse(point)),
                     total(&system, k, &self.rows, |point| {
                         interface.carried[point] - interface.force[point]
                     }),
                 ],
             };
-            let State {
-                motion, records, ..
-            } = &mut self.next;
             records.add(&system, k, &step, &self.state, &motion.v);
             self.report.contacts[k] = report;
         }

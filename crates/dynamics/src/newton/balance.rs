@@ -12,9 +12,10 @@ use super::start::energies;
 use super::{Newton, Which};
 use crate::driver::contact_report;
 use crate::error::Error;
-use crate::ledger::{Beyond, Resultant, Squares};
+use crate::ledger::{Beyond, Resultant, Squares, Tolerated};
 use crate::records::Step;
 use crate::scheme::EnergyIdentity;
+use crate::state::State;
 use crate::step_map::Impulse;
 
 impl Newton {
@@ -92,22 +93,40 @@ impl Newton {
         }
     }
 
+    /// What the energy that the scheme balances has beside kinetic and strain energy, as far as it is inertia alone: the
+    /// forces of bodies that are not linear give it no other form. All else that the scheme takes is found from its works.
+    pub(super) fn identity(&self) -> EnergyIdentity {
+        let dynamic = self.map.inertia.x != 0.0 && self.system.scheme.get().keeps_acceleration();
+        let of_scheme = self.system.scheme.get().energy_identity(self.dt);
+        EnergyIdentity {
+            inertia: match (dynamic, of_scheme) {
+                (true, Some(identity)) => identity.inertia,
+                _ => 0.0,
+            },
+            ..EnergyIdentity::default()
+        }
+    }
+
     /// Energy and momentum of the step.
     pub(super) fn balance(&mut self) {
         let system = Arc::clone(&self.system);
         let impulse = &self.map.impulse;
         let plain = impulse.gain == 1.0 && impulse.carry == 0.0 && self.map.inertia.x != 0.0;
         let weights = match (plain, self.map.inertia.x == 0.0) {
+            _ if self.state.forces.is_empty() => [0.0, 1.0],
             (true, _) => [impulse.old, impulse.new],
             // along a static step forces go from one equilibrium to the next
-            (false, true) if !self.state.forces.is_empty() => [0.5, 0.5],
-            (false, _) => [0.0, 1.0],
+            (false, true) => [0.5, 0.5],
+            (false, false) => [0.0, 1.0],
         };
         let friction = self.friction_work(weights);
+        let obstacles = self.obstacle_work(weights);
+        let identity = self.identity();
         let (old, new) = (&self.state.motion, &self.next.motion);
         let map = &self.map;
         let vectors = &mut self.vectors;
-        let energies = energies(&system, new, self.stored.strain, &mut vectors.work);
+        let strain = self.stored.strain;
+        let energies = energies(&system, new, strain, &identity, &mut vectors.work);
         let before = &self.state.forces;
         let mean = |k: usize, now: &[f64]| -> Vec<f64> {
             match before.get(k).filter(|_| weights[0] != 0.0) {
@@ -151,7 +170,14 @@ impl Newton {
         // what supports that jump give is no inertia of the step
         let gained = energies.kinetic - start.kinetic - self.jump.work;
         let stored = energies.strain - start.strain + self.stored.hardening - start.hardening;
-        let scheme = inertia - gained + internal - stored - self.stored.dissipated;
+        let own = identity.inertia * energies.acceleration - start.scheme_energy;
+        let scheme = inertia - gained - own + internal - stored - self.stored.dissipated;
+        let nodes = (system.unknowns() / system.dim) as f64;
+        let travel = (0..new.u.len()).map(|i| (new.u[i] - old.u[i]).powi(2));
+        let tolerated = Tolerated {
+            energy: self.left_over * travel.sum::<f64>().sqrt(),
+            momentum: self.left_over * nodes.sqrt() * self.dt,
+        };
         let places = [&old.u[..], &new.u[..]];
         let forces = [
             Resultant::at(&system, &places, &means[0]),
@@ -169,6 +195,8 @@ impl Newton {
         self.next.ledger.kick(&self.jump.impulse);
         self.next.ledger.go_beyond(&Beyond {
             work_supports: support + self.jump.work,
+            work_obstacles: obstacles,
+            tolerated,
             dissipation_material: self.stored.dissipated,
             dissipation_damping: damping,
             dissipation_friction: -friction,
@@ -185,14 +213,14 @@ impl Newton {
         };
         let dt = if map.inertia.x == 0.0 { 0.0 } else { self.dt };
         self.next.ledger.add(
-            (dt, &EnergyIdentity::default(), impulses),
+            (dt, &identity, impulses),
             &energies,
-            [load, touch - friction, way(&means[6])],
+            [load, touch - friction - obstacles, way(&means[6])],
             &squares,
             forces,
         );
         if map.inertia.x == 0.0 {
-            self.next.ledger.compare_with_work();
+            self.next.ledger.end_static_step();
         }
     }
 
@@ -216,21 +244,29 @@ impl Newton {
                 let force = impulse.old * old.carried[point] + impulse.new * new.force[point];
                 let rows = &self.pairing.rows;
                 let moved = rows.product(point, &self.next.motion.u)
-                    - rows.product(point, &self.state.motion.u);
+                    - rows.product(point, &self.state.motion.u)
+                    + self.dt * rows.rate(point);
                 force * moved
             });
+            let (work, time) = (work.sum(), self.next.time);
+            let State {
+                motion,
+                records,
+                interface,
+                ..
+            } = &mut self.next;
             let step = Step {
-                span: [self.state.time, self.next.time],
+                span: [self.state.time, time],
                 dt: self.dt,
                 impulse,
+                forces: [&old.force, &interface.force],
                 report: &report,
-                work: work.sum(),
-                crushed: crate::driver::crush_energy(&system, k, new),
+                work,
+                crushed: crate::driver::crush_energy(&system, k, interface),
                 jump: [(0.0, [0.0; 3]); 2],
             };
-            self.next
-                .records
-                .add(&system, k, &step, &self.state, &self.next.motion.v);
+            records.add(&system, k, &step, &self.state, &motion.v);
+            self.next.records.contacts[k].pushed = self.pushed(k);
             self.report.contacts[k] = report;
         }
         self.watch

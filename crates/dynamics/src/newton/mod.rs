@@ -19,6 +19,7 @@ mod held;
 mod linked;
 mod loads;
 mod mixing;
+mod obstacles;
 mod solve;
 mod stable;
 mod start;
@@ -44,6 +45,8 @@ use floating::Floating;
 use mixing::Mixing;
 use solve::Pace;
 use supports::Jump;
+
+pub(crate) use obstacles::Pushed;
 
 /// Takes steps of systems that are not linear.
 pub struct Newton {
@@ -88,6 +91,8 @@ pub struct Newton {
     link_force: Vec<f64>,
     /// Internal forces in the balance of the step, N.
     balanced: Vec<f64>,
+    /// Norm of the forces that the iterations of the step may leave unbalanced, N.
+    left_over: f64,
     phases: Phases,
 }
 
@@ -183,6 +188,7 @@ impl Newton {
             stored: Stored::default(),
             link_force: Vec::new(),
             balanced: zeros(),
+            left_over: 0.0,
             phases: Phases::default(),
             system,
         };

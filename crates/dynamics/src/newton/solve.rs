@@ -235,6 +235,7 @@ impl Newton {
         }
         let scale = scale.max(f64::MIN_POSITIVE);
         let [imbalance, rounding] = [imbalance.sqrt(), self.rounding()].map(|force| force / scale);
+        self.left_over = scale * f64::max(self.system.nonlinear.iteration.tolerance, rounding);
         Standing {
             imbalance,
             rounding,

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use carom_algebra::reduce::dot;
+
 use super::{Newton, Which};
 use crate::control::Control;
 use crate::error::Error;
@@ -83,7 +85,9 @@ impl Newton {
         }
         self.forces_at_the_start();
         let motion = &self.state.motion;
-        let energies = energies(&system, motion, stored.strain, &mut self.vectors.work);
+        let identity = self.identity();
+        let work = &mut self.vectors.work;
+        let energies = energies(&system, motion, stored.strain, &identity, work);
         let at = |k: usize| match self.state.forces.get(k) {
             Some(f) => Resultant::at(&system, &[&motion.u], f),
             None => Resultant::default(),
@@ -95,7 +99,7 @@ impl Newton {
             Resultant::default(),
             at(6).plus(&at(5).reversed()),
         ];
-        self.state.ledger = Ledger::start(&energies, &EnergyIdentity::default(), forces);
+        self.state.ledger = Ledger::start(&energies, &identity, forces);
         self.state.ledger.store(stored.hardening);
         Ok(())
     }
@@ -177,6 +181,7 @@ pub(super) fn energies(
     system: &System,
     motion: &crate::state::Motion,
     strain: f64,
+    identity: &EnergyIdentity,
     work: &mut [f64],
 ) -> Energies {
     system.mass.multiply(&motion.v, work);
@@ -186,12 +191,18 @@ pub(super) fn energies(
         .zip(work.iter())
         .map(|(v, p)| 0.5 * v * p)
         .sum();
+    let momentum = Resultant::at(system, &[&motion.u], work);
+    let mut acceleration = 0.0;
+    if identity.inertia != 0.0 {
+        system.mass.multiply(&motion.a, work);
+        acceleration = dot(&motion.a, work);
+    }
     Energies {
         kinetic,
         strain,
-        acceleration: 0.0,
+        acceleration,
         memory: 0.0,
         lagged: 0.0,
-        momentum: Resultant::at(system, &[&motion.u], work),
+        momentum,
     }
 }

@@ -14,7 +14,7 @@ use super::{Zoned, Zones, ZonesState};
 use crate::control::Control;
 use crate::driver::Costs;
 use crate::error::Error;
-use crate::ledger::{Balance, Ledger};
+use crate::ledger::{Balance, Ledger, Tolerated};
 use crate::march::{FailedProblem, Stepper};
 use crate::records::Records;
 use crate::state::{ContactReport, ContactSample, Motion, State, StepReport, empty_state};
@@ -154,7 +154,16 @@ impl Whole {
                 .fold(Balance::default(), |sum, one| sum.plus(one))
         };
         let (initial, balance) = (sum(|l| &l.initial), sum(|l| &l.balance));
-        self.state.ledger.gather(initial, balance);
+        let tolerated = self
+            .zones
+            .drivers
+            .iter()
+            .map(|driver| driver.state().ledger.tolerated);
+        let tolerated = tolerated.fold(Tolerated::default(), |sum, one| Tolerated {
+            energy: sum.energy + one.energy,
+            momentum: sum.momentum + one.momentum,
+        });
+        self.state.ledger.gather(initial, balance, tolerated);
         self.tell();
     }
 
@@ -307,6 +316,7 @@ fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut C
     for (dt, part) in parts {
         length += dt;
         sum.force += dt * part.force;
+        sum.impulsive += part.impulsive;
         for i in 0..3 {
             sum.resultant[i] += dt * part.resultant[i];
             sum.normal[i] += dt * part.normal[i];

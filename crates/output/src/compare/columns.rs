@@ -62,7 +62,7 @@ pub const COLUMNS: [Column; 29] = [
     }),
     column("energy_change", "energy", Form::Percent, energy_change),
     column("work_contact_j", "by contact", Form::Quantity("J"), |v| {
-        work(v, "work of contact")
+        work(v, "contact")
     }),
     column(
         "dissipation_scheme_j",
@@ -121,15 +121,9 @@ pub const COLUMNS: [Column; 29] = [
     hidden("angular_residual", "", |v| {
         Some(v.summary.momentum.angular.as_ref()?.relative_residual)
     }),
-    hidden("dissipation_material_j", "J", |v| {
-        lost(v, "dissipation of the materials")
-    }),
-    hidden("dissipation_damping_j", "J", |v| {
-        lost(v, "dissipation of the damping")
-    }),
-    hidden("dissipation_friction_j", "J", |v| {
-        lost(v, "dissipation of friction")
-    }),
+    hidden("dissipation_material_j", "J", |v| lost(v, "materials")),
+    hidden("dissipation_damping_j", "J", |v| lost(v, "damping")),
+    hidden("dissipation_friction_j", "J", |v| lost(v, "friction")),
     hidden("newton_iterations", "", |v| {
         v.summary.newton.map(|newton| newton.iterations as f64)
     }),
@@ -144,13 +138,11 @@ fn energy_change(done: &Done) -> Option<f64> {
 
 /// What the scheme lost; not told apart from the residual where no energy identity is known of it.
 fn dissipation(done: &Done) -> Option<f64> {
-    let known = done.summary.energy.identity;
-    let gain = work(done, "dissipation of the scheme").filter(|_| known)?;
-    Some(0.0 - gain)
+    lost(done, "scheme").filter(|_| done.summary.energy.identity)
 }
 
 fn lost(done: &Done, name: &str) -> Option<f64> {
-    work(done, name).map(|gain| 0.0 - gain)
+    done.summary.energy.dissipations.get(name).copied()
 }
 
 fn work(done: &Done, name: &str) -> Option<f64> {

@@ -15,6 +15,7 @@ pub use history::{History, Recorder, StepForce};
 use crate::report::percent;
 use crate::results::Reference;
 use crate::summary::{Contact, Summary};
+use crate::verdict::{Grade, Line, force_error};
 
 /// All variants, in the order of the table.
 #[derive(Clone, Debug)]
@@ -86,6 +87,8 @@ pub struct Done {
     pub history: History,
     /// Its distance from the standard; filled by [`Comparison::judge`].
     pub errors: Errors,
+    /// What the distance of the force from a run says, beside the verdict of its own; filled by [`Comparison::judge`].
+    pub line: Option<Line>,
 }
 
 /// Distance from the standard. Relative; `None` where there is nothing to be relative to.
@@ -117,7 +120,13 @@ impl Variant {
         match &self.outcome {
             Outcome::Done(done) => {
                 let verdict = &done.summary.verdict;
-                (verdict.grade.word(), verdict.reasons().join("; "))
+                let line = done.line.as_ref();
+                let grade = line.map_or(verdict.grade, |line| verdict.grade.max(line.grade));
+                let line = line
+                    .filter(|line| line.grade != Grade::Good)
+                    .map(Line::text);
+                let reasons = verdict.reasons().into_iter().chain(line);
+                (grade.word(), reasons.collect::<Vec<_>>().join("; "))
             }
             Outcome::Refused(reason) => ("refused", reason.clone()),
             Outcome::Failed(reason) => ("failed", reason.clone()),
@@ -133,6 +142,7 @@ impl Done {
             summary,
             history,
             errors: Errors::default(),
+            line: None,
         }
     }
 
@@ -180,6 +190,12 @@ impl Comparison {
                     (Standard::Exact, _) => done.against_exact(),
                     (Standard::Run(_), Some(standard)) => done.against_run(standard),
                     (Standard::Run(_), None) | (Standard::Nothing, _) => Errors::default(),
+                };
+                done.line = match (&self.standard, done.errors.force) {
+                    (Standard::Run(name), Some(error)) if *name != variant.name => {
+                        Some(force_error(&format!("the run `{name}`"), error))
+                    }
+                    _ => None,
                 };
             }
         }

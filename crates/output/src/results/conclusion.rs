@@ -12,8 +12,8 @@ use crate::results::impacts::ContactTotals;
 use crate::results::lines::{Evidence, judge};
 use crate::results::{Comparison, Ending, Last, Results};
 use crate::summary::{
-    Angular, Contact, Energy, Exact, Friction, Model, Momentum, NONLINEAR_WORKS, Rejected, Summary,
-    Time, Zones, hash,
+    Angular, Contact, Energy, Exact, Friction, Model, Momentum, Rejected, Summary, Time, Zones,
+    hash,
 };
 use crate::{Error, Report, atomic};
 
@@ -220,6 +220,7 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                     0.0
                 },
                 impulse: record.impulse(),
+                impulsive: record.impulse_of_jumps(),
                 friction: (system.friction[k] > 0.0).then_some(Friction {
                     coefficient: system.friction[k],
                     peak_force: totals.peak_friction,
@@ -227,6 +228,7 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 first_closing: record.first_closing,
                 last_release: record.last_force.filter(|_| !still_closed),
                 status_changes: record.status_changes,
+                chatter: record.chatter(),
                 max_penetration: record.penetration,
                 persistency_defect: record.persistency_defect(),
                 energy_crushed: record.energy_crushed,
@@ -250,34 +252,32 @@ fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {
     };
     let ledger = &last.ledger;
     let (start, end) = (&ledger.initial, &ledger.balance);
-    let mut works = BTreeMap::from([
-        ("work of loads".to_owned(), end.work_loads),
-        ("work of contact".to_owned(), end.work_contact),
-        (
-            "dissipation of the scheme".to_owned(),
-            0.0 - end.dissipation_scheme,
-        ),
+    // what only some runs have is named only where there is some
+    let there = |terms: &[(&str, f64)]| -> BTreeMap<String, f64> {
+        let terms = terms.iter().filter(|(_, term)| *term != 0.0);
+        terms
+            .map(|(name, term)| ((*name).to_owned(), *term))
+            .collect()
+    };
+    let mut works = there(&[
+        ("supports", end.work_supports),
+        ("obstacles", end.work_obstacles),
     ]);
+    works.insert("loads".to_owned(), end.work_loads);
+    works.insert("contact".to_owned(), end.work_contact);
     if zones.is_some() {
-        works.insert("work of links".to_owned(), end.work_links);
+        works.insert("links".to_owned(), end.work_links);
     }
-    // what linear runs have not is named only where there is some
-    let further = [
-        end.work_supports,
-        -end.dissipation_material,
-        -end.dissipation_damping,
-        -end.dissipation_friction,
-        start.hardening - end.hardening,
-    ];
-    let further = NONLINEAR_WORKS
-        .iter()
-        .zip(further)
-        .filter(|(_, work)| *work != 0.0);
-    works.extend(further.map(|(name, work)| ((*name).to_owned(), work)));
-    let stored = end.scheme_energy - start.scheme_energy;
-    if stored != 0.0 {
-        works.insert("stored by the scheme".to_owned(), -stored);
-    }
+    let mut dissipations = there(&[
+        ("materials", end.dissipation_material),
+        ("damping", end.dissipation_damping),
+        ("friction", end.dissipation_friction),
+    ]);
+    dissipations.insert("scheme".to_owned(), end.dissipation_scheme);
+    let stored = there(&[
+        ("hardening", end.hardening - start.hardening),
+        ("scheme", end.scheme_energy - start.scheme_energy),
+    ]);
     // a residual that is not a number must not be hidden by `max`
     let largest = match end.energy_residual.is_nan() {
         true => f64::NAN,
@@ -289,6 +289,8 @@ fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {
         kinetic_final: end.kinetic,
         strain_final: end.strain,
         works,
+        dissipations,
+        stored,
         residual: end.energy_residual,
         largest_residual: largest,
         relative_residual: relative(largest, ledger.largest_energy),
@@ -323,6 +325,7 @@ fn momentum(system: &System, last: &Last, linked: bool) -> Momentum {
             .map(|(name, impulse)| (name.to_owned(), impulse))
             .collect(),
         residual: end.momentum_residual.linear,
+        size,
         relative_residual: relative(ledger.largest_momentum_residual, size),
     }
 }

@@ -23,6 +23,8 @@ pub(crate) struct Curves {
     kinetic: Trace,
     strain: Trace,
     total: Trace,
+    /// The energy that the scheme balances, where it has a term beside kinetic and strain energy.
+    balanced: Trace,
     dissipated: Trace,
     /// Of runs that are not linear: what hardening stores, and what is dissipated in each way.
     further: [Trace; 4],
@@ -64,6 +66,7 @@ impl Curves {
             kinetic: Trace::default(),
             strain: Trace::default(),
             total: Trace::default(),
+            balanced: Trace::default(),
             dissipated: Trace::default(),
             further: Default::default(),
             residual: Trace::default(),
@@ -86,6 +89,8 @@ impl Curves {
         self.kinetic.push(t, balance.kinetic);
         self.strain.push(t, balance.strain);
         self.total.push(t, balance.energy());
+        let balanced = balance.energy() + balance.scheme_energy;
+        self.balanced.push(t, balanced);
         let dissipated = balance.dissipation_scheme - balance.work_contact;
         self.dissipated.push(t, dissipated);
         let further = [
@@ -176,10 +181,12 @@ impl Curves {
             |(_, (_, values)): &(&&'static str, &Polyline)| values.iter().any(|v| *v != 0.0);
         let further = FURTHER.iter().zip(&further).filter(there);
         let further = further.map(|(name, line)| curve(name, line, Role::Computed));
+        let balanced = self.balanced.columns();
+        let own = (balanced != columns[2]).then(|| curve("balanced", &balanced, Role::Computed));
         let figure: Figure = energy_figure(
             "Energy balance",
             EnergyCurves {
-                energies: (0..4).map(at).chain(further).collect(),
+                energies: (0..4).map(at).chain(own).chain(further).collect(),
                 residual: vec![at(4)],
             },
         );

@@ -2,7 +2,8 @@
 //!
 //! `contact.csv` is there where steps have parts, as in a run in zones: its rows are at the ends of the parts, its columns
 //! the contacts' ones, every cell filled. The forces in `histories.csv` are then means over the step, so that in both
-//! files the sum of a column of forces times the step is the impulse. (One file with both would be half blank.)
+//! files the sum of a column of forces times the step is the impulse. Where steps may end with impulses that are in no force, a
+//! column has these. (One file with both would be half blank.)
 
 use std::ops::Range;
 
@@ -80,7 +81,7 @@ impl Histories {
         row.clear();
         row.push(report.time);
         for (k, contact) in report.contacts.iter().enumerate() {
-            put((contact, system.friction[k] > 0.0), dim, row);
+            put(system, (k, contact), row);
             if let Some(point) = point.filter(|point| point.contact == k) {
                 for (_, sensor) in &point.sides {
                     row.extend(vectors.map(|vector| sensor.of(vector)));
@@ -110,6 +111,7 @@ impl Histories {
                 balance.dissipation_material,
                 balance.dissipation_damping,
                 balance.dissipation_friction,
+                balance.work_obstacles,
             ]);
         }
         row.extend(&balance.momentum.linear[..dim]);
@@ -125,7 +127,7 @@ impl Histories {
             row.clear();
             row.push(end);
             for (k, contact) in contacts.iter().enumerate() {
-                put((contact, system.friction[k] > 0.0), dim, row);
+                put(system, (k, contact), row);
             }
             file.push(row)?;
         }
@@ -141,11 +143,12 @@ impl Histories {
 }
 
 /// Adds what a contact did to a row, in the order of [`contact_columns`].
-fn put((contact, rubs): (&ContactReport, bool), dim: usize, row: &mut Vec<f64>) {
+fn put(system: &System, (k, contact): (usize, &ContactReport), row: &mut Vec<f64>) {
     row.push(contact.force);
-    row.extend(&contact.resultant[..dim]);
+    row.extend(system.has_impulses(k).then_some(contact.impulsive));
+    row.extend(&contact.resultant[..system.dim]);
     row.extend([contact.gap, contact.rate, contact.closed as f64]);
-    if rubs {
+    if system.friction[k] > 0.0 {
         row.extend([contact.friction, contact.slipping as f64]);
     }
 }
@@ -164,6 +167,8 @@ fn contact_columns(system: &System, k: usize) -> Vec<String> {
     let contact = &system.contacts[k].name;
     let add = |what: &str, unit| column(&["contact", contact, what], unit);
     let mut names = vec![add("force", "N")];
+    let impulsive = system.has_impulses(k);
+    names.extend(impulsive.then(|| add("impulsive", "N s")));
     let resultant = |i: &&str| add(&format!("resultant {i}"), "N");
     names.extend(COMPONENTS[..system.dim].iter().map(resultant));
     names.extend([
@@ -226,6 +231,7 @@ pub(crate) fn columns(
             ["dissipation", "material"],
             ["dissipation", "damping"],
             ["dissipation", "friction"],
+            ["work", "obstacles"],
         ];
         names.extend(further.map(|path| column(&path, "J")));
     }

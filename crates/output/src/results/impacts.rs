@@ -128,6 +128,7 @@ impl Impacts {
             energy_lost: impact.energy_lost,
             energy_crushed: impact.energy_crushed,
             intervals: impact.intervals,
+            impulsive: impact.impulsive,
         };
         let outcome = file.push(&row);
         if self.rows.len() < SHOWN {

@@ -119,7 +119,7 @@ impl Quantity {
             Quantity::EnergyChange => {
                 let energy = &done.summary.energy;
                 let start = energy.kinetic_initial + energy.strain_initial;
-                let loads = energy.works.get("work of loads").copied().unwrap_or(0.0);
+                let loads = energy.works.get("loads").copied().unwrap_or(0.0);
                 let gain = energy.kinetic_final + energy.strain_final - start - loads;
                 if start <= 0.0 {
                     return None;

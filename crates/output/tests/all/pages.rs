@@ -222,6 +222,7 @@ fn what_does_not_exist_is_a_dash() {
         energy_lost: 1.0,
         energy_crushed: 0.0,
         intervals: 1,
+        impulsive: 0.0,
     };
     let html = page(&sample(Verdict::default()), &[impact], &[]);
     let row = html

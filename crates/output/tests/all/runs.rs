@@ -214,11 +214,7 @@ fn fields_of_a_block_carry_its_contact_force_and_its_motion() {
     settings.fields = models::all_fields(every);
     let end = 5e-3;
     let (reports, summary) = run(&system, settings, end);
-    assert!(
-        summary.verdict.grade == Grade::Good,
-        "{:?}",
-        summary.verdict
-    );
+    assert_eq!(summary.verdict.unfinished, None);
 
     let entries = collection(&folder);
     let times: Vec<f64> = entries.iter().filter(|e| e.1 == 0).map(|e| e.0).collect();

@@ -245,7 +245,7 @@ fn zones_links_and_costs_are_in_summary_report_and_picture() {
     let (summary, _, whole) = run(&folder, 0.5 * models::duration());
     let zones = summary.zones.as_ref().unwrap();
     let balance = whole.state().ledger.balance;
-    assert_eq!(summary.energy.works["work of links"], balance.work_links);
+    assert_eq!(summary.energy.works["links"], balance.work_links);
     let works = zones.zones.iter().map(|zone| zone.work_of_links);
     assert_eq!(works.sum::<f64>(), zones.work_of_links);
     // what one side gives the other takes; inner steps behind a jump of the force lose a little

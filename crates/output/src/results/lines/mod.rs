@@ -1,10 +1,13 @@
 //! The lines of the verdict of a run, one function each. To add one: a function from the evidence to what it finds, in the
 //! file of its topic, and its name in [`ALL`].
 
+mod chatter;
 mod convergence;
 mod energy;
+mod exact;
 mod finite;
 mod momentum;
+mod penetration;
 mod small;
 
 use carom_dynamics::System;
@@ -41,7 +44,12 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     momentum::exchange,
     momentum::resizing,
     energy::gain,
+    energy::of_contact,
+    energy::of_scheme,
     finite::states,
+    chatter::of_contacts,
+    penetration::of_contacts,
+    exact::force,
     small::rotation,
     small::strain,
     small::slide,
@@ -50,6 +58,16 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     small::lost,
     convergence::of_mesh_and_step,
 ];
+
+/// The largest of named numbers, one that is no number first.
+fn worst<'a>(all: impl Iterator<Item = (&'a str, f64)>) -> Option<(&'a str, f64)> {
+    all.reduce(
+        |worst, other| match worst.1.is_nan() || worst.1 >= other.1 {
+            true => worst,
+            false => other,
+        },
+    )
+}
 
 /// The verdict on a run that came to its end (`unfinished` is `None`) or did not (`unfinished` says why).
 pub(crate) fn judge(evidence: &Evidence, unfinished: Option<String>) -> Verdict {

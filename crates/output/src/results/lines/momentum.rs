@@ -1,6 +1,7 @@
 //! The balance of momentum.
 
 use crate::form::Form;
+use crate::results::lines::energy::{MOST_TOLERATED, of_tolerance, residual_remedy};
 use crate::results::lines::{Evidence, Finding};
 use crate::verdict::{Bounds, Line};
 
@@ -10,15 +11,19 @@ const RESIDUAL: f64 = 1e-9;
 
 /// Change of the momentum without an impulse from outside.
 pub(super) fn residual(evidence: &Evidence) -> Finding {
+    let tolerated = match evidence.momentum.size > 0.0 {
+        true => evidence.last.ledger.tolerated.momentum / evidence.momentum.size,
+        false => 0.0,
+    };
     Finding::Line(Line::new(
         "momentum-residual",
         (
-            "momentum residual over the largest momentum",
+            &of_tolerance("momentum residual over the largest momentum", tolerated),
             evidence.momentum.relative_residual,
             Form::Power,
         ),
-        Bounds::Bad(RESIDUAL),
-        "a smaller `time.newton.tolerance` where the run iterates; else a fault of the program",
+        Bounds::Bad((RESIDUAL + tolerated).min(MOST_TOLERATED)),
+        residual_remedy(tolerated),
     ))
 }
 

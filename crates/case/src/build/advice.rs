@@ -1,0 +1,82 @@
+//! Pairs of time scheme and contact law that the chapter on schemes advises against.
+
+use carom_contact::Law;
+use carom_contact::law::Displacement;
+
+use crate::schema::Scheme;
+
+/// A pair with the reason against it; the chapter says it in the same words.
+struct Advice {
+    is: fn(&Scheme, &Law) -> bool,
+    reason: &'static str,
+}
+
+/// All of them. The numbers behind them are in the tables of the chapter: two bars, and a bar that bounces 200 times.
+const AGAINST: [Advice; 7] = [
+    Advice {
+        is: |scheme, law| {
+            matches!(scheme, Scheme::Newmark(s) if s.gamma == 0.5 && s.beta == 0.25)
+                && is_plain(law)
+        },
+        reason: "the trapezoid with the displacement law gains energy below a Courant number of about 4",
+    },
+    Advice {
+        is: |scheme, law| {
+            matches!(scheme, Scheme::Newmark(s) if s.gamma == 0.5) && is_velocity(law)
+        },
+        reason: "Newmark's scheme without damping and the velocity law switch contact on and off at every other step",
+    },
+    Advice {
+        is: |scheme, law| matches!(scheme, Scheme::Theta(s) if s.theta == 0.5) && is_plain(law),
+        reason: "theta = 1/2 with the displacement law lets the force swing about the right one without end",
+    },
+    Advice {
+        is: |scheme, law| {
+            matches!(scheme, Scheme::LaursenChawla(_)) && (is_plain(law) || is_velocity(law))
+        },
+        reason: "the scheme of Laursen and Chawla keeps the energy and has a force of no use: contact flutters",
+    },
+    Advice {
+        is: |scheme, _| matches!(scheme, Scheme::LaursenLove(_)),
+        reason: "the scheme of Laursen and Love keeps the energy and has a force of no use: contact flutters",
+    },
+    Advice {
+        is: |scheme, _| matches!(scheme, Scheme::Kane(s) if s.gamma == 0.5),
+        reason: "Kane's scheme without damping lets the force swing about the right one without end",
+    },
+    Advice {
+        is: |scheme, law| matches!(scheme, Scheme::Hht(_)) && is_plain(law),
+        reason: "the scheme of Hilber, Hughes and Taylor with the displacement law flutters and gains energy over many impacts",
+    },
+];
+
+/// The displacement law without projection.
+fn is_plain(law: &Law) -> bool {
+    matches!(law, Law::Displacement(Displacement { projection: false }))
+}
+
+fn is_velocity(law: &Law) -> bool {
+    matches!(law, Law::Velocity(_))
+}
+
+/// Why a pair is advised against.
+pub(super) fn against(scheme: &Scheme, law: &Law) -> impl Iterator<Item = &'static str> {
+    let all = AGAINST
+        .iter()
+        .filter(move |advice| (advice.is)(scheme, law));
+    all.map(|advice| advice.reason)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::AGAINST;
+
+    #[test]
+    fn the_chapter_says_every_reason() {
+        let chapter = include_str!("../../../../docs/src/which-scheme.md");
+        let chapter = chapter.split_whitespace().collect::<Vec<_>>().join(" ");
+        for advice in &AGAINST {
+            assert!(chapter.contains(advice.reason), "{}", advice.reason);
+        }
+    }
+}

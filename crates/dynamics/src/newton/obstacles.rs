@@ -1,0 +1,81 @@
+//! The work of obstacles that move.
+
+use carom_contact::Target;
+use serde::{Deserialize, Serialize};
+
+use super::Newton;
+
+/// Force of a moving obstacle at the end of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Pushed {
+    /// On the bodies, friction included, N.
+    force: [f64; 3],
+    /// Power of its turn, W.
+    turn: f64,
+}
+
+impl Newton {
+    /// Force of an obstacle that moves, and the power of its turn, in the step that was taken: of the normal and of the
+    /// friction forces f of its points f · ẋ with the velocity ẋ of its particle there, less what the translation has of it.
+    /// The rate of the rows is the negative of ẋ along them.
+    pub(super) fn pushed(&self, contact: usize) -> Pushed {
+        let system = &*self.system;
+        let Some(way) = self.way_of_obstacle(contact) else {
+            return Pushed::default();
+        };
+        let mut pushed = Pushed::default();
+        let tangents = &self.pairing.tangents[..system.tangents()];
+        for point in system.first_point[contact]..system.first_point[contact + 1] {
+            let normal = (&self.pairing.rows, self.next.interface.force[point]);
+            let friction = self.next.interface.friction.get(point);
+            let friction = friction.copied().unwrap_or_default();
+            let forces = tangents.iter().zip(friction);
+            for (rows, f) in std::iter::once(normal).chain(forces) {
+                if f == 0.0 {
+                    continue;
+                }
+                pushed.turn -= f * rows.rate(point);
+                for (sum, direction) in pushed.force.iter_mut().zip(rows.normal(point)) {
+                    *sum += f * direction;
+                }
+            }
+        }
+        pushed.turn = match &system.contacts[contact].target {
+            Target::Rigid(obstacle) if obstacle.motion.turn.is_some() => {
+                pushed.turn - dot(&pushed.force, &way) / self.dt
+            }
+            _ => 0.0,
+        };
+        pushed
+    }
+
+    /// How far the translation of an obstacle goes in the step, m; `None` where it does not move.
+    fn way_of_obstacle(&self, contact: usize) -> Option<[f64; 3]> {
+        match &self.system.contacts[contact].target {
+            Target::Rigid(obstacle) if obstacle.motion.moves() => {
+                let [from, to] = [self.state.time, self.state.time + self.dt];
+                let (from, to) = (obstacle.displacement(from), obstacle.displacement(to));
+                Some([0, 1, 2].map(|i| to[i] - from[i]))
+            }
+            Target::Rigid(_) | Target::Surface(_) => None,
+        }
+    }
+
+    /// Work in J of the obstacles in the step: their forces, old and new with these weights, times their way, and the power
+    /// of their turn times the step.
+    pub(super) fn obstacle_work(&self, weights: [f64; 2]) -> f64 {
+        let of = |contact: usize| {
+            let way = self.way_of_obstacle(contact)?;
+            let old = self.state.records.contacts[contact].pushed;
+            let pushed = [old, self.pushed(contact)];
+            let work = |pushed: &Pushed| dot(&pushed.force, &way) + self.dt * pushed.turn;
+            Some(weights[0] * work(&pushed[0]) + weights[1] * work(&pushed[1]))
+        };
+        let works = (0..self.system.contacts.len()).filter_map(of);
+        self.map.contact * works.sum::<f64>()
+    }
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
+}

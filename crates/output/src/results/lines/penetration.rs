@@ -1,0 +1,38 @@
+//! Bodies that go into each other.
+
+use carom_contact::Law;
+
+use crate::form::Form;
+use crate::results::lines::{Evidence, Finding, worst};
+use crate::verdict::{Bounds, Line};
+
+/// Penetration over the size of an element normal to the surface: spread over that element it is a strain that the result lacks.
+/// A tenth is more than any small strain; a whole element is deeper than the layer that carries the surface.
+const BOUNDS: Bounds = Bounds::Both(0.1, 1.0);
+
+/// The contact with the deepest penetration; stops are given theirs by their curve.
+pub(super) fn of_contacts(evidence: &Evidence) -> Finding {
+    let contacts = evidence.system.contacts.iter().enumerate();
+    let records = contacts.zip(&evidence.last.records.contacts);
+    let depths = records
+        .filter(|((_, contact), _)| !matches!(contact.law, Law::Stop(_)))
+        .map(|((k, contact), record)| {
+            let depth = record.penetration / evidence.system.depth_of_elements(k);
+            (&*contact.name, depth)
+        });
+    let Some((name, value)) = worst(depths) else {
+        return Finding::Absent;
+    };
+    Finding::Line(Line::new(
+        "penetration",
+        (
+            &format!(
+                "largest penetration of contact `{name}` over the smallest element normal to its surfaces"
+            ),
+            value,
+            Form::Percent,
+        ),
+        BOUNDS,
+        "a smaller step, `sliding = \"finite\"` where bodies move far, a stiffer law where it is a spring",
+    ))
+}
