@@ -9,9 +9,9 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::ledger::Sum;
 use crate::records::ContactRecord;
 use crate::step_map::Impulse;
+use crate::sum::Sum;
 use crate::system::System;
 
 /// The exchange of momentum since the start.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::ledger::Sum;
+use crate::sum::Sum;
 use crate::system::System;
 
 /// Part of the impulse of an impact that other forces may have while it counts as an impact of its two bodies alone.

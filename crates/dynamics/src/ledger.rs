@@ -5,118 +5,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
 use crate::state::Motion;
 use crate::step_map::{Impulse, StepMap};
+use crate::sum::Sum;
 use crate::system::System;
-
-/// Sum with compensation of the rounding (Neumaier).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Sum {
-    value: f64,
-    lost: f64,
-}
-
-impl Sum {
-    pub(crate) fn add(&mut self, term: f64) {
-        let sum = self.value + term;
-        self.lost += if self.value.abs() >= term.abs() {
-            (self.value - sum) + term
-        } else {
-            (term - sum) + self.value
-        };
-        self.value = sum;
-    }
-
-    pub(crate) fn get(&self) -> f64 {
-        self.value + self.lost
-    }
-}
-
-/// Force and moment about the origin in the reference configuration; or momentum and angular momentum; or their
-/// impulses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Resultant {
-    /// Force in N, or momentum in N s.
-    pub linear: [f64; 3],
-    /// Moment in N m, or angular momentum in N m s.
-    pub angular: [f64; 3],
-}
-
-impl Resultant {
-    /// Resultant of a system vector of nodal forces. In axisymmetry only the axial force is one: radial forces of a full
-    /// turn cancel, and hoop stresses are no external force.
-    pub(crate) fn of(system: &System, f: &[f64]) -> Resultant {
-        let mut sum = Resultant::default();
-        for (x, f) in system.x.iter().zip(f.chunks_exact(system.dim)) {
-            let mut force = [0.0; 3];
-            force[..system.dim].copy_from_slice(f);
-            for i in 0..3 {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                sum.linear[i] += force[i];
-                sum.angular[i] += x[j] * force[k] - x[k] * force[j];
-            }
-        }
-        if system.axisymmetric {
-            sum.linear[0] = 0.0;
-            sum.angular = [0.0; 3];
-        }
-        sum
-    }
-
-    /// Resultant of nodal forces, with moments about the origin of the nodes at the mean of these displacements.
-    pub(crate) fn at(system: &System, displacements: &[&[f64]], f: &[f64]) -> Resultant {
-        let mut sum = Resultant::default();
-        let (dim, share) = (system.dim, 1.0 / displacements.len() as f64);
-        for (node, f) in f.chunks_exact(dim).enumerate() {
-            let (mut force, mut x) = ([0.0; 3], system.x[node]);
-            force[..dim].copy_from_slice(f);
-            for u in displacements {
-                for i in 0..dim {
-                    x[i] += share * u[dim * node + i];
-                }
-            }
-            for i in 0..3 {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                sum.linear[i] += force[i];
-                sum.angular[i] += x[j] * force[k] - x[k] * force[j];
-            }
-        }
-        if system.axisymmetric {
-            sum.linear[0] = 0.0;
-            sum.angular = [0.0; 3];
-        }
-        sum
-    }
-
-    /// The sum of two.
-    pub(crate) fn plus(&self, other: &Resultant) -> Resultant {
-        self.combine(1.0, other, 1.0)
-    }
-
-    /// The opposite.
-    pub(crate) fn reversed(&self) -> Resultant {
-        self.combine(-1.0, &Resultant::default(), 0.0)
-    }
-
-    fn combine(&self, factor: f64, other: &Resultant, other_factor: f64) -> Resultant {
-        let mix = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| factor * a[i] + other_factor * b[i]);
-        Resultant {
-            linear: mix(self.linear, other.linear),
-            angular: mix(self.angular, other.angular),
-        }
-    }
-
-    /// Largest absolute component of the linear part.
-    pub fn largest(&self) -> f64 {
-        self.linear.iter().fold(0.0, |m, x| m.max(x.abs()))
-    }
-
-    /// Largest absolute component of the angular part.
-    pub fn largest_moment(&self) -> f64 {
-        self.angular.iter().fold(0.0, |m, x| m.max(x.abs()))
-    }
-}
 
 /// What the ledger shows at an instant; works and dissipations since the start, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -590,19 +484,5 @@ pub(crate) fn reactions(
         } else {
             0.0
         };
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Sum;
-
-    #[test]
-    fn compensated_sum_keeps_what_rounding_drops() {
-        let mut sum = Sum::default();
-        sum.add(1e16);
-        (0..1000).for_each(|_| sum.add(0.1));
-        sum.add(-1e16);
-        assert!((sum.get() - 100.0).abs() < 1e-9);
     }
 }

@@ -23,11 +23,13 @@ mod newton;
 mod nonlinear;
 mod operator;
 mod records;
+mod resultant;
 pub mod scheme;
 mod small;
 mod stability;
 mod state;
 mod step_map;
+mod sum;
 mod system;
 mod zones;
 
@@ -38,7 +40,7 @@ pub use error::Error;
 pub use exchange::Exchange;
 pub use impact::Impact;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
-pub use ledger::{Balance, Ledger, Resultant, Tolerated};
+pub use ledger::{Balance, Ledger, Tolerated};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, march, step_count};
 pub use mass::Mass;
 pub use model::{Model, ModelBody, ModelContact, ModelTarget, Support};
@@ -47,6 +49,7 @@ pub use nonlinear::{
     Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed, Refused,
 };
 pub use records::{ContactRecord, Records};
+pub use resultant::Resultant;
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use small::{Largest, SmallSliding, SmallStrain, Smallness};
 pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, StepReport};

@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::impact::{Given, Impact, OpenImpact};
-use crate::ledger::Sum;
 use crate::newton::Pushed;
 use crate::small::Smallness;
 use crate::state::{ContactReport, State};
 use crate::step_map::Impulse;
+use crate::sum::Sum;
 use crate::system::System;
 
 /// Records of all contacts.

@@ -7,8 +7,9 @@ use carom_algebra::reduce::dot;
 use carom_contact::Rows;
 
 use super::{Driver, Forces, Vectors};
-use crate::ledger::{Energies, Resultant, Squares, reactions};
+use crate::ledger::{Energies, Squares, reactions};
 use crate::records::Step;
+use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
 use crate::state::{ContactReport, InterfaceState, Motion, State};
 use crate::step_map::Impulse;

@@ -17,7 +17,8 @@ use carom_contact::law::Status;
 use super::balance::energies;
 use super::{Driver, Vectors};
 use crate::error::Error;
-use crate::ledger::{Jump, Resultant, reactions};
+use crate::ledger::{Jump, reactions};
+use crate::resultant::Resultant;
 
 /// What the impulses after a step did, those of a projection or of another stage; one entry per contact point.
 #[derive(Default)]

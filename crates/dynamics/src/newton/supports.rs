@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 use super::Newton;
 use crate::error::Error;
-use crate::ledger::Resultant;
 use crate::operator::Operators;
+use crate::resultant::Resultant;
 use crate::system::System;
 
 /// Jump over what rounding of the displacements leaves in a rate, below which there is none.

@@ -1,0 +1,90 @@
+//! Resultants of nodal forces and momenta.
+
+use serde::{Deserialize, Serialize};
+
+use crate::system::System;
+
+/// Force and moment about the origin in the reference configuration; or momentum and angular momentum; or their
+/// impulses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Resultant {
+    /// Force in N, or momentum in N s.
+    pub linear: [f64; 3],
+    /// Moment in N m, or angular momentum in N m s.
+    pub angular: [f64; 3],
+}
+
+impl Resultant {
+    /// Resultant of a system vector of nodal forces. In axisymmetry only the axial force is one: radial forces of a full
+    /// turn cancel, and hoop stresses are no external force.
+    pub(crate) fn of(system: &System, f: &[f64]) -> Resultant {
+        let mut sum = Resultant::default();
+        for (x, f) in system.x.iter().zip(f.chunks_exact(system.dim)) {
+            let mut force = [0.0; 3];
+            force[..system.dim].copy_from_slice(f);
+            for i in 0..3 {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                sum.linear[i] += force[i];
+                sum.angular[i] += x[j] * force[k] - x[k] * force[j];
+            }
+        }
+        if system.axisymmetric {
+            sum.linear[0] = 0.0;
+            sum.angular = [0.0; 3];
+        }
+        sum
+    }
+
+    /// Resultant of nodal forces, with moments about the origin of the nodes at the mean of these displacements.
+    pub(crate) fn at(system: &System, displacements: &[&[f64]], f: &[f64]) -> Resultant {
+        let mut sum = Resultant::default();
+        let (dim, share) = (system.dim, 1.0 / displacements.len() as f64);
+        for (node, f) in f.chunks_exact(dim).enumerate() {
+            let (mut force, mut x) = ([0.0; 3], system.x[node]);
+            force[..dim].copy_from_slice(f);
+            for u in displacements {
+                for i in 0..dim {
+                    x[i] += share * u[dim * node + i];
+                }
+            }
+            for i in 0..3 {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                sum.linear[i] += force[i];
+                sum.angular[i] += x[j] * force[k] - x[k] * force[j];
+            }
+        }
+        if system.axisymmetric {
+            sum.linear[0] = 0.0;
+            sum.angular = [0.0; 3];
+        }
+        sum
+    }
+
+    /// The sum of two.
+    pub(crate) fn plus(&self, other: &Resultant) -> Resultant {
+        self.combine(1.0, other, 1.0)
+    }
+
+    /// The opposite.
+    pub(crate) fn reversed(&self) -> Resultant {
+        self.combine(-1.0, &Resultant::default(), 0.0)
+    }
+
+    pub(crate) fn combine(&self, factor: f64, other: &Resultant, other_factor: f64) -> Resultant {
+        let mix = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| factor * a[i] + other_factor * b[i]);
+        Resultant {
+            linear: mix(self.linear, other.linear),
+            angular: mix(self.angular, other.angular),
+        }
+    }
+
+    /// Largest absolute component of the linear part.
+    pub fn largest(&self) -> f64 {
+        self.linear.iter().fold(0.0, |m, x| m.max(x.abs()))
+    }
+
+    /// Largest absolute component of the angular part.
+    pub fn largest_moment(&self) -> f64 {
+        self.angular.iter().fold(0.0, |m, x| m.max(x.abs()))
+    }
+}
