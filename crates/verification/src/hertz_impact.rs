@@ -11,7 +11,9 @@
 //! stiffer, here by 2 % in force at equal approach, and vibrate); a step at either end is 1 % of it. Force 3 %.
 //! Impulse: the spheres keep less than 1 % of it as vibration. Energy: its residual 1e-9; the velocity law loses what an
 //! impact of each node's mass takes, less than 2e-3 here, the trapezoid swings by as much, energy-momentum keeps all to the
-//! tolerance of its iterations, 1e-8.
+//! tolerance of its iterations, 1e-8. Under the theta scheme contact makes none, to 1e-9. At nodes with closure as it stands the rows lag
+//! by half a step and nodes close again and again: 2.6e-3 are lost, and the bound of 5e-3 is a regression of this figure. It was
+//! 9e-4 as long as the contact made energy too where rows turn, which offset a part.
 //!
 //! Under the velocity law with closure half a step ahead too: a step takes waves across 34 elements (quick 67), and rows half a
 //! step ahead along the velocity would multiply the energy by more than 10 here (docs/src/theory/laws.md).
@@ -94,7 +96,12 @@ impl Spheres {
         let span = [record.first_closing, record.last_force].map(|time| time.unwrap_or(f64::NAN));
         let energy = ledger.initial.energy();
         let row = |what: &str| format!("{}: {what}", self.name);
-        Ok(vec![
+        let gained = match self.scheme {
+            Scheme::Theta(_) => Some(ledger.balance.energy() / energy - 1.0),
+            _ => None,
+        };
+        let gained = gained.map(|gained| Row::at_most(row("energy / E0 - 1"), gained, 1e-9));
+        let mut rows = vec![
             Row::relative(
                 row("time in contact, s"),
                 span[1] - span[0],
@@ -124,7 +131,9 @@ impl Spheres {
                 1.0,
                 self.energy,
             ),
-        ])
+        ];
+        rows.extend(gained);
+        Ok(rows)
     }
 }
 
@@ -144,6 +153,7 @@ pub(crate) const CHECK: Check = Check {
         let node = Spheres {
             name: "velocity, node-to-face",
             integration: Integration::Node,
+            energy: 5e-3,
             ..dual
         };
         let ahead = Spheres {
