@@ -18,24 +18,11 @@ impl Resultant {
     /// Resultant of a system vector of nodal forces. In axisymmetry only the axial force is one: radial forces of a full
     /// turn cancel, and hoop stresses are no external force.
     pub(crate) fn of(system: &System, f: &[f64]) -> Resultant {
-        let mut sum = Resultant::default();
-        for (x, f) in system.x.iter().zip(f.chunks_exact(system.dim)) {
-            let mut force = [0.0; 3];
-            force[..system.dim].copy_from_slice(f);
-            for i in 0..3 {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                sum.linear[i] += force[i];
-                sum.angular[i] += x[j] * force[k] - x[k] * force[j];
-            }
-        }
-        if system.axisymmetric {
-            sum.linear[0] = 0.0;
-            sum.angular = [0.0; 3];
-        }
-        sum
+        Resultant::at(system, &[], f)
     }
 
-    /// Resultant of nodal forces, with moments about the origin of the nodes at the mean of these displacements.
+    /// Resultant of nodal forces, with moments about the origin of the nodes at the mean of these displacements; in the reference
+    /// configuration without any.
     pub(crate) fn at(system: &System, displacements: &[&[f64]], f: &[f64]) -> Resultant {
         let mut sum = Resultant::default();
         let (dim, share) = (system.dim, 1.0 / displacements.len() as f64);
