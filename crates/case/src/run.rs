@@ -108,7 +108,7 @@ fn conclude(
 fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Settings {
     let set = input.sources.iter().filter(|source| source.name == "--set");
     let overrides: String = set
-        .map(|source| format!("# --set {}\n", source.text.trim()))
+        .map(|source| format!("# --set {}\n", in_a_comment(source.text.trim())))
         .collect();
     let file = input
         .sources
@@ -162,6 +162,17 @@ fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Setti
         zoning: built.zoned.as_ref().map(Zoning::of),
         warnings: built.warnings.clone(),
     }
+}
+
+/// A text for a comment of TOML, which holds no line feed and no other control character: each becomes an escape.
+fn in_a_comment(text: &str) -> String {
+    let escaped = |letter: char| -> String {
+        match letter.is_control() {
+            true => letter.escape_default().collect(),
+            false => letter.into(),
+        }
+    };
+    text.chars().map(escaped).collect()
 }
 
 fn of_zone(zone: &ModelZone) -> String {

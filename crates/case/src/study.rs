@@ -1,5 +1,6 @@
 //! `carom study`: the runs of a case over the values of a key.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use carom_output::Reference;
@@ -140,6 +141,7 @@ fn split(text: &str, separator: char) -> Vec<String> {
 pub fn study(input: &Input, axes: &[Axis], sweep: &Sweep) -> Result<(Study, PathBuf), SweepError> {
     let base = Job::new("", input, Vec::new())?;
     base.has_contact(sweep.contact)?;
+    no_key_twice(axes)?;
     let grid = combinations(axes);
     let job = |(k, places): (usize, &Vec<usize>)| {
         let chosen = || axes.iter().zip(places);
@@ -154,6 +156,24 @@ pub fn study(input: &Input, axes: &[Axis], sweep: &Sweep) -> Result<(Study, Path
     let study = gather(base.title(), axes, &grid, run_all(&jobs, sweep));
     let page = study.write(&mut folder)?;
     Ok((study, page))
+}
+
+/// # Errors
+/// Two axes, or two keys that vary together, change the same key.
+fn no_key_twice(axes: &[Axis]) -> Result<(), SweepError> {
+    let mut seen = BTreeSet::new();
+    for vary in axes.iter().flat_map(|axis| &axis.keys) {
+        let parts: Vec<&str> = vary.key.split('.').map(str::trim).collect();
+        if !seen.insert(parts) {
+            let problem = Problem::new("", format!("`--vary` has the key `{}` twice", vary.key));
+            let accepted = "each key once, with all of its values: time.step.courant=1,0.5,0.25";
+            return Err(SweepError::Input {
+                sources: Vec::new(),
+                problems: vec![problem.accepted([accepted])],
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Places of the values on the axes, for every combination; none without an axis.
@@ -267,6 +287,18 @@ mod tests {
         let places = [[0, 0], [0, 1], [0, 2], [1, 0], [1, 1], [1, 2]];
         assert_eq!(combinations(&axes), places);
         assert!(combinations(&[]).is_empty());
+    }
+
+    #[test]
+    fn a_key_that_varies_twice_is_refused() {
+        let axes = |texts: &[&str]| -> Vec<Axis> {
+            texts.iter().map(|text| Axis::read(text).unwrap()).collect()
+        };
+        for twice in [&["a.b=1,2", "a . b=3,4"][..], &["a.b=1,2;a.b=3,4"]] {
+            let error = no_key_twice(&axes(twice));
+            assert!(matches!(error, Err(SweepError::Input { .. })), "{twice:?}");
+        }
+        assert!(no_key_twice(&axes(&["a.b=1,2;a.c=3,4", "b=1,2"])).is_ok());
     }
 
     #[test]

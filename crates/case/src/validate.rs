@@ -274,15 +274,19 @@ impl<'a> Walker<'a> {
             && bound("exclusiveMinimum").is_none_or(|low| value > low)
             && bound("maximum").is_none_or(|high| value <= high)
             && bound("exclusiveMaximum").is_none_or(|high| value < high);
-        if !inside {
-            let problem = Problem::new(path, format!("out of range: it must be{}", range(schema)))
-                .found(self.written(item.value));
-            self.problems.push(
-                problem
-                    .accepted([accepted(self.schema, schema)])
-                    .at(item.value),
-            );
-        }
+        let problem = match largest_integer(schema) {
+            _ if !inside => {
+                let message = format!("out of range: it must be{}", range(schema));
+                Problem::new(path, message).accepted([accepted(self.schema, schema)])
+            }
+            Some(largest) if value > largest => {
+                let message = format!("out of range: it must be at most {largest}");
+                Problem::new(path, message).accepted([format!("an integer up to {largest}")])
+            }
+            _ => return,
+        };
+        let problem = problem.found(self.written(item.value));
+        self.problems.push(problem.at(item.value));
     }
 
     fn unknown_key<'n>(
@@ -328,6 +332,14 @@ impl<'a> Walker<'a> {
             Some((end, _)) => format!("{} ...", &line[..end]),
             None => line.to_owned(),
         }
+    }
+}
+
+/// The largest integer that the reader can hold, where the schema says how many bits it has.
+fn largest_integer(schema: &Value) -> Option<f64> {
+    match schema.get("format").and_then(Value::as_str) {
+        Some("uint32") => Some(f64::from(u32::MAX)),
+        _ => None,
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use carom_case::{Choices, Input};
 
 use crate::sweep;
+use crate::terminal::{line, out};
 
 /// Arguments of `carom compare`.
 #[derive(clap::Args)]
@@ -54,18 +55,18 @@ pub fn compare(arguments: &Arguments) -> u8 {
         Ok(compared) => compared,
         Err(error) => return sweep::refuse(&error),
     };
-    println!("{}", comparison.title);
+    out!("{}", line(&comparison.title));
     let contact = sweep::contact(comparison.contact());
-    println!("{contact}Errors against {}.\n", comparison.standard_text());
-    println!("{}", comparison.table().text(sweep::WIDTH));
+    out!("{contact}Errors against {}.\n", comparison.standard_text());
+    out!("{}", comparison.table().text(sweep::WIDTH));
     if let Some(unseen) = comparison.unseen() {
-        println!("  {unseen}");
+        out!("  {unseen}");
     }
     let variants = || comparison.variants.iter();
     sweep::reasons(variants());
-    println!(
+    out!(
         "  the overshoot of a single step does not converge at a step front; that of the mean does"
     );
-    println!("  report: {}", page.display());
+    out!("  report: {}", page.display());
     sweep::code(variants())
 }

@@ -2,15 +2,24 @@
 //!
 //! The text is the same on every machine: colours are the only thing that depends on the terminal.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
 
 use annotate_snippets::{AnnotationKind, Element, Group, Level, Renderer, Snippet};
 use carom_case::{Problem, Source};
 
+use crate::terminal::{line, shortened};
+
 /// Columns after which a long line of the case is cut around the caret.
 const WIDTH: usize = 120;
+/// Problems shown.
+const MOST: usize = 50;
+/// Letters of a name, or of a value that was found, that are shown.
+const VALUE: usize = 200;
+/// Accepted names shown.
+const NAMES: usize = 40;
 
-/// All problems as text, in the order given, and their number. `styled` adds colours for a terminal.
+/// Problems as text, in the order given, and their number; the first [`MOST`] of them. `styled` adds colours for a terminal.
 pub fn render(sources: &[Source], problems: &[Problem], styled: bool) -> String {
     let renderer = if styled {
         Renderer::styled()
@@ -18,25 +27,82 @@ pub fn render(sources: &[Source], problems: &[Problem], styled: bool) -> String 
         Renderer::plain()
     }
     .term_width(WIDTH);
+    let sources: Vec<Source> = sources.iter().map(shown).collect();
     let mut text = String::new();
-    for problem in problems {
-        let rendered = renderer.render(&[group(sources, problem)]);
+    for problem in problems.iter().take(MOST) {
+        let words = Words::new(problem);
+        let rendered = renderer.render(&[group(&sources, problem, &words)]);
         text.push_str(rendered.trim_end());
         text.push_str("\n\n");
     }
     let plural = if problems.len() == 1 { "" } else { "s" };
     // Writing to a String cannot fail.
     let _ = writeln!(text, "{} problem{plural} found.", problems.len());
+    if problems.len() > MOST {
+        let _ = writeln!(text, "The first {MOST} of them are shown.");
+    }
     text
 }
 
+/// The source for the renderer, which makes all control characters visible but those of the block C1: each becomes a point,
+/// which has as many bytes.
+fn shown(source: &Source) -> Source {
+    let point = |letter| match letter {
+        '\u{80}'..='\u{9f}' => '·',
+        other => other,
+    };
+    Source {
+        name: line(&source.name).into_owned(),
+        text: source.text.chars().map(point).collect(),
+    }
+}
+
+/// What a problem says, in pieces that fit a terminal.
+struct Words<'a> {
+    message: Cow<'a, str>,
+    path: Cow<'a, str>,
+    facts: Vec<String>,
+    notes: Vec<Cow<'a, str>>,
+    help: Option<String>,
+}
+
+impl Words<'_> {
+    fn new(problem: &Problem) -> Words<'_> {
+        let found = problem.found.iter();
+        let found = found.map(|found| format!("found: {}", shortened(found, VALUE)));
+        let nearest = problem.nearest.as_ref();
+        Words {
+            message: line(&problem.message),
+            path: shortened(&problem.path, VALUE),
+            facts: found.chain(accepted(&problem.accepted)).collect(),
+            notes: problem.notes.iter().map(|note| line(note)).collect(),
+            help: nearest.map(|name| format!("did you mean `{}`?", shortened(name, VALUE))),
+        }
+    }
+}
+
+/// The accepted names, the first [`NAMES`] of them.
+fn accepted(names: &[String]) -> Option<String> {
+    let shown = names.iter().take(NAMES);
+    let shown: Vec<_> = shown.map(|name| shortened(name, VALUE)).collect();
+    match names.len() {
+        0 => None,
+        count if count > NAMES => Some(format!(
+            "accepted: {} ... ({} more)",
+            shown.join(", "),
+            count - NAMES
+        )),
+        _ => Some(format!("accepted: {}", shown.join(", "))),
+    }
+}
+
 /// The sentence, the line with its caret, then what was found, what is accepted and what may be meant.
-fn group<'a>(sources: &'a [Source], problem: &'a Problem) -> Group<'a> {
+fn group<'a>(sources: &'a [Source], problem: &Problem, words: &'a Words) -> Group<'a> {
     let place = problem
         .place
         .and_then(|place| Some((place, sources.get(place.source)?)));
     let snippet = place.map(|(place, source)| {
-        let label = (!problem.path.is_empty()).then_some(problem.path.as_str());
+        let label = (!words.path.is_empty()).then_some(&*words.path);
         let end = place.end.max(place.start).min(source.text.len());
         let caret = AnnotationKind::Primary
             .span(place.start.min(end)..end)
@@ -47,22 +113,14 @@ fn group<'a>(sources: &'a [Source], problem: &'a Problem) -> Group<'a> {
                 .annotation(caret),
         )
     });
-    let found = problem.found.iter().map(|found| format!("found: {found}"));
-    let accepted = (!problem.accepted.is_empty())
-        .then(|| format!("accepted: {}", problem.accepted.join(", ")));
-    let facts = found
-        .chain(accepted)
-        .map(|text| Element::from(Level::NOTE.no_name().message(text)));
-    let notes = problem
-        .notes
-        .iter()
-        .map(|note| Element::from(Level::NOTE.message(note)));
-    let help = problem
-        .nearest
-        .iter()
-        .map(|name| Element::from(Level::HELP.message(format!("did you mean `{name}`?"))));
+    let facts = words.facts.iter();
+    let facts = facts.map(|text| Element::from(Level::NOTE.no_name().message(text)));
+    let notes = words.notes.iter();
+    let notes = notes.map(|note| Element::from(Level::NOTE.message(&**note)));
+    let help = words.help.iter();
+    let help = help.map(|text| Element::from(Level::HELP.message(text)));
     Level::ERROR
-        .primary_title(&problem.message)
+        .primary_title(&*words.message)
         .elements(snippet.into_iter().chain(facts).chain(notes).chain(help))
 }
 

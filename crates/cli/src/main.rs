@@ -1,9 +1,7 @@
 //! The executable: `carom run`, `compare`, `study`, `check`, `schema`, `new`, `verify`.
 //!
 //! Exit codes: 0 done and the verdict `good` or `look`, 2 bad input, 3 the run failed with the last good state on disk, 4 done but
-//! the verdict bad, 130 interrupted.
-// The program talks to people: printing is its job.
-#![allow(clippy::print_stdout, clippy::print_stderr)]
+//! the verdict bad, 130 interrupted. All that it prints goes through [`terminal`].
 
 mod compare;
 mod diagnostics;
@@ -12,6 +10,7 @@ mod progress;
 mod run;
 mod study;
 mod sweep;
+mod terminal;
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -20,9 +19,11 @@ use std::process::ExitCode;
 use carom_case::{Built, Input, Problem};
 use clap::{Parser, Subcommand};
 
+use crate::terminal::{err, line, out};
+
 /// Impact of deformable solids: a case file, a run, a report.
 #[derive(Parser)]
-#[command(name = "carom", version, about)]
+#[command(name = "carom", version)]
 struct Arguments {
     /// How much is told on stderr: `warn`, or `debug` for which factor an iteration keeps and why, steps taken in halves, points
     /// that change their faces
@@ -82,13 +83,27 @@ const BAD: u8 = 4;
 const INTERRUPTED: u8 = 130;
 
 fn main() -> ExitCode {
-    let Arguments { log, command } = Arguments::parse();
+    let code = match Arguments::try_parse() {
+        Ok(arguments) => obey(arguments),
+        Err(answer) => {
+            // `--help` and `--version` are answers too; an error goes to standard error
+            let printed = answer.print();
+            if !answer.use_stderr() {
+                terminal::keep(printed);
+            }
+            u8::try_from(answer.exit_code()).unwrap_or(BAD_INPUT)
+        }
+    };
+    ExitCode::from(terminal::close(code))
+}
+
+fn obey(Arguments { log, command }: Arguments) -> u8 {
     tracing_subscriber::fmt()
         .with_max_level(log)
         .with_ansi(std::io::stderr().is_terminal())
-        .with_writer(std::io::stderr)
+        .with_writer(|| terminal::StandardError)
         .init();
-    let code = match command {
+    match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Study(arguments) => study::study(&arguments),
@@ -96,8 +111,7 @@ fn main() -> ExitCode {
         Command::Schema { reference } => schema(reference),
         Command::New { template, file } => new::new(template.as_deref(), &file),
         Command::Verify { name, quick } => verify(name.as_deref(), quick),
-    };
-    ExitCode::from(code)
+    }
 }
 
 /// Reads and builds a case, or prints all its problems.
@@ -115,7 +129,7 @@ fn load_with(
     let refused = |problems: Vec<Problem>| {
         let code = refuse(&input.sources, &problems);
         if let Err(error) = keep(&problems) {
-            eprintln!("error: {error}");
+            err!("error: {error}");
         }
         code
     };
@@ -131,10 +145,8 @@ fn keep_offenders(case: &Path, problems: &[Problem]) -> Result<(), carom_output:
 }
 
 fn refuse(sources: &[carom_case::Source], problems: &[Problem]) -> u8 {
-    eprint!(
-        "{}",
-        diagnostics::render(sources, problems, std::io::stderr().is_terminal())
-    );
+    let styled = std::io::stderr().is_terminal();
+    terminal::write_styled(&diagnostics::render(sources, problems, styled));
     BAD_INPUT
 }
 
@@ -144,27 +156,27 @@ fn check(case: &Path, set: &[String]) -> u8 {
         Err(code) => return code,
     };
     for fact in carom_case::facts(&built) {
-        println!("{:<18} {}", fact.name, fact.value);
+        out!("{:<18} {}", fact.name, line(&fact.value));
     }
     for warning in &built.warnings {
-        println!("{:<18} {warning}", "warning");
+        out!("{:<18} {}", "warning", line(warning));
     }
-    println!("{} can be run.", case.display());
+    out!("{} can be run.", case.display());
     0
 }
 
 fn schema(reference: bool) -> u8 {
     if reference {
-        print!("{}", carom_case::reference_page());
+        terminal::write_out(format_args!("{}", carom_case::reference_page()));
         return 0;
     }
     match serde_json::to_string_pretty(&carom_case::schema::json_schema()) {
         Ok(text) => {
-            println!("{text}");
+            out!("{text}");
             0
         }
         Err(error) => {
-            eprintln!("error: {error}");
+            err!("error: {error}");
             FAILED
         }
     }
@@ -176,15 +188,15 @@ fn verify(name: Option<&str>, quick: bool) -> u8 {
     } else {
         carom_verification::Size::Full
     };
-    match carom_verification::verify(name, size, &mut std::io::stdout().lock()) {
+    match carom_verification::verify(name, size, &mut terminal::StandardOutput) {
         Ok(verdict) if verdict.holds() => 0,
         Ok(verdict) if verdict.checks == 0 => {
-            eprintln!("error: no check of this name");
+            err!("error: no check of this name");
             BAD_INPUT
         }
         Ok(_) => BAD,
         Err(error) => {
-            eprintln!("error: {error}");
+            err!("error: {error}");
             FAILED
         }
     }

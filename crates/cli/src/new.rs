@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use crate::terminal::{err, out};
 use crate::{BAD_INPUT, FAILED};
 
 /// A case to start from.
@@ -61,16 +62,16 @@ const TEMPLATES: [Template; 5] = [
 /// code. Leaves all files or none.
 pub fn new(template: Option<&str>, file: &Path) -> u8 {
     let Some(name) = template else {
-        println!("Templates:");
+        out!("Templates:");
         for Template { name, shows, .. } in TEMPLATES {
-            println!("  {name:<18} {shows}");
+            out!("  {name:<18} {shows}");
         }
-        println!("Write one with: carom new TEMPLATE [FILE]");
+        out!("Write one with: carom new TEMPLATE [FILE]");
         return 0;
     };
     let Some(template) = TEMPLATES.iter().find(|known| known.name == name) else {
         let names = TEMPLATES.map(|template| template.name);
-        eprintln!(
+        err!(
             "error: no template `{name}`; there are: {}",
             names.join(", ")
         );
@@ -99,7 +100,7 @@ pub fn new(template: Option<&str>, file: &Path) -> u8 {
         .iter()
         .map(|(path, _)| path.display().to_string())
         .collect();
-    println!(
+    out!(
         "Wrote {}. Next: carom run {}",
         names.join(", "),
         file.display()
@@ -110,13 +111,13 @@ pub fn new(template: Option<&str>, file: &Path) -> u8 {
 /// Says why a file was not written; returns the exit code.
 fn refused(path: &Path, error: &std::io::Error) -> u8 {
     if error.kind() == ErrorKind::AlreadyExists {
-        eprintln!(
+        err!(
             "error: {} exists; give another file name or folder",
             path.display()
         );
         BAD_INPUT
     } else {
-        eprintln!("error: {}: {error}", path.display());
+        err!("error: {}: {error}", path.display());
         FAILED
     }
 }

@@ -12,6 +12,7 @@ use carom_output::summary::Newton;
 use carom_output::{Grade, Summary};
 
 use crate::progress::Progress;
+use crate::terminal::{err, line, out};
 use crate::{BAD, FAILED, INTERRUPTED};
 
 /// Arguments of `carom run`.
@@ -37,7 +38,7 @@ pub fn run(arguments: &Arguments) -> u8 {
         Err(code) => return code,
     };
     for warning in &built.warnings {
-        eprintln!("warning: {warning}");
+        err!("warning: {}", line(warning));
     }
     let folder = arguments
         .results
@@ -81,7 +82,7 @@ fn march(
 
 /// The summary for people: forces, impulses, energy, verdict, where to look.
 fn print(summary: &Summary, folder: &Path) {
-    println!("{}", summary.title);
+    out!("{}", line(&summary.title));
     let time = &summary.time;
     let [smallest, largest] = [time.smallest_step, time.largest_step].map(|s| quantity(s, "s"));
     let sizes = match smallest == largest {
@@ -102,14 +103,14 @@ fn print(summary: &Summary, folder: &Path) {
         true => String::new(),
         false => format!("; attempts dropped: {}", causes.join(", ")),
     };
-    println!(
+    out!(
         "  {} steps of {sizes} to {}{rejected}",
         time.steps,
         quantity(time.end, "s")
     );
     if let Some(zones) = &summary.zones {
         for zone in &zones.zones {
-            println!(
+            out!(
                 "  zone {}: {}, {} to an outer step, step {}, {} unknowns",
                 zone.name,
                 zone.scheme,
@@ -118,7 +119,7 @@ fn print(summary: &Summary, folder: &Path) {
                 zone.unknowns
             );
         }
-        println!(
+        out!(
             "  links: {} rows, work {}, {:.2} passes a step",
             zones.links.iter().map(|link| link.rows).sum::<usize>(),
             quantity(zones.work_of_links, "J"),
@@ -126,8 +127,8 @@ fn print(summary: &Summary, folder: &Path) {
         );
     }
     for (name, contact) in &summary.contacts {
-        println!("  contact {name} ({} law)", contact.law);
-        println!(
+        out!("  contact {name} ({} law)", contact.law);
+        out!(
             "    mean force {}, peak of the mean over {}: {}, raw peak {}",
             quantity(contact.mean_force, "N"),
             quantity(contact.window, "s"),
@@ -147,19 +148,19 @@ fn print(summary: &Summary, folder: &Path) {
             true => String::new(),
             false => format!(", of it in no force {}", quantity(contact.impulsive, "N s")),
         };
-        println!(
+        out!(
             "    impulse {}{impulsive}{times}",
             quantity(contact.impulse, "N s")
         );
         if let Some(friction) = contact.friction {
-            println!(
+            out!(
                 "    friction {}, its largest force {}",
                 friction.coefficient,
                 quantity(friction.peak_force, "N")
             );
         }
         if let Some(mixed) = contact.mixed_supports {
-            println!(
+            out!(
                 "    weak form: at most {mixed} nodes with partly closed supports, where the pressure depends on r"
             );
         }
@@ -168,8 +169,8 @@ fn print(summary: &Summary, folder: &Path) {
         let percent = |error: Option<f64>| {
             error.map_or("-".to_string(), |error| format!("{:+.2} %", 100.0 * error))
         };
-        println!("  against the exact solution `{}`:", exact.name);
-        println!(
+        out!("  against the exact solution `{}`:", exact.name);
+        out!(
             "    force {} (L2), peak of the mean {}, impulse {}, displacement {} (L2)",
             percent(exact.force_error),
             percent(exact.mean_overshoot),
@@ -178,41 +179,42 @@ fn print(summary: &Summary, folder: &Path) {
         );
     }
     if let Some(newton) = &summary.newton {
-        println!("  {}", iterations(newton));
+        out!("  {}", iterations(newton));
     }
     let terms = further(summary);
     if !terms.is_empty() {
-        println!("  {}", terms.join(", "));
+        out!("  {}", terms.join(", "));
     }
     let angular = match &summary.momentum.angular {
         Some(angular) => format!(", angular {:.1e}", angular.relative_residual),
         None => String::new(),
     };
-    println!(
+    out!(
         "  energy residual {:.1e}, momentum residual {:.1e}{angular} (relative)",
-        summary.energy.relative_residual, summary.momentum.relative_residual
+        summary.energy.relative_residual,
+        summary.momentum.relative_residual
     );
-    println!("  {}", cost(summary));
-    println!("  {}", verdict(summary));
-    println!("  report: {}", folder.join("report.html").display());
-    println!("  figures: {}", folder.join("plots").display());
+    out!("  {}", cost(summary));
+    out!("  {}", verdict(summary));
+    out!("  report: {}", folder.join("report.html").display());
+    out!("  figures: {}", folder.join("plots").display());
 }
 
 /// The error and those of its causes that it does not already say; where the results so far are.
 fn tell(error: &carom_case::Failed, folder: &Path) {
     let mut said = error.to_string();
-    eprintln!("error: {said}");
+    err!("error: {}", line(&said));
     let mut cause: &dyn std::error::Error = error;
     while let Some(source) = cause.source() {
         let text = source.to_string();
         if !said.contains(&text) {
-            eprintln!("  because: {text}");
+            err!("  because: {}", line(&text));
             said = text;
         }
         cause = source;
     }
     if let carom_case::Failed::Step(_) = error {
-        eprintln!("what was computed before is in {}", folder.display());
+        err!("what was computed before is in {}", folder.display());
     }
 }
 

@@ -3,6 +3,7 @@
 use carom_case::{Axis, Fit, Goal, Input, SweepError};
 use carom_output::study::RAW_PEAK;
 
+use crate::terminal::{err, line, out};
 use crate::{FAILED, sweep};
 
 /// Arguments of `carom study`.
@@ -54,18 +55,18 @@ pub fn study(arguments: &Arguments) -> u8 {
         Ok(studied) => studied,
         Err(error) => return sweep::refuse(&error),
     };
-    println!("{}", study.title);
-    println!("{}\n", sweep::contact(study.contact()));
-    println!("{}", study.table().text(sweep::WIDTH));
+    out!("{}", line(&study.title));
+    out!("{}\n", sweep::contact(study.contact()));
+    out!("{}", study.table().text(sweep::WIDTH));
     let orders = study.order_table();
     if !orders.rows.is_empty() {
-        println!("Orders of convergence against {}\n", study.abscissa_text());
-        println!("{}", orders.text(sweep::WIDTH));
+        out!("Orders of convergence against {}\n", study.abscissa_text());
+        out!("{}", orders.text(sweep::WIDTH));
     }
     let variants = || study.runs.iter().map(|run| &run.variant);
     sweep::reasons(variants());
-    println!("  {RAW_PEAK}");
-    println!("  report: {}", page.display());
+    out!("  {RAW_PEAK}");
+    out!("  report: {}", page.display());
     sweep::code(variants())
 }
 
@@ -80,9 +81,9 @@ fn fit(common: &sweep::Arguments, input: &Input, fit: Result<Fit, SweepError>) -
         Ok(fitted) => fitted,
         Err(error) => return sweep::refuse(&error),
     };
-    println!("{}", fitted.study.title);
-    println!("{}\n", sweep::contact(fitted.study.contact()));
-    println!("{}", fitted.study.table().text(sweep::WIDTH));
+    out!("{}", line(&fitted.study.title));
+    out!("{}\n", sweep::contact(fitted.study.contact()));
+    out!("{}", fitted.study.table().text(sweep::WIDTH));
     let what = match &fit.goal {
         Goal::Quantity(quantity, _) => quantity.name(),
         Goal::Force(_) => "relative distance of the force",
@@ -91,14 +92,14 @@ fn fit(common: &sweep::Arguments, input: &Input, fit: Result<Fit, SweepError>) -
     sweep::reasons(variants());
     let code = match &fitted.found {
         Ok((value, reached)) => {
-            println!("  {} = {value:.7}: {what} {reached:.7}", fit.key);
+            out!("  {} = {value:.7}: {what} {reached:.7}", fit.key);
             0
         }
         Err(reason) => {
-            eprintln!("error: {reason}");
+            err!("error: {reason}");
             FAILED
         }
     };
-    println!("  report: {}", fitted.page.display());
+    out!("  report: {}", fitted.page.display());
     code.max(sweep::code(variants()))
 }

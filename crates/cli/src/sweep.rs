@@ -10,6 +10,7 @@ use carom_dynamics::Observer;
 use carom_output::compare::{Outcome, Variant};
 
 use crate::progress::Progress;
+use crate::terminal::{err, line, out};
 use crate::{FAILED, INTERRUPTED};
 
 /// Letters in a line of a table.
@@ -54,7 +55,7 @@ impl Arguments {
         let hidden = self.quiet || self.jobs > 1 || !std::io::stderr().is_terminal();
         let watch = |name: &str, end: f64| -> Box<dyn Observer> {
             if !hidden {
-                eprintln!("{name}");
+                err!("{name}");
             }
             Box::new(Progress::new(end, hidden))
         };
@@ -73,7 +74,7 @@ pub fn refuse(error: &SweepError) -> u8 {
     match error {
         SweepError::Input { sources, problems } => crate::refuse(sources, problems),
         SweepError::Output(error) => {
-            eprintln!("error: {error}");
+            err!("error: {error}");
             FAILED
         }
     }
@@ -89,7 +90,7 @@ pub fn reasons<'a>(variants: impl Iterator<Item = &'a Variant>) {
     for variant in variants {
         let (verdict, reason) = variant.verdict();
         if !reason.is_empty() {
-            println!("  {} {verdict}: {reason}", variant.name);
+            out!("  {} {verdict}: {}", variant.name, line(&reason));
         }
     }
 }

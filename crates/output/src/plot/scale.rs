@@ -8,6 +8,10 @@ const MARGIN: f64 = 0.06;
 /// A range is clipped to percentiles if the full one is this many times as long.
 const SPIKY: f64 = 1.6;
 
+/// Smaller numbers are drawn and prefixed as if they were none: a range of them, or a factor that brings them near one, would
+/// lose its digits below the smallest normal number, 2.2e-308.
+const NOTHING: f64 = 1e-290;
+
 /// Prefixes of units, one per factor of a thousand from 1e-15.
 const PREFIXES: [&str; 10] = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T"];
 
@@ -28,6 +32,10 @@ impl Scale {
     /// The axis that shows `low..high` (SI), which is widened if it is empty.
     pub fn new(axis: Axis, low: f64, high: f64, margin: bool) -> Scale {
         let largest = low.abs().max(high.abs());
+        let (low, high) = match largest < NOTHING {
+            true => (0.0, 0.0),
+            false => (low, high),
+        };
         let (factor, unit) = engineering(axis.unit, largest);
         let (low, high) = (low / factor, high / factor);
         let (low, high) = match (high - low, largest / factor) {
@@ -155,7 +163,7 @@ pub fn scientific(value: f64, decimals: usize) -> String {
 /// a power of ten before it otherwise.
 pub fn engineering(unit: &str, largest: f64) -> (f64, String) {
     let plain = (1.0, unit.to_owned());
-    if largest == 0.0 || !largest.is_finite() {
+    if largest < NOTHING || !largest.is_finite() {
         return plain;
     }
     let thousands = (largest.log10() / 3.0 + 1e-9).floor() as i32;
@@ -234,6 +242,21 @@ mod tests {
             assert!(scale.low < scale.high);
             let middle = 0.5 * (scale.low + scale.high) * scale.factor;
             assert!((middle - value).abs() <= 1e-12 * value.abs());
+        }
+    }
+
+    #[test]
+    fn numbers_next_to_the_smallest_have_a_range_that_can_be_drawn() {
+        for high in [5e-324, 2.3e-308, 1.5e-305, 1e-291, 1e-289] {
+            for low in [0.0, -high] {
+                let scale = Scale::new(FORCE, low, high, true);
+                assert!(scale.factor.is_normal(), "{high}");
+                let ends = [scale.low, scale.high];
+                assert!(ends.iter().all(|end| end.is_finite()), "{scale:?}");
+                // plotters divides by the range in steps of a tenth of it
+                assert!(scale.high - scale.low > 1e-12, "{scale:?}");
+                assert!(quantity(high, "N").ends_with(" N"));
+            }
         }
     }
 
