@@ -3,12 +3,18 @@
 //! The content goes to a temporary file in the same folder, is forced to the disk, and takes the final name by one
 //! rename: a reader sees the old file or the new one, never a part, whenever the run is cut.
 
-use std::io::{self, BufWriter, Write};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::Path;
 
 use tempfile::{Builder, NamedTempFile};
 
 use crate::Error;
+
+/// Beginning of the name of a temporary file.
+const PREFIX: &str = ".carom-";
+/// End of the name of a temporary file.
+const SUFFIX: &str = ".part";
 
 /// Writes a file whole: `content` is given a buffered writer.
 ///
@@ -30,6 +36,37 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), Error> {
     write(path, |to| to.write_all(text.as_bytes()))
 }
 
+/// Creates an empty file to append to; what stood there is replaced, a symbolic link and not its target.
+///
+/// # Errors
+/// [`Error::File`].
+pub fn create(path: &Path) -> Result<File, Error> {
+    let anew = || {
+        match fs::remove_file(path) {
+            Err(cause) if cause.kind() != ErrorKind::NotFound => return Err(cause),
+            _ => {}
+        }
+        File::create_new(path)
+    };
+    anew().map_err(Error::file("create", path))
+}
+
+/// Removes the temporary files that a run left in a folder when it was killed. To be called by the only run that writes there.
+pub(crate) fn remove_parts(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return;
+    };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_file && name.starts_with(PREFIX) && name.ends_with(SUFFIX) {
+            // one that stays takes some place, and nothing else
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
 fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -48,7 +85,7 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
 /// A temporary file that will be as readable as an ordinary one (temporary files are private by default).
 fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
-    builder.prefix(".carom-").suffix(".part");
+    builder.prefix(PREFIX).suffix(SUFFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

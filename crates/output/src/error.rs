@@ -31,6 +31,18 @@ pub enum Error {
         /// The folder.
         path: PathBuf,
     },
+    /// Another run writes into the results folder.
+    #[error("another run of carom writes into '{path}'; wait for its end, or choose another folder", path = path.display())]
+    Busy {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A symbolic link stands inside the results folder where a file list or a subfolder should be.
+    #[error("'{path}' is a symbolic link: nothing inside a results folder is written through one; remove it", path = path.display())]
+    Link {
+        /// The link.
+        path: PathBuf,
+    },
     /// A file name that would leave the results folder or cannot be kept in its list.
     #[error("'{name}' is not the name of a file inside the results folder")]
     FileName {

@@ -1,12 +1,16 @@
-//! The results folder: which files in it are ours.
+//! The results folder: which files in it are ours, and who writes to it.
 //!
 //! The folder keeps a list of what the run wrote, in [`LIST`]. A later run of the same case finds the list, removes
 //! exactly those files and starts afresh; whatever else lies there (a state file of a viewer, notes) is left alone,
-//! and a folder without the list is never touched.
+//! and a folder without the list is never touched. Temporary files that a killed run left go too.
+//!
+//! The list is open and locked while a run writes into the folder, so that a second run is refused; the system takes the
+//! lock away with the process, however it ends. Nothing inside the folder is reached through a symbolic link: a link among
+//! the files is removed and not its target, a link among the subfolders is an error, and a list names nothing behind one.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File};
-use std::io::{ErrorKind, Write};
+use std::fs::{self, File, TryLockError};
+use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Component, Path, PathBuf};
 
 use crate::{Error, atomic};
@@ -15,12 +19,13 @@ use crate::{Error, atomic};
 pub const LIST: &str = "files.txt";
 
 /// First line of the list: what tells a results folder from any other.
-const HEADING: &str = "# results of carom: the files below are replaced by the next run";
+const HEADING: &str = "# results of carom: the files below are replaced by the next run\n";
 
 /// A results folder, open for writing.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
+    /// Locked until it is closed.
     list: File,
     names: BTreeSet<String>,
 }
@@ -31,29 +36,25 @@ impl Folder {
     ///
     /// # Errors
     /// [`Error::NotAFolder`] if a file stands there; [`Error::ForeignFolder`] if a folder stands there which holds
-    /// files and is not a results folder; [`Error::File`] if the system refuses.
+    /// files and is not a results folder; [`Error::Busy`] if another run writes into it; [`Error::Link`] if the list is a
+    /// symbolic link; [`Error::File`] if the system refuses.
     pub fn create(path: &Path) -> Result<Folder, Error> {
+        let refused = |cause| Error::file("create the results folder", path)(cause);
         match fs::metadata(path) {
-            Ok(found) if found.is_dir() => clear(path)?,
+            Ok(found) if found.is_dir() => {}
             Ok(_) => {
                 return Err(Error::NotAFolder {
                     path: path.to_owned(),
                 });
             }
             Err(cause) if cause.kind() == ErrorKind::NotFound => {
-                fs::create_dir_all(path).map_err(Error::file("create the results folder", path))?;
+                fs::create_dir_all(path).map_err(refused)?;
             }
-            Err(cause) => return Err(Error::file("create the results folder", path)(cause)),
+            Err(cause) => return Err(refused(cause)),
         }
-        let list_path = path.join(LIST);
-        atomic::write_text(&list_path, &format!("{HEADING}\n"))?;
-        let list = File::options()
-            .append(true)
-            .open(&list_path)
-            .map_err(Error::file("write", &list_path))?;
         Ok(Folder {
             path: path.to_owned(),
-            list,
+            list: clear(path)?,
             names: BTreeSet::new(),
         })
     }
@@ -68,7 +69,8 @@ impl Folder {
     /// is then always on the list.
     ///
     /// # Errors
-    /// [`Error::FileName`] for a name that leaves the folder; [`Error::File`] if the system refuses.
+    /// [`Error::FileName`] for a name that leaves the folder; [`Error::Link`] if a symbolic link stands where a subfolder should
+    /// be; [`Error::File`] if the system refuses.
     pub fn file(&mut self, name: &str) -> Result<PathBuf, Error> {
         if !is_inside(name) {
             return Err(Error::FileName {
@@ -78,6 +80,12 @@ impl Folder {
         let path = self.path.join(name);
         if self.names.contains(name) {
             return Ok(path);
+        }
+        for folder in folders(name) {
+            let folder = self.path.join(folder);
+            if fs::symlink_metadata(&folder).is_ok_and(|found| found.is_symlink()) {
+                return Err(Error::Link { path: folder });
+            }
         }
         if let Some(parent) = path.parent() {
             fs::create_dir_all(parent).map_err(Error::file("create the folder", parent))?;
@@ -114,32 +122,97 @@ fn is_inside(name: &str) -> bool {
         && Path::new(name).components().all(plain)
 }
 
-/// Removes what the list of an earlier run names, and the subfolders that this leaves empty.
-fn clear(folder: &Path) -> Result<(), Error> {
-    let list = folder.join(LIST);
-    let text = match fs::read_to_string(&list) {
-        Ok(text) if text.starts_with(HEADING) => text,
-        _ if is_empty(folder)? => return Ok(()),
-        _ => {
-            return Err(Error::ForeignFolder {
-                path: folder.to_owned(),
-            });
-        }
+/// The subfolders that lead to a name, the outermost first.
+fn folders(name: &str) -> Vec<&Path> {
+    let above = Path::new(name).ancestors().skip(1);
+    let mut above: Vec<&Path> = above.filter(|path| !path.as_os_str().is_empty()).collect();
+    above.reverse();
+    above
+}
+
+/// Whether a subfolder on the way to a name is a symbolic link: what it leads to is not ours.
+fn through_a_link(folder: &Path, name: &str) -> bool {
+    let link = |path: &Path| fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink());
+    folders(name).iter().any(|part| link(&folder.join(part)))
+}
+
+/// Removes what the list of an earlier run names, and the subfolders that this leaves empty. Returns the list, locked, with
+/// nothing but its heading.
+fn clear(folder: &Path) -> Result<File, Error> {
+    let path = folder.join(LIST);
+    let known = fs::symlink_metadata(&path);
+    if known.as_ref().is_ok_and(|found| found.is_symlink()) {
+        return Err(Error::Link { path });
+    }
+    let foreign = || Error::ForeignFolder {
+        path: folder.to_owned(),
     };
+    if !known.is_ok_and(|found| found.is_file()) && !is_empty(folder)? {
+        return Err(foreign());
+    }
+    let mut list = File::options()
+        .read(true)
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(&path)
+        .map_err(Error::file("write", &path))?;
+    lock(&list, folder)?;
+    let mut bytes = Vec::new();
+    list.read_to_end(&mut bytes)
+        .map_err(Error::file("read", &path))?;
+    let text = String::from_utf8_lossy(&bytes);
+    // a run that was killed at once left the beginning of a heading, and nothing else
+    let begun =
+        HEADING.starts_with(&*text) && fs::read_dir(folder).is_ok_and(|all| all.count() == 1);
+    if !begun && !text.starts_with(HEADING) {
+        return Err(foreign());
+    }
+    remove(folder, &text)?;
+    let fresh = |list: &mut File| {
+        // the heading stays whole at any moment: it says whose folder this is
+        list.seek(SeekFrom::Start(0))?;
+        list.write_all(HEADING.as_bytes())?;
+        list.set_len(HEADING.len() as u64)
+    };
+    fresh(&mut list).map_err(Error::file("write", &path))?;
+    Ok(list)
+}
+
+/// Takes the lock, which goes with the process.
+fn lock(list: &File, folder: &Path) -> Result<(), Error> {
+    match list.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => Err(Error::Busy {
+            path: folder.to_owned(),
+        }),
+        Err(TryLockError::Error(cause)) if cause.kind() == ErrorKind::Unsupported => {
+            let folder = folder.display();
+            tracing::warn!(
+                "the file system has no locks: a second run into {folder} would not be refused"
+            );
+            Ok(())
+        }
+        Err(TryLockError::Error(cause)) => Err(Error::file("lock", &folder.join(LIST))(cause)),
+    }
+}
+
+/// Removes the files that a list names, and what a killed run left beside them.
+fn remove(folder: &Path, list: &str) -> Result<(), Error> {
     // A last line without its end was cut while it was written: its file was not made yet.
-    let complete = text
+    let complete = list
         .split_inclusive('\n')
         .filter(|line| line.ends_with('\n'));
     let names: Vec<&str> = complete
         .skip(1)
         .map(str::trim_end)
-        .filter(|name| is_inside(name))
+        .filter(|name| is_inside(name) && *name != LIST && !through_a_link(folder, name))
         .collect();
     for name in &names {
         let path = folder.join(name);
-        if *name != LIST
+        let is_file = fs::symlink_metadata(&path).is_ok_and(|found| found.is_file());
+        if is_file
             && path.ends_with(LIST)
-            && path.is_file()
             && let Some(nested) = path.parent()
         {
             clear(nested)?;
@@ -151,17 +224,13 @@ fn clear(folder: &Path) -> Result<(), Error> {
             _ => {}
         }
     }
-    let parents: BTreeSet<&Path> = names
-        .iter()
-        .filter_map(|name| Path::new(name).parent())
-        .collect();
-    for parent in parents
-        .into_iter()
-        .rev()
-        .filter(|parent| !parent.as_os_str().is_empty())
-    {
+    let parents: BTreeSet<&Path> = names.iter().flat_map(|name| folders(name)).collect();
+    atomic::remove_parts(folder);
+    for parent in parents.into_iter().rev() {
+        let parent = folder.join(parent);
+        atomic::remove_parts(&parent);
         // Refused when something of the user's is in it, which is the wish.
-        let _ = fs::remove_dir(folder.join(parent));
+        let _ = fs::remove_dir(parent);
     }
     Ok(())
 }

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::Error;
+use crate::{Error, atomic};
 
 /// Rows are handed to the system when they fill this many bytes ...
 const FLUSH_BYTES: usize = 64 * 1024;
@@ -31,7 +31,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Creates the file, or empties an existing one, and writes the line of column names.
+    /// Creates the file, in the place of an existing one, and writes the line of column names.
     ///
     /// # Errors
     /// [`Error::File`]; [`Error::TwinColumns`] if a name occurs twice.
@@ -40,7 +40,7 @@ impl Rows {
         let names: Vec<&str> = columns.iter().map(AsRef::as_ref).collect();
         let mut rows = Rows {
             path: path.to_owned(),
-            file: File::create(path).map_err(Error::file("create", path))?,
+            file: atomic::create(path)?,
             columns: names.len(),
             length: 0,
             pending: Vec::new(),

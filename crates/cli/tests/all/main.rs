@@ -6,5 +6,6 @@
 mod bad_input;
 mod commands;
 mod compare;
+mod folders;
 mod run;
 mod streams;

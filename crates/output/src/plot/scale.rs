@@ -31,11 +31,11 @@ pub struct Scale {
 impl Scale {
     /// The axis that shows `low..high` (SI), which is widened if it is empty.
     pub fn new(axis: Axis, low: f64, high: f64, margin: bool) -> Scale {
-        let largest = low.abs().max(high.abs());
-        let (low, high) = match largest < NOTHING {
+        let (low, high) = match low.abs().max(high.abs()) < NOTHING {
             true => (0.0, 0.0),
             false => (low, high),
         };
+        let largest = low.abs().max(high.abs());
         let (factor, unit) = engineering(axis.unit, largest);
         let (low, high) = (low / factor, high / factor);
         let (low, high) = match (high - low, largest / factor) {
@@ -137,7 +137,7 @@ pub fn quantity(value: f64, unit: &str) -> String {
     }
     let (factor, prefixed) = engineering(unit, value.abs());
     let plain = unit.is_empty() && (1e-3..1e6).contains(&value.abs());
-    let text = match prefixed.starts_with("10") {
+    let text = match prefixed.starts_with("10") || value.abs() < NOTHING {
         true if plain => format!("{} {unit}", digits(value, 3)),
         true => format!("{} {unit}", scientific(value, 2)),
         false => format!("{} {prefixed}", digits(value / factor, 3)),
@@ -255,7 +255,8 @@ mod tests {
                 assert!(ends.iter().all(|end| end.is_finite()), "{scale:?}");
                 // plotters divides by the range in steps of a tenth of it
                 assert!(scale.high - scale.low > 1e-12, "{scale:?}");
-                assert!(quantity(high, "N").ends_with(" N"));
+                let text = quantity(high, "N");
+                assert!(text.contains("·10⁻") && text.ends_with(" N"), "{text}");
             }
         }
     }

@@ -5,6 +5,7 @@ use std::io;
 use std::path::Path;
 
 use carom_output::folder::LIST;
+use carom_output::rows::{Cell, Rows};
 use carom_output::{Error, Folder, atomic, checkpoint};
 
 use crate::models;
@@ -161,11 +162,120 @@ fn names_that_leave_the_folder_are_refused_when_written_and_when_read() {
             "{name:?}"
         );
     }
+    drop(folder);
     fs::write(parent.path().join("precious"), "").unwrap();
     let list = fs::read_to_string(path.join(LIST)).unwrap();
     fs::write(path.join(LIST), list + "../precious\n").unwrap();
     Folder::create(&path).unwrap();
     assert_eq!(entries(parent.path()), ["case.carom", "precious"]);
+}
+
+#[test]
+fn a_second_run_into_a_folder_is_refused_as_long_as_the_first_is_open() {
+    let parent = tempfile::tempdir().unwrap();
+    let path = parent.path().join("case.carom");
+    let mut first = Folder::create(&path).unwrap();
+    let inner = Folder::create(&first.nested("1-run").unwrap()).unwrap();
+    fs::write(first.file("mine.csv").unwrap(), "first").unwrap();
+    let error = Folder::create(&path).unwrap_err();
+    assert!(
+        matches!(error, Error::Busy { path: ref named } if *named == path),
+        "{error}"
+    );
+    assert_eq!(fs::read(path.join("mine.csv")).unwrap(), b"first");
+    drop(first);
+    // a run that is still going inside the folder
+    let error = Folder::create(&path).unwrap_err();
+    assert!(
+        matches!(error, Error::Busy { path: ref named } if *named == path.join("1-run")),
+        "{error}"
+    );
+    drop(inner);
+    Folder::create(&path).unwrap();
+    assert_eq!(entries(&path), [LIST]);
+}
+
+#[test]
+fn what_a_killed_run_left_half_written_is_removed_by_the_next() {
+    let parent = tempfile::tempdir().unwrap();
+    let path = parent.path().join("case.carom");
+    let mut folder = Folder::create(&path).unwrap();
+    fs::write(folder.file("plots/a.svg").unwrap(), "").unwrap();
+    drop(folder);
+    for name in [
+        ".carom-1a2b.part",
+        "plots/.carom-3c4d.part",
+        "plots/.part",
+        ".carom-notes",
+    ] {
+        fs::write(path.join(name), "").unwrap();
+    }
+    Folder::create(&path).unwrap();
+    assert_eq!(entries(&path), [".carom-notes", LIST, "plots"]);
+    assert_eq!(entries(&path.join("plots")), [".part"]);
+    // killed while it wrote the first line of the list
+    let empty = parent.path().join("begun");
+    fs::create_dir(&empty).unwrap();
+    fs::write(empty.join(LIST), "# results of").unwrap();
+    Folder::create(&empty).unwrap();
+    fs::write(empty.join(LIST), "").unwrap();
+    fs::write(empty.join("mine"), "").unwrap();
+    let error = Folder::create(&empty).unwrap_err();
+    assert!(matches!(error, Error::ForeignFolder { .. }), "{error}");
+}
+
+#[test]
+#[cfg(unix)]
+fn nothing_in_a_results_folder_is_reached_through_a_link() {
+    use std::os::unix::fs::symlink;
+    let parent = tempfile::tempdir().unwrap();
+    let other = parent.path().join("other");
+    fs::create_dir(&other).unwrap();
+    for name in ["file", "table.csv", LIST] {
+        fs::write(other.join(name), "precious").unwrap();
+    }
+    let precious = || {
+        assert_eq!(entries(&other), ["file", LIST, "table.csv"]);
+        for name in entries(&other) {
+            assert_eq!(fs::read(other.join(name)).unwrap(), b"precious");
+        }
+    };
+    let path = parent.path().join("case.carom");
+    drop(Folder::create(&path).unwrap());
+    let list = fs::read_to_string(path.join(LIST)).unwrap();
+    // a listed file behind a linked subfolder, with a list of its own; files that are links
+    symlink(&other, path.join("sub")).unwrap();
+    symlink(other.join("table.csv"), path.join("table.csv")).unwrap();
+    symlink(other.join("table.csv"), path.join("whole.txt")).unwrap();
+    let listed = format!("{list}sub/file\nsub/{LIST}\nwhole.txt\n");
+    fs::write(path.join(LIST), listed).unwrap();
+    let mut folder = Folder::create(&path).unwrap();
+    assert_eq!(entries(&path), [LIST, "sub", "table.csv"]);
+    precious();
+    // written anew: not through the link
+    let mut table = Rows::create(&folder.file("table.csv").unwrap(), &["x"]).unwrap();
+    table.push([Cell::Number(1.0)].into_iter()).unwrap();
+    table.finish().unwrap();
+    assert_eq!(
+        fs::read_to_string(path.join("table.csv")).unwrap(),
+        "x\n1.0\n"
+    );
+    symlink(other.join("file"), path.join("whole.txt")).unwrap();
+    atomic::write_text(&folder.file("whole.txt").unwrap(), "ours").unwrap();
+    assert_eq!(fs::read(path.join("whole.txt")).unwrap(), b"ours");
+    let error = folder.file("sub/file").unwrap_err();
+    assert!(
+        matches!(error, Error::Link { path: ref named } if *named == path.join("sub")),
+        "{error}"
+    );
+    drop(folder);
+    precious();
+    // the list itself
+    fs::remove_file(path.join(LIST)).unwrap();
+    symlink(other.join(LIST), path.join(LIST)).unwrap();
+    let error = Folder::create(&path).unwrap_err();
+    assert!(matches!(error, Error::Link { .. }), "{error}");
+    precious();
 }
 
 #[test]
