@@ -20,7 +20,7 @@ unit and is checked for its dimension: `\"254 mm\"`, `\"210 GPa\"`, `\"7.8 t/m^3
 right, of m, g, s, N, Pa, J, W, Hz with the SI prefixes from p to T, of t, bar, min, h, in, ft, rad and deg, with integer exponents. \
 Vectors have one to three components; those left out are zero.
 
-`carom run case.toml --set time.step=\"1 us\"` puts another value in the place of the one at that key path, for one run.
+`carom run case.toml --set time.step=\"1 us\"` replaces the value at that key path for one run.
 ";
 
 /// The page, in Markdown.

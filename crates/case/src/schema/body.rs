@@ -13,17 +13,17 @@ pub struct Body {
     pub region: String,
     /// Name of a material of this file.
     pub material: String,
-    /// What the cells leave out of three-dimensional space: required for bars and plane cells, refused for solids.
+    /// Section of bars or plane cells: required for bars and plane cells, refused for solids.
     pub section: Option<Section>,
     /// Mass matrix.
     #[serde(default)]
     pub mass: Mass,
-    /// How its cells integrate the internal work.
+    /// Integration of the internal work of its cells.
     #[serde(default)]
     pub formulation: Formulation,
     /// Rayleigh damping. Default: none.
     pub damping: Option<Damping>,
-    /// State at the beginning; the velocity is that at the end of a static stage. Default: at rest, undeformed.
+    /// Initial state. After a static stage the velocity applies at the end of that stage. Default: at rest, undeformed.
     pub initial: Option<Initial>,
 }
 
@@ -47,9 +47,9 @@ impl Default for Formulation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FormulationName {
-    /// At all points of the stiffness rule.
+    /// All points of the stiffness rule.
     Full,
-    /// Against volumetric locking: the volume ratio of a cell is that of the whole cell. Materials at finite strain.
+    /// One volume ratio for the whole cell, against volumetric locking. For materials at finite strain.
     MeanDilatation,
 }
 
@@ -57,8 +57,8 @@ pub enum FormulationName {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FormulationWith {
-    /// At one point, with a stiffness against the hourglass modes that it does not see: 4-node quadrilaterals and 8-node
-    /// hexahedra of materials at finite strain.
+    /// One-point integration with a stiffness against hourglass modes. For 4-node quadrilaterals and 8-node hexahedra
+    /// of materials at finite strain.
     Reduced(Reduced),
 }
 
@@ -76,13 +76,13 @@ fn twentieth() -> f64 {
     0.05
 }
 
-/// Rayleigh damping: a force of `mass` times the mass matrix and `stiffness` times the stiffness matrix, on the velocity.
+/// Rayleigh damping: the damping matrix is `mass` times the mass matrix plus `stiffness` times the stiffness matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Damping {
-    /// Factor of the mass. It brakes rigid motion too. Default: 0.
+    /// Factor of the mass matrix. It also damps rigid motion. Default: 0.
     pub mass: Option<Rate>,
-    /// Factor of the stiffness; for materials at small strain. Default: 0.
+    /// Factor of the stiffness matrix; for materials at small strain. Default: 0.
     pub stiffness: Option<Delay>,
 }
 
@@ -96,7 +96,7 @@ pub enum Section {
     PlaneStrain(PlaneSection),
     /// Plane cells whose stress across the plane is zero.
     PlaneStress(PlaneSection),
-    /// Plane cells that turn about the axis x = 0: x is the radius, y the axis. The whole turn is modelled.
+    /// Axisymmetric cells: x is the radius, y is along the axis x = 0. The model is the full circumference.
     Axisymmetric(AxisymmetricSection),
 }
 
@@ -125,20 +125,20 @@ pub struct AxisymmetricSection {}
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mass {
-    /// Diagonal: the rows of the consistent matrix summed.
+    /// Diagonal: the row sums of the consistent matrix for linear elements, its scaled diagonal for quadratic elements.
     #[default]
     Lumped,
-    /// The matrix of the shape functions.
+    /// The consistent mass matrix of the shape functions.
     Consistent,
 }
 
-/// State of a body at the beginning, the same at all its nodes.
+/// Initial state of a body, the same at all its nodes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Initial {
     /// Velocity.
     pub velocity: Option<Vector<Velocity>>,
-    /// Displacement from where the mesh stands.
+    /// Displacement from the position of the mesh.
     pub displacement: Option<Vector<Coordinate>>,
 }
 
@@ -149,7 +149,7 @@ pub struct Initial {
 pub struct Support {
     /// Group whose nodes are held: a side, or the cells of a body.
     pub on: String,
-    /// Directions held.
+    /// Directions in which the nodes are held.
     #[serde(default)]
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub fix: Vec<Axis>,
@@ -158,7 +158,7 @@ pub struct Support {
     pub motion: Option<Movement>,
 }
 
-/// Displacements as functions of time: straight between the points given, constant before the first and after the last.
+/// Displacements as functions of time: linear between the given points, constant before the first and after the last.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend("anyOf" = [{ "required": ["x"] }, { "required": ["y"] }, { "required": ["z"] }]))]

@@ -15,34 +15,34 @@ use super::quantity::{Clearance, Damping, Force, Length, SurfaceDamping, Surface
     { "required": ["self"] },
 ]))]
 pub struct Contact {
-    /// Group of the surface that carries the contact pressure at its nodes.
+    /// Group of the surface whose points carry the contact forces.
     pub secondary: String,
-    /// Group of the surface that gives the normal.
+    /// Group of the surface that defines the normal.
     pub primary: Option<String>,
     /// A rigid obstacle in place of a primary surface.
     pub obstacle: Option<Obstacle>,
-    /// `true`: the secondary surface faces itself.
+    /// `true`: self-contact of the secondary surface.
     #[serde(rename = "self")]
     #[schemars(extend("const" = true))]
     pub itself: Option<bool>,
     /// Contact law.
     pub law: Law,
-    /// Whether the pairing of the two surfaces follows their motion. Default: `finite` where the steps are not linear anyway (finite
-    /// strain, plasticity, friction, obstacles or supports that move, loads in time, damping, static stages, mortar); `small`
-    /// elsewhere.
+    /// Whether the pairing of the two surfaces follows their motion. Default: `finite` in nonlinear cases (finite
+    /// strain, plasticity, friction, moving obstacles or supports, loads as functions of time, damping, static stages,
+    /// mortar), otherwise `small`.
     pub sliding: Option<Sliding>,
-    /// Where the contact condition is imposed. Default: `node` on linear faces, `mortar` where faces are quadratic: forces at the nodes
-    /// of quadratic faces give no pressure.
+    /// Where the contact condition is imposed. Default: `node` on linear faces, `mortar` where faces are quadratic,
+    /// because forces at the nodes of quadratic faces do not represent the pressure.
     pub integration: Option<Integration>,
     /// Friction. Default: none.
     pub friction: Option<Friction>,
-    /// What is done where the surfaces penetrate at the start.
+    /// Treatment of surfaces that penetrate at the start.
     #[serde(default)]
     pub initial: Penetration,
-    /// Depth beyond which a penetration is no contact: points see only faces that are turned against them and not further away inside
-    /// than this. For thin parts. Default: no bound; of a surface with itself, half its thickness.
+    /// Largest penetration that counts as contact. A point is then paired only with faces of opposite normal that it
+    /// penetrates by at most this depth. For thin parts. Default: no bound; in self-contact half the thickness.
     pub depth: Option<Length>,
-    /// Whether the nodes of the two surfaces keep their mass.
+    /// Mass of the nodes of the two surfaces.
     #[serde(default)]
     pub nodes: Nodes,
 }
@@ -62,11 +62,11 @@ pub enum Penetration {
     /// The case is refused.
     #[default]
     Refuse,
-    /// Gaps count from where the points are: the overlap stays and carries no force.
+    /// The initial overlap counts as a gap of zero and carries no force.
     Offset,
-    /// Secondary nodes are moved onto the other surface; the mesh changes, and no stress arises.
+    /// Secondary nodes are moved onto the other surface. The mesh changes, without stress.
     Remove,
-    /// Nothing: the law pushes the points out.
+    /// The contact law pushes the points out.
     Keep,
 }
 
@@ -77,8 +77,8 @@ pub enum Nodes {
     /// They keep their mass.
     #[default]
     Heavy,
-    /// Their mass goes to the other nodes of their bodies; mass and centre of mass stay, and as far as possible the
-    /// moments of inertia. For the displacement law with implicit schemes and lumped mass.
+    /// Their mass is redistributed to the other nodes of their bodies. This preserves mass and centre of mass, and if
+    /// possible the moments of inertia. For the displacement law with implicit schemes and lumped mass.
     Massless,
 }
 
@@ -88,20 +88,21 @@ pub enum Nodes {
 pub enum Law {
     /// Exact non-penetration: 0 <= g, 0 <= p, p g = 0 at the end of each step.
     Displacement(DisplacementLaw),
-    /// Compliant with a damper: p = k max(0, -g), less C times the gap rate while the gap is closed.
+    /// A spring with a damper: p = k max(0, -g), minus C times the gap rate while the gap is closed.
     Damped(DampedLaw),
     /// Exact impenetrability in velocity: where the gap is closed, 0 <= gap rate, 0 <= p, and p times the gap rate = 0 at the end of
     /// each step.
     Velocity(VelocityLaw),
-    /// A one-sided damper: where the gap is closed, p = C max(0, -gap rate) at the end of each step. Absorbs energy: 1 % of the
-    /// striker's at 100 times the impedance per area of two equal bars, at 400 times that of a bar on a rigid obstacle.
+    /// A one-sided damper: where the gap is closed, p = C max(0, -gap rate) at the end of each step. It absorbs energy:
+    /// 1 % of that of the striker if C is 100 times the impedance per area of two equal bars, or 400 times that of a
+    /// bar on a rigid obstacle.
     Compliance(ComplianceLaw),
-    /// Newton's restitution: where the gap is closed, the gap rate at the end of each step is at least -e times that at its start,
-    /// and exactly that where there is pressure. For bodies that are rigid at the time scale of the step.
+    /// Newton's restitution: where the gap is closed, the gap rate at the end of each step is at least -e times that at
+    /// its start, and equal to it where there is a pressure. For bodies that are rigid at the time scale of the step.
     Restitution(RestitutionLaw),
-    /// A given stiffness: p = k max(0, -g), less C times the gap rate while the gap is closed.
+    /// A given stiffness: p = k max(0, -g), minus C times the gap rate while the gap is closed.
     Penalty(PenaltyLaw),
-    /// A stop of engineering structures, given for the contact as a whole: a clearance, a curve of force over penetration, a
+    /// A stop of engineering structures, for the contact as a whole: a clearance, a curve of force over penetration, a
     /// dashpot.
     Stop(StopLaw),
 }
@@ -110,8 +111,8 @@ pub enum Law {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct DisplacementLaw {
-    /// Whether velocity and acceleration of closed points are projected at the end of a step in which points close: the
-    /// cure for the oscillation of the force under Newmark's scheme, and for that scheme only.
+    /// Whether velocity and acceleration of closed points are projected at the end of a step in which points close.
+    /// This removes the oscillation of the force under Newmark's scheme; other schemes refuse it.
     #[serde(default)]
     pub projection: bool,
 }
@@ -121,14 +122,14 @@ pub struct DisplacementLaw {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend("not" = { "required": ["damping", "damping-factor"] }))]
 pub struct DampedLaw {
-    /// Stiffness per area k. Default: Young's modulus over the element size of the softer side.
+    /// Stiffness per area k. Default: Young's modulus of the softer side divided by its element size.
     pub stiffness: Option<SurfaceStiffness>,
     /// Damping per area C. Default: from `damping-factor`.
     pub damping: Option<SurfaceDamping>,
-    /// C over the impedance per area of the softer side, times sqrt(k h / E). Default: 0.5.
+    /// C relative to the impedance per area of the softer side times sqrt(k h / E). Default: 0.5.
     #[schemars(extend("minimum" = 0.0))]
     pub damping_factor: Option<f64>,
-    /// What becomes of a pressure that the damper makes tensile.
+    /// Treatment of a tensile pressure of the damper.
     #[serde(default)]
     pub adhesion: Adhesion,
 }
@@ -140,7 +141,7 @@ pub enum Adhesion {
     /// It is set to zero.
     #[default]
     Clip,
-    /// It stays, as the law is printed; the summary says how much it pulled.
+    /// It remains, as in the printed law, and is a negative force in the histories.
     AsPrinted,
 }
 
@@ -148,9 +149,9 @@ pub enum Adhesion {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct VelocityLaw {
-    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, `now` otherwise.
+    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, otherwise `now`.
     pub capture: Option<Capture>,
-    /// Which gaps switch the condition on.
+    /// Gaps at which the condition applies.
     #[serde(default)]
     pub sign: Sign,
 }
@@ -162,10 +163,10 @@ pub struct VelocityLaw {
 pub struct ComplianceLaw {
     /// Damping per area C.
     pub damping: Option<SurfaceDamping>,
-    /// C over the impedance per area of the softer side, in place of `damping`.
+    /// C relative to the impedance per area of the softer side, in place of `damping`.
     #[schemars(extend("minimum" = 0.0))]
     pub damping_factor: Option<f64>,
-    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, `now` otherwise.
+    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, otherwise `now`.
     pub capture: Option<Capture>,
 }
 
@@ -176,7 +177,7 @@ pub struct RestitutionLaw {
     /// Coefficient e: 0 is the velocity law, 1 the elastic rebound of rigid bodies.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
     pub coefficient: f64,
-    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, `now` otherwise.
+    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, otherwise `now`.
     pub capture: Option<Capture>,
 }
 
@@ -188,7 +189,7 @@ pub struct PenaltyLaw {
     pub stiffness: SurfaceStiffness,
     /// Damping per area C. Default: 0.
     pub damping: Option<SurfaceDamping>,
-    /// What becomes of a pressure that the damper makes tensile.
+    /// Treatment of a tensile pressure of the damper.
     #[serde(default)]
     pub adhesion: Adhesion,
 }
@@ -197,18 +198,18 @@ pub struct PenaltyLaw {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct StopLaw {
-    /// Clearance that the mesh does not show: the stop presses where the gap is below minus this. Default: 0.
+    /// Clearance that is not in the mesh: the stop acts where the gap is below minus this value. Default: 0.
     pub clearance: Option<Clearance>,
-    /// Points of force over penetration, both increasing, after (0, 0), which is not written; linear between them, and beyond the
-    /// last one as before it. One point gives a spring.
+    /// Points of force over penetration, both increasing. The curve begins at (0, 0), which is not written; it is
+    /// linear between the points and continues beyond the last one. One point gives a spring.
     #[schemars(extend("minItems" = 1, "maxItems" = 16))]
     pub curve: Vec<CurvePoint>,
-    /// What becomes of the crush when the stop is unloaded.
+    /// Unloading of the stop.
     #[serde(default)]
     pub crush: Crush,
     /// Dashpot. Default: 0.
     pub damping: Option<Damping>,
-    /// What becomes of a force that the dashpot makes tensile.
+    /// Treatment of a tensile force of the dashpot.
     #[serde(default)]
     pub adhesion: Adhesion,
 }
@@ -217,11 +218,12 @@ pub struct StopLaw {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Crush {
-    /// All of it is given back: unloading follows the curve.
+    /// Unloading follows the curve; all energy is recovered.
     #[default]
     Recovered,
-    /// It stays but for its elastic part: unloading and reloading follow a line of the initial stiffness from the point of largest
-    /// crush, and beyond that point the curve goes on. No piece of the curve may be steeper than the first.
+    /// The crush is permanent: unloading and reloading follow a line of the initial stiffness from the point of largest
+    /// penetration; beyond that point the force follows the curve again. No piece of the curve may be steeper than the
+    /// first.
     Permanent,
 }
 
@@ -241,14 +243,14 @@ pub struct CurvePoint {
 pub enum Capture {
     /// The gap at the beginning of the step.
     Now,
-    /// The gap at the beginning of the step or the one predicted for its middle, whichever is less.
+    /// The smaller of the gap at the beginning of the step and the gap predicted for its middle.
     Half,
-    /// The gap at the beginning of the step or the one predicted for its end from the gap rate, whichever is less.
+    /// The smaller of the gap at the beginning of the step and the gap predicted for its end from the gap rate.
     Full,
     /// The gap at the end of the step without any contact force.
     Free,
-    /// None: in all points the gap rate at the end of the step is at least -g / dt, g at its start, so that what has penetrated is
-    /// pushed out (Stewart and Trinkle). Not for the restitution law.
+    /// None. At all points the gap rate at the end of the step is at least -g / dt, with g at its start, so that
+    /// penetrating points are pushed out (Stewart and Trinkle). Not for the restitution law.
     GapTarget,
 }
 
@@ -259,7 +261,7 @@ pub enum Sign {
     /// Closed gaps.
     #[default]
     Closed,
-    /// Open gaps, as equation (7.d) is printed: bodies pass through each other. For comparison only.
+    /// Open gaps, as in the printed equation (7.d): bodies pass through each other. For comparison only.
     AsPrinted,
 }
 
@@ -267,9 +269,9 @@ pub enum Sign {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sliding {
-    /// Points keep the partner and the normal of the initial configuration.
+    /// Points keep the face and the normal of the initial configuration.
     Small,
-    /// The closest points are found again at each step.
+    /// The closest faces are determined again in each step, or in each iteration of a nonlinear step.
     Finite,
 }
 
@@ -289,11 +291,12 @@ pub enum Integration {
 pub enum IntegrationName {
     /// At the nodes of the secondary surface.
     Node,
-    /// At the Gauss points of its faces: the exact laws in their weak form, with a pressure in the shape functions of the
-    /// surface and a sign at each point; the compliance, and penalty and stop without damping, in each point by itself.
+    /// At the Gauss points of its faces. The exact laws have their weak form, with a multiplier in the shape functions
+    /// of the surface and a sign at each point. Compliance, and penalty and stop without damping, apply at each point
+    /// separately.
     Quadrature,
-    /// Segment to segment: in the mean around each node of the secondary surface, with multipliers of the dual basis. Passes
-    /// a constant pressure through meshes that do not match.
+    /// Segment to segment: in a weighted average around each node of the secondary surface, with the dual basis of
+    /// multipliers. Non-matching meshes transmit a constant pressure exactly.
     Mortar,
 }
 
@@ -301,11 +304,11 @@ pub enum IntegrationName {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum IntegrationWith {
-    /// At the Gauss points of the secondary faces, as the name says, with the r of the weak form: the sign of a point is
-    /// that of p - r g, or p - r-v times the gap rate. The result depends on it only around nodes between closed and open
-    /// points; the summary counts them.
+    /// At the Gauss points of the secondary faces, with the parameter r of the weak form: the sign of a point is that
+    /// of p - r g, or of p - r-v times the gap rate. The result depends on r only around nodes between closed and open
+    /// points; the summary counts these nodes.
     Quadrature(Quadrature),
-    /// Segment to segment, with the basis of the multipliers.
+    /// Segment to segment, with a choice of the basis of the multipliers.
     Mortar(Mortar),
 }
 
@@ -313,7 +316,7 @@ pub enum IntegrationWith {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Mortar {
-    /// Their shape functions.
+    /// Shape functions of the multipliers.
     #[serde(default)]
     pub basis: Basis,
 }
@@ -322,7 +325,7 @@ pub struct Mortar {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Basis {
-    /// Those biorthogonal to the shape functions of the faces: no two multipliers share a secondary node of linear faces.
+    /// Biorthogonal to the shape functions of the faces: on linear faces each multiplier belongs to one secondary node.
     #[default]
     Dual,
     /// The shape functions of the faces.
@@ -333,7 +336,7 @@ pub enum Basis {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Quadrature {
-    /// r of the displacement law. Default: Young's modulus over the element size of the softer side.
+    /// r of the displacement law. Default: Young's modulus of the softer side divided by its element size.
     pub r: Option<SurfaceStiffness>,
     /// r of the velocity law. Default: the impedance per area of the softer side.
     pub r_v: Option<SurfaceDamping>,

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::quantity::{Acceleration, Delay, SignedStress, Vector};
 
-/// A load: gravity on every body, or a pressure or traction on a surface. In a static stage gravity and loads without an amplitude grow
-/// from nothing to their value.
+/// A load: gravity on every body, or a pressure or traction on a surface. In a static stage gravity and loads without
+/// an amplitude grow linearly from zero to their value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend(
@@ -19,15 +19,16 @@ use super::quantity::{Acceleration, Delay, SignedStress, Vector};
     "not" = { "required": ["acceleration", "on"] },
 ))]
 pub struct Load {
-    /// Acceleration of free fall, of every body.
+    /// Acceleration of gravity, on every body.
     pub acceleration: Option<Vector<Acceleration>>,
     /// Group of the surface on which a pressure or traction acts.
     pub on: Option<String>,
-    /// Pressure on the surface as it turns and stretches, positive towards the body.
+    /// Pressure normal to the deformed surface, positive towards the body.
     pub pressure: Option<SignedStress>,
-    /// Force per undeformed area, of fixed direction.
+    /// Force per undeformed area, in a fixed direction.
     pub traction: Option<Vector<SignedStress>>,
-    /// Factor as a function of time: straight between the points given, constant before the first and after the last. Default: 1.
+    /// Factor as a function of time: linear between the given points, constant before the first and after the last.
+    /// Default: 1.
     #[schemars(extend("minItems" = 1))]
     pub amplitude: Option<Vec<AmplitudePoint>>,
 }

@@ -35,13 +35,13 @@ pub struct Material {
     pub maxwell: Option<Maxwell>,
 }
 
-/// Moduli of isotropic elasticity; of laws at finite strain those of the undeformed material.
+/// Moduli of isotropic elasticity; for laws at finite strain those of the undeformed material.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Elastic {
     /// Young's modulus.
     pub young: Modulus,
-    /// Poisson's ratio. Bars and plane stress take what it makes of a free side.
+    /// Poisson's ratio. It does not matter for bars, whose sides are free.
     #[schemars(extend("exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
     pub poisson: f64,
 }
@@ -77,12 +77,12 @@ pub struct J2 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Maxwell {
-    /// Young's modulus at once, before anything has relaxed.
+    /// Instantaneous Young's modulus, before relaxation.
     pub young: Modulus,
-    /// Poisson's ratio at once.
+    /// Instantaneous Poisson's ratio.
     #[schemars(extend("exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
     pub poisson: f64,
-    /// Branches; their ratios sum to less than 1.
+    /// Branches; the sum of their ratios is less than 1.
     #[schemars(extend("minItems" = 1, "maxItems" = 4))]
     pub branches: Vec<Branch>,
 }
@@ -91,7 +91,7 @@ pub struct Maxwell {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Branch {
-    /// Part of the shear modulus that relaxes in it.
+    /// Fraction of the shear modulus that relaxes in this branch.
     #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0))]
     pub ratio: f64,
     /// Relaxation time.

@@ -17,9 +17,9 @@ pub struct Mesh {
     /// Unit of the coordinates in `file`.
     #[serde(default)]
     pub unit: LengthUnit,
-    /// How many times every element is cut in halves along each of its directions: twice makes 16 elements of a quadrilateral, 64 of a
-    /// hexahedron. Groups keep their names, curved borders the shape of the coarse mesh. For linear elements, but not
-    /// wedges and pyramids.
+    /// Number of uniform refinements. Each divides every element by two in each of its directions: two refinements make
+    /// 16 elements of a quadrilateral, 64 of a hexahedron. Groups keep their names; curved borders keep the shape of
+    /// the coarse mesh. For linear elements except wedges and pyramids.
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 10))]
     pub refine: u32,

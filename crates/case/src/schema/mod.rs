@@ -57,7 +57,7 @@ pub use zone::{
     ProfileName, ProfileWith, StepChoice, StepCount, Substeps, WeightTable, Weights, Zone,
 };
 
-/// A case: bodies, what joins them, and the time to simulate.
+/// A case: bodies, their contacts and joints, and the time to simulate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(title = "Carom case file")]
@@ -67,7 +67,7 @@ pub struct Case {
     pub carom: u32,
     /// Title of the report.
     pub title: Option<String>,
-    /// Where the mesh comes from.
+    /// Source of the mesh.
     pub mesh: Mesh,
     /// Materials, by name.
     pub material: Named<Material>,
@@ -88,15 +88,15 @@ pub struct Case {
     /// Overlaps of two bodies that are glued in volume, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub arlequin: Named<Arlequin>,
-    /// Borders where bodies of two zones are tied node to node, by name.
+    /// Borders where bodies of two zones are tied, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub interface: Named<Interface>,
     /// Time and scheme.
     pub time: Time,
-    /// Points whose motion is written at every step, by name.
+    /// Groups whose mean motion is written at every step, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub probe: Named<Probe>,
-    /// What a run leaves.
+    /// Output of a run.
     #[serde(default)]
     pub output: Output,
     /// An exact solution to compare with.

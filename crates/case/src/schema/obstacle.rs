@@ -25,7 +25,7 @@ pub enum Obstacle {
 pub struct Plane {
     /// A point of the plane.
     pub point: Vector<Coordinate>,
-    /// Normal of the plane out of the obstacle, towards the bodies; of any length but zero.
+    /// Normal of the plane out of the obstacle, towards the bodies; of any length except zero.
     pub normal: NormalVector,
     /// Its motion. Default: none.
     pub motion: Option<ObstacleMotion>,
@@ -39,7 +39,7 @@ pub struct Sphere {
     pub centre: Vector<Coordinate>,
     /// Its radius.
     pub radius: Length,
-    /// Where the bodies stay.
+    /// The side of the bodies.
     #[serde(default)]
     pub side: Side,
     /// Its motion. Default: none.
@@ -52,11 +52,11 @@ pub struct Sphere {
 pub struct Cylinder {
     /// A point of its axis.
     pub point: Vector<Coordinate>,
-    /// Direction of its axis, of any length but zero. In the plane: [0, 0, 1].
+    /// Direction of its axis, of any length except zero. In the plane: [0, 0, 1].
     pub axis: NormalVector,
     /// Its radius.
     pub radius: Length,
-    /// Where the bodies stay.
+    /// The side of the bodies.
     #[serde(default)]
     pub side: Side,
     /// Its motion. Default: none.
@@ -67,9 +67,10 @@ pub struct Cylinder {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Surface {
-    /// Group of its faces; the bodies stay where their normals point, as the order of the nodes of each face has them.
+    /// Group of its faces. The order of the nodes of a face defines its normal; the bodies are on the side to which the
+    /// normals point.
     pub group: String,
-    /// Whether the normals point the other way.
+    /// Whether to reverse the normals.
     #[serde(default)]
     pub turned: bool,
     /// Its motion. Default: none.
@@ -99,7 +100,7 @@ impl NormalVector {
     }
 }
 
-/// The motion of an obstacle: a translation, and a turn about an axis that takes part in it.
+/// Motion of an obstacle: a translation, and a rotation about an axis that moves with the translation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend(
@@ -113,10 +114,11 @@ impl NormalVector {
 pub struct ObstacleMotion {
     /// Constant velocity from time 0.
     pub velocity: Option<Vector<Velocity>>,
-    /// Displacement as a function of time: straight between the points given, constant before the first and after the last.
+    /// Displacement as a function of time: linear between the given points, constant before the first and after the
+    /// last.
     #[schemars(extend("minItems" = 1))]
     pub displacement: Option<Vec<ObstaclePoint>>,
-    /// Turn at constant rate from time 0.
+    /// Rotation at constant rate from time 0.
     pub turn: Option<Turn>,
 }
 
@@ -136,7 +138,7 @@ pub struct ObstaclePoint {
 pub struct Turn {
     /// A point of the axis at time 0.
     pub point: Vector<Coordinate>,
-    /// Direction of the axis, of any length but zero. In the plane: [0, 0, 1].
+    /// Direction of the axis, of any length except zero. In the plane: [0, 0, 1].
     pub axis: NormalVector,
     /// Angular velocity.
     pub rate: AngularVelocity,

@@ -9,9 +9,9 @@ use super::quantity::Duration;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Probe {
-    /// Group whose nodes are followed.
+    /// Group of the nodes.
     pub on: String,
-    /// What is written.
+    /// Quantities to write.
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub record: Vec<Motion>,
 }
@@ -30,7 +30,7 @@ pub enum Motion {
     Acceleration,
 }
 
-/// What a run leaves beside its histories, which are always written, at every step.
+/// Output of a run beside its histories, which are always written at every step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Output {
@@ -38,13 +38,13 @@ pub struct Output {
     pub fields: Option<Fields>,
 }
 
-/// Fields on the whole mesh. Contact surfaces get their gap, pressure and sign fields in any case.
+/// Fields on the whole mesh. The gap, pressure and sign fields of contact surfaces are always included.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Fields {
-    /// Time between two of them.
+    /// Time between two outputs.
     pub every: Duration,
-    /// What is written.
+    /// Quantities to write.
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub record: Vec<Field>,
 }
@@ -70,7 +70,7 @@ pub enum Field {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reference {
-    /// Two bars that meet end on.
+    /// Longitudinal impact of two bars.
     TwoBars(BarReference),
     /// A bar against a rigid wall.
     BarOnWall(BarReference),
@@ -80,7 +80,7 @@ pub enum Reference {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct BarReference {
-    /// Whether the sides of the bars may move.
+    /// Lateral motion of the bars.
     #[serde(default)]
     pub sides: Sides,
 }
@@ -89,9 +89,9 @@ pub struct BarReference {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sides {
-    /// They are free: waves at sqrt(E / rho).
+    /// Free sides: the wave speed is sqrt(E / rho).
     #[default]
     Free,
-    /// They are blocked: waves at the speed of confined compression.
+    /// Blocked sides: the wave speed is that of confined compression.
     Blocked,
 }

@@ -5,20 +5,23 @@ use serde::{Deserialize, Serialize};
 
 use super::quantity::Duration;
 
-/// The time to simulate and how.
+/// Duration, step and time scheme.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Time {
-    /// Time at the end; the beginning is 0.
+    /// Time at the end of the run; the run begins at 0.
     pub end: Duration,
-    /// A static stage before the dynamics, which begin at its end with the initial velocities of the bodies. Default: none.
+    /// A static stage before the dynamics. The dynamics begin at its end, with the initial velocities of the bodies.
+    /// Default: none.
     #[serde(rename = "static")]
     pub stage: Option<StaticStage>,
-    /// Time step of the dynamics; required unless all is static. With zones: the outer one. Rules from the mesh then look at the zones that take it.
+    /// Time step of the dynamics; required unless the whole case is static. With zones: the outer step; `courant` and
+    /// `critical` then refer to the zones that take it.
     pub step: Option<Step>,
-    /// Time scheme of the dynamics; required unless all is static. With zones: that of every zone without its own.
+    /// Time scheme of the dynamics; required unless the whole case is static. With zones: the scheme of every zone
+    /// without its own.
     pub scheme: Option<Scheme>,
-    /// How steps that are not linear are solved.
+    /// Solution of nonlinear steps.
     #[serde(default)]
     pub newton: Newton,
 }
@@ -46,30 +49,30 @@ impl Time {
     }
 }
 
-/// A static stage: loads, supports and contacts find their equilibrium, without inertia.
+/// A static stage: the equilibrium of loads, supports and contacts, without inertia.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct StaticStage {
-    /// Time at its end, at most that of the case. A case that ends there needs no step and no scheme.
+    /// Time at its end, at most the end of the case. A case that ends there needs no step and no scheme.
     pub end: Duration,
-    /// Equal steps to it.
+    /// Number of equal steps of the stage.
     #[schemars(extend("minimum" = 1))]
     pub steps: u32,
 }
 
-/// How the equations of a step that is not linear are solved.
+/// Solution of the equations of a nonlinear step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Newton {
-    /// Residual, over the largest of the forces that balance, at which a step is solved.
+    /// Residual of a converged step, relative to the largest of the balancing forces.
     #[serde(default = "tolerance")]
     #[schemars(extend("minimum" = 1e-14, "maximum" = 0.01))]
     pub tolerance: f64,
-    /// Iterations after which a step has failed.
+    /// Largest number of iterations; a step with more has failed.
     #[serde(default = "thirty")]
     #[schemars(extend("minimum" = 1))]
     pub passes: u32,
-    /// Times that a step that failed is halved before the run ends.
+    /// Number of times that a failed step is halved before the run ends.
     #[serde(default = "six")]
     #[schemars(extend("minimum" = 0, "maximum" = 20))]
     pub halvings: u32,
@@ -99,7 +102,7 @@ pub enum Step {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum StepRule {
-    /// This fraction of the least time in which a wave crosses an element.
+    /// This fraction of the shortest time in which a wave crosses an element.
     Courant(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
     /// This fraction of the critical step of an explicit scheme, which comes from the eigenvalues of the elements.
     Critical(#[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))] f64),
@@ -113,18 +116,18 @@ pub enum StepRule {
 pub struct Adaptive {
     /// The largest step, and the first.
     pub largest: LargestStep,
-    /// The smallest step; a thousandth of the largest if not given. A step that fails at this size ends the run.
+    /// The smallest step. A failure at this size ends the run. Default: a thousandth of the largest step.
     pub smallest: Option<Duration>,
-    /// What a point that closes after a flight does to the steps before.
+    /// Response to a point in flight that will close.
     #[serde(default)]
     pub closing: Closing,
-    /// A step after which the energy that the scheme balances exceeds that of the start and the work of the loads by more than this
-    /// fraction of the largest energy is halved.
+    /// A step is halved if the energy that the scheme balances then exceeds its initial value plus the work of the
+    /// loads by more than this fraction of the largest energy.
     #[serde(default = "hundredth")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub energy_growth: f64,
-    /// Steps without a halving after which the step doubles. A point that has carried no force for so many of the largest steps
-    /// is in flight: its next closing cuts.
+    /// Number of steps without a halving after which the step doubles. A point without a force for this number of
+    /// largest steps is in flight; its next closing causes a cut.
     #[serde(default = "ten")]
     #[schemars(extend("minimum" = 1))]
     pub patience: u32,
@@ -144,7 +147,7 @@ pub enum LargestStep {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MeshStep {
-    /// This fraction of the least time in which a wave crosses an element.
+    /// This fraction of the shortest time in which a wave crosses an element.
     Courant(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
     /// This fraction of the critical step of an explicit scheme, which comes from the eigenvalues of the elements.
     Critical(#[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))] f64),
@@ -154,7 +157,8 @@ pub enum MeshStep {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Closing {
-    /// The step is cut before a point in flight closes, so that the closing falls where scheme and law take it best.
+    /// The step before the closing is cut, so that the closing falls at the best position in its step for the scheme
+    /// and the law.
     #[default]
     Cut,
     /// Nothing.
@@ -182,13 +186,14 @@ pub enum Scheme {
     /// The mid-point rule with contact on the mean rate (Laursen, Chawla): exact energy, useless force; made for the
     /// velocity law.
     LaursenChawla(LaursenChawla),
-    /// The mid-point rule with the displacement law and a velocity that gets the work of the contact back (Laursen, Love):
-    /// exact energy, no penetration, useless force; displacement law only.
+    /// The mid-point rule with the displacement law and a velocity update that returns the work of the contact
+    /// (Laursen, Love): exact energy, no penetration, useless force; displacement law only.
     LaursenLove(LaursenLove),
-    /// The generalised-alpha scheme for the smooth motion, contact impulses apart (Chen, Acary, Virlez, Brüls); lumped mass,
-    /// laws in the rate only: velocity, compliance, restitution.
+    /// The generalised-alpha scheme for the smooth motion, with separate contact impulses (Chen, Acary, Virlez, Brüls);
+    /// lumped mass, laws in the rate only: velocity, compliance, restitution.
     NonsmoothAlpha(NonsmoothAlpha),
-    /// A scheme in extended state space: damping through filtered changes of displacement and velocity (after Krenk).
+    /// A scheme in extended state space, with damping through filtered increments of displacement and velocity (after
+    /// Krenk).
     Krenk(Krenk),
     /// Newmark's scheme with implicit contact forces (Kane, Repetto, Ortiz, Marsden); lumped mass, displacement law only.
     Kane(Kane),
@@ -243,7 +248,8 @@ pub struct GeneralisedAlpha {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Hht {
-    /// Internal forces act at (1 + alpha) u+ - alpha u: 0 damps nothing, -1/3 most. Others count it positive.
+    /// Internal forces are evaluated at (1 + alpha) u+ - alpha u: 0 damps nothing, -1/3 most. Some authors define alpha
+    /// with the opposite sign.
     #[serde(default = "minus_tenth")]
     #[schemars(extend("minimum" = -1.0 / 3.0, "maximum" = 0.0))]
     pub alpha: f64,
@@ -264,8 +270,8 @@ pub struct TchamwaWielgosz {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PaoliSchatzman {
-    /// Restitution of bodies that are rigid in a step; the displacement law holds for (u+ + e u-)/(1 + e). Above 0 with the
-    /// displacement law only.
+    /// Restitution e of bodies that are rigid during a step; the displacement law applies to (u+ + e u-)/(1 + e). A
+    /// value above 0 requires the displacement law.
     #[serde(default)]
     #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
     pub restitution: f64,

@@ -7,19 +7,21 @@ use super::Named;
 use super::quantity::{Coordinate, Length, Vector};
 use super::time::Scheme;
 
-/// A zone: bodies with their own scheme and step. Either no body is in a zone, or each is in one. The two sides of a contact are in
-/// the same zone.
+/// A zone: bodies with their own scheme and step. If a case has zones, every body is in one of them. The two sides of a
+/// contact are in the same zone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Zone {
     /// Names of its bodies.
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub bodies: Vec<String>,
-    /// Its time scheme, as `time.scheme`, which is the default. Zones that are joined take theta, newmark,
-    /// central-difference or energy-momentum.
+    /// Time scheme of the zone. Default: `time.scheme`. Zones that are joined use theta, newmark, central-difference or
+    /// energy-momentum.
     pub scheme: Option<Scheme>,
-    /// Steps of this zone to one outer step, which is `time.step`; or, in the outer zone, those of other zones by name:
-    /// `{ impact = 4 }`, or `{ impact = { near = 400, far = 1 } }` where few are enough while nothing can touch. Default: 1. At least one zone takes the outer step; the others take all the same number to it.
+    /// Number of inner steps of this zone per outer step, which is `time.step`; or, in the outer zone, the numbers of
+    /// other zones by name: `{ impact = 4 }`, or `{ impact = { near = 400, far = 1 } }` for fewer inner steps while
+    /// nothing can touch. Default: 1. At least one zone takes the outer step; all others take the same number of inner
+    /// steps.
     pub substeps: Option<Substeps>,
 }
 
@@ -58,31 +60,33 @@ pub struct StepChoice {
 #[schemars(inline, extend("minimum" = 1, "maximum" = 1000))]
 pub struct StepCount(pub u32);
 
-/// An overlap of two bodies, which model the same material there and are glued in volume (the Arlequin method). The two bodies have
-/// meshes of their own and are in different zones. Contact surfaces lie outside.
+/// An overlap of two bodies, which represent the same material there and are glued in volume (Arlequin method). The two
+/// bodies have their own meshes and are in different zones. Contact surfaces lie outside of the overlap.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Arlequin {
-    /// Body of the impact zone, the finer model. Outside the overlap it stands alone.
+    /// Body of the impact zone, the finer model. Outside of the overlap it is the only model.
     pub inner: String,
-    /// Body of the rest, the coarser model. It may cover the inner body: its cells that lie inside that and outside the overlap fall
-    /// away.
+    /// Body of the rest, the coarser model. It may cover the inner body; its cells inside the inner body and outside of
+    /// the overlap are removed.
     pub outer: String,
-    /// Where the two are glued, at least one cell of the outer body thick, better two to four.
+    /// Region in which the two are glued, at least one cell of the outer body thick, better two to four.
     #[serde(default)]
     pub overlap: OverlapRegion,
-    /// How inertia and internal work go from one body to the other. Default `"linear"`: of the profiles the only one that reproduces
-    /// a constant strain.
+    /// Distribution of inertia and internal work between the two bodies. Default `"linear"`: the only profile that
+    /// reproduces a constant strain.
     #[serde(default)]
     pub weights: Weights,
-    /// Whose shape functions carry the multiplier. Default `"coarser"`: a finer one locks the fine motion and reflects short waves.
+    /// Body whose shape functions represent the multiplier. Default `"coarser"`: a finer one locks the fine motion and
+    /// reflects short waves.
     #[serde(default)]
     pub mediator: Mediator,
-    /// Product of multiplier and velocity. Default `"l2"`: it needs no length, and weights without jumps, which linear ones are.
+    /// Scalar product of multiplier and velocity. Default `"l2"`: it needs no length, and requires weights without
+    /// jumps, such as linear weights.
     #[serde(default)]
     pub bracket: Bracket,
-    /// How the multiplier runs over an outer step. Default: `"gravouil-combescure"` if all zones take the outer step, otherwise
-    /// `"prakash-hjelmstad"`, which then dissipates nothing. All joints of a case have the same.
+    /// Multiplier as a function of time within an outer step. Default: `"gravouil-combescure"` if all zones take the
+    /// outer step, otherwise `"prakash-hjelmstad"`, which then does not dissipate. All joints of a case use the same.
     pub link: Option<Link>,
 }
 
@@ -95,10 +99,10 @@ pub struct Interface {
     pub inner: String,
     /// The other body, in another zone.
     pub outer: String,
-    /// Groups of sides of the inner and of the outer body that are tied in the mean where they lie opposite to each other in the
-    /// mesh (mortar). Default: ties at common nodes.
+    /// Groups of sides of the inner and of the outer body. They are tied by mortar where they are opposite to each
+    /// other in the mesh. Default: ties at common nodes.
     pub surfaces: Option<[String; 2]>,
-    /// How the multiplier runs over an outer step; as in `arlequin`.
+    /// Multiplier as a function of time within an outer step, as in `arlequin`.
     pub link: Option<Link>,
 }
 
@@ -124,7 +128,7 @@ impl Default for OverlapRegion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum OverlapName {
-    /// Everywhere where both are. Other texts are groups of cells of either body.
+    /// The whole region that both bodies cover. Other texts are groups of cells of either body.
     Intersection,
 }
 
@@ -166,10 +170,10 @@ impl Default for Weights {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProfileName {
-    /// Linear in the distances to the two borders.
+    /// Linear in the distances to the two borders of the overlap.
     #[default]
     Linear,
-    /// 3 s² - 2 s³ of the linear profile s: no kinks, and strains wrong by some per cent.
+    /// 3 s² - 2 s³ of the linear profile s: smooth, but strains are wrong by some per cent.
     Smooth,
 }
 
@@ -183,7 +187,8 @@ pub struct WeightTable {
     /// Weight of the internal work, delta.
     #[serde(default)]
     pub stiffness: Profile,
-    /// Least weight of either body in the overlap, for profiles that are not constant. Above zero weights jump at the borders.
+    /// Smallest weight of either body in the overlap, for profiles that are not constant. With a value above zero the
+    /// weights jump at the borders.
     #[serde(default)]
     #[schemars(extend("minimum" = 0.0, "exclusiveMaximum" = 0.5))]
     pub floor: f64,
@@ -209,20 +214,21 @@ impl Default for Profile {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProfileWith {
-    /// This weight of the inner body in all of the overlap. For the internal work it misses constant strains.
+    /// This weight of the inner body in the whole overlap. For the internal work it does not reproduce a constant
+    /// strain.
     Constant(#[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0))] f64),
 }
 
-/// Whose shape functions carry the multiplier.
+/// Body whose shape functions represent the multiplier.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mediator {
-    /// Of the body with the larger cells in the overlap.
+    /// The body with the larger cells in the overlap.
     #[default]
     Coarser,
-    /// Of the inner body.
+    /// The inner body.
     Inner,
-    /// Of the outer body.
+    /// The outer body.
     Outer,
 }
 
@@ -295,8 +301,9 @@ pub enum LengthName {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Link {
-    /// Velocities are equal at every inner instant, those of the outer zone interpolated. Dissipates with inner steps.
+    /// Velocities are equal at every inner instant; those of the outer zone are interpolated. Dissipates energy with
+    /// inner steps.
     GravouilCombescure,
-    /// Multipliers are linear over the outer step, velocities equal at its end.
+    /// Multipliers are linear over the outer step; velocities are equal at its end.
     PrakashHjelmstad,
 }
