@@ -12,17 +12,17 @@ use crate::terminal::{line, out};
 pub struct Arguments {
     #[command(flatten)]
     common: sweep::Arguments,
-    /// Time schemes: `newmark`, `"newmark={beta=0.5,gamma=0.9}"`, or `case` for that of the case
+    /// Time schemes: `newmark`, `"newmark={beta=0.5,gamma=0.9}"`, or `case` for the scheme of the case
     #[arg(long, num_args = 1.., value_name = "SCHEME")]
     with: Vec<String>,
     /// Contact laws, for all contacts: `displacement`, `"damped={adhesion='clip'}"`, or `case`
     #[arg(long, num_args = 1.., value_name = "LAW")]
     law: Vec<String>,
-    /// Other case files of the same problem, run as they are and put into the same table
+    /// Other case files of the same problem; they run as they are and get a row in the same table
     #[arg(long, num_args = 1.., value_name = "CASE")]
     beside: Vec<PathBuf>,
-    /// What to compare with: `exact`, `finest` (a run with smaller elements and steps), `none`, or a variant of the table;
-    /// default: the exact solution that the case names, else `finest`
+    /// Reference for errors: `exact`, `finest` (a run with smaller elements and steps), `none`, or a variant of the table;
+    /// default: the exact solution that the case names, otherwise `finest`
     #[arg(long, value_name = "NAME")]
     reference: Option<String>,
 }

@@ -21,12 +21,12 @@ use clap::{Parser, Subcommand};
 
 use crate::terminal::{err, line, out};
 
-/// Impact of deformable solids: a case file, a run, a report.
+/// Computes the impact of deformable bodies: a case file, a run, a report.
 #[derive(Parser)]
 #[command(name = "carom", version)]
 struct Arguments {
-    /// How much is told on stderr: `warn`, or `debug` for which factor an iteration keeps and why, steps taken in halves, points
-    /// that change their faces
+    /// Messages on stderr: `warn`, or `debug` for factorisations with their reasons, halved steps, and points that change their
+    /// faces
     #[arg(long, value_name = "LEVEL", default_value = "warn", global = true)]
     log: tracing::Level,
     #[command(subcommand)]
@@ -35,13 +35,13 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Check a case, run it, and leave its results folder
+    /// Check a case, run it, and write its results folder
     Run(run::Arguments),
     /// Run a case under several schemes and contact laws: one table, one figure per quantity, one report
     Compare(compare::Arguments),
-    /// Run a case over the values of a key: orders of convergence with error bars
+    /// Run a case over the values of a key, with orders of convergence; or find the value that gives a result
     Study(study::Arguments),
-    /// Say everything that can be said of a case before a run
+    /// Check a case without running it: errors, warnings, sizes, wave speeds, first possible impact, steps
     Check {
         /// The case file
         case: PathBuf,
@@ -51,23 +51,23 @@ enum Command {
     },
     /// Print the JSON schema of the case file
     Schema {
-        /// Print the reference page of the manual instead
+        /// Print the reference page of the book instead
         #[arg(long)]
         reference: bool,
     },
     /// Write a commented case to start from, with the mesh that it reads
     New {
-        /// Name of the template; without it the templates are listed
+        /// Name of the template; without a name the command lists the templates
         template: Option<String>,
         /// File to write
         #[arg(default_value = "case.toml")]
         file: PathBuf,
     },
-    /// Rerun the verification manual on this machine
+    /// Run the problems with a known answer on this machine
     Verify {
-        /// Only the checks whose name contains this
+        /// Run only the checks whose name contains this text
         name: Option<String>,
-        /// The small sizes of the quick tests
+        /// Use the small sizes of the quick tests
         #[arg(long)]
         quick: bool,
     },

@@ -23,10 +23,10 @@ pub struct Arguments {
     /// Replace a value of the case: `--set time.scheme.theta.theta=0.6`
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Results folder; default: the case file's name with the ending `.carom`, beside it
+    /// Results folder; default: the name of the case file with the ending `.carom`, beside it
     #[arg(long, value_name = "FOLDER")]
     results: Option<PathBuf>,
-    /// No progress bar
+    /// Show no progress bar
     #[arg(long)]
     quiet: bool,
 }

@@ -11,11 +11,11 @@ use crate::{FAILED, sweep};
 pub struct Arguments {
     #[command(flatten)]
     common: sweep::Arguments,
-    /// A key of the case with its values, `time.step.courant=1,0.5,0.25`; keys with `;` between vary together, `a=1,2;b=3,4`;
-    /// given several times, all combinations are run
+    /// A key of the case with its values, `time.step.courant=1,0.5,0.25`; keys separated by `;` vary together, `a=1,2;b=3,4`;
+    /// several `--vary` options run all combinations
     #[arg(long, required_unless_present = "fit", value_name = "KEY=VALUES")]
     vary: Vec<String>,
-    /// A key to find the value of, so that the case gives what `--to` wants
+    /// A key whose value is to be found, so that the run gives the result of `--to`
     #[arg(
         long,
         requires = "between",
@@ -24,10 +24,10 @@ pub struct Arguments {
         value_name = "KEY"
     )]
     fit: Option<String>,
-    /// The least and the largest value to try, SI
+    /// The smallest and the largest value to try, in SI units
     #[arg(long, requires = "fit", value_name = "A,B", allow_hyphen_values = true)]
     between: Option<String>,
-    /// What to fit to: `restitution=0.98`, any other column of `study.csv`, or `force=FILE.csv`
+    /// The result to reach: `restitution=0.98`, any other column of `study.csv`, or `force=FILE.csv`
     #[arg(long, requires = "fit", value_name = "GOAL")]
     to: Option<String>,
 }

@@ -24,16 +24,16 @@ pub struct Arguments {
     /// Replace a value of the case in every run: `--set time.end="200 us"`
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Common results folder; default: the case file's name with the ending `.compare` or `.study`, beside it
+    /// Common results folder; default: the name of the case file with the ending `.compare` or `.study`, beside it
     #[arg(long, value_name = "FOLDER")]
     pub results: Option<PathBuf>,
-    /// The contact that is looked at; default: the first one
+    /// The contact whose force is compared; default: that of the exact solution, otherwise the first one
     #[arg(long, value_name = "NAME")]
     pub contact: Option<String>,
-    /// Runs at one time; wall times are comparable with 1 only
+    /// Number of runs at a time; wall times are comparable only with 1
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub jobs: usize,
-    /// No progress bar
+    /// Show no progress bar
     #[arg(long)]
     pub quiet: bool,
 }
