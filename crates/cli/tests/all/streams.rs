@@ -200,7 +200,10 @@ fn an_override_of_several_lines_stands_in_the_copy_of_the_case_as_a_comment() {
 #[test]
 fn help_begins_with_what_the_program_is() {
     let help = text(&carom(&project(), &["--help"]));
-    assert!(help.starts_with("Impact of deformable solids"), "{help}");
+    assert!(
+        help.starts_with("Computes the impact of deformable bodies"),
+        "{help}"
+    );
 }
 
 #[test]
