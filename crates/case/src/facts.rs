@@ -119,7 +119,7 @@ fn zone_facts(zoned: &Zoned) -> Vec<Fact> {
         fact(
             format!("zone {}", zone.name),
             format!(
-                "{}: {}, {} to an outer step, of {:.4e} s ({}){critical}",
+                "{}: {}, {} per outer step, of {:.4e} s ({}){critical}",
                 bodies.join(", "),
                 scheme.name(),
                 match zone.substeps {
@@ -142,7 +142,7 @@ fn joint_facts(built: &Built, zoned: &Zoned) -> Vec<Fact> {
     };
     let unit = ["m", "m", "m^2", "m^3"][built.system.dim];
     let joint = |link: &ModelLink| {
-        let rows = format!("{} rows, {kind}", link.rows.len());
+        let rows = format!("{} constraints, {kind}", link.rows.len());
         let overlap = built.overlaps.iter().find(|one| one.name == link.name);
         let Some(overlap) = overlap else {
             return fact(format!("interface {}", link.name), rows);
@@ -151,7 +151,7 @@ fn joint_facts(built: &Built, zoned: &Zoned) -> Vec<Fact> {
         fact(
             format!("overlap {}", link.name),
             format!(
-                "{:.4e} {unit}, {:.2} outer cells across, cells of {inner:.4e} m on {outer:.4e} m, {} outer cells fall away, {rows}",
+                "{:.4e} {unit}, {:.2} outer cells wide, cells of {inner:.4e} m on {outer:.4e} m, {} outer cells removed, {rows}",
                 overlap.measure, overlap.layers, overlap.removed
             ),
         )
@@ -266,7 +266,7 @@ fn where_it_holds(system: &System, contact: usize) -> String {
 fn touching(pair: &Contact) -> String {
     let deepest = pair.offsets.iter().copied().fold(0.0, f64::max);
     match deepest > 0.0 {
-        true => format!(", mean gaps down to -{deepest:.4e} m at the start count as none"),
+        true => format!(", mean gaps down to -{deepest:.4e} m at the start count as zero"),
         false => String::new(),
     }
 }

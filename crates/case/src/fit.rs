@@ -160,7 +160,7 @@ fn history(path: &Path) -> Result<StepForce, SweepError> {
             }
             _ => {
                 let message = format!(
-                    "line {} of `{name}` is no time after the last with a force",
+                    "line {} of `{name}`: expected a time after the last one, and a force",
                     number + 2
                 );
                 return Err(refuse(Problem::new("", message).found(line)));
@@ -268,7 +268,7 @@ fn meet([mut a, mut b]: [f64; 2], goal: f64, trial: &mut Trial) -> Search {
     let (mut fa, mut fb) = (first - goal, last - goal);
     if fa * fb > 0.0 {
         return Ok(Err(format!(
-            "between {first:.6} and {last:.6}, which the ends give, there is no {goal}"
+            "{goal} is not between {first:.6} and {last:.6}, the results at the two ends of the range"
         )));
     }
     // the nearer end is the best so far

@@ -101,7 +101,7 @@ impl Vary {
             values: split(values, ','),
         };
         if vary.key.is_empty() {
-            return Err(wrong("no key stands before the `=`"));
+            return Err(wrong("there is no key before the `=`"));
         }
         if vary.values.iter().any(String::is_empty) {
             return Err(wrong("a value is missing"));

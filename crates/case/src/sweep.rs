@@ -91,7 +91,7 @@ impl Job {
         if self.case.contact.names().any(|own| own == name) {
             return Ok(());
         }
-        let problem = Problem::new("", "no contact of this name to look at");
+        let problem = Problem::new("", "no contact of this name");
         Err(SweepError::Input {
             sources: vec![Source {
                 name: "--contact".to_owned(),

@@ -115,7 +115,7 @@ impl<'a> Walker<'a> {
         }
         chosen.sort_by_key(|(_, inner)| inner.place());
         if let [(first, _), (second, inner), ..] = chosen.as_slice() {
-            let message = format!("`{second}` beside `{first}`: only one of them can stand");
+            let message = format!("`{second}` beside `{first}`: only one of them is allowed");
             self.problems.push(
                 Problem::new(join(path, second), message)
                     .accepted(choices.keys().copied())

@@ -101,7 +101,7 @@ fn print(summary: &Summary, folder: &Path) {
         .collect();
     let rejected = match causes.is_empty() {
         true => String::new(),
-        false => format!("; attempts dropped: {}", causes.join(", ")),
+        false => format!("; attempts rejected: {}", causes.join(", ")),
     };
     out!(
         "  {} steps of {sizes} to {}{rejected}",
@@ -111,7 +111,7 @@ fn print(summary: &Summary, folder: &Path) {
     if let Some(zones) = &summary.zones {
         for zone in &zones.zones {
             out!(
-                "  zone {}: {}, {} to an outer step, step {}, {} unknowns",
+                "  zone {}: {}, {} per outer step, step {}, {} unknowns",
                 zone.name,
                 zone.scheme,
                 zone.substeps,
@@ -120,7 +120,7 @@ fn print(summary: &Summary, folder: &Path) {
             );
         }
         out!(
-            "  links: {} rows, work {}, {:.2} passes a step",
+            "  links: {} constraints, work {}, {:.2} passes a step",
             zones.links.iter().map(|link| link.rows).sum::<usize>(),
             quantity(zones.work_of_links, "J"),
             zones.passes_per_step
@@ -146,7 +146,10 @@ fn print(summary: &Summary, folder: &Path) {
         };
         let impulsive = match contact.impulsive == 0.0 {
             true => String::new(),
-            false => format!(", of it in no force {}", quantity(contact.impulsive, "N s")),
+            false => format!(
+                ", of which {} in separate impulses",
+                quantity(contact.impulsive, "N s")
+            ),
         };
         out!(
             "    impulse {}{impulsive}{times}",
@@ -154,7 +157,7 @@ fn print(summary: &Summary, folder: &Path) {
         );
         if let Some(friction) = contact.friction {
             out!(
-                "    friction {}, its largest force {}",
+                "    friction coefficient {}, largest friction force {}",
                 friction.coefficient,
                 quantity(friction.peak_force, "N")
             );
@@ -214,7 +217,7 @@ fn tell(error: &carom_case::Failed, folder: &Path) {
         cause = source;
     }
     if let carom_case::Failed::Step(_) = error {
-        err!("what was computed before is in {}", folder.display());
+        err!("the results so far are in {}", folder.display());
     }
 }
 
@@ -222,7 +225,8 @@ fn tell(error: &carom_case::Failed, folder: &Path) {
 fn iterations(newton: &Newton) -> String {
     let halves = match newton.halvings {
         0 => String::new(),
-        count => format!(", {count} times in halves"),
+        1 => ", 1 halving".to_string(),
+        count => format!(", {count} halvings"),
     };
     format!(
         "{} Newton iterations, {:.2} a step, at most {}; {:.2} factorisations a step{halves}",

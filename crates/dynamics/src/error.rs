@@ -32,7 +32,7 @@ pub enum Error {
     },
     /// The statuses of the contact points did not settle.
     #[error(
-        "step {step}: contact statuses did not settle in {passes} passes; point {point} of contact '{contact}' still changes"
+        "step {step}: the contact statuses did not converge in {passes} passes; point {point} of contact '{contact}' still changes"
     )]
     Statuses {
         /// Number of the step.
@@ -139,7 +139,7 @@ pub enum Error {
     },
     /// A displacement law on a scheme whose end displacement does not depend on the forces of the step.
     #[error(
-        "contact '{contact}': with an explicit scheme the displacement at the end of the step does not depend on the contact force, so the displacement law cannot hold"
+        "contact '{contact}': with an explicit scheme the displacement at the end of the step does not depend on the contact force: the displacement law is impossible"
     )]
     DisplacementLaw {
         /// Name of the contact.
@@ -147,7 +147,7 @@ pub enum Error {
     },
     /// A projection at closure with a scheme that does not hold the balance at the end of the step.
     #[error(
-        "contact '{contact}': the projection at closure keeps velocity, acceleration and force of the end of the step in balance, which only Newmark's scheme holds there"
+        "contact '{contact}': the projection at closure needs velocity, acceleration and force in balance at the end of the step: only Newmark's scheme has this balance"
     )]
     Projection {
         /// Name of the contact.
@@ -178,7 +178,7 @@ pub enum Error {
         cause: &'static str,
     },
     /// A contact whose obstacle moves, in a scheme whose rows are rates at bodies at rest.
-    #[error("contact '{contact}': its obstacle moves, which the linear steps do not follow")]
+    #[error("contact '{contact}': its obstacle moves, which linear steps do not support")]
     MovingObstacle {
         /// Name of the contact.
         contact: String,
@@ -207,7 +207,7 @@ pub enum Error {
     },
     /// A law in the rate on a scheme whose contact forces are those that keep the displacement.
     #[error(
-        "contact '{contact}': in the scheme {scheme} contact forces keep the displacement at the end of the step, so only the displacement law can hold"
+        "contact '{contact}': the contact forces of the scheme {scheme} act on the displacement at the end of the step: the scheme needs the displacement law"
     )]
     RateLaw {
         /// Name of the contact.
@@ -217,7 +217,7 @@ pub enum Error {
     },
     /// A law in the gap on a scheme whose contact impulses are those that change the velocity.
     #[error(
-        "contact '{contact}': in the scheme {scheme} contact impulses change the velocity at the end of the step, so only a law in the rate can hold"
+        "contact '{contact}': the contact impulses of the scheme {scheme} act on the velocity at the end of the step: the scheme needs a law in the rate"
     )]
     GapLaw {
         /// Name of the contact.
@@ -247,7 +247,7 @@ pub enum Error {
     },
     /// A zone with a scheme that no link takes.
     #[error(
-        "zone '{zone}': links take the schemes theta, newmark and central-difference, not {scheme}"
+        "zone '{zone}': links accept the schemes theta, newmark, central-difference and energy-momentum, not {scheme}"
     )]
     LinkScheme {
         /// Name of the zone.
@@ -256,7 +256,7 @@ pub enum Error {
         scheme: &'static str,
     },
     /// Numbers of inner steps that do not go together.
-    #[error("zone '{zone}' takes {found} steps to an outer one: {accepted}")]
+    #[error("zone '{zone}' takes {found} steps per outer step: {accepted}")]
     Substeps {
         /// Name of the zone.
         zone: String,
@@ -275,7 +275,7 @@ pub enum Error {
     },
     /// Multipliers of links that were not found.
     #[error(
-        "step {step}: the zones still part by {defect:e} m/s along a link after {passes} passes"
+        "step {step}: the velocities of the zones still differ by {defect:e} m/s at a link after {passes} passes"
     )]
     Link {
         /// Number of the outer step.
@@ -286,7 +286,7 @@ pub enum Error {
         defect: f64,
     },
     /// A function of time that is none.
-    #[error("a function of time needs points whose times ascend, all numbers finite")]
+    #[error("a function of time needs points with increasing times and finite numbers")]
     Amplitude,
     /// Something that the nonlinear solver, which the model needs, does not take.
     #[error("{what}: {why}")]

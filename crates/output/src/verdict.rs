@@ -131,7 +131,7 @@ pub fn force_error(standard: &str, error: f64) -> Line {
             Form::Percent,
         ),
         Bounds::Both(0.15, 0.5),
-        "a finer mesh with a shorter step; another scheme or contact law where that does not help",
+        "use a finer mesh with a smaller step; if that does not help, another scheme or contact law",
     )
 }
 

@@ -18,35 +18,35 @@ const AGAINST: [Advice; 7] = [
             matches!(scheme, Scheme::Newmark(s) if s.gamma == 0.5 && s.beta == 0.25)
                 && is_plain(law)
         },
-        reason: "the trapezoid with the displacement law gains energy below a Courant number of about 4",
+        reason: "the trapezoidal rule with the displacement law gains energy below a Courant number of about 4",
     },
     Advice {
         is: |scheme, law| {
             matches!(scheme, Scheme::Newmark(s) if s.gamma == 0.5) && is_velocity(law)
         },
-        reason: "Newmark's scheme without damping and the velocity law switch contact on and off at every other step",
+        reason: "Newmark's scheme without damping opens and closes the contact at every other step under the velocity law",
     },
     Advice {
         is: |scheme, law| matches!(scheme, Scheme::Theta(s) if s.theta == 0.5) && is_plain(law),
-        reason: "theta = 1/2 with the displacement law lets the force swing about the right one without end",
+        reason: "theta = 1/2 with the displacement law has a force that oscillates about the exact one without decay",
     },
     Advice {
         is: |scheme, law| {
             matches!(scheme, Scheme::LaursenChawla(_)) && (is_plain(law) || is_velocity(law))
         },
-        reason: "the scheme of Laursen and Chawla keeps the energy and has a force of no use: contact flutters",
+        reason: "the scheme of Laursen and Chawla conserves the energy, but the contact chatters and its force is useless",
     },
     Advice {
         is: |scheme, _| matches!(scheme, Scheme::LaursenLove(_)),
-        reason: "the scheme of Laursen and Love keeps the energy and has a force of no use: contact flutters",
+        reason: "the scheme of Laursen and Love conserves the energy, but the contact chatters and its force is useless",
     },
     Advice {
         is: |scheme, _| matches!(scheme, Scheme::Kane(s) if s.gamma == 0.5),
-        reason: "Kane's scheme without damping lets the force swing about the right one without end",
+        reason: "Kane's scheme without damping has a force that oscillates about the exact one without decay",
     },
     Advice {
         is: |scheme, law| matches!(scheme, Scheme::Hht(_)) && is_plain(law),
-        reason: "the scheme of Hilber, Hughes and Taylor with the displacement law flutters and gains energy over many impacts",
+        reason: "the scheme of Hilber, Hughes and Taylor with the displacement law chatters and gains energy over many impacts",
     },
 ];
 

@@ -144,7 +144,7 @@ impl Builder<'_> {
         }
         if overlap.layers() < FEW_LAYERS {
             self.warnings.push(format!(
-                "overlap `{name}`: {:.2} cells of `{}` across; two to four let waves pass better",
+                "overlap `{name}`: {:.2} cells of `{}` wide; two to four transmit waves better",
                 overlap.layers(),
                 given.outer
             ));
@@ -166,14 +166,14 @@ impl Builder<'_> {
             name,
             mesh,
             &dropped,
-            "dropped: supports hold both bodies there",
+            "removed: supports hold both bodies there",
         );
         let slivers: Vec<(u32, u32)> = rows.slivers.iter().map(|s| (s.node, 0)).collect();
         self.name_nodes(
             name,
             mesh,
             &slivers,
-            "merged into neighbours: the overlap holds too little of their support",
+            "merged into neighbours: the overlap contains too little of their support",
         );
         Some(rows)
     }
@@ -268,8 +268,8 @@ impl Builder<'_> {
             let dropped = rows.drop(|node, component| shared.contains(&(node, component)));
             if !dropped.is_empty() {
                 self.warnings.push(format!(
-                    "overlap `{name}`: {} dropped: another overlap has the same",
-                    super::plural(dropped.len(), "row")
+                    "overlap `{name}`: {} removed: another overlap has the same",
+                    super::plural(dropped.len(), "constraint")
                 ));
             }
         }

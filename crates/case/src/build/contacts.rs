@@ -132,7 +132,7 @@ impl Builder<'_> {
             let element = system.bodies[secondary].smallest_size();
             if way > element {
                 self.warnings.push(format!(
-                    "contact `{}`: in a step its sides come nearer by {way:.4e} m, more than the smallest element of `{}` ({element:.4e} m), and may pass through each other; take a step of at most {:.4e} s",
+                    "contact `{}`: in a step its sides approach by {way:.4e} m, more than the smallest element of `{}` ({element:.4e} m), and may pass through each other; take a step of at most {:.4e} s",
                     system.contacts[k].name,
                     system.bodies[secondary].name(),
                     system.dt * element / way
@@ -146,7 +146,7 @@ impl Builder<'_> {
     fn warn_of_nodes(&mut self, name: &str, given: Option<schema::Integration>, quadratic: bool) {
         if quadratic && given == Some(schema::Integration::Named(IntegrationName::Node)) {
             self.warnings.push(format!(
-                "contact `{name}`: integration = \"node\" on quadratic faces: pressures swing by a third and more between corners and midside nodes; leave the key out, or say integration = \"mortar\""
+                "contact `{name}`: integration = \"node\" on quadratic faces: pressures oscillate by a third and more between corner and midside nodes; remove the key, or use integration = \"mortar\""
             ));
         }
     }
@@ -172,7 +172,7 @@ impl Builder<'_> {
             if approach_from(system, k, &at_rest).gap < f64::INFINITY {
                 continue;
             }
-            let message = "this contact can never act: at the start no point of the secondary surface has anything opposite it, and with small sliding none ever will";
+            let message = "this contact can never act: at the start no point of the secondary surface has an opposite face, and small sliding does not pair points again";
             let problem = Problem::new(format!("contact.{}", contact.name), message);
             self.problems.push(
                 problem
@@ -213,7 +213,9 @@ impl Builder<'_> {
             if !self.case.time.is_static() {
                 let against = advice::against(&scheme, &contact.law);
                 let told = against.map(|reason| {
-                    format!("contact `{name}`: {reason}; the velocity law with the theta scheme does not")
+                    format!(
+                        "contact `{name}`: {reason}; use the velocity law with the theta scheme"
+                    )
                 });
                 self.warnings.extend(told);
             }

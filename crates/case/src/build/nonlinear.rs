@@ -44,13 +44,14 @@ impl Builder<'_> {
         }
         let case = self.case;
         if case.time.stage.is_some() {
-            let message = "links between zones join velocities, which a static stage has none of";
+            let message =
+                "links between zones join velocities, and a static stage has no velocities";
             let problem = Problem::new("time.static", message);
             self.problems
                 .push(problem.accepted(["no static stage", "a case without zones"]));
         }
         for (name, _) in case.support.iter().filter(|(_, s)| s.motion.is_some()) {
-            let message = "in zones supports do not move: a link would not know which of its nodes are driven";
+            let message = "supports with a prescribed motion are not available in zones: links do not take account of it";
             let problem = Problem::new(format!("support.{name}.move"), message);
             self.problems.push(problem.accepted([
                 "a support that holds",

@@ -28,7 +28,7 @@ impl Builder<'_> {
                 false => "merge the nodes of the mesh, or make each piece a body of its own",
             };
             self.warnings.push(format!(
-                "body `{}` is in {} pieces that share no node and part without resistance; the closest nodes of two of them, {one} at ({:.6}, {:.6}, {:.6}) m and {other}, are {distance:.4e} m apart; {merge}",
+                "body `{}` is in {} pieces that share no node and separate without resistance; the closest nodes of two of them, {one} at ({:.6}, {:.6}, {:.6}) m and {other}, are {distance:.4e} m apart; {merge}",
                 body.spec.name,
                 pieces.len(),
                 x[0],

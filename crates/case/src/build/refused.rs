@@ -77,7 +77,7 @@ impl Builder<'_> {
         match self.mortared.is_empty() {
             true => problem,
             false => problem.note(format!(
-                "contact `{}` has quadratic faces, whose default is mortar, and with mortar steps are not linear; integration = \"node\" keeps them so, with pressures that swing by a third and more",
+                "contact `{}` has quadratic faces, whose default is mortar, and with mortar the steps are nonlinear; integration = \"node\" keeps them linear, with pressures that oscillate by a third and more",
                 self.mortared.join("`, `")
             )),
         }

@@ -190,7 +190,7 @@ impl Builder<'_> {
             name,
             ties.mesh,
             &known,
-            "dropped: other interfaces tie them already",
+            "removed: other interfaces tie them already",
         );
         Some(rows)
     }
@@ -216,7 +216,7 @@ impl Builder<'_> {
             kinematics.surface_factor(x)
         });
         if rows.rows.is_empty() {
-            let message = "these surfaces lie opposite to each other nowhere";
+            let message = "these surfaces are nowhere opposite to each other";
             let problem = Problem::new(path, message).found(names.join(" and "));
             self.problems
                 .push(problem.accepted(["two surfaces that face each other"]));
@@ -255,7 +255,7 @@ impl Builder<'_> {
                 name,
                 mesh,
                 &dropped,
-                "dropped: supports hold both bodies there",
+                "removed: supports hold both bodies there",
             );
             self.link(name, (&given.inner, &given.outer), rows, joints);
         }

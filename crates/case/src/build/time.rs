@@ -79,7 +79,7 @@ impl Builder<'_> {
                 continue;
             }
             if level != Level::Rate && scheme.takes(Level::Rate) && !scheme.is_explicit() {
-                let message = "the contact impulses of this scheme change the velocity at the end of the step, so only a law in the rate can hold";
+                let message = "the contact impulses of this scheme act on the velocity at the end of the step: the scheme needs a law in the rate";
                 let problem = Problem::new(format!("contact.{name}.law"), message);
                 self.problems.push(
                     problem
@@ -87,7 +87,7 @@ impl Builder<'_> {
                         .accepted(["velocity", "compliance", "restitution"]),
                 );
             } else if level == Level::Gap {
-                let message = "an explicit scheme knows the displacement at the end of the step before the contact force, so this law cannot hold";
+                let message = "in an explicit scheme the displacement at the end of the step does not depend on the contact force: this law is impossible";
                 let problem = Problem::new(format!("contact.{name}.law.displacement"), message);
                 self.problems.push(
                     problem
@@ -95,7 +95,7 @@ impl Builder<'_> {
                         .accepted(["velocity", "damped"]),
                 );
             } else {
-                let message = "the contact forces of this scheme keep the displacement at the end of the step, so no other law can hold";
+                let message = "the contact forces of this scheme act on the displacement at the end of the step: the scheme needs the displacement law";
                 let problem = Problem::new(format!("contact.{name}.law"), message);
                 self.problems.push(
                     problem

@@ -38,7 +38,7 @@ impl Builder<'_> {
         let (node, component) = rank.weakest;
         let at = place(mesh, node);
         let message =
-            "the mediator has functions that the two bodies do not see: their rows are dependent";
+            "the mediator has functions that vanish on both bodies: their rows are dependent";
         let problem = Problem::new(format!("{path}.mediator"), message)
             .found(format!(
                 "a least eigenvalue of {:.1e} of the scaled rows, most of it of node {node}, {at}, in {}",
@@ -129,7 +129,7 @@ impl Builder<'_> {
         let name = |&(node, component): &(u32, u32)| {
             format!("{} of node {node}, {}", axis(component), place(mesh, node))
         };
-        self.name_all(joint, rows.iter().map(name), "row", what);
+        self.name_all(joint, rows.iter().map(name), "constraint", what);
     }
 
     /// Warns of mediator functions, named by their node.
@@ -173,7 +173,7 @@ pub(super) fn doubt(warning: &Warning) -> String {
     match warning {
         Warning::NotPatchExact => "a constant strain is not reproduced exactly: only linear weights between two plane parallel borders do that".to_string(),
         Warning::SmallStep { model, factor } => format!(
-            "the weights cut the critical step of the {model} body to about {factor:.2} of its own"
+            "the weights reduce the critical step of the {model} body to about {factor:.2} of its own"
         ),
     }
 }

@@ -163,7 +163,8 @@ impl Builder<'_> {
             }
             (zones[zone].substeps, zones[zone].far) = (count, far);
             if count > 1 && *many.get_or_insert(count) != count {
-                let message = "zones with inner steps take all the same number to an outer one";
+                let message =
+                    "all zones with inner steps must have the same number of them per outer step";
                 let accepted = many.map(|many| format!("1 or {many}"));
                 self.problems
                     .push(Problem::new(path, message).found(count).accepted(accepted));
@@ -354,7 +355,7 @@ impl Builder<'_> {
         for probe in probes {
             if probe.nodes.iter().any(|&node| !used[node as usize]) {
                 let message =
-                    "the probe has nodes of cells that fall away inside an overlapping body";
+                    "the probe has nodes of cells that are removed inside an overlapping body";
                 let problem = Problem::new(format!("probe.{}.on", probe.name), message);
                 self.problems
                     .push(problem.accepted(["a group of the body that stays"]));

@@ -196,7 +196,7 @@ fn the_finest_run_is_nearer_to_the_exact_solution_than_the_case_and_says_what_it
         assert!(unseen.contains(text), "{text:?} in {unseen}");
     }
     let page = std::fs::read_to_string(work.path().join("a/report.html")).unwrap();
-    assert!(page.contains("Not seen: the error of"));
+    assert!(page.contains("Not shown: the error of"));
 }
 
 #[test]
@@ -215,7 +215,7 @@ fn a_mesh_that_cannot_be_refined_leaves_its_error_unseen_and_the_table_says_why(
     assert!(refined.same_mesh.as_ref().unwrap().contains("mesh.refine"));
     let unseen = comparison.unseen().unwrap();
     assert!(
-        unseen.starts_with("Not seen: the error of the mesh."),
+        unseen.starts_with("Not shown: the error of the mesh."),
         "{unseen}"
     );
     let steps = |name: &str| value(&comparison, name, "steps").unwrap();

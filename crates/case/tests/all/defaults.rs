@@ -118,7 +118,7 @@ fn quadratic_faces_are_integrated_by_mortar_and_check_says_so() {
     let found = built(&input).unwrap();
     assert_eq!(found.system.contacts[0].integration, Integration::Node);
     assert!(
-        found.warnings[0].contains("swing by a third"),
+        found.warnings[0].contains("oscillate by a third"),
         "{:?}",
         found.warnings
     );

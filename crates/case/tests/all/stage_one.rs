@@ -208,7 +208,7 @@ fn all_problems_are_told_at_once_in_the_order_of_the_file() {
             "7:2 body: empty: one is needed at least",
             "9:7 time.end: not a finite number",
             "10:8 time.step: a quantity in quotes needs its unit; a number without quotes is in SI units",
-            "11:24 time.scheme.newmark: `newmark` beside `theta`: only one of them can stand",
+            "11:24 time.scheme.newmark: `newmark` beside `theta`: only one of them is allowed",
             "12:2 weather: unknown key `weather`",
         ]
     );

@@ -163,10 +163,10 @@ time = {{ end = 2.0, step.courant = 0.5, scheme.{scheme} }}
     for (scheme, law, reason) in [
         ("newmark = {}", "displacement = {}", "gains energy"),
         ("newmark = {}", "velocity = {}", "every other step"),
-        ("theta = {}", "displacement = {}", "swing"),
-        ("laursen-chawla = {}", "velocity = {}", "flutters"),
-        ("laursen-love = {}", "displacement = {}", "flutters"),
-        ("hht = {}", "displacement = {}", "flutters"),
+        ("theta = {}", "displacement = {}", "oscillates"),
+        ("laursen-chawla = {}", "velocity = {}", "chatters"),
+        ("laursen-love = {}", "displacement = {}", "chatters"),
+        ("hht = {}", "displacement = {}", "chatters"),
     ] {
         let warnings = told(scheme, law);
         let [warning] = &warnings[..] else {

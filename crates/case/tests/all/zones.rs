@@ -268,7 +268,7 @@ outer = "bar"
     let named = built
         .warnings
         .iter()
-        .find(|text| text.contains("4 rows dropped"));
+        .find(|text| text.contains("4 constraints removed"));
     assert!(
         named.is_some_and(|text| text.contains("y of node")),
         "{:?}",

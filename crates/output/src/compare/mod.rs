@@ -231,12 +231,12 @@ impl Comparison {
         }) = &self.refined
         else {
             return Some(format!(
-                "Not seen: the error of `{name}` itself, and what the variants have in common with it, mesh and step included."
+                "Not shown: the error of `{name}` itself, and errors that the variants share with it, those of mesh and step included."
             ));
         };
         if let Some(why) = same_mesh {
             return Some(format!(
-                "Not seen: the error of the mesh. `{name}` has 1/{factor} of the step on the mesh of the case, which cannot be refined: {why}"
+                "Not shown: the error of the mesh. `{name}` has 1/{factor} of the step on the mesh of the case, which cannot be refined: {why}"
             ));
         }
         let own = |p: f64| 1.0 / (f64::from(*factor).powf(p) - 1.0);
@@ -248,9 +248,9 @@ impl Comparison {
                 .map(|p| format!("{} of the distance of the case from it", percent(own(p)))),
         };
         let mut text = format!(
-            "Not seen: the error of `{name}` itself, the case with 1/{factor} of the size of its elements and of its step. If \
-             errors fall like the size to the power p, that is {smooth} for p = 1, {jump} for p = 1/3, as where the exact \
-             force jumps."
+            "Not shown: the error of `{name}` itself, the case with 1/{factor} of the size of its elements and of its step. If the \
+             error decreases like the size to the power p, it is {smooth} for p = 1 and {jump} for p = 1/3, about the order where \
+             the exact force jumps."
         );
         if *from_file {
             text += " Curved borders have the shape of the coarse mesh in both.";

@@ -274,7 +274,7 @@ impl Picture<'_> {
     }
 
     fn strip(&self, root: &Area, title: &str, height: i32) -> Outcome {
-        let note = "weights: inertia thin, internal work broad (means of cells)";
+        let note = "weights: inertia thin lines, internal work thick lines (cell means)";
         self.head(root, title, note)?;
         let [left, right] = self.ranges[0];
         let x = Scale::new(AXES[0], left, right, false);

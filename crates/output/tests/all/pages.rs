@@ -8,7 +8,7 @@ use carom_output::verdict::{Bounds, Grade, Line, Verdict};
 use carom_output::{ImpactRow, Report, Summary};
 
 fn line(value: f64, bounds: Bounds) -> Line {
-    let quantity = "energy residual over the largest energy";
+    let quantity = "energy residual relative to the largest energy";
     Line::new(
         "energy-residual",
         (quantity, value, Form::Power),
@@ -88,7 +88,7 @@ fn a_line_is_graded_by_its_bounds_and_what_is_no_number_is_bad() {
     let line = line(2e-9, both);
     assert_eq!(
         line.text(),
-        "energy residual over the largest energy: 2.0·10⁻⁹ (look above 1.0·10⁻⁹, bad above 1.0·10⁻⁶); a smaller step"
+        "energy residual relative to the largest energy: 2.0·10⁻⁹ (look above 1.0·10⁻⁹, bad above 1.0·10⁻⁶); a smaller step"
     );
 }
 
@@ -180,10 +180,7 @@ fn the_report_says_what_the_summary_says() {
     }
     assert!(!html.contains("Impacts"), "no table without rows");
     let bad = page(&sample(verdict(1.0)), &[], &figures);
-    assert!(
-        bad.contains("Not to be relied on")
-            && bad.contains("What would put it right: a smaller step")
-    );
+    assert!(bad.contains("Not to be relied on") && bad.contains("Remedy: a smaller step"));
     assert!(bad.contains(">bad</b> energy residual") && html.contains(">good</b> energy residual"));
 }
 

@@ -21,12 +21,12 @@ pub(super) fn of_contacts(evidence: &Evidence) -> Finding {
         "chatter",
         (
             &format!(
-                "changes of status of a point of contact `{name}` to a closing that is due, 2 in a sound contact"
+                "changes of status of a point of contact `{name}` per expected closing (2 without chatter)"
             ),
             value,
             Form::Number,
         ),
         BOUNDS,
-        "the velocity law with the theta scheme, or numerical damping; `carom check` tells pairs of scheme and law that chatter",
+        "use the velocity law with the theta scheme, or numerical damping; `carom check` warns of pairs of scheme and law that chatter",
     ))
 }

@@ -7,7 +7,7 @@ pub(super) fn of_mesh_and_step(evidence: &Evidence) -> Finding {
     match evidence.exact {
         Some(_) => Finding::Absent,
         None => Finding::Unchecked(
-            "whether mesh and step are fine enough: `carom study` over `mesh.refine` or `time.step` shows it"
+            "whether mesh and step are fine enough: vary `mesh.refine` or `time.step` with `carom study`"
                 .to_owned(),
         ),
     }

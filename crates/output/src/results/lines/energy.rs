@@ -17,7 +17,7 @@ pub(super) const MOST_TOLERATED: f64 = 1e-3;
 pub(super) fn of_tolerance(quantity: &str, tolerated: f64) -> String {
     match tolerated > 0.0 {
         true => format!(
-            "{quantity}, of which the tolerance of the iterations may leave {}",
+            "{quantity} (the tolerance of the iterations permits {})",
             Form::Power.show(tolerated)
         ),
         false => quantity.to_owned(),
@@ -28,9 +28,9 @@ pub(super) fn of_tolerance(quantity: &str, tolerated: f64) -> String {
 pub(super) fn residual_remedy(tolerated: f64) -> &'static str {
     match tolerated > 0.0 {
         true => {
-            "a smaller `time.newton.tolerance`; where that does not help it is a fault of the program"
+            "use a smaller `time.newton.tolerance`; if that does not help, report a defect of the program"
         }
-        false => "it is a fault of the program: a linear run leaves rounding alone",
+        false => "report a defect of the program: a linear run leaves rounding errors only",
     }
 }
 
@@ -47,7 +47,7 @@ const EXCESS: Bounds = Bounds::Both(0.25, 0.5);
 pub(super) fn residual(evidence: &Evidence) -> Finding {
     if let Some(scheme) = without_identity(evidence) {
         return Finding::Unchecked(format!(
-            "the balance of energy: no energy identity is known of the scheme {scheme}, so the residual holds what the scheme dissipates"
+            "the balance of energy: no energy identity of the scheme {scheme} is known, so the residual contains the dissipation of the scheme"
         ));
     }
     let ledger = &evidence.last.ledger;
@@ -55,7 +55,7 @@ pub(super) fn residual(evidence: &Evidence) -> Finding {
     Finding::Line(Line::new(
         "energy-residual",
         (
-            &of_tolerance("energy residual over the largest energy", tolerated),
+            &of_tolerance("energy residual relative to the largest energy", tolerated),
             evidence.energy.relative_residual,
             Form::Power,
         ),
@@ -70,12 +70,12 @@ pub(super) fn gain(evidence: &Evidence) -> Finding {
     Finding::Line(Line::new(
         "energy-gain",
         (
-            "largest energy gained without work of loads, supports or obstacles, over the largest energy",
+            "largest gain of energy without the work of loads, supports and obstacles, relative to the largest energy",
             relative(ledger, ledger.largest_gain),
             Form::Percent,
         ),
         GAIN,
-        "another scheme or contact law, or a smaller step",
+        "use another scheme or contact law, or a smaller step",
     ))
 }
 
@@ -86,18 +86,18 @@ pub(super) fn of_contact(evidence: &Evidence) -> Finding {
     }
     let ledger = &evidence.last.ledger;
     if ledger.is_static {
-        let why = "the work of the contacts: in a static stage works are sums over the steps, and right for small steps only";
+        let why = "the work of the contacts: in a static stage it is a sum over the steps, accurate for small steps only";
         return Finding::Unchecked(why.to_owned());
     }
     Finding::Line(Line::new(
         "contact-work",
         (
-            "largest work of the contacts beyond that of moving obstacles, over the largest energy",
+            "largest positive work of the contacts without that of moving obstacles, relative to the largest energy",
             relative(ledger, ledger.largest_contact_work),
             Form::Percent,
         ),
         GAIN,
-        "another contact law or scheme, or a smaller step",
+        "use another contact law or scheme, or a smaller step",
     ))
 }
 
@@ -110,12 +110,12 @@ pub(super) fn of_scheme(evidence: &Evidence) -> Finding {
     Finding::Line(Line::new(
         "scheme-energy",
         (
-            "largest kinetic and strain energy beyond the energy that the scheme balances, over the largest energy",
+            "largest excess of kinetic and strain energy over the energy that the scheme balances, relative to the largest energy",
             relative(ledger, ledger.largest_excess),
             Form::Percent,
         ),
         EXCESS,
-        "a smaller step: waves are as short as the step",
+        "use a smaller step: the waves are as short as the step",
     ))
 }
 

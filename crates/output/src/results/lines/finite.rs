@@ -14,6 +14,6 @@ pub(super) fn states(evidence: &Evidence) -> Finding {
             Form::Count,
         ),
         Bounds::Bad(0.0),
-        "a smaller step, or a scheme that is stable with this one",
+        "use a smaller step, or a scheme that is stable with this step",
     ))
 }

@@ -18,7 +18,10 @@ pub(super) fn residual(evidence: &Evidence) -> Finding {
     Finding::Line(Line::new(
         "momentum-residual",
         (
-            &of_tolerance("momentum residual over the largest momentum", tolerated),
+            &of_tolerance(
+                "momentum residual relative to the largest momentum",
+                tolerated,
+            ),
             evidence.momentum.relative_residual,
             Form::Power,
         ),
@@ -37,15 +40,15 @@ pub(super) fn exchange(evidence: &Evidence) -> Finding {
         Some(residual) => Finding::Line(Line::new(
             "contact-impulse",
             (
-                "impulse of the contacts as reported, less what it gave to the bodies, over the largest momentum",
+                "difference between the reported impulse of the contacts and the momentum that the bodies received, relative to the largest momentum",
                 residual,
                 Form::Power,
             ),
             Bounds::Bad(RESIDUAL),
-            "a fault of the program",
+            "report a defect of the program",
         )),
         None => Finding::Unchecked(
-            "the impulse of the contacts against the momentum of each body: in zones and nonlinear runs only the momentum of the whole is balanced"
+            "the impulse of the contacts against the momentum of each body: zones and nonlinear runs balance only the momentum of the whole model"
                 .to_owned(),
         ),
     }
@@ -71,12 +74,12 @@ pub(super) fn resizing(evidence: &Evidence) -> Finding {
         Some(part) => Finding::Line(Line::new(
             "resizing",
             (
-                "impulse that forces times steps miss because the step changed its size in contact, over the impulse",
+                "impulse that the sum of force times step lacks because the step changed its size in contact, relative to the impulse",
                 part,
                 Form::Percent,
             ),
             Bounds::Both(RESIZING, MISSED),
-            "a scheme and law without chatter: its halvings change the step in contact; or a fixed step",
+            "use a scheme and a law without chatter, because the halvings change the step in contact; or a fixed step",
         )),
         None => Finding::Absent,
     }

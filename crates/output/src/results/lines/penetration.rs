@@ -27,12 +27,12 @@ pub(super) fn of_contacts(evidence: &Evidence) -> Finding {
         "penetration",
         (
             &format!(
-                "largest penetration of contact `{name}` over the smallest element normal to its surfaces"
+                "largest penetration of contact `{name}` relative to the smallest element size normal to its surfaces"
             ),
             value,
             Form::Percent,
         ),
         BOUNDS,
-        "a smaller step, `sliding = \"finite\"` where bodies move far, a stiffer law where it is a spring",
+        "use a smaller step, `sliding = \"finite\"` if bodies move far, or a stiffer law if it is a spring",
     ))
 }

@@ -48,7 +48,7 @@ pub(super) fn strain(evidence: &Evidence) -> Finding {
 
 /// Way of points with a force along the surface that they were paired with.
 pub(super) fn slide(evidence: &Evidence) -> Finding {
-    let quantity = "faces that a point with a force has slid over under small sliding";
+    let quantity = "sliding of a point with a force under small sliding, in face lengths";
     of_contacts(
         evidence,
         ("small-sliding", quantity, Form::Number),
@@ -59,7 +59,7 @@ pub(super) fn slide(evidence: &Evidence) -> Finding {
 
 /// Turn of normals since points were paired.
 pub(super) fn turn(evidence: &Evidence) -> Finding {
-    let quantity = "turn of a normal under small sliding";
+    let quantity = "rotation of a normal under small sliding";
     of_contacts(
         evidence,
         ("small-sliding-normal", quantity, Form::Degrees),
@@ -70,8 +70,7 @@ pub(super) fn turn(evidence: &Evidence) -> Finding {
 
 /// Forces in points that are apart from what they press on.
 pub(super) fn invented(evidence: &Evidence) -> Finding {
-    let quantity =
-        "gap, in faces, of a point that small sliding presses on (inf: nothing is opposite it)";
+    let quantity = "open gap of a point with a force under small sliding, in face lengths (inf: nothing is opposite the point)";
     of_contacts(
         evidence,
         ("small-sliding-invented", quantity, Form::Number),
@@ -82,7 +81,7 @@ pub(super) fn invented(evidence: &Evidence) -> Finding {
 
 /// Points that penetrate without a force.
 pub(super) fn lost(evidence: &Evidence) -> Finding {
-    let quantity = "depth, in faces, of a point that small sliding lets through";
+    let quantity = "penetration of a point without a force under small sliding, in face lengths";
     of_contacts(
         evidence,
         ("small-sliding-lost", quantity, Form::Number),
@@ -126,14 +125,16 @@ fn instead(system: &System, body: usize) -> String {
     let (name, elastic) = (body.name(), body.material().initial());
     match (body.takes_finite_strain(), body.kinematics().dim()) {
         (true, _) => format!(
-            "in the material of `{name}` neo-hooke = {{ young = {:e}, poisson = {:?} }} in place of elastic",
+            "use neo-hooke = {{ young = {:e}, poisson = {:?} }} in place of elastic in the material of `{name}`",
             elastic.young, elastic.poisson
         ),
         (false, 1) => {
-            format!("`{name}` as plane or solid cells of neo-hooke: bars know small strain only")
+            format!(
+                "model `{name}` with plane or solid cells of neo-hooke: bars support small strain only"
+            )
         }
         (false, _) => format!(
-            "`{name}` with section.plane-strain, or as solid cells, and neo-hooke: plane stress knows small strain only"
+            "model `{name}` with section.plane-strain or solid cells, and neo-hooke: plane stress supports small strain only"
         ),
     }
 }
@@ -162,7 +163,7 @@ fn of_contacts(
         ),
         false => format!("{quantity}, contact `{}`", contact.name),
     };
-    let remedy = format!("contact.{}.sliding = \"finite\"", contact.name);
+    let remedy = format!("use contact.{}.sliding = \"finite\"", contact.name);
     let line = Line::new(name, (&quantity, largest.value, form), bounds, &remedy);
     Finding::Line(line)
 }
