@@ -65,7 +65,7 @@ pub fn compare(arguments: &Arguments) -> u8 {
     let variants = || comparison.variants.iter();
     sweep::reasons(variants());
     out!(
-        "  the overshoot of a single step does not converge at a step front; that of the mean does"
+        "  the overshoot of a single step does not converge where the force jumps; that of the mean does"
     );
     out!("  report: {}", page.display());
     sweep::code(variants())

@@ -1,7 +1,8 @@
 //! The balance of energy and momentum.
 //!
-//! Each term comes from its own formula, the dissipation of the scheme from its exact identity
-//! ([`EnergyIdentity`](crate::EnergyIdentity)); the residual is what is left, and tests look at it.
+//! In a linear run each term comes from its own formula, the dissipation of the scheme from its exact identity
+//! ([`EnergyIdentity`](crate::EnergyIdentity)). In a nonlinear run the dissipation of the scheme is a difference: the works of
+//! inertia and internal forces minus the changes of the energies. The residual is what is left, and tests check it.
 
 use serde::{Deserialize, Serialize};
 

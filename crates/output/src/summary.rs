@@ -220,7 +220,8 @@ pub struct Friction {
     pub peak_force: f64,
 }
 
-/// Balance of energy, J. Each term has its own formula; nothing is found by subtraction but the residual.
+/// Balance of energy, J. In a linear run each term has its own formula, and only the residual is a difference. In a nonlinear
+/// run the dissipation of the scheme is a difference too: works of inertia and internal forces minus changes of the energies.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     /// Kinetic energy at the start.

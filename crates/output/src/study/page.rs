@@ -13,8 +13,7 @@ use crate::table::{Table, write_csv};
 use crate::{Error, Folder, atomic};
 
 /// What is said wherever the raw peak is shown.
-pub const RAW_PEAK: &str =
-    "the raw peak of a single step does not converge at a step front; read the peak of the mean";
+pub const RAW_PEAK: &str = "the raw peak of a single step does not converge where the force jumps; use the peak of the mean";
 
 impl Study {
     /// The runs for people: values of the keys, step, quantities.
