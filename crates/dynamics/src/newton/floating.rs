@@ -4,19 +4,24 @@
 //!
 //! `A = K + σ |diag K|`, about the last iterate: it acts on the motion of the iteration, not on x,
 //!
-//! so that where the iterations end nothing of it is left: the balance of forces is tested without it. It is a small part
-//! of the stiffness with which contacts hold the part, and iterations shrink errors by about that ratio; a motion that
-//! nothing holds and nothing loads stays as it is. What is loaded along such a motion is moved on to the next contact;
-//! where none is on its way there is no equilibrium near, and the body and its motion are named. Held is what a support
-//! or the row of a contact that carries a force holds: a place at the bottom of a bowl is not searched.
+//! so that where the iterations end nothing of it is left: the balance of forces is tested without it. Iterations shrink
+//! errors by σ/(σ + k), k the stiffness with which contacts hold the part over |diag K|. A round body whose edge has straight sides
+//! rolls with a k of 1e-8 to 1e-6 and of either sign; mixing of the iterations finds its equilibrium all the same, stable or
+//! not, if it is not misled: turns are finite ([`super::rigid`]), and motions that nothing holds stay within what an
+//! iteration knows of the surfaces. A motion that nothing holds and nothing loads stays as it is.
+//!
+//! What is loaded along such a motion is moved on to the next contact; where none is on its way there is no equilibrium
+//! near, and the body and its motion are named. Held is what a support or the row of a contact that carries a force holds.
 //!
 //! The proximal point algorithm: R. T. Rockafellar (1976), SIAM J. Control Optim. 14; here one Newton iteration to each of its.
 
 use std::ops::Range;
+use std::sync::Arc;
 
-use carom_contact::{Rows, Target};
+use carom_contact::Target;
 
 use super::Newton;
+use super::rigid::{INDEPENDENT, Rigid, Span, norm};
 use crate::coulomb::Slip;
 use crate::error::Error;
 use crate::system::System;
@@ -33,14 +38,23 @@ pub(super) const LARGEST: f64 = 1.0;
 /// Largest turn on the way to a contact, rad: places move along straight lines.
 const TURN: f64 = 0.1;
 
-/// What of a unit vector counts as independent of others.
-const INDEPENDENT: f64 = 1e-6;
+/// Largest way of a node in an iteration along motions that nothing holds, over the size of the elements: about as far as
+/// normals and pairs of faceted surfaces say what comes.
+const REACH: f64 = 0.05;
+
+/// Change of the load along motions that nothing holds, over that load, from one iteration to the next, up to which it does
+/// not depend on where the part is.
+const STEADY: f64 = 1e-6;
 
 /// Parts that float, and σ in the attempt under way.
 pub(super) struct Floating {
     /// Their unknowns, ascending.
-    pub(super) parts: Vec<Range<usize>>,
+    pub(super) parts: Arc<[Range<usize>]>,
     pub(super) weight: f64,
+    /// Mean over its elements of the least distance of two nodes of one, m, part by part.
+    sizes: Vec<f64>,
+    /// Loads along motions that nothing held an iteration ago; empty in the first.
+    load: Vec<f64>,
 }
 
 impl Floating {
@@ -49,16 +63,14 @@ impl Floating {
     /// # Errors
     /// One that no contact with anything else could hold.
     pub(super) fn new(system: &System) -> Result<Floating, Error> {
-        let mut floating = Floating {
-            parts: Vec::new(),
-            weight: WEIGHT,
+        let mut parts = Vec::new();
+        let stages = match system.nonlinear.preload {
+            Some(_) => &system.parts[..],
+            None => &[],
         };
-        if system.nonlinear.preload.is_none() {
-            return Ok(floating);
-        }
-        for part in &system.parts {
-            let parts = [part.clone()];
-            let rigid = Rigid::new(system, &parts, None);
+        for part in stages {
+            let alone = [part.clone()];
+            let rigid = Rigid::new(system, &alone, None);
             let Some(motion) = rigid.free_motion() else {
                 continue;
             };
@@ -68,10 +80,47 @@ impl Floating {
                     motion: motion.to_string(),
                 });
             }
-            floating.parts.push(part.clone());
+            parts.push(part.clone());
         }
-        Ok(floating)
+        let sizes = parts.iter().map(|part| size_of_elements(system, part));
+        Ok(Floating {
+            sizes: sizes.collect(),
+            parts: parts.into(),
+            weight: WEIGHT,
+            load: Vec::new(),
+        })
     }
+
+    /// Begins an attempt at a step.
+    pub(super) fn begin(&mut self) {
+        self.weight = WEIGHT;
+        self.load.clear();
+    }
+}
+
+/// Mean over the elements of a part of the least distance of two nodes of one, m.
+fn size_of_elements(system: &System, part: &Range<usize>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0f64);
+    for body in &system.bodies {
+        body.each_element(&mut |nodes| {
+            if !nodes
+                .iter()
+                .any(|&node| part.contains(&(system.dim * node as usize)))
+            {
+                return;
+            }
+            let mut least = f64::INFINITY;
+            for (k, &a) in nodes.iter().enumerate() {
+                for &b in &nodes[..k] {
+                    let [a, b] = [a, b].map(|node| &system.x[node as usize]);
+                    least = least.min((0..3).map(|i| (a[i] - b[i]).powi(2)).sum());
+                }
+            }
+            sum += least.sqrt();
+            count += 1.0;
+        });
+    }
+    sum / count.max(1.0)
 }
 
 /// Whether a contact has the part on one side and something else on the other.
@@ -107,48 +156,153 @@ impl Newton {
     }
 
     /// Moves parts that are loaded along a rigid motion that nothing holds to the next contact on their way; whether that was
-    /// any way at all. `scale`: the forces of the balance, N.
+    /// any way at all. The load of parts that hang together with nothing else is that of an equilibrium, whatever is
+    /// deformed. Contact with something else has forces of the iteration, which change as it goes on: there a load
+    /// counts once it does not.
     ///
     /// # Errors
     /// No contact on the way; forces that cannot be taken where it ends.
     pub(super) fn approach(&mut self, scale: f64) -> Result<bool, Error> {
-        let map = &self.map;
-        let (motion, x) = (&self.state.motion, &self.vectors.x);
-        let mut place = std::mem::take(&mut self.vectors.place);
-        map.displacement.whole(motion, x, &[], &mut place);
-        let rigid = Rigid::new(&self.system, &self.floating.parts, Some(&place));
-        self.vectors.place = place;
-        let held = self.held(&rigid);
-        let vectors = &self.vectors;
-        let left = (0..x.len()).filter(|&i| !self.system.fixed[i]);
-        let mut c = rigid.of(left.map(|i| (i, vectors.residual[i] + vectors.contact[i])));
-        held.take_from(&mut c);
-        let least = (self.system.nonlinear.iteration.tolerance * scale).max(self.rounding());
-        if norm(&c) <= least {
+        let (system, parts) = (Arc::clone(&self.system), Arc::clone(&self.floating.parts));
+        let rigid = Rigid::new(&system, &parts, Some(&self.places()));
+        let Some(c) = self.certain_load(&rigid, scale) else {
             return Ok(false);
-        }
+        };
         let Some(way) = self.way_to_contact(&rigid, &c) else {
-            let (part, motion) = rigid.name(&c);
-            return Err(Error::Unheld {
-                step: self.state.step + 1,
-                time: self.state.time + self.dt,
-                body: body_of(&self.system, part),
-                motion: motion.to_string(),
-            });
+            return Err(self.unheld(&rigid, &c));
         };
         let way = way.min(TURN / rigid.turn(&c).max(f64::MIN_POSITIVE));
         if way * norm(&c) <= self.gap_tolerance() {
             return Ok(false);
         }
-        let moved: Vec<(usize, f64)> = rigid.motion(&c).collect();
-        for (i, u) in moved {
-            if !self.system.fixed[i] {
-                self.vectors.x[i] += way * u;
+        let motion: Vec<f64> = c.iter().map(|c| way * c).collect();
+        for (i, u) in rigid.motion(&motion).chain(rigid.arc(&motion)) {
+            if !system.fixed[i] {
+                self.vectors.x[i] += u;
             }
         }
+        self.floating.load.clear();
         self.evaluate(false)?;
         self.pair(false);
         Ok(true)
+    }
+
+    /// Loads along rigid motions that nothing holds, as far as they are more than the iteration's; none within the tolerance.
+    fn certain_load(&mut self, rigid: &Rigid, scale: f64) -> Option<Vec<f64>> {
+        let mut c = self.unheld_load(rigid);
+        let before = std::mem::replace(&mut self.floating.load, c.clone());
+        let change = before.iter().zip(&c).map(|(before, c)| c - before);
+        let change: Vec<f64> = change.collect();
+        let steady = !before.is_empty() && norm(&change) <= STEADY * norm(&c);
+        if !steady {
+            for part in self.grounded(rigid) {
+                c[rigid.coordinates(part)].fill(0.0);
+            }
+        }
+        let least = (self.system.nonlinear.iteration.tolerance * scale).max(self.rounding());
+        (norm(&c) > least).then_some(c)
+    }
+
+    /// The error of iterations that ended out of balance: the load along a motion that nothing holds, where most is that.
+    pub(super) fn unbalanced(&self, passes: usize, imbalance: f64) -> Error {
+        let system = &*self.system;
+        if self.floats() {
+            let rigid = Rigid::new(system, &self.floating.parts, Some(&self.places()));
+            let c = self.unheld_load(&rigid);
+            if norm(&c) > 0.5 * imbalance && self.way_to_contact(&rigid, &c).is_none() {
+                return self.unheld(&rigid, &c);
+            }
+        }
+        self.no_equilibrium(passes)
+    }
+
+    fn unheld(&self, rigid: &Rigid, c: &[f64]) -> Error {
+        let (part, motion) = rigid.name(c);
+        Error::Unheld {
+            step: self.state.step + 1,
+            time: self.state.time + self.dt,
+            body: body_of(&self.system, part),
+            motion: motion.to_string(),
+        }
+    }
+
+    /// Displacement of the nodes at the x of the iteration, m.
+    fn places(&self) -> Vec<f64> {
+        let mut places = vec![0.0; self.vectors.x.len()];
+        let (motion, x) = (&self.state.motion, &self.vectors.x);
+        self.map.displacement.whole(motion, x, &[], &mut places);
+        places
+    }
+
+    /// Loads and contact forces along the rigid motions, less what is held: internal forces have no resultant.
+    fn unheld_load(&self, rigid: &Rigid) -> Vec<f64> {
+        let vectors = &self.vectors;
+        let left = (0..vectors.x.len()).filter(|&i| !self.system.fixed[i]);
+        let mut c = rigid.of(left.map(|i| (i, vectors.residual[i] + vectors.contact[i])));
+        self.held(rigid).take_from(&mut c);
+        c
+    }
+
+    /// Parts that hang together by contact forces with something that does not float.
+    fn grounded(&self, rigid: &Rigid) -> Vec<usize> {
+        let count = self.floating.parts.len();
+        // one set more: all that does not float
+        let mut set: Vec<usize> = (0..=count).collect();
+        for point in self.carrying() {
+            let (contact, _) = self.system.point(point);
+            let (unknowns, _) = self.pairing.rows.row(point);
+            let parts = unknowns
+                .iter()
+                .map(|&i| rigid.part_of(i as usize).unwrap_or(count));
+            let mut parts: Vec<usize> = parts.collect();
+            if matches!(contact.target, Target::Rigid(_)) {
+                parts.push(count);
+            }
+            for pair in parts.windows(2) {
+                let [from, to] = [pair[0], pair[1]].map(|part| set[part]);
+                for set in set.iter_mut().filter(|set| **set == from) {
+                    *set = to;
+                }
+            }
+        }
+        (0..count).filter(|&part| set[part] == set[count]).collect()
+    }
+
+    /// Shortens the motion of the iteration along rigid motions that nothing holds to the reach of what it knows of the
+    /// surfaces. Contacts that carry forces, and the forces inside, know nothing of these motions.
+    pub(super) fn restrain(&mut self) {
+        let system = Arc::clone(&self.system);
+        let rigid = Rigid::new(&system, &self.floating.parts, Some(&self.places()));
+        let mut c = rigid.nearest(&self.vectors.dx);
+        self.held(&rigid).take_from(&mut c);
+        for (part, size) in self.floating.sizes.iter().enumerate() {
+            let reach = rigid.reach(part, &c);
+            let beyond = (1.0 - REACH * size / reach.max(f64::MIN_POSITIVE)).max(0.0);
+            c[rigid.coordinates(part)]
+                .iter_mut()
+                .for_each(|c| *c *= beyond);
+        }
+        for (i, u) in rigid.motion(&c) {
+            if !system.fixed[i] {
+                self.vectors.dx[i] -= u;
+            }
+        }
+    }
+
+    /// Adds to x what finite turns of the parts have beyond the linear motion `share` dx from `before`.
+    pub(super) fn turn(&mut self, share: f64) {
+        let system = Arc::clone(&self.system);
+        let mut places = vec![0.0; self.vectors.x.len()];
+        let motion = &self.state.motion;
+        self.map
+            .displacement
+            .whole(motion, &self.vectors.before, &[], &mut places);
+        let rigid = Rigid::new(&system, &self.floating.parts, Some(&places));
+        let mut c = rigid.nearest(&self.vectors.dx);
+        c.iter_mut().for_each(|c| *c *= share);
+        for (i, u) in rigid.arc(&c) {
+            self.vectors.x[i] += u;
+        }
     }
 
     /// What supports and contacts that carry a force hold of the rigid motions.
@@ -196,210 +350,4 @@ impl Newton {
         }
         way
     }
-}
-
-/// Rigid motions of parts: u = Σ c_j r_j, those of a part one after the other.
-struct Rigid<'a> {
-    system: &'a System,
-    parts: &'a [Range<usize>],
-    modes: Vec<Mode>,
-    frames: Vec<Frame>,
-    /// Places of the nodes, m.
-    places: Vec<[f64; 3]>,
-}
-
-/// What scales the motions of a part.
-struct Frame {
-    centre: [f64; 3],
-    /// Largest distance of a node from the centre along an axis, m.
-    size: f64,
-    /// 1/√n, n nodes: motions have the norm of about one.
-    unit: f64,
-}
-
-impl<'a> Rigid<'a> {
-    /// `u`: displacement of the nodes, m, of bodies at finite strain; a linear body has the rigid motions of its reference
-    /// places.
-    fn new(system: &'a System, parts: &'a [Range<usize>], u: Option<&[f64]>) -> Rigid<'a> {
-        let dim = system.dim;
-        let mut places = system.x.clone();
-        for (body, masses) in system.bodies.iter().zip(&system.body_masses) {
-            let Some(u) = u.filter(|_| !body.is_linear()) else {
-                continue;
-            };
-            for &(node, _) in masses {
-                let node = node as usize;
-                for i in 0..dim {
-                    places[node][i] = system.x[node][i] + u[dim * node + i];
-                }
-            }
-        }
-        let frames = parts.iter().map(|part| {
-            let nodes = &places[part.start / dim..part.end / dim];
-            let n = nodes.len() as f64;
-            let centre = [0, 1, 2].map(|i| nodes.iter().map(|x| x[i]).sum::<f64>() / n);
-            let far = |x: &[f64; 3]| (0..3).map(|i| (x[i] - centre[i]).abs()).fold(0.0, f64::max);
-            Frame {
-                centre,
-                size: nodes.iter().map(far).fold(f64::MIN_POSITIVE, f64::max),
-                unit: 1.0 / n.sqrt(),
-            }
-        });
-        Rigid {
-            system,
-            parts,
-            modes: modes(dim, system.axisymmetric),
-            frames: frames.collect(),
-            places,
-        }
-    }
-
-    /// Number of the first coordinate that moves an unknown and the values of the motions of its part there; none of a part
-    /// that does not float.
-    fn at(&self, unknown: usize) -> Option<(usize, impl Iterator<Item = f64> + '_)> {
-        let part = self.parts.partition_point(|part| part.end <= unknown);
-        if !self.parts.get(part)?.contains(&unknown) {
-            return None;
-        }
-        let frame = &self.frames[part];
-        let (node, i) = (unknown / self.system.dim, unknown % self.system.dim);
-        let place = &self.places[node];
-        let x = [0, 1, 2].map(|j| (place[j] - frame.centre[j]) / frame.size);
-        let values = self
-            .modes
-            .iter()
-            .map(move |mode| frame.unit * mode.1(&x)[i]);
-        Some((part * self.modes.len(), values))
-    }
-
-    /// Σ f_i r_j(i) by coordinate j of unknowns i and their values f.
-    fn of(&self, terms: impl IntoIterator<Item = (usize, f64)>) -> Vec<f64> {
-        let mut sums = vec![0.0; self.parts.len() * self.modes.len()];
-        for (unknown, f) in terms {
-            if let Some((first, values)) = self.at(unknown) {
-                for (sum, value) in sums[first..].iter_mut().zip(values) {
-                    *sum += f * value;
-                }
-            }
-        }
-        sums
-    }
-
-    /// A row of contact on the motions.
-    fn row(&self, rows: &Rows, point: usize) -> Vec<f64> {
-        let (unknowns, coefficients) = rows.row(point);
-        let unknowns = unknowns.iter().map(|&unknown| unknown as usize);
-        self.of(unknowns.zip(coefficients.iter().copied()))
-    }
-
-    /// Unknowns and their displacements in a motion.
-    fn motion(&self, c: &[f64]) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let c = c.to_vec();
-        let unknowns = self.parts.iter().flat_map(Range::clone);
-        unknowns.filter_map(move |unknown| {
-            let (first, values) = self.at(unknown)?;
-            Some((unknown, values.zip(&c[first..]).map(|(v, c)| v * c).sum()))
-        })
-    }
-
-    /// Largest turn in a motion, rad.
-    fn turn(&self, c: &[f64]) -> f64 {
-        let count = self.modes.len();
-        let turns = c.iter().enumerate().map(|(j, c)| {
-            let (frame, (_, shape)) = (&self.frames[j / count], self.modes[j % count]);
-            // a turn leaves the centre where it is
-            match shape(&[0.0; 3]) == [0.0; 3] {
-                true => c.abs() * frame.unit / frame.size,
-                false => 0.0,
-            }
-        });
-        turns.fold(0.0, f64::max)
-    }
-
-    /// The part that moves most, and how.
-    fn name(&self, c: &[f64]) -> (&Range<usize>, &'static str) {
-        let most = (0..c.len()).fold(0, |most, j| match c[j].abs() > c[most].abs() {
-            true => j,
-            false => most,
-        });
-        let count = self.modes.len();
-        (&self.parts[most / count], self.modes[most % count].0)
-    }
-
-    /// The first of the motions that supports do not hold, with those before it held.
-    fn free_motion(&self) -> Option<&'static str> {
-        let mut held = Span::default();
-        for i in self.parts.iter().flat_map(Range::clone) {
-            if self.system.fixed[i] {
-                held.add(self.of([(i, 1.0)]));
-            }
-        }
-        let mut modes = self.modes.iter().enumerate();
-        modes.find_map(|(j, mode)| {
-            let mut unit = vec![0.0; self.modes.len()];
-            unit[j] = 1.0;
-            held.add(unit).then_some(mode.0)
-        })
-    }
-}
-
-/// An orthonormal basis of what vectors span.
-#[derive(Default)]
-struct Span(Vec<Vec<f64>>);
-
-impl Span {
-    /// Adds a vector; whether it is independent of those before it.
-    fn add(&mut self, mut vector: Vec<f64>) -> bool {
-        let length = norm(&vector);
-        if self.0.len() == vector.len() || length == 0.0 {
-            return false;
-        }
-        vector.iter_mut().for_each(|v| *v /= length);
-        self.take_from(&mut vector);
-        let length = norm(&vector);
-        if length <= INDEPENDENT {
-            return false;
-        }
-        vector.iter_mut().for_each(|v| *v /= length);
-        self.0.push(vector);
-        true
-    }
-
-    /// Takes from a vector its part in the span: twice, for what rounding leaves the first time.
-    fn take_from(&self, vector: &mut [f64]) {
-        for _ in 0..2 {
-            for e in &self.0 {
-                let part: f64 = e.iter().zip(&*vector).map(|(e, v)| e * v).sum();
-                for (v, e) in vector.iter_mut().zip(e) {
-                    *v -= part * e;
-                }
-            }
-        }
-    }
-}
-
-fn norm(vector: &[f64]) -> f64 {
-    vector.iter().map(|v| v * v).sum::<f64>().sqrt()
-}
-
-/// A motion in words, and its displacement at a place relative to the centre.
-type Mode = (&'static str, fn(&[f64; 3]) -> [f64; 3]);
-
-fn modes(dim: usize, axisymmetric: bool) -> Vec<Mode> {
-    if axisymmetric {
-        return vec![("move along its axis", |_| [0.0, 1.0, 0.0])];
-    }
-    let mut modes: Vec<Mode> = vec![("move along x", |_| [1.0, 0.0, 0.0])];
-    if dim > 1 {
-        modes.push(("move along y", |_| [0.0, 1.0, 0.0]));
-    }
-    if dim > 2 {
-        modes.push(("move along z", |_| [0.0, 0.0, 1.0]));
-        modes.push(("turn about x", |x| [0.0, -x[2], x[1]]));
-        modes.push(("turn about y", |x| [x[2], 0.0, -x[0]]));
-    }
-    if dim > 1 {
-        modes.push(("turn about z", |x| [-x[1], x[0], 0.0]));
-    }
-    modes
 }

@@ -31,6 +31,9 @@ const INDEPENDENT: f64 = 1e-8;
 /// Largest Σ |α_i|.
 const LARGEST: f64 = 100.0;
 
+/// The same where parts float: motions that contacts hardly hold, whose lengths are limited otherwise.
+const LARGEST_OF_FLOATING: f64 = 1e4;
+
 /// One iteration.
 #[derive(Clone, Default)]
 struct Iterate {
@@ -67,7 +70,7 @@ impl Mixing {
 
     /// The α of the iterations, those of the last first; none where it goes fast enough without, or motions depend on each
     /// other.
-    fn weights(&self) -> Option<Vec<f64>> {
+    fn weights(&self, largest: f64) -> Option<Vec<f64>> {
         let [last, before, ..] = &self.kept[..self.count] else {
             return None;
         };
@@ -105,7 +108,7 @@ impl Mixing {
             }
             weights.insert(0, 1.0 - weights.iter().sum::<f64>());
             let sum: f64 = weights.iter().map(|weight| weight.abs()).sum();
-            (sum <= LARGEST).then_some(weights)
+            (sum <= largest).then_some(weights)
         })
     }
 }
@@ -113,6 +116,10 @@ impl Mixing {
 impl Newton {
     /// Mixes the iteration that has been computed with those before it.
     pub(super) fn mix(&mut self) {
+        let largest = match self.floats() {
+            true => LARGEST_OF_FLOATING,
+            false => LARGEST,
+        };
         let interface = &mut self.next.interface;
         let mixing = &mut self.mixing;
         if mixing.status != interface.status || mixing.slips != self.slips {
@@ -128,7 +135,7 @@ impl Newton {
         }
         last.force.clone_from(&interface.force);
         last.friction.clone_from(&interface.friction);
-        let Some(weights) = mixing.weights() else {
+        let Some(weights) = mixing.weights(largest) else {
             return;
         };
         let of = |entry: &dyn Fn(&Iterate) -> f64| {
@@ -165,7 +172,7 @@ mod tests {
                 .map(|i| (1.0 - factors[i]) * (exact[i] - x[i]))
                 .collect();
             last.end = x.iter().zip(&last.motion).map(|(x, f)| x + f).collect();
-            let weights = mixing.weights().unwrap_or(vec![1.0]);
+            let weights = mixing.weights(LARGEST).unwrap_or(vec![1.0]);
             let all = || weights.iter().zip(&mixing.kept);
             assert!((all().map(|(weight, _)| weight).sum::<f64>() - 1.0).abs() < 1e-12);
             x = (0..3)

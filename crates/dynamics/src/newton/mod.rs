@@ -11,6 +11,7 @@
 
 mod ahead;
 mod balance;
+mod carried;
 mod contacts;
 mod effective;
 mod floating;
@@ -20,6 +21,7 @@ mod linked;
 mod loads;
 mod mixing;
 mod obstacles;
+mod rigid;
 mod solve;
 mod stable;
 mod start;
@@ -40,6 +42,7 @@ use crate::small::Watch;
 use crate::state::{ContactReport, State, StepReport, empty_state};
 use crate::step_map::StepMap;
 use crate::system::System;
+use carried::Carried;
 use effective::Effective;
 use floating::Floating;
 use mixing::Mixing;
@@ -78,6 +81,7 @@ pub struct Newton {
     residuals: Vec<f64>,
     pace: Pace,
     mixing: Mixing,
+    carried: Carried,
     jump: Jump,
     failed: Option<InterfaceProblem>,
     failed_friction: Option<FrictionProblem>,
@@ -157,6 +161,7 @@ impl Newton {
             residuals: Vec::new(),
             pace: Pace::default(),
             mixing: Mixing::default(),
+            carried: Carried::default(),
             jump: Jump::default(),
             failed: None,
             failed_friction: None,

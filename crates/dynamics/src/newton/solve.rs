@@ -8,7 +8,7 @@ use carom_contact::Search;
 use carom_mesh::ElementId;
 
 use super::effective::{At, Turning};
-use super::floating::{GROWTH as HEAVIER, LARGEST, WEIGHT};
+use super::floating::{GROWTH as HEAVIER, LARGEST};
 use super::{Newton, Which};
 use crate::error::Error;
 use crate::step_map::StepMap;
@@ -72,7 +72,7 @@ impl Newton {
         let limit = self.system.nonlinear.iteration.passes;
         self.residuals.clear();
         (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
-        self.floating.weight = WEIGHT;
+        self.floating.begin();
         self.mixing.clear();
         self.predict();
         let interface = &mut self.next.interface;
@@ -104,9 +104,14 @@ impl Newton {
                 (self.pace.age, self.pace.made) = (0, pass);
             }
             self.pace.age += 1;
+            self.keep_forces();
             self.motion_of_iteration()?;
-            if !jumps && standing.imbalance > NOISY * standing.rounding {
+            // a motion that contacts hardly hold is far above the noise of the forces
+            if !jumps && (self.floats() || standing.imbalance > NOISY * standing.rounding) {
                 self.mix();
+            }
+            if self.floats() && !jumps {
+                self.restrain();
             }
             standing = self.go(&standing, jumps)?;
             if self.is_affine() {
@@ -117,7 +122,7 @@ impl Newton {
         if self.is_solved(&standing, before) {
             return self.check_held(limit);
         }
-        Err(self.no_equilibrium(limit))
+        Err(self.unbalanced(limit, standing.imbalance * standing.scale))
     }
 
     /// Whether iterations may end. `before`: the imbalance one iteration ago. Within what rounding leaves they end where they
@@ -420,10 +425,13 @@ impl Newton {
         self.vectors.before.copy_from_slice(&self.vectors.x);
         let mut share = 1.0;
         let mut last = None;
-        for _ in 0..=SHORTENINGS {
+        for shortening in 0..=SHORTENINGS {
             let vectors = &mut self.vectors;
             for (i, x) in vectors.x.iter_mut().enumerate() {
                 *x = vectors.before[i] + share * vectors.dx[i];
+            }
+            if self.floats() {
+                self.turn(share);
             }
             match self.evaluate(false) {
                 Ok(()) => {
@@ -438,7 +446,10 @@ impl Newton {
                 }
                 Err(error) => last = Some(Err(error)),
             }
-            share *= 0.5;
+            if shortening < SHORTENINGS {
+                share *= 0.5;
+                self.halve_forces();
+            }
         }
         let mut rest = 0.0;
         if jumps && share < 1.0 {
@@ -447,8 +458,12 @@ impl Newton {
         for jump in self.vectors.jump.iter_mut() {
             *jump *= rest;
         }
+        // a part that rolls far in one iteration deforms until the next: what is known of the way it rolls is as good as before
+        let misled = |standing: &Standing| {
+            share < 1.0 || standing.imbalance > before.imbalance && !self.floats()
+        };
         match last {
-            Some(Ok(standing)) if share < 1.0 || standing.imbalance > before.imbalance => {
+            Some(Ok(standing)) if misled(&standing) => {
                 self.mixing.clear();
                 Ok(standing)
             }

@@ -18,6 +18,7 @@ mod mortar;
 mod newton;
 mod quadrature;
 mod refusals;
+mod rolling;
 mod sliding;
 mod small;
 mod stability;

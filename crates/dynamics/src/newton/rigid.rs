@@ -1,0 +1,371 @@
+//! Rigid motions of parts that float, and what vectors span in them.
+//!
+//! A motion of the iterations is linear in its coordinates; a turn by a finite angle is not, and its linear motion stretches the
+//! body by θ²/2. What is missing is added: `u = (exp(θ×) - 1 - θ×) d`, d from the centre of the part.
+
+use std::ops::Range;
+
+use carom_contact::Rows;
+
+use crate::system::System;
+
+/// What of a unit vector counts as independent of others.
+pub(super) const INDEPENDENT: f64 = 1e-6;
+
+/// Rigid motions of parts: u = Σ c_j r_j, those of a part one after the other.
+pub(super) struct Rigid<'a> {
+    system: &'a System,
+    parts: &'a [Range<usize>],
+    modes: Vec<Mode>,
+    frames: Vec<Frame>,
+    /// Places of the nodes, m.
+    places: Vec<[f64; 3]>,
+}
+
+/// What scales the motions of a part.
+struct Frame {
+    centre: [f64; 3],
+    /// Largest distance of a node from the centre along an axis, m.
+    size: f64,
+    /// 1/√n, n nodes: motions have the norm of about one.
+    unit: f64,
+    /// Σ r_j² over its unknowns, motion by motion.
+    squares: Vec<f64>,
+    /// Whether it turns by finite angles: a linear body does not, and one with supports turns about them.
+    spins: bool,
+}
+
+impl<'a> Rigid<'a> {
+    /// `u`: displacement of the nodes, m, of bodies at finite strain; a linear body has the rigid motions of its reference
+    /// places.
+    pub(super) fn new(
+        system: &'a System,
+        parts: &'a [Range<usize>],
+        u: Option<&[f64]>,
+    ) -> Rigid<'a> {
+        let dim = system.dim;
+        let mut places = system.x.clone();
+        for (body, masses) in system.bodies.iter().zip(&system.body_masses) {
+            let Some(u) = u.filter(|_| !body.is_linear()) else {
+                continue;
+            };
+            for &(node, _) in masses {
+                let node = node as usize;
+                for i in 0..dim {
+                    places[node][i] = system.x[node][i] + u[dim * node + i];
+                }
+            }
+        }
+        let frames = parts.iter().map(|part| {
+            let nodes = &places[part.start / dim..part.end / dim];
+            let n = nodes.len() as f64;
+            let centre = [0, 1, 2].map(|i| nodes.iter().map(|x| x[i]).sum::<f64>() / n);
+            let far = |x: &[f64; 3]| (0..3).map(|i| (x[i] - centre[i]).abs()).fold(0.0, f64::max);
+            Frame {
+                centre,
+                size: nodes.iter().map(far).fold(f64::MIN_POSITIVE, f64::max),
+                unit: 1.0 / n.sqrt(),
+                squares: Vec::new(),
+                spins: spins(system, part),
+            }
+        });
+        let mut rigid = Rigid {
+            system,
+            parts,
+            modes: modes(dim, system.axisymmetric),
+            frames: frames.collect(),
+            places,
+        };
+        for (k, part) in parts.iter().enumerate() {
+            let mut squares = vec![0.0; rigid.modes.len()];
+            for (_, values) in part.clone().filter_map(|unknown| rigid.at(unknown)) {
+                for (square, value) in squares.iter_mut().zip(values) {
+                    *square += value * value;
+                }
+            }
+            rigid.frames[k].squares = squares;
+        }
+        rigid
+    }
+
+    /// Number of the first coordinate that moves an unknown and the values of the motions of its part there; none of a part
+    /// that does not float.
+    fn at(&self, unknown: usize) -> Option<(usize, impl Iterator<Item = f64> + '_)> {
+        let part = self.part_of(unknown)?;
+        let frame = &self.frames[part];
+        let (node, i) = (unknown / self.system.dim, unknown % self.system.dim);
+        let place = &self.places[node];
+        let x = [0, 1, 2].map(|j| (place[j] - frame.centre[j]) / frame.size);
+        let values = self
+            .modes
+            .iter()
+            .map(move |mode| frame.unit * mode.1(&x)[i]);
+        Some((part * self.modes.len(), values))
+    }
+
+    /// The part of an unknown; none of one that does not float.
+    pub(super) fn part_of(&self, unknown: usize) -> Option<usize> {
+        let part = self.parts.partition_point(|part| part.end <= unknown);
+        self.parts.get(part)?.contains(&unknown).then_some(part)
+    }
+
+    /// Σ f_i r_j(i) by coordinate j of unknowns i and their values f.
+    pub(super) fn of(&self, terms: impl IntoIterator<Item = (usize, f64)>) -> Vec<f64> {
+        let mut sums = vec![0.0; self.parts.len() * self.modes.len()];
+        for (unknown, f) in terms {
+            if let Some((first, values)) = self.at(unknown) {
+                for (sum, value) in sums[first..].iter_mut().zip(values) {
+                    *sum += f * value;
+                }
+            }
+        }
+        sums
+    }
+
+    /// Coordinates of the rigid motion that is nearest to a motion of all unknowns.
+    pub(super) fn nearest(&self, dx: &[f64]) -> Vec<f64> {
+        let unknowns = self.parts.iter().flat_map(Range::clone);
+        let mut c = self.of(unknowns.map(|unknown| (unknown, dx[unknown])));
+        let squares = self.frames.iter().flat_map(|frame| &frame.squares);
+        for (c, square) in c.iter_mut().zip(squares) {
+            *c /= square.max(f64::MIN_POSITIVE);
+        }
+        c
+    }
+
+    /// A row of contact on the motions.
+    pub(super) fn row(&self, rows: &Rows, point: usize) -> Vec<f64> {
+        let (unknowns, coefficients) = rows.row(point);
+        let unknowns = unknowns.iter().map(|&unknown| unknown as usize);
+        self.of(unknowns.zip(coefficients.iter().copied()))
+    }
+
+    /// Unknowns and their displacements in a motion.
+    pub(super) fn motion(&self, c: &[f64]) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let c = c.to_vec();
+        let unknowns = self.parts.iter().flat_map(Range::clone);
+        unknowns.filter_map(move |unknown| {
+            let (first, values) = self.at(unknown)?;
+            Some((unknown, values.zip(&c[first..]).map(|(v, c)| v * c).sum()))
+        })
+    }
+
+    /// Unknowns and what the finite turns of a motion add to its displacements.
+    pub(super) fn arc(&self, c: &[f64]) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let turns: Vec<[f64; 3]> = (0..self.parts.len()).map(|k| self.angle(k, c)).collect();
+        let parts = self.parts.iter().enumerate();
+        let spinning = parts.filter(|(k, _)| self.frames[*k].spins);
+        spinning.flat_map(move |(k, part)| {
+            let (frame, turn) = (&self.frames[k], turns[k]);
+            let dim = self.system.dim;
+            part.clone().map(move |unknown| {
+                let place = &self.places[unknown / dim];
+                let from = [0, 1, 2].map(|i| place[i] - frame.centre[i]);
+                (unknown, beyond_linear(&turn, &from)[unknown % dim])
+            })
+        })
+    }
+
+    /// Turn of a part in a motion, a vector along its axis, rad.
+    fn angle(&self, part: usize, c: &[f64]) -> [f64; 3] {
+        let (count, frame) = (self.modes.len(), &self.frames[part]);
+        let mut angle = [0.0; 3];
+        for (c, (_, shape)) in c[part * count..].iter().zip(&self.modes) {
+            if shape(&[0.0; 3]) != [0.0; 3] {
+                continue;
+            }
+            let [of_x, of_y, of_z] =
+                [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| shape(&e));
+            for (angle, axis) in angle.iter_mut().zip([of_y[2], of_z[0], of_x[1]]) {
+                *angle += c * axis * frame.unit / frame.size;
+            }
+        }
+        angle
+    }
+
+    /// Largest displacement of a node of a part in a motion, m.
+    pub(super) fn reach(&self, part: usize, c: &[f64]) -> f64 {
+        let dim = self.system.dim;
+        let of = |unknown: usize| -> f64 {
+            let moved = self
+                .at(unknown)
+                .map(|(first, values)| values.zip(&c[first..]).map(|(v, c)| v * c).sum::<f64>());
+            moved.unwrap_or(0.0)
+        };
+        let nodes = self.parts[part].clone().step_by(dim);
+        let lengths = nodes.map(|node| (node..node + dim).map(|i| of(i).powi(2)).sum::<f64>());
+        lengths.fold(0.0, f64::max).sqrt()
+    }
+
+    /// The coordinates of a part.
+    pub(super) fn coordinates(&self, part: usize) -> Range<usize> {
+        let count = self.modes.len();
+        part * count..(part + 1) * count
+    }
+
+    /// Largest turn in a motion, rad.
+    pub(super) fn turn(&self, c: &[f64]) -> f64 {
+        let count = self.modes.len();
+        let turns = c.iter().enumerate().map(|(j, c)| {
+            let (frame, (_, shape)) = (&self.frames[j / count], self.modes[j % count]);
+            // a turn leaves the centre where it is
+            match shape(&[0.0; 3]) == [0.0; 3] {
+                true => c.abs() * frame.unit / frame.size,
+                false => 0.0,
+            }
+        });
+        turns.fold(0.0, f64::max)
+    }
+
+    /// The part that moves most, and how.
+    pub(super) fn name(&self, c: &[f64]) -> (&Range<usize>, &'static str) {
+        let most = (0..c.len()).fold(0, |most, j| match c[j].abs() > c[most].abs() {
+            true => j,
+            false => most,
+        });
+        let count = self.modes.len();
+        (&self.parts[most / count], self.modes[most % count].0)
+    }
+
+    /// The first of the motions that supports do not hold, with those before it held.
+    pub(super) fn free_motion(&self) -> Option<&'static str> {
+        let mut held = Span::default();
+        for i in self.parts.iter().flat_map(Range::clone) {
+            if self.system.fixed[i] {
+                held.add(self.of([(i, 1.0)]));
+            }
+        }
+        let mut modes = self.modes.iter().enumerate();
+        modes.find_map(|(j, mode)| {
+            let mut unit = vec![0.0; self.modes.len()];
+            unit[j] = 1.0;
+            held.add(unit).then_some(mode.0)
+        })
+    }
+}
+
+/// Whether a part turns by finite angles.
+fn spins(system: &System, part: &Range<usize>) -> bool {
+    let mut bodies = system.bodies.iter().zip(&system.body_masses);
+    let inside = |node: u32| part.contains(&(system.dim * node as usize));
+    let stiff = bodies.any(|(body, masses)| {
+        body.is_linear() && masses.first().is_some_and(|&(node, _)| inside(node))
+    });
+    !stiff && !part.clone().any(|unknown| system.fixed[unknown])
+}
+
+/// (exp(θ×) - 1 - θ×) d.
+fn beyond_linear(turn: &[f64; 3], from: &[f64; 3]) -> [f64; 3] {
+    let cross = |a: &[f64; 3], b: &[f64; 3]| {
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    };
+    let once = cross(turn, from);
+    let twice = cross(turn, &once);
+    let angle = norm(turn);
+    // (sin θ - θ)/θ and (1 - cos θ)/θ², which differences would lose at small angles
+    let odd = match angle < 1e-2 {
+        true => -angle * angle / 6.0 * (1.0 - angle * angle / 20.0),
+        false => angle.sin() / angle - 1.0,
+    };
+    let half = 0.5 * angle;
+    let even = match angle == 0.0 {
+        true => 0.5,
+        false => 0.5 * (half.sin() / half).powi(2),
+    };
+    [0, 1, 2].map(|i| odd * once[i] + even * twice[i])
+}
+
+/// An orthonormal basis of what vectors span.
+#[derive(Default)]
+pub(super) struct Span(Vec<Vec<f64>>);
+
+impl Span {
+    /// Adds a vector; whether it is independent of those before it.
+    pub(super) fn add(&mut self, mut vector: Vec<f64>) -> bool {
+        let length = norm(&vector);
+        if self.0.len() == vector.len() || length == 0.0 {
+            return false;
+        }
+        vector.iter_mut().for_each(|v| *v /= length);
+        self.take_from(&mut vector);
+        let length = norm(&vector);
+        if length <= INDEPENDENT {
+            return false;
+        }
+        vector.iter_mut().for_each(|v| *v /= length);
+        self.0.push(vector);
+        true
+    }
+
+    /// Takes from a vector its part in the span: twice, for what rounding leaves the first time.
+    pub(super) fn take_from(&self, vector: &mut [f64]) {
+        for _ in 0..2 {
+            for e in &self.0 {
+                let part: f64 = e.iter().zip(&*vector).map(|(e, v)| e * v).sum();
+                for (v, e) in vector.iter_mut().zip(e) {
+                    *v -= part * e;
+                }
+            }
+        }
+    }
+}
+
+pub(super) fn norm(vector: &[f64]) -> f64 {
+    vector.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// A motion in words, and its displacement at a place relative to the centre.
+type Mode = (&'static str, fn(&[f64; 3]) -> [f64; 3]);
+
+fn modes(dim: usize, axisymmetric: bool) -> Vec<Mode> {
+    if axisymmetric {
+        return vec![("move along its axis", |_| [0.0, 1.0, 0.0])];
+    }
+    let mut modes: Vec<Mode> = vec![("move along x", |_| [1.0, 0.0, 0.0])];
+    if dim > 1 {
+        modes.push(("move along y", |_| [0.0, 1.0, 0.0]));
+    }
+    if dim > 2 {
+        modes.push(("move along z", |_| [0.0, 0.0, 1.0]));
+        modes.push(("turn about x", |x| [0.0, -x[2], x[1]]));
+        modes.push(("turn about y", |x| [x[2], 0.0, -x[0]]));
+    }
+    if dim > 1 {
+        modes.push(("turn about z", |x| [-x[1], x[0], 0.0]));
+    }
+    modes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_with_what_is_beyond_linear_keeps_lengths_and_the_axis() {
+        for angle in [1e-9, 1e-3, 9.99e-3, 1.01e-2, 0.3, 2.0] {
+            let axis = [2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0];
+            let turn = axis.map(|e| angle * e);
+            let from = [0.3, 1.1, -0.4];
+            let beyond = beyond_linear(&turn, &from);
+            let once = [
+                turn[1] * from[2] - turn[2] * from[1],
+                turn[2] * from[0] - turn[0] * from[2],
+                turn[0] * from[1] - turn[1] * from[0],
+            ];
+            let turned = [0, 1, 2].map(|i| from[i] + once[i] + beyond[i]);
+            let along = |v: &[f64; 3]| (0..3).map(|i| axis[i] * v[i]).sum::<f64>();
+            // rounding; the series leaves angle⁶/5040 of the length
+            assert!((norm(&turned) - norm(&from)).abs() < 1e-15 * 4.0);
+            assert!((along(&turned) - along(&from)).abs() < 1e-15 * 4.0);
+            // (v' - v) about the axis: the angle itself
+            let flat = |v: &[f64; 3]| [0, 1, 2].map(|i| v[i] - along(v) * axis[i]);
+            let (a, b) = (flat(&from), flat(&turned));
+            let cosine = (0..3).map(|i| a[i] * b[i]).sum::<f64>() / (norm(&a) * norm(&b));
+            assert!((cosine - angle.cos()).abs() < 1e-15 * 4.0, "{angle}");
+        }
+    }
+}
