@@ -324,7 +324,7 @@ pub enum Error {
     },
     /// A part of the model that can move without any force, and that no contact could hold.
     #[error(
-        "the static stage: body '{body}' can {motion} without any force; hold it by supports or a contact, or leave the stage out"
+        "the static stage: body '{body}' can {motion} without any force; hold it by supports or a contact, or remove the static stage"
     )]
     FreeMotion {
         /// Name of the body.
@@ -334,8 +334,8 @@ pub enum Error {
     },
     /// A part of the model that supports leave free, and whose loads no contact takes.
     #[error(
-        "step {step}, t = {time:e} s: the static stage has no equilibrium: body '{body}' can {motion}, its loads push it there, \
-         and no contact is on its way; hold it by supports or friction, or leave the stage out"
+        "step {step}, t = {time:e} s: the static stage has no equilibrium: body '{body}' can {motion}, its loads act in this direction, \
+         and no contact is ahead; hold it by supports or friction, or remove the static stage"
     )]
     Unheld {
         /// Number of the step.

@@ -63,7 +63,7 @@ pub struct Tangential {
 /// A problem with friction was not solved.
 #[derive(Clone, Copy, Debug, PartialEq, ThisError)]
 #[error(
-    "candidate {candidate} is {defect:e} of its forces away from its laws after {passes} passes and {sweeps} sweeps"
+    "candidate {candidate} violates its laws by {defect:e} of its forces after {passes} passes and {sweeps} sweeps"
 )]
 pub struct FrictionFailure {
     /// The candidate with the largest defect.

@@ -57,7 +57,7 @@ impl Driver {
                 Ok(Some((event, size))) => {
                     self.forget_predictor();
                     tracing::debug!(
-                        "step {}: dropped with {dt:e} s ({event:?})",
+                        "step {}: attempt with {dt:e} s rejected ({event:?})",
                         self.state.step + 1
                     );
                     let Some(rules) = &self.system.adaptive else {

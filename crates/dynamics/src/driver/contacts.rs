@@ -227,7 +227,7 @@ impl Driver {
         if let Some(candidate) = self.interface.circled {
             let name = self.name(self.candidates[candidate]);
             tracing::warn!(
-                "step {}: contact statuses go in circles at {name}; they now change one at a time",
+                "step {}: contact statuses cycle at {name}; they now change one at a time",
                 self.state.step + 1
             );
         }

@@ -32,7 +32,7 @@ impl Newton {
             for held in all {
                 let name = self.name(system.first_point[k] + held.point);
                 tracing::debug!(
-                    "step {}: {name} went to and fro between faces and stays with one; its gap is off by {:.1e} of the face",
+                    "step {}: {name} alternated between faces and stays with one; the error of its gap is {:.1e} of the face",
                     self.state.step + 1,
                     held.error
                 );

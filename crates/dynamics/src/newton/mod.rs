@@ -283,7 +283,7 @@ impl Newton {
                     }
                 }
                 Err(error) if level < self.system.nonlinear.iteration.halvings => {
-                    tracing::debug!("step {}: {error}; taken in halves", taken + 1);
+                    tracing::debug!("step {}: {error}; halved", taken + 1);
                     control.failed += 1;
                     level += 1;
                 }
