@@ -214,11 +214,9 @@ fn compare(elements: usize, scheme: Scheme, law: Law, name: &str) -> Result<Vec<
         let run = run(steps, FLOWN)?;
         let row = |quantity: &str| format!("{scheme:?}, {name}, {what}: {quantity}");
         let error = run.force_error / largest;
-        rows.push(Row::at_most(
-            row("force error / that of fixed steps"),
-            error,
-            1.2,
-        ));
+        rows.push(
+            Row::at_most(row("force error / that of fixed steps"), error, 1.2).second_formulation(),
+        );
         let sum = "sum of force times step and of what acts beside / momentum - 1";
         rows.push(Row::near(row(sum), run.sum_error, 0.0, 1e-10));
         for (which, residual) in ["energy", "momentum", "impulse of the contact"]
@@ -228,7 +226,7 @@ fn compare(elements: usize, scheme: Scheme, law: Law, name: &str) -> Result<Vec<
             rows.push(Row::at_most(row(which), residual, 1e-11));
         }
         if one {
-            rows.push(Row::count(row("impacts"), run.impacts, 1));
+            rows.push(Row::count(row("impacts"), run.impacts, 1).second_formulation());
         }
         if !jumps && steps == Steps::Cut && !rebounds_on(scheme, name) {
             let beside = "impulses beside forces / momentum";

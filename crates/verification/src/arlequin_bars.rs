@@ -3,7 +3,10 @@
 //! Problem: the set "slow", tips of 2 m with elements of 0.05 m in velocities (theta), the rest with elements of 0.2 m in
 //! displacements (trapezoid, or central differences), overlap 0.8 m, linear weights, L2 mediator on the coarse mesh.
 //! Closed solution: F = Z v0 / 2 up to 2 L / c. Reference: the project's table of bars, from an independent
-//! implementation. Tolerance: one unit of the printed digit, or 2 % of the number where that is more.
+//! implementation. Tolerance: one unit of the printed digit. Passes: two a step, and a tenth more for steps in which the
+//! contact closes or opens. Mean force: 2 % for the momentum that spread fronts hold back, 1 - restitution = 0.025 of two bars as
+//! coarse as the rest. Forces of the single mesh, of the other form of the links, and of four inner steps always: second
+//! formulations, to the rounding of their steps; so is the cost, half of the single fine mesh at most.
 
 use carom_arlequin::{Profile, Weighting};
 use carom_dynamics::LinkKind;
@@ -14,6 +17,7 @@ use crate::build::{CENTRAL, NOW, newmark, theta};
 use crate::check::{Check, Row};
 use crate::figures::{drive, run};
 use crate::glued::{Glued, swept};
+use crate::kind::Kind;
 
 pub(crate) const CHECK: Check = Check {
     name: "arlequin-bars",
@@ -74,7 +78,12 @@ pub(crate) const CHECK: Check = Check {
                     2.2,
                 ));
                 for ((what, value), printed) in what.iter().zip(values).zip(printed) {
-                    rows.push(Row::printed(format!("{name}: {what}"), value, printed));
+                    rows.push(Row::printed(
+                        Kind::OtherCode,
+                        format!("{name}: {what}"),
+                        value,
+                        printed,
+                    ));
                 }
             }
         }
@@ -115,11 +124,14 @@ fn same_mesh() -> Result<Vec<Row>, Error> {
         let figures = glued.run_to(1.5 * SLOW.duration())?;
         let pairs = history.force.iter().zip(&figures.force);
         let worst = pairs.fold(0.0, |m: f64, (one, (_, other))| m.max((one - other).abs()));
-        rows.push(Row::at_most(
-            format!("same mesh, {name} weights: largest force difference / F0"),
-            worst / single.force(),
-            1e-10,
-        ));
+        rows.push(
+            Row::at_most(
+                format!("same mesh, {name} weights: largest force difference / F0"),
+                worst / single.force(),
+                1e-10,
+            )
+            .second_formulation(),
+        );
         rows.push(Row::count(
             format!("same mesh, {name} weights: steps compared"),
             figures.force.len(),
@@ -137,10 +149,9 @@ fn same_mesh() -> Result<Vec<Row>, Error> {
     let figures = glued.run_to(1.5 * SLOW.duration())?;
     let pairs = history.force.iter().zip(&figures.force);
     let worst = pairs.fold(0.0, |m: f64, (one, (_, other))| m.max((one - other).abs()));
-    rows.push(Row::at_least(
+    rows.push(Row::shown(
         "same mesh, four inner steps: largest force difference / F0",
         worst / single.force(),
-        1e-4,
     ));
     rows.push(Row::count(
         "same mesh, four inner steps: steps of the tips in one of the rest",
@@ -167,11 +178,14 @@ fn two_forms() -> Result<Vec<Row>, Error> {
         let pairs = one.force.iter().zip(&other.force);
         let worst = pairs.fold(0.0, |m: f64, (a, b)| m.max((a.1 - b.1).abs()));
         let f0 = 0.5 * SLOW.impedance() * SLOW.speed;
-        rows.push(Row::at_most(
-            format!("{name}: joined and condensed forms, largest force difference / F0"),
-            worst / f0,
-            1e-11,
-        ));
+        rows.push(
+            Row::at_most(
+                format!("{name}: joined and condensed forms, largest force difference / F0"),
+                worst / f0,
+                1e-11,
+            )
+            .second_formulation(),
+        );
         rows.push(Row::at_most(
             format!("{name}: passes to a step in the joined form"),
             other.passes,
@@ -207,7 +221,8 @@ fn far_and_near() -> Result<Vec<Row>, Error> {
             "one inner step in flight: largest force difference / F0",
             worst / f0,
             1e-9,
-        ),
+        )
+        .second_formulation(),
         Row::at_least(
             "one inner step in flight: inner steps saved in 18 outer steps of flight",
             one.inner_steps as f64 - other.inner_steps as f64,
@@ -241,6 +256,7 @@ fn cheaper() -> Result<Vec<Row>, Error> {
     let costs = driver.costs();
     Ok(vec![
         Row::printed(
+            Kind::OtherCode,
             "single fine mesh, theta 0.6: force error",
             figures.force_error,
             "0.091",
@@ -249,17 +265,20 @@ fn cheaper() -> Result<Vec<Row>, Error> {
             "glued / single fine mesh, theta 0.6: force error",
             glued.force_error / figures.force_error,
             1.0,
-        ),
+        )
+        .second_formulation(),
         Row::at_most(
             "glued / single fine mesh: element updates",
             glued.element_updates / costs.element_updates as f64,
             0.5,
-        ),
+        )
+        .second_formulation(),
         Row::at_most(
             "glued / single fine mesh: entries of factors swept",
             glued.swept / swept(&costs),
             0.5,
-        ),
+        )
+        .second_formulation(),
     ])
 }
 

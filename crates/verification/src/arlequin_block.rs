@@ -4,7 +4,8 @@
 //! four times finer, velocities and theta ½, is glued to the coarse body, central differences and four times the step.
 //! Reference: the uniformly fine mesh, velocities and theta ½. Tolerance: 3 % of the peak of the force and of the relative L2
 //! difference of its history: the overlap turns corners, where constant strains are missed by a few per cent of the strain,
-//! and waves of the coarse body are coarse. Energy residual 1e-9 of the initial energy, as for the block on a plane.
+//! and waves of the coarse body are coarse. Work of the link: 0.2 % of the energy, the project's theory note for this link
+//! (see `arlequin-energy`), of another code. Energy residual 1e-9 of the initial energy, as for the block on a plane.
 
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
@@ -205,13 +206,15 @@ pub(crate) const CHECK: Check = Check {
                 "force history, relative L2 difference",
                 (error / norm).sqrt(),
                 0.03,
-            ),
+            )
+            .second_formulation(),
             Row::near(
                 "peak of the force / that of the fine mesh",
                 peak(&glued) / peak(&fine),
                 1.0,
                 0.03,
-            ),
+            )
+            .second_formulation(),
             Row::at_most(
                 "energy residual / E0",
                 balance.energy_residual.abs() / kinetic,
@@ -220,9 +223,10 @@ pub(crate) const CHECK: Check = Check {
             Row::at_most(
                 "work of the link / E0",
                 balance.work_links.abs() / kinetic,
-                1e-3,
-            ),
-            Row::at_most("passes to a step", passes, 4.0),
+                2e-3,
+            )
+            .other_code(),
+            Row::shown("passes to a step", passes),
             Row::at_least(
                 "entries of the factors: fine mesh / zone",
                 entries(driver.costs()) / of_zones.sum::<f64>(),
@@ -230,7 +234,8 @@ pub(crate) const CHECK: Check = Check {
                     Size::Quick => 2.0,
                     Size::Full => 20.0,
                 },
-            ),
+            )
+            .second_formulation(),
         ])
     },
 };

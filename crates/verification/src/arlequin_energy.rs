@@ -10,68 +10,138 @@
 //! exchange as ten. With pointwise multipliers (gc) and more than one step the free velocities of the outer side are
 //! interpolated, which takes energy at each transit.
 //!
-//! Reference: the project's theory note, section 5, from an independent implementation: gc with m > 1 loses 1 / 9 / 27 % at
-//! w = 8 / 4 / 2 h_s, ph at most 0.2 %. It says neither m nor the step: with m = 4 and the step above the last two come
-//! out, 9.4 and 26.6 %, and the first does not, 2.7 %. Other set-ups (m = 4 and 10, steps from 0.5 to 0.9 h_s / c, bars of
-//! 76 and 100 h_s, h_s / h_c = 2 and 4) lose 1.8 to 3.1 % of that pulse, always a third of what the next one loses, so
-//! the printed 1 is taken for a 3. The 0.2 % of ph holds with central differences outside; with the trapezoid the pulse of
-//! w = 2 h_s, whose waves the coarse mesh hardly carries, had lost 1.4 % after ten transits.
-//! Tolerance: a unit of the per cents printed.
+//! Order: means of one velocity over different spans differ by the second order of step over period, so that the largest
+//! exchange falls to a quarter when the width doubles; three quarters of the exponent are asked for, the rest is left to the
+//! shortest pulse.
+//!
+//! Another code: the project's theory note, section 5: ph exchanges at most 0.2 %; gc with m > 1 loses 1 / 9 / 27 % at
+//! w = 8 / 4 / 2 h_s. The note says neither m nor the step. Its 0.2 % holds but for the trapezoid outside and w = 2 h_s, whose
+//! waves the coarse mesh hardly carries. m = 4 and the step above give 2.7, 9.4 and 26.6 %; other set-ups (m = 4 and 10,
+//! steps from 0.5 to 0.9 h_s / c, bars of 76 and 100 h_s, h_s / h_c = 2 and 4) lose 1.8 to 3.1 % of the widest pulse, never the
+//! note's 1 %. Since the set-up was chosen by its result, these losses are regressions, as is the work on the shortest
+//! pulse where the note says nothing or does not hold: all to 1 % of the figure.
 
+use carom_dynamics::scheme::Newmark;
 use carom_dynamics::{LinkKind, Scheme, Zones};
 
 use crate::Error;
-use crate::build::{CENTRAL, newmark};
+use crate::build::CENTRAL;
 use crate::check::{Check, Row};
 use crate::glued_bar::{GluedBar, motion, pulse};
 
 const TRANSITS: f64 = 10.0;
-const WIDTHS: [f64; 3] = [8.0, 4.0, 2.0];
+const SHORTEST: f64 = 2.0;
+const WIDTHS: [f64; 3] = [8.0, 4.0, SHORTEST];
+const GC: LinkKind = LinkKind::GravouilCombescure;
+const PH: LinkKind = LinkKind::PrakashHjelmstad;
+const TRAPEZOID: Scheme = Scheme::Newmark(Newmark {
+    beta: 0.25,
+    gamma: 0.5,
+});
 
 pub(crate) const CHECK: Check = Check {
     name: "arlequin-energy",
     fact: "links take no energy from long waves, but with pointwise multipliers and more than one step what the note says",
     run: |_| {
-        let (gc, ph) = (LinkKind::GravouilCombescure, LinkKind::PrakashHjelmstad);
-        let trapezoid = newmark(0.25, 0.5);
         let mut rows = Vec::new();
-        for (width, [explicit, linear, trapezoidal]) in WIDTHS.into_iter().zip(EXCHANGED) {
-            let name = format!("gc, trapezoid, m = 1, w = {width} h");
-            let run = transits(gc, 1, trapezoid, width)?;
-            rows.push(Row::at_most(
-                format!("{name}: largest exchange"),
-                run.largest,
-                1e-13,
-            ));
-            rows.extend(run.closed(&name));
-            for (what, kind, m, outer, bound) in [
-                ("gc, explicit", gc, 1, CENTRAL, explicit),
-                ("ph, explicit", ph, 4, CENTRAL, linear),
-                ("ph, trapezoid", ph, 4, trapezoid, trapezoidal),
-            ] {
-                let name = format!("{what}, m = {m}, w = {width} h");
-                let run = transits(kind, m, outer, width)?;
-                rows.push(Row::near(format!("{name}: work"), run.work, 0.0, bound));
-                rows.extend(run.closed(&name));
-            }
+        rows.extend(kept()?);
+        for exchange in EXCHANGES {
+            rows.extend(exchange.rows()?);
         }
-        for (width, lost) in WIDTHS.into_iter().zip(["0.03", "0.09", "0.27"]) {
-            let name = format!("gc, explicit, m = 4, w = {width} h");
-            let run = transits(gc, 4, CENTRAL, width)?;
-            rows.push(Row::printed(format!("{name}: lost"), -run.work, lost));
-            rows.extend(run.closed(&name));
-        }
+        rows.extend(taken()?);
         Ok(rows)
     },
 };
 
-/// Bounds of the work over ten transits, by width: gc and ph with central differences, ph with the trapezoid. Above 0.2 %
-/// where waves of some elements are in the overlap when it is looked at: what was found, and half as much again.
-const EXCHANGED: [[f64; 3]; 3] = [
-    [0.002, 0.002, 0.002],
-    [0.002, 0.002, 0.002],
-    [0.02, 0.002, 0.02],
+/// One step and the trapezoid on both sides: nothing is exchanged.
+fn kept() -> Result<Vec<Row>, Error> {
+    let mut rows = Vec::new();
+    for width in WIDTHS {
+        let name = format!("gc, trapezoid, m = 1, w = {width} h");
+        let run = transits(GC, 1, TRAPEZOID, width)?;
+        let what = format!("{name}: largest exchange");
+        rows.push(Row::at_most(what, run.largest, 1e-13));
+        rows.extend(run.closed(&name));
+    }
+    Ok(rows)
+}
+
+/// Links that exchange energy with the waves in the overlap.
+struct Exchange {
+    name: &'static str,
+    kind: LinkKind,
+    substeps: u32,
+    outer: Scheme,
+    /// Whether the note's 0.2 % is about this one.
+    noted: bool,
+    /// The work over the initial energy that was found for the shortest pulse, where it is above 0.2 %.
+    shortest: Option<f64>,
+}
+
+const EXCHANGES: [Exchange; 3] = [
+    Exchange {
+        name: "gc, explicit, m = 1",
+        kind: GC,
+        substeps: 1,
+        outer: CENTRAL,
+        noted: false,
+        shortest: Some(0.0129204),
+    },
+    Exchange {
+        name: "ph, explicit, m = 4",
+        kind: PH,
+        substeps: 4,
+        outer: CENTRAL,
+        noted: true,
+        shortest: None,
+    },
+    Exchange {
+        name: "ph, trapezoid, m = 4",
+        kind: PH,
+        substeps: 4,
+        outer: TRAPEZOID,
+        noted: true,
+        shortest: Some(-0.0136095),
+    },
 ];
+
+impl Exchange {
+    fn rows(&self) -> Result<Vec<Row>, Error> {
+        let (mut rows, mut before) = (Vec::new(), None);
+        for width in WIDTHS.into_iter().rev() {
+            let run = transits(self.kind, self.substeps, self.outer, width)?;
+            let name = format!("{}, w = {width} h", self.name);
+            let work = format!("{name}: work");
+            match self.shortest {
+                Some(own) if width == SHORTEST => {
+                    rows.push(Row::relative(work, run.work, own, 0.01).regression());
+                }
+                _ if self.noted => rows.push(Row::near(work, run.work, 0.0, 0.002).other_code()),
+                _ => rows.push(Row::shown(work, run.work)),
+            }
+            if let Some(before) = before {
+                let what = format!("{name}: largest exchange / that of half the width");
+                rows.push(Row::at_most(what, run.largest / before, 0.5_f64.powf(1.5)));
+            }
+            before = Some(run.largest);
+            rows.extend(run.closed(&name));
+        }
+        Ok(rows)
+    }
+}
+
+/// Pointwise multipliers and four inner steps: energy is taken at each transit.
+fn taken() -> Result<Vec<Row>, Error> {
+    let mut rows = Vec::new();
+    for (width, own) in WIDTHS.into_iter().zip([0.0271896, 0.0935497, 0.265680]) {
+        let name = format!("gc, explicit, m = 4, w = {width} h");
+        let run = transits(GC, 4, CENTRAL, width)?;
+        let lost = format!("{name}: lost");
+        rows.push(Row::relative(lost, -run.work, own, 0.01).regression());
+        rows.extend(run.closed(&name));
+    }
+    Ok(rows)
+}
 
 /// Figures over the initial energy.
 struct Transits {

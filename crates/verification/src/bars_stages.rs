@@ -5,10 +5,9 @@
 //! match for Laursen-Love; bars of one element at c dt / L = 1e4, which do not deform within a step, met at a fifth of a
 //! step, for restitution. Closed solution: F = Z v0 / 2 for 2 L / c; nonsmooth generalised-alpha and Krenk with ρ∞ = 1 are
 //! the mid-point rule, with impulses of weight ½ in the displacement, that is theta ½; Laursen-Love conserves energy and
-//! does not penetrate, and its force is of no use; both damped schemes lose more energy the smaller ρ∞ is; bodies that are
+//! does not penetrate, and its force is of no use, which is shown; both damped schemes lose more energy the smaller ρ∞ is; bodies that are
 //! rigid in a step part at e times their approach (the nonsmooth scheme without damping, for the reason in its text). Reference: theta ½, and the formulas; no other implementation was at hand, so
-//! that the rest are bounds of the size found: force errors of 0.0472 (nonsmooth) and 0.0471 (Krenk) at ρ∞ = 0.8, of 0.053 at 0. Tolerance:
-//! 1e-9 for equal forces, a thousand steps of other rounding; 1e-11 of the energy for balances and conservation; 1e-6 for
+//! that the errors and losses of the damped schemes are regressions, to 1 % of the figure. Tolerance: 1e-9 for equal forces, a thousand steps of other rounding; 1e-11 of the energy for balances and conservation; 1e-6 for
 //! rigid bodies, whose vibration is (L / (c dt))² = 1e-8 to within a factor.
 
 use carom_bodies::MassKind;
@@ -55,51 +54,60 @@ fn mid_point(rows: &mut Vec<Row>) -> Result<(), Error> {
         let case = case(scheme, HALF);
         let (history, figures) = run(&case)?;
         let name = format!("{scheme:?}");
-        rows.push(Row::at_most(
-            format!("{name}: forces against theta 0.5 / F0"),
-            difference(&case, &history, &reference),
-            1e-9,
-        ));
+        rows.push(
+            Row::at_most(
+                format!("{name}: forces against theta 0.5 / F0"),
+                difference(&case, &history, &reference),
+                1e-9,
+            )
+            .second_formulation(),
+        );
         rows.extend(figures.balances(&name));
     }
     Ok(())
 }
 
 fn damped(rows: &mut Vec<Row>) -> Result<(), Error> {
-    for scheme in [nonsmooth(0.8), krenk(0.8)] {
+    let found = [
+        [
+            (nonsmooth(0.8), 0.0471554, -1.57791e-3),
+            (nonsmooth(0.0), 0.0527388, -6.10138e-3),
+        ],
+        [
+            (krenk(0.8), 0.0471321, -1.49971e-3),
+            (krenk(0.0), 0.0524271, -5.31115e-3),
+        ],
+    ];
+    for schemes in found {
         let mut change = 0.0;
-        for scheme in [scheme, lowest(scheme)] {
+        for (scheme, own_error, own_change) in schemes {
             let (_, figures) = run(&case(scheme, NOW))?;
             let name = format!("{scheme:?}");
             let row = |what: &str| format!("{name}: {what}");
             rows.extend(figures.balances(&name));
             let error = figures.force_error;
-            rows.push(Row::at_most(row("force error"), error, 0.07));
+            rows.push(Row::relative(row("force error"), error, own_error, 0.01).regression());
             let switches = figures.switches as f64;
             rows.push(Row::at_most(row("changes"), switches, 1.0));
-            rows.push(Row::at_most(
-                row("energy change, below that of a larger radius"),
-                figures.energy_change,
-                change,
-            ));
-            rows.push(Row::near(
+            rows.push(
+                Row::at_most(
+                    row("energy change, below that of a larger radius"),
+                    figures.energy_change,
+                    change,
+                )
+                .second_formulation(),
+            );
+            let lost = Row::relative(
                 row("energy change"),
                 figures.energy_change,
-                0.0,
+                own_change,
                 0.01,
-            ));
+            );
+            rows.push(lost.regression());
             change = figures.energy_change;
         }
     }
     Ok(())
-}
-
-/// The scheme with the most damping.
-fn lowest(scheme: Scheme) -> Scheme {
-    match scheme {
-        Scheme::Krenk(_) => krenk(0.0),
-        _ => nonsmooth(0.0),
-    }
 }
 
 fn conserving(rows: &mut Vec<Row>) -> Result<(), Error> {
@@ -123,7 +131,7 @@ fn conserving(rows: &mut Vec<Row>) -> Result<(), Error> {
             let deep = figures.penetration;
             rows.push(Row::at_most(row("penetration / (v0 dt)"), deep, 1e-12));
             let error = figures.force_error;
-            rows.push(Row::at_least(row("force error"), error, 0.5));
+            rows.push(Row::shown(row("force error"), error));
         }
     }
     Ok(())

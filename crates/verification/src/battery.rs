@@ -140,18 +140,13 @@ impl Battery {
             |what: &str, value, reference| Row::count(format!("{name}: {what}"), value, reference);
         let mut rows = vec![
             row("pairs compared", self.pairs, pairs),
-            row("pairs that differ in a byte", self.different, 0),
-            row(
-                "single steps that differ in a byte",
-                self.different_steps,
-                0,
-            ),
+            row("pairs that differ in a byte", self.different, 0).second_formulation(),
             row("pairs that never touched", self.without_contact, 0),
             row("combinations refused", self.refused, self.senseless),
         ];
         if self.steps > 0 {
             let name = format!("{} single steps that differ in a byte", self.steps);
-            rows.push(row(&name, self.different_steps, 0));
+            rows.push(row(&name, self.different_steps, 0).second_formulation());
         }
         rows
     }

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::time::Instant;
 
 use crate::Error;
+use crate::kind::{Counts, Kind};
 
 /// How large the models of a check are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +27,7 @@ pub struct Check {
     pub run: fn(Size) -> Result<Vec<Row>, Error>,
 }
 
-/// One number and what it must be.
+/// One number, what it must be, and what it is judged by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// What was computed, with its unit unless it is a ratio.
@@ -35,6 +36,8 @@ pub struct Row {
     pub value: f64,
     /// What it must be.
     pub expected: Expected,
+    /// What that is: a [closed form](Kind::ClosedForm) unless the row says otherwise.
+    pub kind: Kind,
 }
 
 /// What a number must be. A number that is none fails everything.
@@ -51,19 +54,27 @@ pub enum Expected {
     AtMost(f64),
     /// Not below.
     AtLeast(f64),
+    /// Anything: the number is shown.
+    Anything,
 }
 
 impl Row {
-    /// |value - reference| <= tolerance.
-    pub fn near(quantity: impl Into<String>, value: f64, reference: f64, tolerance: f64) -> Row {
+    fn new(quantity: impl Into<String>, value: f64, expected: Expected) -> Row {
         Row {
             quantity: quantity.into(),
             value,
-            expected: Expected::Near {
-                reference,
-                tolerance,
-            },
+            expected,
+            kind: Kind::ClosedForm,
         }
+    }
+
+    /// |value - reference| <= tolerance.
+    pub fn near(quantity: impl Into<String>, value: f64, reference: f64, tolerance: f64) -> Row {
+        let expected = Expected::Near {
+            reference,
+            tolerance,
+        };
+        Row::new(quantity, value, expected)
     }
 
     /// |value - reference| <= tolerance |reference|.
@@ -71,22 +82,28 @@ impl Row {
         Row::near(quantity, value, reference, part * reference.abs())
     }
 
-    /// The value agrees with a published number within its digits: the tolerance is one unit of the last one, since a
+    /// The value agrees with a printed number within its digits: the tolerance is one unit of the last one, since a
     /// number may have been rounded more than once on its way into a table. Without a decimal point it is a count, and
     /// exact.
     ///
-    /// `printed` is a decimal number without exponent; anything else makes a row that fails.
-    pub fn printed(quantity: impl Into<String>, value: f64, printed: &str) -> Row {
+    /// `kind`: whose number it is. `printed` is a decimal number without exponent; anything else makes a row that fails.
+    pub fn printed(kind: Kind, quantity: impl Into<String>, value: f64, printed: &str) -> Row {
         let reference = printed.parse().unwrap_or(f64::NAN);
         let unit = printed.split_once('.').map_or(0.0, |(_, decimals)| {
             0.1_f64.powi(decimals.len() as i32) * (1.0 + 1e-9)
         });
-        Row::near(quantity, value, reference, unit)
+        Row::near(quantity, value, reference, unit).of(kind)
     }
 
     /// As [`Row::printed`], or within `part` of the number where that is more.
-    pub fn printed_or(quantity: impl Into<String>, value: f64, printed: &str, part: f64) -> Row {
-        let mut row = Row::printed(quantity, value, printed);
+    pub fn printed_or(
+        kind: Kind,
+        quantity: impl Into<String>,
+        value: f64,
+        printed: &str,
+        part: f64,
+    ) -> Row {
+        let mut row = Row::printed(kind, quantity, value, printed);
         if let Expected::Near {
             reference,
             tolerance,
@@ -104,23 +121,44 @@ impl Row {
 
     /// value <= bound.
     pub fn at_most(quantity: impl Into<String>, value: f64, bound: f64) -> Row {
-        Row {
-            quantity: quantity.into(),
-            value,
-            expected: Expected::AtMost(bound),
-        }
+        Row::new(quantity, value, Expected::AtMost(bound))
     }
 
     /// value >= bound.
     pub fn at_least(quantity: impl Into<String>, value: f64, bound: f64) -> Row {
-        Row {
-            quantity: quantity.into(),
-            value,
-            expected: Expected::AtLeast(bound),
-        }
+        Row::new(quantity, value, Expected::AtLeast(bound))
     }
 
-    /// Whether the value is what it must be.
+    /// A number that is shown and not judged: [`Kind::Information`].
+    pub fn shown(quantity: impl Into<String>, value: f64) -> Row {
+        Row::new(quantity, value, Expected::Anything).of(Kind::Information)
+    }
+
+    /// Judged by a figure of the literature: [`Kind::Published`].
+    pub fn published(self) -> Row {
+        self.of(Kind::Published)
+    }
+
+    /// Judged by a figure of a program that shares no code with Carom: [`Kind::OtherCode`].
+    pub fn other_code(self) -> Row {
+        self.of(Kind::OtherCode)
+    }
+
+    /// Judged by another scheme, mesh, formulation or run of Carom: [`Kind::SecondFormulation`].
+    pub fn second_formulation(self) -> Row {
+        self.of(Kind::SecondFormulation)
+    }
+
+    /// Judged by Carom's own figure of an earlier day: [`Kind::Regression`].
+    pub fn regression(self) -> Row {
+        self.of(Kind::Regression)
+    }
+
+    fn of(self, kind: Kind) -> Row {
+        Row { kind, ..self }
+    }
+
+    /// Whether the value is what it must be; a number that is shown has to be one.
     pub fn holds(&self) -> bool {
         match self.expected {
             Expected::Near {
@@ -129,30 +167,42 @@ impl Row {
             } => (self.value - reference).abs() <= tolerance,
             Expected::AtMost(bound) => self.value <= bound,
             Expected::AtLeast(bound) => self.value >= bound,
+            Expected::Anything => !self.value.is_nan(),
         }
     }
 }
 
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let verdict = if self.holds() { "ok  " } else { "FAIL" };
+        let verdict = match (self.holds(), self.expected) {
+            (false, _) => "FAIL",
+            (true, Expected::Anything) => "info",
+            (true, _) => "ok  ",
+        };
+        let (quantity, value) = (&self.quantity, short(self.value));
+        let (expected, kind) = (self.expected.to_string(), self.kind);
         write!(
             f,
-            "{verdict}  {:<84}  {:>12}",
-            self.quantity,
-            short(self.value)
-        )?;
-        match self.expected {
+            "{verdict}  {quantity:<84}  {value:>12}  {expected:<24}  {kind}"
+        )
+    }
+}
+
+/// `<= 0.5`; nothing where the number is only shown.
+impl fmt::Display for Expected {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
             Expected::Near {
                 reference,
                 tolerance: 0.0,
-            } => write!(f, "   = {}", short(reference)),
+            } => write!(f, " = {}", short(reference)),
             Expected::Near {
                 reference,
                 tolerance,
-            } => write!(f, "   = {} ± {tolerance:.1e}", short(reference)),
-            Expected::AtMost(bound) => write!(f, "  <= {}", short(bound)),
-            Expected::AtLeast(bound) => write!(f, "  >= {}", short(bound)),
+            } => write!(f, " = {} ± {tolerance:.1e}", short(reference)),
+            Expected::AtMost(bound) => write!(f, "<= {}", short(bound)),
+            Expected::AtLeast(bound) => write!(f, ">= {}", short(bound)),
+            Expected::Anything => Ok(()),
         }
     }
 }
@@ -176,15 +226,41 @@ pub struct Verdict {
     /// Checks run; zero if the filter fits none.
     pub checks: usize,
     /// Rows computed.
-    pub rows: usize,
-    /// Rows that do not hold, and checks that could not be made.
-    pub failed: usize,
+    pub rows: Counts,
+    /// Rows that do not hold.
+    pub failed: Counts,
+    /// Checks that could not be made.
+    pub unmade: usize,
 }
 
 impl Verdict {
     /// Whether there was something to check and all of it holds.
     pub fn holds(&self) -> bool {
-        self.checks > 0 && self.failed == 0
+        self.checks > 0 && self.failed.total() == 0 && self.unmade == 0
+    }
+
+    fn count(&mut self, rows: &[Row]) {
+        for row in rows {
+            self.rows.add(row.kind);
+            if !row.holds() {
+                self.failed.add(row.kind);
+            }
+        }
+    }
+}
+
+/// `2 checks, 6 rows: 5 closed form, 1 regression; 1 failed: 1 regression`.
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let colon = |counts: &Counts| if counts.total() > 0 { ": " } else { "" };
+        let (rows, failed) = (&self.rows, &self.failed);
+        write!(f, "{} checks, {} rows", self.checks, rows.total())?;
+        write!(f, "{}{rows}; {} failed", colon(rows), failed.total())?;
+        write!(f, "{}{failed}", colon(failed))?;
+        match self.unmade {
+            0 => Ok(()),
+            count => write!(f, "; checks that could not be made: {count}"),
+        }
     }
 }
 
@@ -209,12 +285,11 @@ pub fn verify(
                 for row in &rows {
                     writeln!(out, "  {row}")?;
                 }
-                verdict.rows += rows.len();
-                verdict.failed += rows.iter().filter(|row| !row.holds()).count();
+                verdict.count(&rows);
             }
             Err(error) => {
                 writeln!(out, "  FAIL  could not be made: {error}")?;
-                verdict.failed += 1;
+                verdict.unmade += 1;
             }
         }
         writeln!(
@@ -225,11 +300,7 @@ pub fn verify(
         )?;
         out.flush()?;
     }
-    writeln!(
-        out,
-        "{} checks, {} rows, {} failed",
-        verdict.checks, verdict.rows, verdict.failed
-    )?;
+    writeln!(out, "{verdict}")?;
     Ok(verdict)
 }
 
@@ -239,13 +310,15 @@ mod tests {
 
     #[test]
     fn printed_number_gives_a_unit_of_its_last_digit() {
-        assert!(Row::printed("x", 0.04709, "0.0470").holds());
-        assert!(!Row::printed("x", 0.04711, "0.0470").holds());
-        assert!(Row::printed("x", -0.0401, "-0.05").holds());
-        assert!(Row::printed("x", 11.0, "10.9").holds());
-        assert!(Row::printed("n", 59.0, "59").holds());
-        assert!(!Row::printed("n", 60.0, "59").holds());
-        assert!(!Row::printed("x", 1.0, "one").holds());
+        let printed = |value, digits| Row::printed(Kind::OtherCode, "x", value, digits);
+        assert!(printed(0.04709, "0.0470").holds());
+        assert!(!printed(0.04711, "0.0470").holds());
+        assert!(printed(-0.0401, "-0.05").holds());
+        assert!(printed(11.0, "10.9").holds());
+        assert!(printed(59.0, "59").holds());
+        assert!(!printed(60.0, "59").holds());
+        assert!(!printed(1.0, "one").holds());
+        assert_eq!(printed(1.0, "one").kind, Kind::OtherCode);
     }
 
     #[test]
@@ -254,33 +327,84 @@ mod tests {
             Row::near("x", f64::NAN, 0.0, f64::INFINITY),
             Row::at_most("x", f64::NAN, f64::INFINITY),
             Row::at_least("x", f64::NAN, -1.0),
+            Row::shown("x", f64::NAN),
         ];
         assert!(rows.iter().all(|row| !row.holds()));
     }
 
     #[test]
-    fn failures_are_counted_and_the_filter_is_a_part_of_the_name() {
+    fn any_number_that_is_shown_holds_and_says_so() {
+        for value in [0.0, -1e300, f64::INFINITY] {
+            let row = Row::shown("x", value);
+            assert!(row.holds());
+            assert!(row.to_string().starts_with("info"));
+        }
+    }
+
+    #[test]
+    fn every_row_ends_with_its_kind() {
+        let row = || Row::at_most("x", 1.0, 2.0);
+        let rows = [
+            row(),
+            row().published(),
+            row().other_code(),
+            row().second_formulation(),
+            row().regression(),
+            Row::shown("x", 1.0),
+        ];
+        for (row, kind) in rows.iter().zip(Kind::ALL) {
+            assert!(row.to_string().ends_with(kind.name()), "{row}");
+        }
+    }
+
+    fn check(name: &'static str, run: fn(Size) -> Result<Vec<Row>, Error>) -> Check {
+        Check {
+            name,
+            fact: "",
+            run,
+        }
+    }
+
+    #[test]
+    fn failures_are_counted_by_kind_and_the_filter_is_a_part_of_the_name() {
         let rows = |_| {
             Ok(vec![
                 Row::at_most("a", 1.0, 2.0),
                 Row::at_most("b", 3.0, 2.0),
+                Row::at_most("c", 3.0, 2.0).regression(),
+                Row::shown("d", 3.0),
             ])
         };
         let failing = |_| Err(Error::Group { name: "g".into() });
-        let check = |name, run| Check {
-            name,
-            fact: "",
-            run,
-        };
         let checks = [check("one", rows), check("two", failing)];
-        let run = |filter| verify(&checks, filter, Size::Quick, &mut Vec::new()).unwrap();
-        let verdict = |checks, rows, failed| Verdict {
-            checks,
-            rows,
-            failed,
+        let run = |filter| {
+            let mut out = Vec::new();
+            let verdict = verify(&checks, filter, Size::Quick, &mut out).unwrap();
+            let text = String::from_utf8(out).unwrap();
+            (verdict, text.lines().last().unwrap().to_string())
         };
-        assert_eq!(run(None), verdict(2, 2, 2));
-        assert_eq!(run(Some("on")), verdict(1, 2, 1));
-        assert!(!run(Some("three")).holds());
+        let (verdict, summary) = run(None);
+        let [rows, failed] =
+            [verdict.rows, verdict.failed].map(|counts| Kind::ALL.map(|kind| counts.of(kind)));
+        assert_eq!(rows, [2, 0, 0, 0, 1, 1]);
+        assert_eq!(failed, [1, 0, 0, 0, 1, 0]);
+        assert_eq!((verdict.checks, verdict.unmade), (2, 1));
+        assert_eq!(
+            summary,
+            "2 checks, 4 rows: 2 closed form, 1 regression, 1 information; 2 failed: 1 closed form, 1 regression; \
+             checks that could not be made: 1"
+        );
+        assert!(!verdict.holds());
+        assert_eq!(run(Some("on")).0.checks, 1);
+        let (none, summary) = run(Some("three"));
+        assert!(!none.holds());
+        assert_eq!(summary, "0 checks, 0 rows; 0 failed");
+    }
+
+    #[test]
+    fn a_check_that_only_shows_holds() {
+        let checks = [check("one", |_| Ok(vec![Row::shown("d", 3.0)]))];
+        let verdict = verify(&checks, None, Size::Quick, &mut Vec::new()).unwrap();
+        assert!(verdict.holds());
     }
 }

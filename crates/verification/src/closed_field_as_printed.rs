@@ -13,6 +13,7 @@ use carom_exact::closed_forms::{Mass, theta_first_force};
 use crate::bars::Run;
 use crate::check::{Check, Row};
 use crate::figures::run;
+use crate::kind::Kind;
 
 pub(crate) const CHECK: Check = Check {
     name: "closed-field-as-printed",
@@ -31,7 +32,12 @@ pub(crate) const CHECK: Check = Check {
         let mass = base.set.density * base.set.area * base.set.length;
         let expected = -(1.0 - 2.0 * first * base.dt() / (mass * base.set.speed));
         Ok(vec![
-            Row::printed("restitution", figures.restitution, "-0.997"),
+            Row::printed(
+                Kind::OtherCode,
+                "restitution",
+                figures.restitution,
+                "-0.997",
+            ),
             Row::near(
                 "restitution, closed form",
                 figures.restitution,

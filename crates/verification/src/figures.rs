@@ -5,6 +5,7 @@ use carom_dynamics::{Driver, Observer, State, StepReport, System, march};
 use crate::Error;
 use crate::bars::Run;
 use crate::check::Row;
+use crate::kind::Kind;
 
 /// History of the first contact and of the balance, one entry per step.
 #[derive(Clone, Debug, Default)]
@@ -170,7 +171,7 @@ impl Figures {
         columns
             .filter(|(_, printed)| !printed.is_empty())
             .map(|((column, value), printed)| {
-                Row::printed(format!("{name}: {column}"), value, printed)
+                Row::printed(Kind::OtherCode, format!("{name}: {column}"), value, printed)
             })
             .collect()
     }

@@ -1,8 +1,8 @@
 //! Cases with an analytic or published answer.
 //!
 //! One file per case: its header states the problem, the closed solution, where the reference comes from, and why the
-//! tolerance is what it is. A case is a [`Check`] that computes rows (quantity, value, what it must be) at two sizes:
-//! the tests of this crate run all quick ones, [`verify`] the size that it is asked for.
+//! tolerance is what it is. A case is a [`Check`] that computes rows (quantity, value, what it must be, [`Kind`] of what
+//! judges it) at two sizes: the tests of this crate run all quick ones, [`verify`] the size that it is asked for.
 //!
 //! Adding a case: one file, its `mod` line, its name in the list below.
 
@@ -19,6 +19,7 @@ mod glued_bar;
 mod hairpin;
 mod hertz;
 mod kept;
+mod kind;
 
 mod adaptive;
 mod adaptive_bars;
@@ -88,6 +89,7 @@ use std::io::{self, Write};
 
 pub use check::{Check, Expected, Row, Size, Verdict};
 pub use error::Error;
+pub use kind::{Counts, Kind};
 
 /// Makes of one list of case modules the registry and one test per case at its quick size.
 macro_rules! registry {

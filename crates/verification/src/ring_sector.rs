@@ -63,12 +63,12 @@ pub(crate) const CHECK: Check = Check {
             let square = |f: &[f64]| f.iter().map(|f| f * f).sum::<f64>();
             let gap: Vec<f64> = one.iter().zip(&two).map(|(a, b)| a - b).collect();
             let error = (square(&gap) / square(&one)).sqrt();
-            rows.push(Row::at_most(format!("{name}: L2 norm"), error, 0.03));
+            rows.push(Row::at_most(format!("{name}: L2 norm"), error, 0.03).second_formulation());
             let sum = |f: &[f64]| f.iter().sum::<f64>();
             let peak = |f: &[f64]| f.iter().fold(0.0, |m: f64, f| m.max(*f));
             for (what, of) in [("impulse", sum as fn(&[f64]) -> f64), ("peak", peak)] {
                 let name = format!("{name}: {what}");
-                rows.push(Row::near(name, of(&two) / of(&one), 1.0, 0.03));
+                rows.push(Row::near(name, of(&two) / of(&one), 1.0, 0.03).second_formulation());
             }
         }
         Ok(rows)

@@ -8,17 +8,20 @@
 //! Tolerances: momenta 1e-10 and energy 1e-8 with energy-momentum, as the issue states (iterations end at 1e-11 of the
 //! forces: 1e-12 is found). The ledger of every run closes to the iterations, 1e-10 of the energy. Displacement law: no
 //! gap beyond 1e-9 m, that of the iterations. Velocity law: the bound of its viability, with the speed of the approach. Damped law:
-//! its k_p = E / thickness gives way by a tenth of the thickness at most. Impulses agree to 3 %: schemes and laws differ
+//! its k_p = E / thickness gives way, which is shown. Impulses agree to 3 %, a second formulation: schemes and laws differ
 //! by O(dt) in when a point closes. The largest mean force over 0.1 s follows them with 15 %, a step being a tenth of the window in
-//! which the points of an element close one after the other. Under the displacement law the trapezoid gains energy, which is shown and not
-//! bounded from above.
+//! which the points of an element close one after the other. What the trapezoid gains under the displacement law is shown.
+//! Iterations: a regression, a tenth above what was found (9.4).
+//! Penalty law with the same stiffness, theta: the spring is held where the scheme takes internal forces, and its work over a
+//! step is that of a gap linearised there, while rows turn. What contact makes is of second order in the step; between a
+//! quarter and an eighth of dt on the coarse mesh a ratio of 3 is asked for, three quarters of the exponent and a little more.
 //! Sizes: quick 2 x 32 elements in each ring, the first 60 steps; full 3 x 96.
 
 use carom_bodies::Kinematics;
-use carom_contact::law::Adhesion;
+use carom_contact::law::{Adhesion, Damped, Penalty};
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Newton, Scheme, State, System};
+use carom_dynamics::{Model, Newton, Scheme, State, System};
 use carom_exact::closed_forms::{penetration_bound_half, penetration_bound_now};
 use carom_materials::Elastic;
 
@@ -36,6 +39,8 @@ const RUBBER: Elastic = Elastic {
 const THICKNESS: f64 = 0.1;
 const SPEED: f64 = 1.5;
 const STEP: f64 = 0.01;
+/// When the rings have parted, s.
+const PARTED: f64 = 1.5;
 /// Part of the impulse within which schemes and laws agree.
 const IMPULSE: f64 = 0.03;
 /// Part of the largest mean force within which they agree.
@@ -109,7 +114,7 @@ impl GapDrift {
     }
 }
 
-fn collide(mesh: &'static str, steps: usize, scheme: Scheme, law: Law) -> Result<Collided, Error> {
+fn model(mesh: &'static str, scheme: Scheme, law: Law, dt: f64) -> Result<Model, Error> {
     let rings = Collision {
         mesh,
         bodies: ["ring1", "ring2"],
@@ -121,7 +126,11 @@ fn collide(mesh: &'static str, steps: usize, scheme: Scheme, law: Law) -> Result
         },
         depth: THICKNESS,
     };
-    let mut newton = Newton::new(System::new(rings.model(scheme, law, STEP)?)?)?;
+    rings.model(scheme, law, dt)
+}
+
+fn collide(mesh: &'static str, steps: usize, scheme: Scheme, law: Law) -> Result<Collided, Error> {
+    let mut newton = Newton::new(System::new(model(mesh, scheme, law, STEP)?)?)?;
     let mut kept = Kept::new(newton.system(), newton.state());
     let mut drift = GapDrift {
         range: vec![None; newton.system().points()],
@@ -178,7 +187,7 @@ fn conserved(run: &Collided) -> Vec<Row> {
         ),
         Row::at_most(row("change of energy, relative"), run.kept.energy, 1e-8),
         Row::at_least(row("largest strain energy / energy"), run.strained, 0.1),
-        Row::at_most(row("iterations a step"), run.iterations, 15.0),
+        Row::at_most(row("iterations a step"), run.iterations, 10.5).regression(),
     ]
 }
 
@@ -186,42 +195,44 @@ fn conserved(run: &Collided) -> Vec<Row> {
 fn side_by_side(name: &str, law: Law, run: &Collided, reference: &Collided) -> Vec<Row> {
     let row = |what: &str| format!("{name}: {what}");
     let largest = match law {
-        Law::Displacement(_) => 1e-9,
-        Law::Damped(_) => 0.1 * THICKNESS,
-        _ if law == HALF => penetration_bound_half(0.5, SPEED, STEP),
-        _ => penetration_bound_now(0.5, SPEED, STEP),
+        Law::Displacement(_) => Some(1e-9),
+        Law::Damped(_) => None,
+        _ if law == HALF => Some(penetration_bound_half(0.5, SPEED, STEP)),
+        _ => Some(penetration_bound_now(0.5, SPEED, STEP)),
+    };
+    let deep = |what: &str, value| match largest {
+        Some(bound) => Row::at_most(row(what), value, bound),
+        None => Row::shown(row(what), value),
     };
     let mut rows = vec![
         Row::at_most(row("ledger residual / energy"), run.residual(), 1e-10),
         Row::at_most(row("change of momentum, relative"), run.kept.linear, 1e-10),
-        Row::at_most(row("penetration, m"), run.penetration(), largest),
-        Row::at_most(
-            row("gap drift of closed points, m"),
-            run.drift.largest,
-            largest,
-        ),
+        deep("penetration, m", run.penetration()),
+        deep("gap drift of closed points, m", run.drift.largest),
     ];
     if name == "newmark, displacement" {
-        rows.push(Row::at_least(
-            row("energy gained, relative"),
-            run.gain(),
-            0.02,
-        ));
+        rows.push(Row::shown(row("energy gained, relative"), run.gain()));
     } else {
         let impulse = run.impulse() / reference.impulse();
-        rows.push(Row::near(
-            row("impulse / that of energy-momentum"),
-            impulse,
-            1.0,
-            IMPULSE,
-        ));
+        rows.push(
+            Row::near(
+                row("impulse / that of energy-momentum"),
+                impulse,
+                1.0,
+                IMPULSE,
+            )
+            .second_formulation(),
+        );
         let force = run.mean_force() / reference.mean_force();
-        rows.push(Row::near(
-            row("force over 0.1 s / that of energy-momentum"),
-            force,
-            1.0,
-            FORCE,
-        ));
+        rows.push(
+            Row::near(
+                row("force over 0.1 s / that of energy-momentum"),
+                force,
+                1.0,
+                FORCE,
+            )
+            .second_formulation(),
+        );
     }
     rows
 }
@@ -241,9 +252,37 @@ pub(crate) const CHECK: Check = Check {
             let name = format!("{scheme}, {law}");
             rows.extend(side_by_side(&name, of, &run, &reference));
         }
+        if size == Size::Full {
+            rows.push(sliding_springs()?);
+        }
         Ok(rows)
     },
 };
+
+/// The penalty law in sliding contact: what contact makes at most, with a step and with half of it.
+fn sliding_springs() -> Result<Row, Error> {
+    let law = Law::Penalty(Penalty(Damped {
+        stiffness: RUBBER.young / THICKNESS,
+        damping: 0.0,
+        adhesion: Adhesion::Clip,
+    }));
+    let made = |parts: f64| -> Result<f64, Error> {
+        let model = model("rings/rings-coarse.msh", theta(0.5), law, STEP / parts)?;
+        let mut newton = Newton::new(System::new(model)?)?;
+        let mut largest = 0.0_f64;
+        while newton.state().time < PARTED {
+            newton.step()?;
+            largest = largest.max(newton.state().ledger.balance.work_contact);
+        }
+        Ok(largest / newton.state().ledger.initial.energy())
+    };
+    let [coarse, fine] = [made(4.0)?, made(8.0)?];
+    Ok(Row::at_least(
+        format!("theta, penalty: work of contact, {coarse:.2e} E0 at dt / 4, over that at dt / 8"),
+        coarse / fine,
+        3.0,
+    ))
+}
 
 /// The table of the manual: force, penetration, gap drift and ledger of the laws side by side, as Markdown.
 ///

@@ -17,6 +17,7 @@ use carom_mesh::generate;
 use crate::Error;
 use crate::build::{HALF, body, contact, support, surface, theta};
 use crate::check::{Check, Row, Size};
+use crate::kind::Kind;
 
 const LENGTH: f64 = 1.0;
 const AREA: f64 = 4e-4;
@@ -96,7 +97,7 @@ fn rows((elements, errors, mean_error): (usize, [&str; 5], f64)) -> Result<Vec<R
             let printed = errors[rows.len()];
             let name = format!("n = {elements}: error at {instant:.0e} s, %");
             let error = 100.0 * (found / expected - 1.0).abs();
-            rows.push(Row::printed(name, error, printed));
+            rows.push(Row::printed(Kind::OtherCode, name, error, printed));
         }
         let duration = span.end - span.start;
         if (0.1..=0.9).contains(&((now.0 - span.start) / duration)) {
@@ -110,7 +111,7 @@ fn rows((elements, errors, mean_error): (usize, [&str; 5], f64)) -> Result<Vec<R
     };
     let error = 100.0 * (mean / span.peak_force - 1.0).abs();
     let name = format!("n = {elements}: error of the mean force, %");
-    rows.push(Row::at_most(name, error, mean_error));
+    rows.push(Row::at_most(name, error, mean_error).other_code());
     Ok(rows)
 }
 

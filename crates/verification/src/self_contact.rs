@@ -185,16 +185,18 @@ pub(crate) const CHECK: Check = Check {
                 ..pin
             })?;
             let row = |what: &str| format!("{name}: {what}");
-            rows.push(Row::at_most(
-                row("motion, whole - half / half the distance"),
-                motion,
-                tolerance,
-            ));
-            rows.push(Row::at_most(
-                row("force, whole - half / largest"),
-                force,
-                tolerance,
-            ));
+            rows.push(
+                Row::at_most(
+                    row("motion, whole - half / half the distance"),
+                    motion,
+                    tolerance,
+                )
+                .second_formulation(),
+            );
+            rows.push(
+                Row::at_most(row("force, whole - half / largest"), force, tolerance)
+                    .second_formulation(),
+            );
         }
         for (name, pin) in [("plane", plane), ("space", solid)] {
             for (points, integration) in [("nodes", Integration::Node), ("mortar", MORTAR)] {

@@ -7,8 +7,8 @@
 //! them. The trapezoid and the mid-point rule keep the energy of linear systems only; the mid-point rule keeps the angular
 //! momentum here too, and θ > 1/2 brakes the spin itself.
 //! Tolerances: 1e-10 of the momenta and 1e-8 of the energy over the whole run, as the issue states; iterations end where rounding
-//! lets them gain no more, since what they leave adds up over 40000 steps. What the others do is bounded from
-//! below, at half of what was measured. Iterations: 12.7 a step are found, 15.5 where they are not mixed.
+//! lets them gain no more, since what they leave adds up over 40000 steps. What the others do is
+//! shown. Iterations: 12.7 a step were found, 15.5 where they are not mixed; the bound between them is a regression.
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
@@ -106,19 +106,13 @@ pub(crate) const CHECK: Check = Check {
         ));
         rows.push(Row::at_most(row(&name, "energy"), kept.energy, 1e-8));
         let iterations = iterations()?;
-        rows.push(Row::at_most(
-            "energy-momentum: iterations a step",
-            iterations,
-            14.0,
-        ));
+        rows.push(
+            Row::at_most("energy-momentum: iterations a step", iterations, 14.0).regression(),
+        );
         let name = format!("newmark, {few} revolutions");
         let kept = spin(newmark(0.25, 0.5), few)?;
-        rows.push(Row::at_least(
-            row(&name, "angular momentum"),
-            kept.angular,
-            5e-3,
-        ));
-        rows.push(Row::at_least(row(&name, "energy"), kept.energy, 1e-2));
+        rows.push(Row::shown(row(&name, "angular momentum"), kept.angular));
+        rows.push(Row::shown(row(&name, "energy"), kept.energy));
         let name = format!("theta 0.5, {few} revolutions");
         let kept = spin(theta(0.5), few)?;
         rows.push(Row::at_most(
@@ -126,15 +120,11 @@ pub(crate) const CHECK: Check = Check {
             kept.angular,
             1e-10,
         ));
-        rows.push(Row::at_least(row(&name, "energy"), kept.energy, 5e-2));
+        rows.push(Row::shown(row(&name, "energy"), kept.energy));
         let name = format!("theta 0.6, {few} revolutions");
         let kept = spin(theta(0.6), few)?;
-        rows.push(Row::at_least(
-            row(&name, "angular momentum"),
-            kept.angular,
-            0.2,
-        ));
-        rows.push(Row::at_least(row(&name, "energy"), kept.energy, 0.3));
+        rows.push(Row::shown(row(&name, "angular momentum"), kept.angular));
+        rows.push(Row::shown(row(&name, "energy"), kept.energy));
         Ok(rows)
     },
 };

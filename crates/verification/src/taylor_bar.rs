@@ -17,7 +17,8 @@
 //!   over the element leaves: 1 %. Under theta, which damps the waves of the impact, it is no longer either; under central
 //!   differences the foot yields to and fro in the first 10 µs, which makes it 2 % longer.
 //!
-//! The scheme and the impact of the lumped masses of the foot (1 % of the bar) take 1 to 2 % of the energy each.
+//! What the scheme and the impact of the lumped masses of the foot (1 % of the bar) take, 1 to 2 % of the energy each, are
+//! regressions, to 1 % of the figure.
 //! Sizes: quick, axisymmetric: theta to the end, central differences for the first 20 µs; full, all four to the end.
 
 use std::path::Path;
@@ -171,8 +172,9 @@ impl Bar {
     }
 }
 
-/// The ledger. `closes`: largest residual over the energy at the start.
-fn balance(name: &str, bar: &Bar, closes: f64) -> Vec<Row> {
+/// The ledger. `closes`: largest residual over the energy at the start; `scheme`, `impact`: what the scheme dissipated and what the
+/// impact of the nodes took when it was first run, over the same.
+fn balance(name: &str, bar: &Bar, closes: f64, [scheme, impact]: [f64; 2]) -> Vec<Row> {
     let ledger = &bar.newton.state().ledger;
     let (start, now) = (ledger.initial.energy(), &ledger.balance);
     let row = |what: &str| format!("{name}: {what}");
@@ -197,18 +199,20 @@ fn balance(name: &str, bar: &Bar, closes: f64) -> Vec<Row> {
             now.hardening / hardened,
             1.0,
         ),
-        Row::near(
+        Row::relative(
             row("dissipation of the scheme / E0"),
             now.dissipation_scheme / start,
-            0.0,
-            0.02,
-        ),
-        Row::near(
+            scheme,
+            0.01,
+        )
+        .regression(),
+        Row::relative(
             row("loss at the impact of the nodes / E0"),
             -now.work_contact / start,
-            0.015,
-            0.015,
-        ),
+            impact,
+            0.01,
+        )
+        .regression(),
     ]
 }
 
@@ -220,14 +224,15 @@ fn shape(name: &str, bar: &Bar) -> Vec<Row> {
         .iter()
         .fold(0.0, |m: f64, (strain, _)| m.max(*strain));
     vec![
-        Row::near(row("length, mm"), bar.length() * 1e3, 21.4, 0.2),
+        Row::near(row("length, mm"), bar.length() * 1e3, 21.4, 0.2).published(),
         Row::near(
             row("radius of the foot, mm"),
             bar.radius() * 1e3,
             7.05,
             0.25,
-        ),
-        Row::near(row("largest plastic strain"), strain, 2.9, 0.4),
+        )
+        .published(),
+        Row::near(row("largest plastic strain"), strain, 2.9, 0.4).published(),
     ]
 }
 
@@ -241,7 +246,12 @@ pub(crate) const CHECK: Check = Check {
         let step = 0.2e-6;
         let implicit = Bar::plane(theta(0.55), step)?.run(END)?;
         let mut rows = shape("quad4, theta", &implicit);
-        rows.extend(balance("quad4, theta", &implicit, IMPLICIT));
+        rows.extend(balance(
+            "quad4, theta",
+            &implicit,
+            IMPLICIT,
+            [0.0141771, 0.0159246],
+        ));
         rows.push(Row::near(
             "quad4, theta: plastic strain at the centre of the foot / change of shape",
             implicit.path(),
@@ -252,7 +262,17 @@ pub(crate) const CHECK: Check = Check {
             Size::Quick => 0.25 * END,
             Size::Full => END,
         })?;
-        rows.extend(balance("quad4, central differences", &explicit, EXPLICIT));
+        let scheme = match size {
+            Size::Quick => -5.81432e-4,
+            Size::Full => -5.81758e-4,
+        };
+        let taken = [scheme, 0.0118089];
+        rows.extend(balance(
+            "quad4, central differences",
+            &explicit,
+            EXPLICIT,
+            taken,
+        ));
         if size == Size::Quick {
             return Ok(rows);
         }
@@ -264,10 +284,20 @@ pub(crate) const CHECK: Check = Check {
         ));
         let implicit = Bar::solid(theta(0.55), step)?.run(END)?;
         rows.extend(shape("hex8, theta", &implicit));
-        rows.extend(balance("hex8, theta", &implicit, IMPLICIT));
+        rows.extend(balance(
+            "hex8, theta",
+            &implicit,
+            IMPLICIT,
+            [0.0141830, 0.0177359],
+        ));
         let explicit = Bar::solid(CENTRAL, 0.05e-6)?.run(END)?;
         rows.extend(shape("hex8, central differences", &explicit));
-        rows.extend(balance("hex8, central differences", &explicit, EXPLICIT));
+        rows.extend(balance(
+            "hex8, central differences",
+            &explicit,
+            EXPLICIT,
+            [-4.85070e-4, 0.0145465],
+        ));
         Ok(rows)
     },
 };

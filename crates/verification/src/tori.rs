@@ -6,7 +6,7 @@
 //! energy-momentum schemes with contact (two tori of these data); the place of the second torus there was not at hand, and
 //! is ours.
 //! Tolerances: momenta 1e-10 and energy 1e-8, as the issue states; iterations end at 1e-11 of the forces, and 1e-13 is found. That the collision is
-//! a large one shows in the strain energy.
+//! a large one shows in the strain energy. Iterations and attempts: regressions, a tenth above what was found (9.9 and 1).
 //! Sizes: quick 1 x 8 x 24 hexahedra in each torus, the first 20 steps; full 1 x 16 x 48, 9216 unknowns.
 
 use carom_bodies::Kinematics;
@@ -65,8 +65,8 @@ pub(crate) const CHECK: Check = Check {
             Row::at_most("change of energy, relative", kept.energy, 1e-8),
             Row::at_least("most points with a force", closed as f64, 2.0),
             Row::at_least("largest strain energy / energy", strained, strain),
-            Row::at_most("iterations a step", iterations as f64 / steps as f64, 15.0),
-            Row::at_most("attempts a step", attempts as f64 / steps as f64, 1.3),
+            Row::at_most("iterations a step", iterations as f64 / steps as f64, 11.0).regression(),
+            Row::at_most("attempts a step", attempts as f64 / steps as f64, 1.1).regression(),
         ])
     },
 };

@@ -8,8 +8,8 @@
 //! v0 dt whatever θ. Reference: the formulas. Tolerance: 1e-9 of v0 dt, round-off; the largest penetration
 //! over the instants at least 0.9 of the bound where the first step of contact makes it (20 instants come within a
 //! fiftieth of a twentieth of the worst one), so that it halves with dt. The schemes that
-//! are theta ½ without their damping, nonsmooth generalised-alpha and Krenk, keep its bounds at ρ∞ = 0.8 to within 0.005; 0.0024 was
-//! found.
+//! are theta ½ without their damping, nonsmooth generalised-alpha and Krenk, have no bound of their own: by how much they pass that of
+//! theta ½ at ρ∞ = 0.8 is a regression, to 1e-4 of v0 dt.
 
 use carom_contact::law::Capture;
 use carom_dynamics::Scheme;
@@ -70,19 +70,22 @@ pub(crate) const CHECK: Check = Check {
                 }
             }
         }
-        for scheme in [
-            Scheme::NonsmoothAlpha(NonsmoothAlpha { rho_inf: 0.8 }),
-            Scheme::Krenk(Krenk { rho_inf: 0.8 }),
+        for (scheme, own) in [
+            (
+                Scheme::NonsmoothAlpha(NonsmoothAlpha { rho_inf: 0.8 }),
+                0.00239,
+            ),
+            (Scheme::Krenk(Krenk { rho_inf: 0.8 }), 0.00221),
         ] {
-            for (name, capture, [a, b], _) in CAPTURES {
+            let mut excess = f64::NEG_INFINITY;
+            for (_, capture, [a, b], _) in CAPTURES {
                 for courant in [0.5, 0.25] {
-                    rows.push(Row::at_most(
-                        format!("{name}, {scheme:?}, CFL {courant}: penetration / (v0 dt)"),
-                        deepest(capture, scheme, courant)?,
-                        a - 0.5 * b + 0.005,
-                    ));
+                    let found = deepest(capture, scheme, courant)?;
+                    excess = excess.max(found - (a - 0.5 * b));
                 }
             }
+            let name = format!("{scheme:?}: penetration / (v0 dt) beyond the bound of theta 0.5");
+            rows.push(Row::near(name, excess, own, 1e-4).regression());
         }
         Ok(rows)
     },
