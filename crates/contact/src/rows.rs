@@ -11,6 +11,7 @@ pub struct Rows {
     coefficients: Vec<f64>,
     gaps: Vec<f64>,
     normals: Vec<[f64; 3]>,
+    resultants: Vec<[f64; 3]>,
     rates: Vec<f64>,
 }
 
@@ -23,6 +24,7 @@ impl Rows {
         self.coefficients.clear();
         self.gaps.clear();
         self.normals.clear();
+        self.resultants.clear();
         self.rates.clear();
     }
 
@@ -47,9 +49,16 @@ impl Rows {
         self.gaps[point]
     }
 
-    /// Unit normal at a point, from the primary side to the secondary one: the direction of the force on the secondary.
+    /// Unit normal at a point, from the primary side to the secondary one.
     pub fn normal(&self, point: usize) -> [f64; 3] {
         self.normals[point]
+    }
+
+    /// Resultant on the secondary side of a unit force in a point: the sum of the entries of its row there. It is the normal
+    /// where the point has one place with a foot inside a face. The mean over places with different normals is
+    /// shorter, and a foot held at the rim of a face adds what the force there is turned by.
+    pub fn resultant(&self, point: usize) -> [f64; 3] {
+        self.resultants[point]
     }
 
     /// Rate ∂g/∂t of the gap at bodies at rest, by the motion of the obstacle, m/s; zero against all that does not move by
@@ -80,6 +89,7 @@ impl Rows {
         let (dofs, coefficients) = other.row(point);
         self.gaps.push(other.gap(point));
         self.normals.push(other.normal(point));
+        self.resultants.push(other.resultant(point));
         self.rates.push(other.rate(point));
         self.dofs.extend_from_slice(dofs);
         self.coefficients.extend_from_slice(coefficients);
@@ -107,10 +117,11 @@ impl Rows {
         }
     }
 
-    /// Begins a point of the given gap and normal.
+    /// Begins a point of the given gap and normal, which is its resultant as well.
     pub(crate) fn push(&mut self, gap: f64, normal: [f64; 3]) {
         self.gaps.push(gap);
         self.normals.push(normal);
+        self.resultants.push(normal);
         self.rates.push(0.0);
         self.offsets.push(self.dofs.len() as u32);
     }
@@ -118,6 +129,13 @@ impl Rows {
     /// Adds an offset in m to the gap of a point.
     pub(crate) fn shift(&mut self, point: usize, offset: f64) {
         self.gaps[point] += offset;
+    }
+
+    /// Gives the point pushed last another resultant.
+    pub(crate) fn set_resultant(&mut self, resultant: [f64; 3]) {
+        if let Some(last) = self.resultants.last_mut() {
+            *last = resultant;
+        }
     }
 
     /// Gives the point pushed last the rate of its gap by the obstacle's motion, m/s.

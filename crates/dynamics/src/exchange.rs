@@ -60,11 +60,11 @@ fn largest(of: &[f64; 3]) -> f64 {
 }
 
 impl Exchange {
-    /// At the start. `momentum`: of each unknown; `own`: forces of loads, supports and links.
-    pub(crate) fn start(system: &System, momentum: &[f64], own: &[f64]) -> Exchange {
+    /// At the start. `momentum`: of each unknown; `forces`: of loads, supports and links, and of supports against contact forces.
+    pub(crate) fn start(system: &System, momentum: &[f64], forces: [&[f64]; 2]) -> Exchange {
         let part = |part: &Range<usize>| Part {
             start: sum(system, part, momentum),
-            before: [sum(system, part, own), [0.0; 3]],
+            before: forces.map(|forces| sum(system, part, forces)),
             ..Part::default()
         };
         let parts: Vec<Part> = system.parts.iter().map(part).collect();
@@ -142,10 +142,16 @@ impl Exchange {
         }
     }
 
-    /// The largest residual over the largest momentum; `None` where nothing is compared: of nonlinear runs, of zones as a whole, or
-    /// where nothing has moved.
+    /// Makes this the exchange of zones: the largest of theirs.
+    pub(crate) fn gather<'a>(&mut self, zones: impl Iterator<Item = &'a Exchange>) {
+        for zone in zones {
+            self.largest_residual = self.largest_residual.max(zone.largest_residual);
+            self.largest_momentum = self.largest_momentum.max(zone.largest_momentum);
+        }
+    }
+
+    /// The largest residual over the largest momentum; `None` where nothing has moved.
     pub fn relative(&self) -> Option<f64> {
-        let compared = !self.parts.is_empty() && self.largest_momentum > 0.0;
-        compared.then(|| self.largest_residual / self.largest_momentum)
+        (self.largest_momentum > 0.0).then(|| self.largest_residual / self.largest_momentum)
     }
 }

@@ -274,15 +274,15 @@ pub struct StepReport {
     pub dt: f64,
     /// Attempts made, the last one taken.
     pub attempts: u32,
-    /// By contact. Of a step in zones: forces are means over the step, gap and rate those at its end, closed and mixed the
-    /// most in one of its parts, the rest sums.
+    /// By contact. Of a step in parts: forces are means over the step, gap and rate those at its end, closed, slipping and
+    /// mixed the most in one of its parts, the rest sums.
     pub contacts: Vec<ContactReport>,
     /// Energies, works and momentum at the end of the step.
     pub balance: Balance,
     /// Passes of the status loop; in zones the passes over the step until the links hold.
     pub passes: usize,
-    /// What the contacts did in the parts of the step, where it has some: the inner steps of zones. A contact of a zone
-    /// without inner steps does in each part what it does in the step.
+    /// What the contacts did in the parts of the step, where it has some: the inner steps of zones, the halves of a nonlinear
+    /// step that found no equilibrium. A contact of a zone without inner steps does in each part what it does in the step.
     pub samples: Vec<ContactSample>,
 }
 
@@ -294,5 +294,52 @@ impl StepReport {
         let parts = self.samples.iter();
         step.into_iter()
             .chain(parts.map(|part| (part.time, part.dt, &part.contacts[..])))
+    }
+
+    /// Adds a part that ends at `time` (s) after `dt` (s), in which the contacts did what `contacts` says now.
+    pub(crate) fn add_part(&mut self, time: f64, dt: f64) {
+        self.samples.push(ContactSample {
+            time,
+            dt,
+            contacts: self.contacts.clone(),
+        });
+    }
+
+    /// Writes what the contacts did in the step from its parts, if it has some.
+    pub(crate) fn join_parts(&mut self) {
+        for (contact, whole) in self.contacts.iter_mut().enumerate() {
+            let parts = self.samples.iter();
+            join(parts.map(|part| (part.dt, &part.contacts[contact])), whole);
+        }
+    }
+}
+
+/// What a contact did in the parts of a step, as [`StepReport::contacts`] has it.
+fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut ContactReport) {
+    let (mut sum, mut length) = (ContactReport::default(), 0.0);
+    for (dt, part) in parts {
+        length += dt;
+        sum.force += dt * part.force;
+        sum.impulsive += part.impulsive;
+        for i in 0..3 {
+            sum.resultant[i] += dt * part.resultant[i];
+            sum.normal[i] += dt * part.normal[i];
+        }
+        sum.friction += dt * part.friction;
+        sum.slipping = sum.slipping.max(part.slipping);
+        (sum.gap, sum.rate) = (part.gap, part.rate);
+        sum.closed = sum.closed.max(part.closed);
+        sum.mixed = sum.mixed.max(part.mixed);
+        sum.status_changes += part.status_changes;
+        sum.persistency_defect += part.persistency_defect;
+    }
+    if length > 0.0 {
+        *whole = ContactReport {
+            force: sum.force / length,
+            resultant: sum.resultant.map(|r| r / length),
+            normal: sum.normal.map(|r| r / length),
+            friction: sum.friction / length,
+            ..sum
+        };
     }
 }

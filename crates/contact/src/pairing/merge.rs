@@ -10,6 +10,8 @@ use crate::Rows;
 pub struct Merge {
     gap: f64,
     normal: Vec3,
+    /// Resultants on the secondary side of unit forces along the normal and the tangents.
+    resultants: [Vec3; 3],
     /// Rates by the motion of an obstacle, of the gap and along the tangents, m/s.
     rates: [f64; 3],
     blocks: Vec<(u32, [Vec3; 3])>,
@@ -25,6 +27,7 @@ impl Merge {
         }
         self.gap = 0.0;
         self.normal = Vec3::zeros();
+        self.resultants = [Vec3::zeros(); 3];
         self.rates = [0.0; 3];
     }
 
@@ -39,6 +42,10 @@ impl Merge {
             *rate += weight * stencil.slide(tangent);
         }
         let vectors = [normal, frame[0], frame[1]].map(|v| Vec3::from(v) * weight);
+        self.resultants[0] += stencil.resultant() * weight;
+        for (sum, tangent) in self.resultants[1..].iter_mut().zip(&vectors[1..]) {
+            *sum += tangent;
+        }
         let turning = stencil.turning();
         for (i, (node, c)) in stencil.relative().enumerate() {
             let block = self.block(node);
@@ -71,10 +78,12 @@ impl Merge {
             false => [0.0; 3],
         };
         rows.push(self.gap, normal);
+        rows.set_resultant(self.resultants[0].into());
         rows.set_rate(self.rates[0]);
         let frame = tangent_vectors(&normal, dim);
         for (k, rows) in tangents[..dim - 1].iter_mut().enumerate() {
             rows.push(0.0, frame[k]);
+            rows.set_resultant(self.resultants[k + 1].into());
             rows.set_rate(self.rates[k + 1]);
         }
         for (node, blocks) in &self.blocks {

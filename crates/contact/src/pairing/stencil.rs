@@ -124,6 +124,7 @@ impl Stencil {
     /// Appends gap and rows.
     pub fn push(&self, dim: usize, rows: &mut Rows, tangents: &mut [Rows; 2]) {
         rows.push(self.gap, self.normal);
+        rows.set_resultant(self.resultant().into());
         rows.set_rate(self.rate(&self.normal));
         let frame = tangent_vectors(&self.normal, dim);
         for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
@@ -193,6 +194,15 @@ impl Stencil {
             Foot::Face(foot) if !foot.inside && foot.dim() > 0 => Some(self.shape(foot).turn()),
             _ => None,
         }
+    }
+
+    /// Sum of the entries of the row N over the secondary nodes.
+    pub fn resultant(&self) -> Vec3 {
+        let turning = self.turning().map(|turning| {
+            let own = self.carriers().count();
+            turning[..own].iter().sum::<Vec3>()
+        });
+        Vec3::from(self.normal) + turning.unwrap_or_else(Vec3::zeros)
     }
 
     /// The unknowns of the stencil's nodes and how many they are.

@@ -366,7 +366,7 @@ pub(crate) fn contact_report(
     for point in points(system, contact) {
         let force = new.force[point];
         report.force += force;
-        for (sum, n) in report.resultant.iter_mut().zip(rows.normal(point)) {
+        for (sum, n) in report.resultant.iter_mut().zip(rows.resultant(point)) {
             *sum += force * n;
         }
         if new.gap[point] < report.gap {
@@ -440,7 +440,7 @@ fn total(
     for point in points(system, contact) {
         let value = of_point(point);
         sum += value;
-        for (sum, n) in resultant.iter_mut().zip(rows.normal(point)) {
+        for (sum, n) in resultant.iter_mut().zip(rows.resultant(point)) {
             *sum += value * n;
         }
     }

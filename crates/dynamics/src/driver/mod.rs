@@ -418,7 +418,8 @@ impl Driver {
             *force += system.load[i] + motion.link_of(i);
         }
         system.mass.multiply(&motion.v, &mut self.vectors.known);
-        let exchange = Exchange::start(&system, &self.vectors.known, work);
+        let none = vec![0.0; work.len()];
+        let exchange = Exchange::start(&system, &self.vectors.known, [work, &none]);
         let loads = Resultant::of(&system, &system.load);
         let none = Resultant::default();
         let link = Resultant::of(&system, &self.state.motion.link_force);

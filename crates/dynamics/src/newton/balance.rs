@@ -192,6 +192,18 @@ impl Newton {
             true => now.iter().map(|f| f.to_vec()).collect(),
             false => Vec::new(),
         };
+        if map.inertia.x != 0.0 {
+            let exchange = &mut self.next.exchange;
+            exchange.follow(&self.state.exchange);
+            if let Some(impulses) = self.jump.impulses() {
+                exchange.jump(&system, impulses);
+            }
+            let held = |i: usize| if system.fixed[i] { contact[i] } else { 0.0 };
+            let own =
+                |i: usize| vectors.load[i] + reaction[i] + held(i) + link[i] - vectors.damping[i];
+            exchange.add(&system, (0, self.dt, &map.impulse), own);
+            exchange.add(&system, (1, self.dt, &map.contact_impulse), |i| -held(i));
+        }
         self.next.ledger.clone_from(&self.state.ledger);
         self.next.ledger.kick(&self.jump.impulse);
         self.next.ledger.go_beyond(&Beyond {
@@ -272,6 +284,12 @@ impl Newton {
         }
         self.watch
             .look(&system, self.state.step + 1, &mut self.next);
+        if self.map.inertia.x != 0.0 {
+            let work = &mut self.vectors.work;
+            system.mass.multiply(&self.next.motion.v, work);
+            let records = &self.next.records.contacts;
+            self.next.exchange.close(&system, work, records);
+        }
     }
 
     /// Completes the report of the state just accepted. `dt`: the whole step, s.

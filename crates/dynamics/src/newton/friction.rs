@@ -259,7 +259,7 @@ impl Newton {
                 .zip(t)
                 .take(self.system.tangents())
             {
-                for (sum, direction) in sum.iter_mut().zip(rows.normal(point)) {
+                for (sum, direction) in sum.iter_mut().zip(rows.resultant(point)) {
                     *sum += t * direction;
                 }
             }

@@ -261,6 +261,7 @@ impl Newton {
         let mut start: Option<State> = None;
         let parts = 1u64 << self.system.nonlinear.iteration.halvings;
         self.report.attempts = 0;
+        self.report.samples.clear();
         while done < parts {
             let part = parts >> level;
             let to = first + (end - first) * ((done + part) as f64 / parts as f64);
@@ -268,6 +269,9 @@ impl Newton {
             match self.attempt(size * (part as f64 / parts as f64)) {
                 Ok(()) => {
                     done += part;
+                    if part < parts && !self.is_static() {
+                        self.report.add_part(to, self.dt);
+                    }
                     if done < parts {
                         start.get_or_insert_with(|| self.state.clone());
                         std::mem::swap(&mut self.state, &mut self.next);
@@ -301,6 +305,7 @@ impl Newton {
         control.pace = self.pace.fresh;
         self.next.control = control;
         std::mem::swap(&mut self.state, &mut self.next);
+        self.report.join_parts();
         self.tell(size);
         Ok(())
     }

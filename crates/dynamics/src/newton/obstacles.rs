@@ -35,7 +35,7 @@ impl Newton {
                     continue;
                 }
                 pushed.turn -= f * rows.rate(point);
-                for (sum, direction) in pushed.force.iter_mut().zip(rows.normal(point)) {
+                for (sum, direction) in pushed.force.iter_mut().zip(rows.resultant(point)) {
                     *sum += f * direction;
                 }
             }

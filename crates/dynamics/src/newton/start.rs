@@ -7,6 +7,7 @@ use carom_algebra::reduce::dot;
 use super::{Newton, Which};
 use crate::control::Control;
 use crate::error::Error;
+use crate::exchange::Exchange;
 use crate::ledger::{Energies, Ledger};
 use crate::operator::Operators;
 use crate::records::Records;
@@ -85,6 +86,7 @@ impl Newton {
             mass.end(&mut vectors.half, &mut motion.a);
         }
         self.forces_at_the_start();
+        self.start_exchange();
         let motion = &self.state.motion;
         let identity = self.identity();
         let work = &mut self.vectors.work;
@@ -136,6 +138,25 @@ impl Newton {
             vec![0.0; system.unknowns()],
             (0..system.unknowns()).map(|i| motion.link_of(i)).collect(),
         ];
+    }
+
+    /// The exchange of momentum begins with the dynamics.
+    fn start_exchange(&mut self) {
+        self.state.exchange = Exchange::default();
+        if self.is_static() {
+            return;
+        }
+        let system = &*self.system;
+        let work = &mut self.vectors.work;
+        system.mass.multiply(&self.state.motion.v, work);
+        let zero = vec![0.0; system.unknowns()];
+        let of = |k: usize| self.state.forces.get(k).unwrap_or(&zero);
+        let held = |i: usize| if system.fixed[i] { of(1)[i] } else { 0.0 };
+        let own: Vec<f64> = (0..system.unknowns())
+            .map(|i| of(0)[i] + of(2)[i] + held(i) + of(6)[i] - of(5)[i])
+            .collect();
+        let held: Vec<f64> = (0..system.unknowns()).map(|i| -held(i)).collect();
+        self.state.exchange = Exchange::start(system, work, [&own, &held]);
     }
 
     /// Whether loads and internal forces of the state balance where no support does it.

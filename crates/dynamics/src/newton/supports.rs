@@ -31,6 +31,7 @@ pub(super) struct Jump {
     mass: Option<Operators>,
     change: Vec<f64>,
     momentum: Vec<f64>,
+    jumps: bool,
 }
 
 impl Newton {
@@ -52,7 +53,7 @@ impl Newton {
     fn jump(&mut self) -> Result<bool, Error> {
         let system = Arc::clone(&self.system);
         let (motion, dt, jump) = (&self.state.motion, self.dt, &mut self.jump);
-        (jump.impulse, jump.work) = (Resultant::default(), 0.0);
+        (jump.impulse, jump.work, jump.jumps) = (Resultant::default(), 0.0, false);
         if self.map.inertia.x == 0.0 || system.nonlinear.follows.is_empty() {
             return Ok(false);
         }
@@ -62,25 +63,29 @@ impl Newton {
         jump.momentum.resize(n, 0.0);
         let end = &mut jump.momentum;
         system.nonlinear.prescribe(self.state.time + dt, end);
-        let mut jumps = false;
         for follows in &system.nonlinear.follows {
             let i = follows.unknown as usize;
             let change = (end[i] - motion.u[i]) / dt - motion.v[i];
             let rounding = ROUNDING * (end[i].abs() + motion.u[i].abs()) / dt;
             if change.abs() > rounding {
                 jump.change[i] = change;
-                jumps = true;
+                jump.jumps = true;
             }
         }
-        if jumps {
+        if jump.jumps {
             jump.carry_along(&system)?;
             jump.add_up(&system, motion);
         }
-        Ok(jumps)
+        Ok(jump.jumps)
     }
 }
 
 impl Jump {
+    /// Impulse of the supports on each unknown, N s; `None` without a jump.
+    pub(super) fn impulses(&self) -> Option<&[f64]> {
+        self.jumps.then_some(&self.momentum)
+    }
+
     /// Completes the change of the velocity by that of the free unknowns, and finds the impulse.
     fn carry_along(&mut self, system: &System) -> Result<(), Error> {
         system.mass.multiply(&self.change, &mut self.momentum);

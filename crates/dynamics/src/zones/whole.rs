@@ -164,6 +164,9 @@ impl Whole {
             momentum: sum.momentum + one.momentum,
         });
         self.state.ledger.gather(initial, balance, tolerated);
+        let zones = self.zones.drivers.iter();
+        let exchange = &mut self.state.exchange;
+        exchange.gather(zones.map(|driver| &driver.state().exchange));
         self.tell();
     }
 
@@ -263,10 +266,7 @@ impl Whole {
         report.attempts = 1;
         self.place_samples();
         let report = &mut self.report;
-        for (contact, whole) in report.contacts.iter_mut().enumerate() {
-            let parts = report.samples.iter();
-            join(parts.map(|part| (part.dt, &part.contacts[contact])), whole);
-        }
+        report.join_parts();
         for sample in self.zones.samples() {
             let zone = sample.zone;
             if self.zones.substeps[zone] == 1 {
@@ -307,36 +307,6 @@ impl Whole {
                 }
             }
         }
-    }
-}
-
-/// What a contact did in the parts of a step, as [`StepReport::contacts`] has it.
-fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut ContactReport) {
-    let (mut sum, mut length) = (ContactReport::default(), 0.0);
-    for (dt, part) in parts {
-        length += dt;
-        sum.force += dt * part.force;
-        sum.impulsive += part.impulsive;
-        for i in 0..3 {
-            sum.resultant[i] += dt * part.resultant[i];
-            sum.normal[i] += dt * part.normal[i];
-        }
-        sum.friction += dt * part.friction;
-        sum.slipping = sum.slipping.max(part.slipping);
-        (sum.gap, sum.rate) = (part.gap, part.rate);
-        sum.closed = sum.closed.max(part.closed);
-        sum.mixed = sum.mixed.max(part.mixed);
-        sum.status_changes += part.status_changes;
-        sum.persistency_defect += part.persistency_defect;
-    }
-    if length > 0.0 {
-        *whole = ContactReport {
-            force: sum.force / length,
-            resultant: sum.resultant.map(|r| r / length),
-            normal: sum.normal.map(|r| r / length),
-            friction: sum.friction / length,
-            ..sum
-        };
     }
 }
 

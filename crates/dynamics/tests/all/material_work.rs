@@ -273,13 +273,18 @@ fn squeezed(halvings: u32) -> (Result<(), Error>, u32, Newton) {
     model.dt = 0.88 * System::new(model.clone()).unwrap().critical_step();
     model.nonlinear.iteration.halvings = halvings;
     let mut newton = newton(model);
-    let mut most = 0;
+    let (mut most, mut sum) = (0, 0.0);
     for _ in 0..60 {
         if let Err(error) = newton.step() {
             return (Err(error), most, newton);
         }
-        most = most.max(newton.report().attempts);
+        let report = newton.report();
+        most = most.max(report.attempts);
+        sum += report.contacts[0].force * report.dt;
     }
+    // the force of a step in parts is the mean over them
+    let forces = newton.state().records.contacts[0].impulse_of_forces();
+    assert!((sum - forces).abs() < 1e-13 * forces, "{sum} {forces}");
     (Ok(()), most, newton)
 }
 

@@ -1,9 +1,11 @@
-//! Mortar contact of meshes that do not match, in the linear drivers.
+//! Mortar contact of meshes that do not match.
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{Basis, Integration, Law, Sliding};
-use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System, scheme};
+use carom_dynamics::{
+    Driver, Model, ModelBody, ModelContact, ModelTarget, Newton, Scheme, Stepper, System, scheme,
+};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface, generate};
 
@@ -97,6 +99,49 @@ fn blocks_of_meshes_that_do_not_match_strike_like_bars() {
                 }
             }
             assert!(largest > 0.1, "they struck");
+        }
+    }
+}
+
+/// The blocks with wavy faces towards each other, a little apart, the upper one thrown along the lower one as well.
+fn wavy(dim: usize, scheme: Scheme, friction: f64) -> Model {
+    let velocity = Law::Velocity(Velocity {
+        capture: Capture::Now,
+        reading: Reading::Closed,
+    });
+    let mut model = blocks(dim, [3, 2], scheme, velocity);
+    for x in &mut model.mesh.nodes {
+        let gap = if x[dim - 1] > 1.0 { 0.02 } else { 0.0 };
+        x[dim - 1] += gap + 0.1 * (2.0 * x[0]).sin();
+    }
+    model.bodies[0].velocity[0] = 0.3;
+    model.contacts[0].sliding = Sliding::Finite;
+    model.contacts[0].friction = friction;
+    model.contacts[0].integration = Integration::Mortar {
+        basis: Basis::Standard,
+    };
+    model
+}
+
+#[test]
+fn contacts_report_the_force_that_bodies_get_where_normals_differ_over_a_face() {
+    let theta = Scheme::Theta(scheme::Theta { theta: 0.5 });
+    let keeping = Scheme::EnergyMomentum(scheme::EnergyMomentum);
+    for (dim, scheme, friction) in [(2, theta, 0.3), (3, theta, 0.0), (2, keeping, 0.0)] {
+        let system = System::new(wavy(dim, scheme, friction)).unwrap();
+        let mut runs: Vec<Box<dyn Stepper>> = vec![Box::new(Newton::new(system.clone()).unwrap())];
+        if friction == 0.0 && scheme == theta {
+            runs.push(Box::new(Driver::new(system).unwrap()));
+        }
+        for run in &mut runs {
+            for _ in 0..24 {
+                run.step().unwrap();
+            }
+            let impulse = run.state().records.contacts[0].impulse();
+            assert!(impulse > 0.1, "they struck: {impulse}");
+            // the iterations end at 1e-10 of the forces
+            let left = run.state().exchange.relative().unwrap();
+            assert!(left < 1e-9, "{dim}, {scheme:?}: {left:e}");
         }
     }
 }

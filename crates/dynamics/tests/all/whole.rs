@@ -144,6 +144,8 @@ fn the_whole_is_the_zones_node_by_node_and_contact_by_contact() {
     assert_eq!(ledger.largest_energy_residual, largest);
     assert!(largest < 1e-11 * ledger.largest_energy, "{largest}");
     assert!(ledger.largest_momentum_residual < 1e-11 * ledger.largest_momentum);
+    // what the contact reports is what the tip has got of it, links counted
+    assert!(state.exchange.relative().unwrap() < 1e-11);
     // elements of each zone by its sweeps, four times as many where steps are inner ones
     let costs = whole.costs();
     let updates = whole.zones().drivers().iter().map(|d| {

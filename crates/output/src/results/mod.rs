@@ -172,8 +172,8 @@ struct Last {
     control: Control,
     ledger: Ledger,
     records: Records,
-    /// Largest residual of the momentum that contacts give, relative; `None` where it is not known.
-    exchange: Option<f64>,
+    /// Largest residual of the momentum that contacts give to a body, and largest momentum of one, N s; `None` where nothing moves.
+    exchange: Option<[f64; 2]>,
     /// Mean velocity of the bodies, m/s.
     velocities: Vec<[f64; 3]>,
     /// Whether each contact has a force.
@@ -257,7 +257,10 @@ impl Results {
             control: state.control,
             ledger: state.ledger.clone(),
             records: state.records.clone(),
-            exchange: state.exchange.relative(),
+            exchange: (state.exchange.largest_momentum > 0.0).then_some([
+                state.exchange.largest_residual,
+                state.exchange.largest_momentum,
+            ]),
             velocities: velocities(&self.system, &state.motion.v),
             closed: (0..self.system.contacts.len()).map(forces).collect(),
         };

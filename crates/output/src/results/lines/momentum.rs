@@ -36,22 +36,21 @@ pub(super) fn exchange(evidence: &Evidence) -> Finding {
     if evidence.system.contacts.is_empty() {
         return Finding::Absent;
     }
-    match evidence.last.exchange {
-        Some(residual) => Finding::Line(Line::new(
-            "contact-impulse",
-            (
-                "difference between the reported impulse of the contacts and the momentum that the bodies received, relative to the largest momentum",
-                residual,
-                Form::Power,
-            ),
-            Bounds::Bad(RESIDUAL),
-            "report a defect of the program",
-        )),
-        None => Finding::Unchecked(
-            "the impulse of the contacts against the momentum of each body: zones and nonlinear runs balance only the momentum of the whole model"
-                .to_owned(),
+    let Some([residual, momentum]) = evidence.last.exchange else {
+        return Finding::Absent;
+    };
+    let tolerated = evidence.last.ledger.tolerated.momentum / momentum;
+    let quantity = "difference between the reported impulse of the contacts and the momentum that the bodies received, relative to the largest momentum";
+    Finding::Line(Line::new(
+        "contact-impulse",
+        (
+            &of_tolerance(quantity, tolerated),
+            residual / momentum,
+            Form::Power,
         ),
-    }
+        Bounds::Bad((RESIDUAL + tolerated).min(MOST_TOLERATED)),
+        residual_remedy(tolerated),
+    ))
 }
 
 /// Part of the impulse that forces times steps may miss where sizes change: a force that begins with one size of step and ends
