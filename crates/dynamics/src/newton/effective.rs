@@ -196,13 +196,19 @@ impl Effective {
         Some((self.operators.as_mut()?, &mut self.compliance))
     }
 
-    /// Largest diagonal entry of the stiffness in A, N/m; zero without one.
-    pub(super) fn stiffness_norm(&self, system: &System, map: &StepMap) -> f64 {
+    /// Norm of the diagonal of the stiffness in A times `x`, N; zero without a matrix.
+    pub(super) fn stiffness_norm(
+        &self,
+        system: &System,
+        map: &StepMap,
+        x: impl Iterator<Item = f64>,
+    ) -> f64 {
         let Some(a) = self.matrix.as_ref().filter(|_| map.force.x != 0.0) else {
             return 0.0;
         };
-        let of = |i: usize| (a.get(i, i) - map.inertia.x * system.mass.lumped[i]).abs();
-        (0..a.n).map(of).fold(0.0, f64::max) / map.force.x
+        let of = |(i, x): (usize, f64)| (a.get(i, i) - map.inertia.x * system.mass.lumped[i]) * x;
+        let squares = x.enumerate().map(|at| of(at).powi(2)).sum::<f64>();
+        squares.sqrt() / map.force.x
     }
 
     pub(super) fn stats(&self) -> Option<&FactorStats> {

@@ -40,7 +40,7 @@ const TURN: f64 = 0.1;
 
 /// Largest way of a node in an iteration along motions that nothing holds, over the size of the elements: about as far as
 /// normals and pairs of faceted surfaces say what comes.
-const REACH: f64 = 0.05;
+const REACH: f64 = 0.25;
 
 /// Change of the load along motions that nothing holds, over that load, from one iteration to the next, up to which it does
 /// not depend on where the part is.
@@ -55,6 +55,8 @@ pub(super) struct Floating {
     sizes: Vec<f64>,
     /// Loads along motions that nothing held an iteration ago; empty in the first.
     load: Vec<f64>,
+    /// The same when contact with something else carried a part last; empty if none did.
+    carried: Vec<f64>,
 }
 
 impl Floating {
@@ -88,6 +90,7 @@ impl Floating {
             parts: parts.into(),
             weight: WEIGHT,
             load: Vec::new(),
+            carried: Vec::new(),
         })
     }
 
@@ -95,6 +98,7 @@ impl Floating {
     pub(super) fn begin(&mut self) {
         self.weight = WEIGHT;
         self.load.clear();
+        self.carried.clear();
     }
 }
 
@@ -194,8 +198,12 @@ impl Newton {
         let change = before.iter().zip(&c).map(|(before, c)| c - before);
         let change: Vec<f64> = change.collect();
         let steady = !before.is_empty() && norm(&change) <= STEADY * norm(&c);
+        let grounded = self.grounded(rigid);
+        if !grounded.is_empty() {
+            self.floating.carried.clone_from(&c);
+        }
         if !steady {
-            for part in self.grounded(rigid) {
+            for part in grounded {
                 c[rigid.coordinates(part)].fill(0.0);
             }
         }
@@ -203,14 +211,27 @@ impl Newton {
         (norm(&c) > least).then_some(c)
     }
 
-    /// The error of iterations that ended out of balance: the load along a motion that nothing holds, where most is that.
+    /// The error of iterations that ended out of balance: the load along a motion that nothing holds, where most is that and
+    /// no contact carries the part, or comes to.
     pub(super) fn unbalanced(&self, passes: usize, imbalance: f64) -> Error {
         let system = &*self.system;
         if self.floats() {
             let rigid = Rigid::new(system, &self.floating.parts, Some(&self.places()));
             let c = self.unheld_load(&rigid);
-            if norm(&c) > 0.5 * imbalance && self.way_to_contact(&rigid, &c).is_none() {
-                return self.unheld(&rigid, &c);
+            let mut loose = c.clone();
+            for part in self.grounded(&rigid) {
+                loose[rigid.coordinates(part)].fill(0.0);
+            }
+            let free = || {
+                let most = norm(&c) > 0.5 * imbalance;
+                most && self.way_to_contact(&rigid, &c).is_none()
+            };
+            if norm(&loose) > self.left_over || free() {
+                // what fell off is named by how it left its contact
+                return match self.floating.carried.is_empty() {
+                    true => self.unheld(&rigid, &c),
+                    false => self.unheld(&rigid, &self.floating.carried),
+                };
             }
         }
         self.no_equilibrium(passes)
@@ -269,8 +290,9 @@ impl Newton {
     }
 
     /// Shortens the motion of the iteration along rigid motions that nothing holds to the reach of what it knows of the
-    /// surfaces. Contacts that carry forces, and the forces inside, know nothing of these motions.
-    pub(super) fn restrain(&mut self) {
+    /// surfaces; whether it was longer. Contacts that carry forces, and the forces inside, know nothing of these motions.
+    pub(super) fn restrain(&mut self) -> bool {
+        let mut shortened = false;
         let system = Arc::clone(&self.system);
         let rigid = Rigid::new(&system, &self.floating.parts, Some(&self.places()));
         let mut c = rigid.nearest(&self.vectors.dx);
@@ -278,6 +300,7 @@ impl Newton {
         for (part, size) in self.floating.sizes.iter().enumerate() {
             let reach = rigid.reach(part, &c);
             let beyond = (1.0 - REACH * size / reach.max(f64::MIN_POSITIVE)).max(0.0);
+            shortened |= beyond > 0.0;
             c[rigid.coordinates(part)]
                 .iter_mut()
                 .for_each(|c| *c *= beyond);
@@ -287,6 +310,7 @@ impl Newton {
                 self.vectors.dx[i] -= u;
             }
         }
+        shortened
     }
 
     /// Adds to x what finite turns of the parts have beyond the linear motion `share` dx from `before`.

@@ -28,8 +28,11 @@ const FRESH: f64 = 2.0;
 /// Cost of a new tangent beside its factorisation, in iterations with the old one.
 const TANGENT: f64 = 3.0;
 
+/// Largest number of iterations of a step in which parts move on along motions that nothing holds, over that of others.
+const MOVES: usize = 10;
+
 /// Imbalance over what may be rounding from which on iterations are mixed: below, their changes are noise.
-const NOISY: f64 = 100.0;
+const NOISY: f64 = 10.0;
 
 /// How fast the iterations go.
 #[derive(Default)]
@@ -69,7 +72,8 @@ impl Newton {
     /// # Errors
     /// No equilibrium, an element or a matrix that fails.
     pub(super) fn solve(&mut self) -> Result<(), Error> {
-        let limit = self.system.nonlinear.iteration.passes;
+        let passes = self.system.nonlinear.iteration.passes;
+        let (mut limit, most) = (passes, MOVES * passes);
         self.residuals.clear();
         (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
         self.floating.begin();
@@ -88,7 +92,8 @@ impl Newton {
             self.pair(true);
         }
         let mut standing = self.standing();
-        for pass in 0..limit {
+        let mut pass = 0;
+        while pass < limit {
             let jumps = self.vectors.jump.iter().any(|jump| *jump != 0.0);
             let before = self.residuals.last().copied();
             self.residuals.push(standing.imbalance);
@@ -110,13 +115,15 @@ impl Newton {
             if !jumps && (self.floats() || standing.imbalance > NOISY * standing.rounding) {
                 self.mix();
             }
-            if self.floats() && !jumps {
-                self.restrain();
+            if self.floats() && !jumps && self.restrain() {
+                // the part has moved on: iterations begin anew
+                limit = most.min(pass + passes);
             }
             standing = self.go(&standing, jumps)?;
             if self.is_affine() {
                 return Ok(());
             }
+            pass += 1;
         }
         let before = self.residuals.last().copied();
         if self.is_solved(&standing, before) {
@@ -261,17 +268,19 @@ impl Newton {
         squares.sum::<f64>().sqrt() / self.dt
     }
 
-    /// What rounding of the positions leaves in the internal forces, N.
+    /// Norm of what rounding of the positions leaves in the internal forces, N. Displacements cannot be told apart within
+    /// ε |u|, which changes the force of each unknown by about ε K_ii |u|, at random.
     pub(super) fn rounding(&self) -> f64 {
-        let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        let x = self
+        let places = self
             .system
             .x
             .iter()
-            .flatten()
-            .fold(0.0f64, |m, x| m.max(x.abs()));
-        let place = x + largest(&self.state.motion.u);
-        4.0 * f64::EPSILON * self.effective.stiffness_norm(&self.system, &self.map) * place
+            .zip(self.state.motion.u.chunks(self.system.dim));
+        let sizes = places.flat_map(|(x, u)| x.iter().zip(u).map(|(x, u)| x.abs() + u.abs()));
+        2.0 * f64::EPSILON
+            * self
+                .effective
+                .stiffness_norm(&self.system, &self.map, sizes)
     }
 
     /// Whether this iteration needs a new factor.

@@ -183,3 +183,17 @@ fn a_disc_finds_its_rest_on_a_soft_block() {
         );
     }
 }
+
+#[test]
+fn a_disc_slides_along_facets_to_its_rest() {
+    // the node at the bottom is not where a facet is level under its weight: that is further than iterations may go at once
+    for (edges, steps) in [(32, 1), (32, STEPS), (48, STEPS)] {
+        let mut model = on_a_block(edges, 0.0);
+        model.nonlinear.preload = Some(Preload { end: 1.0, steps });
+        let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
+        for _ in 0..steps {
+            newton.step().unwrap();
+        }
+        assert_carried(&newton);
+    }
+}
