@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 use super::overlap::{Cell, Sample, cells, linear};
 use super::stencil::Stencil;
 use super::{Pairing, Share};
-use crate::search::{faces_point, positions};
+use crate::search::positions;
 use crate::{Contact, Places, Point, Search, Target};
 
 /// The largest number of multipliers of a face: that of its corners.
@@ -301,7 +301,7 @@ impl<'a> Sweep<'a> {
                 let point = self.point(&sample.xi);
                 let place = point.place(self.places);
                 let foot = project(face, x, &place);
-                if faces_point(&foot, face) && sees(&foot) {
+                if sees(&foot) {
                     let stencil = Stencil::on_face(self.places, &point, &place, &foot, face);
                     self.push(&sample, stencil);
                 }

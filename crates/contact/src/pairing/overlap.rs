@@ -13,8 +13,9 @@ use super::clip::Polygon;
 /// The largest number of corners of a cell.
 const CORNERS: usize = 4;
 
-/// Two normals face each other where their cosine is below: what is steeper than 60 degrees casts no shadow.
-const FACING: f64 = -0.5;
+/// Cosines of the angles of 30 and 60 degrees between a normal and the opposite of the other one: what is steeper than
+/// the second casts no shadow, and between them the weight of a shadow falls to nothing.
+const FACING: [f64; 2] = [0.866_025_403_784_438_6, 0.5];
 
 /// Pieces smaller than this part of the cell are rounding.
 const SLIVER: f64 = 1e-12;
@@ -43,7 +44,8 @@ pub struct Cell {
     normal: Vec3,
 }
 
-/// A quadrature point: where in the reference cell of the face, and what of its measure it stands for.
+/// A quadrature point: where in the reference cell of the face, and what of its measure it stands for, less where the other
+/// cell is steep.
 pub struct Sample {
     pub xi: [f64; 3],
     pub weight: f64,
@@ -137,7 +139,8 @@ impl Cell {
     /// `low`: all shape functions involved are linear, and degree 2 is enough. Otherwise the rules are exact to degree 5
     /// on segments and triangles: for the products of shape functions on parallelograms.
     pub fn shared(&self, other: &Cell, low: bool, mut each: impl FnMut(Sample)) {
-        if self.normal.dot(&other.normal) > FACING {
+        let faces = facing(-self.normal.dot(&other.normal));
+        if faces == 0.0 {
             return;
         }
         let plane = Plane::new(self);
@@ -149,7 +152,7 @@ impl Cell {
             if end - begin > SLIVER * (b - a) {
                 for (t, w) in LINE {
                     let s = 0.5 * (begin + end) + 0.5 * (end - begin) * t;
-                    each(self.sample(&own, [s, 0.0], 0.5 * (end - begin) * w));
+                    each(self.sample(&own, [s, 0.0], faces * 0.5 * (end - begin) * w));
                 }
             }
             return;
@@ -163,7 +166,7 @@ impl Cell {
             if area > least {
                 on_triangle(low, |weights, part| {
                     let s = [0, 1].map(|i| (0..3).map(|k| weights[k] * corners[k][i]).sum());
-                    each(self.sample(&own, s, part * area));
+                    each(self.sample(&own, s, faces * part * area));
                 });
             }
         });
@@ -199,6 +202,16 @@ impl Cell {
             weight: area * reference / stretch,
         }
     }
+}
+
+/// Weight of a shadow by the cosine of the angle between one normal and the opposite of the other: a cubic with level ends.
+///
+/// A face that turns past the last angle so leaves the means without a jump. With a jump a corner whose steep side is near
+/// that angle has no equilibrium: the forces with the face turn it out, those without it turn it in.
+fn facing(cosine: f64) -> f64 {
+    let [all, none] = FACING;
+    let t = ((cosine - none) / (all - none)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
 }
 
 /// The plane of a cell, or its line in the plane.

@@ -9,6 +9,7 @@ mod mortar;
 mod moving;
 mod search;
 mod sight;
+mod steep;
 
 #[global_allocator]
 static COUNTER: carom_testing::Counter = carom_testing::Counter;

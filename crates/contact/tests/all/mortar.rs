@@ -9,18 +9,18 @@ use carom_testing::{Random, allocations};
 
 use crate::fixture::{assert_balanced, assert_derivatives, contact, face, full, matrix, paired};
 
-const BASES: [Basis; 2] = [Basis::Standard, Basis::Dual];
+pub(crate) const BASES: [Basis; 2] = [Basis::Standard, Basis::Dual];
 
 /// Nodes of both sides, and the faces of each.
-struct Pair {
-    dim: usize,
-    x: Vec<[f64; 3]>,
-    secondary: Vec<Face>,
-    primary: Vec<Face>,
+pub(crate) struct Pair {
+    pub(crate) dim: usize,
+    pub(crate) x: Vec<[f64; 3]>,
+    pub(crate) secondary: Vec<Face>,
+    pub(crate) primary: Vec<Face>,
 }
 
 impl Pair {
-    fn contact(&self, basis: Basis, factor: f64) -> Contact {
+    pub(crate) fn contact(&self, basis: Basis, factor: f64) -> Contact {
         let (mortar, points) = Mortar::new(self.secondary.clone(), &self.x, |_| factor);
         Contact {
             integration: Integration::Mortar { basis },
@@ -29,7 +29,7 @@ impl Pair {
         }
     }
 
-    fn pairing(&self, basis: Basis) -> Pairing {
+    pub(crate) fn pairing(&self, basis: Basis) -> Pairing {
         let u = vec![0.0; self.dim * self.x.len()];
         let places = self.places(&u);
         paired(&self.contact(basis, 1.0), &places)

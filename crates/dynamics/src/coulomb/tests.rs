@@ -436,3 +436,29 @@ fn what_a_support_takes_across_a_plane_of_symmetry_does_not_keep_friction_from_i
         }
     }
 }
+
+#[test]
+fn forces_within_the_tolerance_that_was_asked_for_are_taken_where_no_nearer_ones_are() {
+    // Beside a mass with a force of 2 N lies a candidate whose mobility has the wrong sign: 0 <= -1e-11 - 1e-3 P with P >= 0
+    // has no solution. With no force 1e-11 is missing, which is 5e-12 of the largest force.
+    let mut problem = single(0.3, -2.0, [0.5, 0.0], 1, 0.0);
+    let alone = problem.solve().unwrap();
+    problem.candidates.push(candidate(RIGID, -1e-11));
+    problem.friction.push(Tangential {
+        mu: 0.3,
+        ..Tangential::default()
+    });
+    problem.compliance = vec![
+        1.0, 0.0, 0.0, 0.0, //
+        0.0, 1.0, 0.0, 0.0, //
+        0.0, 0.0, -1e-3, 0.0, //
+        0.0, 0.0, 0.0, 1.0,
+    ];
+    problem.tolerance = 1e-9;
+    let taken = problem.solve().unwrap();
+    assert!((taken.forces[0] - alone.forces[0]).abs() <= 1e-9 * alone.forces[0]);
+    assert_eq!(taken.tangential[0], alone.tangential[0]);
+    // Asked for more, there is none, and the error names the candidate.
+    problem.tolerance = 1e-12;
+    assert_eq!(problem.solve().unwrap_err().candidate, 1);
+}

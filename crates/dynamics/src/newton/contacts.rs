@@ -397,6 +397,8 @@ impl Newton {
     /// The point that disobeys its law most at the x of the iteration, and by how much in tolerances.
     pub(super) fn worst_point(&self) -> Option<(usize, f64)> {
         let tolerance = self.gap_tolerance();
+        let forces = self.next.interface.force.iter();
+        let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
         let mut worst: Option<(usize, f64)> = None;
         for point in 0..self.system.points() {
             if self.told(point) == Some(false) {
@@ -429,7 +431,8 @@ impl Newton {
                     }
                 }
             };
-            let defect = defect.max(self.slip_defect(point) / tolerance);
+            let cone = self.cone_defect(point, largest) / self.system.nonlinear.iteration.tolerance;
+            let defect = defect.max(self.slip_defect(point) / tolerance).max(cone);
             if worst.is_none_or(|(_, most)| defect > most) {
                 worst = Some((point, defect));
             }

@@ -219,6 +219,27 @@ impl Newton {
         slid.sqrt() * self.dt / time
     }
 
+    /// How far the friction of a point is from what its status allows, over `largest`, the largest force of all points:
+    /// |t| - μ P of a point that sticks, | |t| - μ P | of one that slips, over what their equations may leave, 2 + μ.
+    /// Forces of one solve obey this to its tolerance, a mixture of points that stick and slip need not.
+    pub(super) fn cone_defect(&self, point: usize, largest: f64) -> f64 {
+        let interface = &self.next.interface;
+        let (Some(t), Some(slip)) = (interface.friction.get(point), self.slips.get(point)) else {
+            return 0.0;
+        };
+        let mu = self.system.friction[self.system.contact_of(point)];
+        let beyond = t[0].hypot(t[1]) - mu * interface.force[point].max(0.0);
+        let defect = match slip {
+            Slip::Slip => beyond.abs(),
+            Slip::Stick | Slip::Open => beyond.max(0.0),
+        };
+        if defect == 0.0 {
+            0.0
+        } else {
+            defect / ((2.0 + mu) * largest)
+        }
+    }
+
     /// Way that a point slides along one tangent in the step that was taken, m.
     fn way(&self, point: usize, tangent: usize) -> f64 {
         let rows = &self.pairing.tangents[tangent];

@@ -6,8 +6,11 @@
 //!
 //! `x₊ = Σ α_i g(x_i),   Σ α_i = 1,   |Σ α_i f(x_i)| least,`
 //!
-//! for a map that is linear the m-th step of GMRES. Contact forces are mixed with the same α: where no point has changed
-//! its status the laws hold for the mixture as they do for its parts. What a step ends with is tested without any of this.
+//! for a map that is linear the m-th step of GMRES, whether iterations shrink or grow. Contact forces are mixed with the same
+//! α: where no point has opened or closed the relations of the normal hold for the mixture as they do for its parts. Points
+//! may stick in one iteration and slip in the next: where iterations go to and fro about the answer, the way between two of
+//! them changes sign in just the points that slide the least. What a step ends with is tested without any of this, Coulomb's
+//! law with it.
 //!
 //! D. G. Anderson (1965), J. ACM 12; H. F. Walker, P. Ni (2011), SIAM J. Numer. Anal. 49.
 
@@ -16,7 +19,6 @@ use carom_algebra::reduce::{dot, norm_squared};
 use carom_contact::law::Status;
 
 use super::Newton;
-use crate::coulomb::Slip;
 
 /// Iterations that are mixed.
 const DEPTH: usize = 4;
@@ -51,13 +53,18 @@ pub(super) struct Mixing {
     kept: Vec<Iterate>,
     count: usize,
     status: Vec<Status>,
-    slips: Vec<Slip>,
 }
 
 impl Mixing {
     /// Forgets all iterations.
     pub(super) fn clear(&mut self) {
         self.count = 0;
+    }
+
+    /// Forgets all iterations but the last, after one that made the residual grow: those before it belong to another map.
+    /// Where each iteration makes it grow, the last and the next one are what ends that.
+    pub(super) fn keep_last(&mut self) {
+        self.count = self.count.min(1);
     }
 
     /// Room for one more iteration, now the last; the oldest is forgotten.
@@ -122,9 +129,8 @@ impl Newton {
         };
         let interface = &mut self.next.interface;
         let mixing = &mut self.mixing;
-        if mixing.status != interface.status || mixing.slips != self.slips {
+        if mixing.status != interface.status {
             mixing.status.clone_from(&interface.status);
-            mixing.slips.clone_from(&self.slips);
             mixing.clear();
         }
         let last = mixing.next();

@@ -467,13 +467,15 @@ impl Newton {
         for jump in self.vectors.jump.iter_mut() {
             *jump *= rest;
         }
-        // a part that rolls far in one iteration deforms until the next: what is known of the way it rolls is as good as before
-        let misled = |standing: &Standing| {
-            share < 1.0 || standing.imbalance > before.imbalance && !self.floats()
-        };
         match last {
-            Some(Ok(standing)) if misled(&standing) => {
-                self.mixing.clear();
+            Some(Ok(standing)) => {
+                // a part that rolls far in one iteration deforms until the next: what is known of the way it rolls is as
+                // good as before
+                if share < 1.0 {
+                    self.mixing.clear();
+                } else if standing.imbalance > before.imbalance && !self.floats() {
+                    self.mixing.keep_last();
+                }
                 Ok(standing)
             }
             Some(outcome) => outcome,
