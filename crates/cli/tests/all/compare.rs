@@ -208,6 +208,8 @@ fn a_study_gives_orders_with_error_bars_and_a_figure() {
     for word in [
         "against time step (s)",
         "± 0.",
+        "extrapolated",
+        "saturated from",
         "Contact `shock`.",
         "raw peak of a single step does not converge",
     ] {
@@ -221,6 +223,23 @@ fn a_study_gives_orders_with_error_bars_and_a_figure() {
             .any(|line| line.starts_with("impulse_n_s,,0.7")),
         "{orders}"
     );
+    // the limit of three runs is closer to it than the finest run
+    let cell = |line: &str, column: &str| -> f64 {
+        let heads = orders.lines().next().unwrap().split(',');
+        let place = heads.into_iter().position(|head| head == column).unwrap();
+        line.split(',').nth(place).unwrap().parse().unwrap()
+    };
+    let impulse = orders.lines().find(|line| line.starts_with("impulse_n_s"));
+    let limit = cell(impulse.unwrap(), "extrapolated");
+    let runs = fs::read_to_string(folder.join("study.csv")).unwrap();
+    let heads: Vec<&str> = runs.lines().next().unwrap().split(',').collect();
+    let of = |column: &str| -> f64 {
+        let place = heads.iter().position(|head| *head == column).unwrap();
+        let finest = runs.lines().last().unwrap();
+        finest.split(',').nth(place).unwrap().parse().unwrap()
+    };
+    let exact = of("exact.impulse_n_s");
+    assert!((limit - exact).abs() < 0.5 * (of("impulse_n_s") - exact).abs());
     assert!(
         !orders.contains("\npeak_force_n,"),
         "the raw peak has no order"

@@ -18,7 +18,7 @@ pub use figures::{ContactCurves, EnergyCurves, contact_figure, energy_figure};
 pub(crate) use film::{Frame, Patch, Scene, film_figure};
 pub use logarithmic::{Logarithmic, Series};
 pub(crate) use model::{Shape, model_figure};
-pub use scale::{digits, quantity, scientific};
+pub use scale::{digits, quantity, rounded, scientific};
 pub(crate) use thin::thin;
 
 use crate::{Error, atomic};

@@ -132,15 +132,20 @@ pub fn shown(panel: &Panel) -> Shown {
 /// A value with its unit and prefix, three digits: `66.7 kN`; with a power of ten where no prefix serves:
 /// `2.20·10⁻¹⁶ J`. A pure number has no unit: `0.990`.
 pub fn quantity(value: f64, unit: &str) -> String {
+    rounded(value, unit, 3)
+}
+
+/// As [`quantity`], with this many significant digits.
+pub fn rounded(value: f64, unit: &str, figures: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value} {unit}").trim_end().to_owned();
     }
     let (factor, prefixed) = engineering(unit, value.abs());
     let plain = unit.is_empty() && (1e-3..1e6).contains(&value.abs());
     let text = match prefixed.starts_with("10") || value.abs() < NOTHING {
-        true if plain => format!("{} {unit}", digits(value, 3)),
-        true => format!("{} {unit}", scientific(value, 2)),
-        false => format!("{} {prefixed}", digits(value / factor, 3)),
+        true if plain => format!("{} {unit}", digits(value, figures)),
+        true => format!("{} {unit}", scientific(value, figures as usize - 1)),
+        false => format!("{} {prefixed}", digits(value / factor, figures)),
     };
     text.trim_end().to_owned()
 }

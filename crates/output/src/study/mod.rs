@@ -7,7 +7,7 @@ mod orders;
 mod page;
 mod quantities;
 
-pub use orders::{Fit, consecutive, differences, fit};
+pub use orders::{Fit, consecutive, differences, extrapolate, fit, saturation};
 pub use page::RAW_PEAK;
 pub use quantities::{Measure, Quantity};
 
@@ -65,6 +65,10 @@ pub struct Order {
     pub fit: Option<Fit>,
     /// Orders between neighbours.
     pub consecutive: Vec<Option<f64>>,
+    /// Limit of the values of the finest three runs, SI; `None` of errors, whose limit is zero.
+    pub extrapolated: Option<f64>,
+    /// Abscissa from which the error does not fall any more towards finer runs.
+    pub saturation: Option<f64>,
 }
 
 /// From what an order is taken.
@@ -115,21 +119,25 @@ impl Study {
         let mut measured: Vec<(f64, Measure)> = measured.collect();
         measured.sort_by(|a, b| a.0.total_cmp(&b.0));
         let x: Vec<f64> = measured.iter().map(|(x, _)| *x).collect();
+        let values: Vec<f64> = measured.iter().map(|(_, m)| m.value).collect();
+        let extrapolated = (!quantity.is_error()).then(|| extrapolate(&x, &values));
         let exact: Option<Vec<f64>> = measured.iter().map(|(_, m)| m.error()).collect();
         let (source, x, errors) = match exact {
             Some(errors) => (Source::Exact, x, errors),
             None => {
-                let values: Vec<f64> = measured.iter().map(|(_, m)| m.value).collect();
                 let (x, errors) = differences(&x, &values)?;
                 (Source::Differences, x, errors)
             }
         };
+        let (fit, consecutive) = (fit(&x, &errors), consecutive(&x, &errors));
         (x.len() > 1).then(|| Order {
             quantity,
             series: series.to_owned(),
             source,
-            fit: fit(&x, &errors),
-            consecutive: consecutive(&x, &errors),
+            extrapolated: extrapolated.flatten(),
+            saturation: fit.and_then(|fit| saturation(&x, fit.order, &consecutive)),
+            fit,
+            consecutive,
             points: x.into_iter().zip(errors).collect(),
         })
     }

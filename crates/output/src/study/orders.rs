@@ -58,6 +58,50 @@ pub fn differences(x: &[f64], q: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
     constant.then(|| (x[..x.len() - 1].to_vec(), differences.collect()))
 }
 
+/// Limit of the values at the finest three runs, `q* = q₀ + (q₀ − q₁) / (ρ − 1)`, ρ = (q₁ − q₂) / (q₀ − q₁), which is
+/// r^p for `q = q* + C x^p` and x in the constant ratio r (Richardson). The fine end is the one where values differ less. `None` if
+/// there are fewer than three runs, if the ratio of the three is not constant to 1 %, or if differences do not shrink with one sign.
+pub fn extrapolate(x: &[f64], q: &[f64]) -> Option<f64> {
+    let n = x.len();
+    if n < 3 {
+        return None;
+    }
+    let low = (q[1] - q[0]).abs() < (q[n - 1] - q[n - 2]).abs();
+    let finest = if low {
+        [0, 1, 2]
+    } else {
+        [n - 1, n - 2, n - 3]
+    };
+    let [ratio, next] = [[0, 1], [1, 2]].map(|[a, b]| x[finest[b]] / x[finest[a]]);
+    let [fine, middle, coarse] = finest.map(|k| q[k]);
+    let shrink = (middle - coarse) / (fine - middle);
+    let constant = (next / ratio - 1.0).abs() < 0.01;
+    let limit = fine + (fine - middle) / (shrink - 1.0);
+    (constant && shrink > 1.0 && limit.is_finite()).then_some(limit)
+}
+
+/// Where errors have saturated: the abscissa of the coarsest point from which all orders between neighbours, towards the fine end, are below
+/// half of the median of those before. `order`: of the fit; its sign tells the fine end. `consecutive`: as [`consecutive`] gives them.
+pub fn saturation(x: &[f64], order: f64, consecutive: &[Option<f64>]) -> Option<f64> {
+    let pairs: Option<Vec<f64>> = consecutive.iter().copied().collect();
+    let mut pairs: Vec<f64> = pairs?.iter().map(|p| p * order.signum()).collect();
+    let mut coarse: Vec<f64> = x.to_vec();
+    if order > 0.0 {
+        pairs.reverse();
+        coarse.reverse();
+    }
+    let median = |of: &[f64]| {
+        let mut sorted = of.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        0.5 * (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2])
+    };
+    let saturated = |k: &usize| {
+        let before = median(&pairs[..*k]);
+        before > 0.0 && pairs[*k..].iter().all(|p| *p < 0.5 * before)
+    };
+    (1..pairs.len()).find(saturated).map(|k| coarse[k])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -108,5 +152,44 @@ mod tests {
         assert_eq!(fit(&STEPS, &[0.0; 5]), None);
         assert_eq!(consecutive(&[1.0, 2.0], &[0.0, 1.0]), [None]);
         assert_eq!(fit(&[1.0, 2.0], &[1.0, 4.0]).unwrap().error_bar, None);
+    }
+
+    #[test]
+    fn values_of_a_power_law_extrapolate_to_its_limit_at_either_end() {
+        for order in [0.69, 1.0, 2.0, -1.0] {
+            let values: Vec<f64> = STEPS
+                .iter()
+                .map(|h| 42.0 - 3.0 * (h / STEPS[2]).powf(order))
+                .collect();
+            let limit = extrapolate(&STEPS, &values).unwrap();
+            assert!((limit - 42.0).abs() < 1e-12 * 42.0, "{order}: {limit}");
+        }
+        // no constant ratio, too few, differences that alternate or grow towards the fine end as towards the other
+        assert_eq!(extrapolate(&[1.0, 2.0, 3.0], &[1.0, 2.0, 4.0]), None);
+        assert_eq!(extrapolate(&[1.0, 2.0], &[1.0, 2.0]), None);
+        assert_eq!(extrapolate(&[1.0, 2.0, 4.0], &[1.0, 0.0, 2.0]), None);
+        assert_eq!(extrapolate(&[1.0, 2.0, 4.0], &[1.0, 2.0, 3.0]), None);
+    }
+
+    #[test]
+    fn errors_saturate_where_they_stop_to_fall() {
+        let with_floor = |order: f64, floor: f64| -> Option<f64> {
+            let errors: Vec<f64> = STEPS
+                .iter()
+                .map(|h| (h / STEPS[4]).powf(order).max(floor))
+                .collect();
+            let fit = fit(&STEPS, &errors).unwrap();
+            saturation(&STEPS, fit.order, &consecutive(&STEPS, &errors))
+        };
+        assert_eq!(with_floor(1.0, 0.0), None);
+        // 1, 1/2, 1/4, 1/4, 1/4: constant from the third on
+        assert_eq!(with_floor(1.0, 0.25), Some(STEPS[2]));
+        let rising: Vec<f64> = STEPS.iter().map(|n| (STEPS[0] / n).max(0.25)).collect();
+        let fit = fit(&STEPS, &rising).unwrap();
+        assert!(fit.order < 0.0);
+        assert_eq!(
+            saturation(&STEPS, fit.order, &consecutive(&STEPS, &rising)),
+            Some(STEPS[2])
+        );
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use minijinja::{Value, context};
 
 use crate::compare::page::inner;
-use crate::plot::{Logarithmic, Series, quantity};
+use crate::plot::{Logarithmic, Series, quantity, rounded};
 use crate::report::{NOTHING, environment};
 use crate::rows::Cell;
 use crate::study::{Abscissa, Order, Quantity, Run, Source, Study};
@@ -54,12 +54,26 @@ impl Study {
                 error_bar.map_or(NOTHING.to_owned(), |bar| format!("± {bar:.3}")),
                 between.join(", "),
                 order.source.text().to_owned(),
+                order.extrapolated.map_or(NOTHING.to_owned(), |value| {
+                    rounded(value, order.quantity.unit(), 5)
+                }),
+                order
+                    .saturation
+                    .map_or(NOTHING.to_owned(), |x| self.abscissa_value(x)),
             ]
         };
         Table {
-            heads: ["", "order", "error bar", "between neighbours", "from"]
-                .map(str::to_owned)
-                .to_vec(),
+            heads: [
+                "",
+                "order",
+                "error bar",
+                "between neighbours",
+                "from",
+                "extrapolated",
+                "saturated from",
+            ]
+            .map(str::to_owned)
+            .to_vec(),
             rows: self.orders().iter().map(row).collect(),
         }
     }
@@ -70,6 +84,14 @@ impl Study {
             (Abscissa::Step, _) => "time step (s)".to_owned(),
             (Abscissa::Key, Some((key, _))) => key.clone(),
             (Abscissa::Key, None) | (Abscissa::Nothing, _) => String::new(),
+        }
+    }
+
+    /// A value of what the orders are taken against, for people.
+    fn abscissa_value(&self, x: f64) -> String {
+        match self.abscissa {
+            Abscissa::Step => quantity(x, "s"),
+            Abscissa::Key | Abscissa::Nothing => quantity(x, ""),
         }
     }
 
@@ -158,6 +180,8 @@ impl Study {
             "factor",
             "from",
             "points",
+            "extrapolated",
+            "saturated_from",
         ];
         let row = |k: usize| {
             let order = &orders[k];
@@ -169,6 +193,8 @@ impl Study {
                 order.fit.map(|fit| fit.factor).into(),
                 Cell::Text(order.source.text()),
                 Cell::Number(order.points.len() as f64),
+                order.extrapolated.into(),
+                order.saturation.into(),
             ]
         };
         let rows: Vec<Vec<Cell>> = (0..orders.len()).map(row).collect();

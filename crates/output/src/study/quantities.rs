@@ -99,6 +99,11 @@ impl Quantity {
         }
     }
 
+    /// Whether it is a distance from an exact solution, which goes to zero.
+    pub fn is_error(self) -> bool {
+        matches!(self, Quantity::ForceError | Quantity::DisplacementError)
+    }
+
     /// What it is in a run; `None` where it does not exist.
     pub fn of(self, run: &Run) -> Option<Measure> {
         let done = run.variant.done()?;
