@@ -200,6 +200,32 @@ fn the_finest_run_is_nearer_to_the_exact_solution_than_the_case_and_says_what_it
 }
 
 #[test]
+fn a_row_far_from_the_reference_run_is_bad_whatever_its_own_verdict() {
+    let work = tempfile::tempdir().unwrap();
+    // laws that find the bars touching: with the trapezoid the displacement law errs by 0.84 of the force, the velocity law by 0.08
+    let choices = Choices {
+        laws: words(&["velocity", "displacement"]),
+        reference: Some("finest".to_owned()),
+        ..Choices::default()
+    };
+    let comparison = compared(&work.path().join("a"), &two_bars(50, ""), &choices);
+    for (law, grade, errors) in [
+        ("velocity", "good", 0.02..0.15),
+        ("displacement", "bad", 0.5..1.5),
+    ] {
+        let mut variants = comparison.variants.iter();
+        let variant = variants.find(|variant| variant.name == law).unwrap();
+        let done = variant.done().unwrap();
+        assert!(errors.contains(&done.errors.force.unwrap()), "{law}");
+        let line = done.line.as_ref().unwrap();
+        assert_eq!(line.grade.word(), grade, "{law}");
+        let (word, reason) = variant.verdict();
+        assert_eq!(word, grade, "{law}: {reason}");
+        assert_eq!(reason.contains(&line.text()), grade == "bad", "{reason}");
+    }
+}
+
+#[test]
 fn a_mesh_that_cannot_be_refined_leaves_its_error_unseen_and_the_table_says_why() {
     let work = tempfile::tempdir().unwrap();
     let choices = Choices {
