@@ -4,7 +4,7 @@
 //! registered scheme with every law, closings cut. Closed solution: a cut puts the closing at the same place of a step
 //! wherever the bar starts, so that the first forces of both runs are the same; a law in the gap then stops the end of the bar, its gap
 //! and its rate zero; the energy identity of each scheme holds whatever the steps are, once the change of the scheme's own
-//! energy with the step is counted. Reference: the other run; the ledger's own terms. Tolerance: forces 1e-6 of Z v0 and rates 1e-6 of
+//! energy with the step is counted. Reference: the other run, a second formulation; the ledger's own terms. Tolerance: forces 1e-6 of Z v0 and rates 1e-6 of
 //! v0, for the cut aims 1e-11 of the model's length before its place, which is 2e-7 of a way v0 dt; ledgers 1e-11 as for equal
 //! steps. The trapezoid with the displacement law makes energy at any step: the run must end there, its last good state kept,
 //! and say why. What was cut at an instant and resumed must have the same bytes.

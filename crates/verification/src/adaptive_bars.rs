@@ -7,7 +7,7 @@
 //! be: the force error (L², in time, against the mean of the exact force over each step) is at most 1.2 times the largest of the fixed steps; where all fixed
 //! runs have one impact, so has the adaptive one; the sum of force times step is what the striker loses of its momentum, in a run
 //! whose projections or second stages jump the velocity with their impulses. The same with every fortieth step halved, in contact
-//! too: then with the impulses that the changes of size make. Reference: the fixed runs; M v of the striker. Tolerance: 20 %, the bound that was set before the runs, the
+//! too: then with the impulses that the changes of size make. Reference: the fixed runs, a second formulation; M v of the striker. Tolerance: 20 %, the bound that was set before the runs, the
 //! largest of four places of the closing because the error of many pairs depends on it; 1e-10 of the momentum, a thousand
 //! steps of rounding.
 

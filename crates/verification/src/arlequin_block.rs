@@ -2,7 +2,7 @@
 //!
 //! Problem: an elastic cube of 1 m comes down on a rigid sphere of radius 0.5 m. Around the point of impact a zone of hexahedra
 //! four times finer, velocities and theta ½, is glued to the coarse body, central differences and four times the step.
-//! Reference: the uniformly fine mesh, velocities and theta ½. Tolerance: 3 % of the peak of the force and of the relative L2
+//! Reference: the uniformly fine mesh, velocities and theta ½, a second formulation. Tolerance: 3 % of the peak of the force and of the relative L2
 //! difference of its history: the overlap turns corners, where constant strains are missed by a few per cent of the strain,
 //! and waves of the coarse body are coarse. Work of the link: 0.2 % of the energy, the project's theory note for this link
 //! (see `arlequin-energy`), of another code. Energy residual 1e-9 of the initial energy, as for the block on a plane.

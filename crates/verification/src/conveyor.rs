@@ -9,7 +9,7 @@
 //! Tolerances: the weight comes at once, so that the crate hops and shears as it slides, with pressure and slip of its nodes in
 //! step. What impacts of nodes and the scheme take of this is in the ledger apart and belongs to what is not motion at the end:
 //! with the heat it is half of the belt's work. 0.2 % of both are left to the hops. The place may be off by the way of one step, 2 mm,
-//! the speed at the end by 1e-4. The facets are flat and in line, so that with a plane rounding alone differs: 1e-9 m.
+//! the speed at the end by 1e-4. The facets are flat and in line, so that with a plane, a second formulation, rounding alone differs: 1e-9 m.
 //! Balances as for the sliding block.
 
 use std::path::Path;

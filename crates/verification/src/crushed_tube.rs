@@ -5,7 +5,7 @@
 //! are one surface that faces itself. Velocity law at the nodes, energy-momentum, dt = 1 ms.
 //!
 //! Closed facts: before the inside meets itself, the run is the run without self-contact, for a thin wall does not see its own far
-//! side: bit for bit, no row having entered a sum. The wall has no friction and takes no momentum along it; the
+//! side (a second formulation): bit for bit, no row having entered a sum. The wall has no friction and takes no momentum along it; the
 //! ledgers of energy, momentum and angular momentum close. No part goes through another: in each state the nodes of the surface that
 //! lie in cells of which they are no corner are looked for among all cells, with nothing of the search of the contact, and
 //! their depth is the distance from the nearest side of the surface.

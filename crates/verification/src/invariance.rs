@@ -4,7 +4,7 @@
 //! bars, as plane-strain quadrilaterals and as hexahedra; in metres, kilograms and seconds, in millimetres, tonnes and
 //! seconds, and as a model 1000 times smaller. Closed solution: the uniform motion over the section makes the three
 //! kinds one recursion; a change of units changes no ratio; lengths and times / 1000 with the same velocity leave
-//! F / F0 as it is. Reference: the bar in SI units. Tolerance: 1e-9 of F0, a thousand times the round-off of some
+//! F / F0 as it is. Reference: the bar in SI units, a second formulation. Tolerance: 1e-9 of F0, a thousand times the round-off of some
 //! thousand steps. Only with the velocity law: the displacement law with the trapezoid below CFL 1 amplifies round-off.
 //! Sizes: quick n = 50, full n = 200.
 

@@ -2,8 +2,8 @@
 //!
 //! Problem: two bars of the set "slow", n = 20, and two blocks that slide on each other, every registered scheme with every
 //! law; each third step is attempted, dropped, and attempted again with the same size. Closed solution: a dropped step
-//! leaves nothing behind, so the end is that of the run without rejections. Reference: that run. Tolerance: none, bytes are
-//! equal or not.
+//! leaves nothing behind, so the end is that of the run without rejections. Reference: that run, a second formulation. Tolerance:
+//! none, bytes are equal or not.
 
 use std::sync::Arc;
 

@@ -4,7 +4,7 @@
 //! ones, met at a third of a step; and e = 0 in bars of set "slow", n = 20, under every registered scheme. Closed
 //! solution: the separation of the bodies is e times their approach, the energy lost (1 - e²) of that of the approach
 //! (in the centre of mass), and with e = 0 the law is the velocity law. Reference: the formulas; for e = 0 the run
-//! with the velocity law. Tolerance: 1e-6 of speed and energy, for the vibration left, (L / (c dt))² = 1e-8 to
+//! with the velocity law, a second formulation. Tolerance: 1e-6 of speed and energy, for the vibration left, (L / (c dt))² = 1e-8 to
 //! within a factor; energy never grows from step to step (theta ½ <= 1 / (1 + e)) by more than 1e-5 of its first value, the work
 //! on points that vibrate while they are pressed; bytes of the states for e = 0.
 

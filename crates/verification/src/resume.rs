@@ -4,7 +4,7 @@
 //! the other and paired at every step; every registered scheme with every law; cuts while the bodies press, when they
 //! part, and later, gone on with to the end, and a cut before every step, gone on with for that step. Closed solution: a state written as bytes, read back and gone on with by a new driver ends in the
 //! bytes of the run that was not cut. Combinations without meaning are refused, and only they: explicit schemes with
-//! the displacement law. Reference: the run that was not cut. Tolerance: none, bytes are equal or not.
+//! the displacement law. Reference: the run that was not cut, a second formulation. Tolerance: none, bytes are equal or not.
 
 use std::sync::Arc;
 

@@ -4,7 +4,7 @@
 //! yield stress 400 MPa and linear hardening of 100 MPa; mean dilatation in 4-node quadrilaterals (axisymmetric) and in
 //! 8-node hexahedra (a quarter of the bar between planes of symmetry), the velocity law at the nodes of the foot, theta's
 //! scheme and central differences, 80 µs.
-//! Closed solution: none. Reference: the spread of published results (length 21.2 to 21.6 mm, radius of the foot 6.8 to
+//! Closed solution: none. Published: the spread of results (length 21.2 to 21.6 mm, radius of the foot 6.8 to
 //! 7.3 mm, largest plastic strain 2.5 to 3.3), as the issue states it. The strain, taken as the mean over the element at the
 //! centre of the foot, depends on the mesh: it is 2.9 with elements of 0.8 mm there, 3.2 with the 0.64 mm of this check, 3.4
 //! with 0.53 mm and 3.9 with 0.27 mm, where the radius is 7.33 mm; the length is the same to 0.05 mm.

@@ -3,7 +3,8 @@
 //! Problem: two blocks with meshes that do not match, one coming down sideways on the other and paired at every step, of
 //! 261 and 260 elements in long columns: forces are summed in chunks of 256, and columns of the compliance computed in groups, which
 //! threads share. Every registered scheme with every kind of law. Closed solution: sums have a fixed order, so the number of
-//! threads changes no bit. Reference: the run on one thread. Tolerance: none, bytes are equal or not.
+//! threads changes no bit. Reference: the run on one thread, a second formulation. Tolerance: none, bytes are equal
+//! or not.
 //! Sizes: quick 3 steps with one law of each kind, full 60 steps with all.
 
 use std::sync::Arc;
