@@ -4,13 +4,45 @@
 //! body by θ²/2. What is missing is added: `u = (exp(θ×) - 1 - θ×) d`, d from the centre of the part.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use carom_contact::Rows;
 
+use super::Newton;
 use crate::system::System;
 
 /// What of a unit vector counts as independent of others.
 pub(super) const INDEPENDENT: f64 = 1e-6;
+
+impl Newton {
+    /// Begins with the rigid motion of each part that is nearest to its velocity. The motion of no acceleration turns elements
+    /// inside out where velocities alternate from step to step, as a trapezoidal rule leaves them in stiff modes: the
+    /// displacements of these modes stay what they are.
+    pub(super) fn predict_rigidly(&mut self) {
+        let system = Arc::clone(&self.system);
+        let (end, motion) = (&self.map.displacement, &self.state.motion);
+        if end.x == 0.0 {
+            return;
+        }
+        let rigid = Rigid::new(&system, &system.parts, Some(&motion.u));
+        let mut c = rigid.nearest(&motion.v);
+        c.iter_mut().for_each(|c| *c *= self.dt);
+        let vectors = &mut self.vectors;
+        end.known(motion, &mut vectors.place);
+        let begin = motion.u.iter().zip(&vectors.place);
+        let begin: Vec<f64> = begin.map(|(u, known)| (u - known) / end.x).collect();
+        for (i, x) in vectors.x.iter_mut().enumerate() {
+            if !system.fixed[i] {
+                *x = begin[i];
+            }
+        }
+        for (i, u) in rigid.motion(&c).chain(rigid.arc(&c)) {
+            if !system.fixed[i] {
+                vectors.x[i] += u / end.x;
+            }
+        }
+    }
+}
 
 /// Rigid motions of parts: u = Σ c_j r_j, those of a part one after the other.
 pub(super) struct Rigid<'a> {

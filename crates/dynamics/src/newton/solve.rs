@@ -83,7 +83,10 @@ impl Newton {
         interface.clone_from(&self.state.interface);
         self.guess_slips();
         self.take_weak();
-        self.evaluate(true)?;
+        if self.evaluate(true).is_err() {
+            self.predict_rigidly();
+            self.evaluate(true)?;
+        }
         self.vectors.ahead.clear();
         self.search.iter_mut().for_each(Search::begin_step);
         self.pair(true);

@@ -430,3 +430,74 @@ fn iterations_end_at_the_rounding_of_a_body_that_has_moved_far() {
         assert!(newton.residuals().len() <= 15, "{:?}", newton.residuals());
     }
 }
+
+#[test]
+fn attempts_that_fail_are_counted_in_the_costs() {
+    // friction in contact from the start, and too few iterations for any part of a step
+    let mut model = square(
+        Scheme::Theta(scheme::Theta { theta: 0.5 }),
+        VELOCITY,
+        neo_hooke(),
+        3,
+    );
+    model.gravity = [0.0, -1.0, 0.0];
+    model.contacts[0].friction = 0.3;
+    model.contacts[0].primary = ModelTarget::rigid(Plane {
+        point: [0.0; 3],
+        normal: [0.0, 1.0, 0.0],
+    });
+    model.nonlinear.iteration.passes = 1;
+    model.nonlinear.iteration.halvings = 2;
+    let mut newton = newton(model);
+    let before = newton.costs();
+    assert!(newton.step().is_err());
+    let after = newton.costs();
+    // the step, its first half, the first half of that: each begins, goes one iteration, and begins the balance anew
+    assert_eq!(newton.report().attempts, 3);
+    assert_eq!(after.force_sweeps - before.force_sweeps, 2 * 3);
+    assert_eq!(after.work.factorisations - before.work.factorisations, 3);
+    let phases = |costs: &carom_dynamics::Costs| {
+        let phases = costs.phases;
+        [
+            phases.factorisation,
+            phases.forces,
+            phases.sweeps,
+            phases.contact,
+            phases.friction,
+        ]
+    };
+    let (before, after) = (phases(&before), phases(&after));
+    for (row, (before, after)) in before.iter().zip(&after).enumerate() {
+        assert!(after > before, "row {row} of the timings");
+    }
+}
+
+#[test]
+fn velocities_that_alternate_need_no_smaller_steps() {
+    // stiff modes of a trapezoidal rule: ω Δt = 60, whose velocities would turn the elements inside out within a step
+    let mut model = square(
+        Scheme::Theta(scheme::Theta { theta: 0.5 }),
+        VELOCITY,
+        neo_hooke(),
+        3,
+    );
+    model.contacts.clear();
+    model.gravity = [0.0; 3];
+    model.dt = 5.0;
+    let mut newton = newton(model);
+    let places = newton.system().x.clone();
+    let sign = |x: &[f64; 3]| match (3.0 * x[0]).round() as u32 % 2 {
+        0 => 1.0,
+        _ => -1.0,
+    };
+    // 0.4 over elements of 1/3 in half a step, beside a motion of the whole
+    let velocity = places.iter().flat_map(|x| [0.01 + 0.08 * sign(x), 0.0]);
+    let velocity: Vec<f64> = velocity.collect();
+    newton
+        .restart(&vec![0.0; velocity.len()], &velocity)
+        .unwrap();
+    for _ in 0..5 {
+        newton.step().unwrap();
+        assert_eq!(newton.report().attempts, 1, "{:?}", newton.residuals());
+    }
+}
