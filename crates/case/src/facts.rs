@@ -55,7 +55,7 @@ pub fn facts(built: &Built) -> Vec<Fact> {
     for (k, contact) in system.contacts.iter().enumerate() {
         facts.push(fact(
             format!("contact {}", contact.name),
-            contact_facts(system, k),
+            contact_facts(built, k),
         ));
     }
     let begin = built.stage.map_or(0.0, |(end, _)| end);
@@ -180,7 +180,8 @@ pub(crate) struct Approach {
     pub(crate) gap: f64,
     /// Fastest closing, m/s; zero where nothing closes.
     pub(crate) speed: f64,
-    /// When a point may close first, s; infinite where nothing closes.
+    /// When a point closes first, s, if bodies go on as they begin: rigid, with their initial velocities and the mean accelerations
+    /// of the dead loads; infinite where nothing closes.
     pub(crate) impact: f64,
     points: usize,
 }
@@ -200,6 +201,7 @@ pub(crate) fn approach_from(system: &System, contact: usize, u: &[f64]) -> Appro
     let mut rows = Rows::default();
     rows.clear();
     system.contacts[contact].pair(&places, &mut Search::default(), &mut rows);
+    let accelerations = accelerations(system);
     let mut approach = Approach {
         gap: f64::INFINITY,
         speed: 0.0,
@@ -209,16 +211,78 @@ pub(crate) fn approach_from(system: &System, contact: usize, u: &[f64]) -> Appro
     for point in 0..rows.len() {
         let gap = rows.gap(point);
         approach.gap = approach.gap.min(gap);
-        let closing = -rows.product(point, &system.initial_velocity) - rows.rate(point);
-        if closing > 0.0 && gap.is_finite() {
-            approach.speed = approach.speed.max(closing);
-            approach.impact = approach.impact.min(gap.max(0.0) / closing);
+        if !gap.is_finite() {
+            continue;
         }
+        let speed = closing(&rows, point, &system.initial_velocity, rows.rate(point));
+        let pull = closing(&rows, point, &accelerations, 0.0);
+        approach.speed = approach.speed.max(speed);
+        approach.impact = approach.impact.min(first_closing(gap, speed, pull));
     }
     approach
 }
 
-fn contact_facts(system: &System, contact: usize) -> String {
+/// How fast a point closes under these velocities of the unknowns and this rate of its obstacle; zero below the rounding of the
+/// terms that cancel, as those of bodies that move together.
+fn closing(rows: &Rows, point: usize, v: &[f64], rate: f64) -> f64 {
+    const ROUNDING: f64 = 1e-12;
+    let (unknowns, coefficients) = rows.row(point);
+    let terms = unknowns.iter().zip(coefficients);
+    let terms = terms.map(|(&unknown, n)| n * v[unknown as usize]);
+    let (sum, size) = terms.fold((rate, rate.abs()), |(sum, size), term| {
+        (sum + term, size + term.abs())
+    });
+    match sum.abs() > ROUNDING * size {
+        true => -sum,
+        false => 0.0,
+    }
+}
+
+/// The least t of `gap = speed t + pull t²/2`, s; infinite if there is none.
+fn first_closing(gap: f64, speed: f64, pull: f64) -> f64 {
+    let gap = gap.max(0.0);
+    let approaches = speed > 0.0 || (speed == 0.0 && pull > 0.0);
+    if gap == 0.0 && approaches {
+        return 0.0;
+    }
+    let root = (speed * speed + 2.0 * pull * gap).sqrt();
+    match speed + root > 0.0 {
+        true => 2.0 * gap / (speed + root),
+        // no root: they part, or turn before they meet
+        false => f64::INFINITY,
+    }
+}
+
+/// Mean acceleration of each body under the dead loads, by unknown, m/s²; zero in directions in which a support holds it, and
+/// before the end of a static stage, in which loads make no motion.
+fn accelerations(system: &System) -> Vec<f64> {
+    let mut accelerations = vec![0.0; system.unknowns()];
+    if system.static_steps() > 0 {
+        return accelerations;
+    }
+    for body in &system.body_masses {
+        let mass: f64 = body.iter().map(|(_, mass)| mass).sum();
+        for i in 0..system.dim {
+            let unknown = |node: u32| system.dim * node as usize + i;
+            let held = body.iter().any(|&(node, _)| system.fixed[unknown(node)]);
+            // radial forces move no ring as a whole
+            if held || system.axisymmetric && i == 0 {
+                continue;
+            }
+            let force: f64 = body
+                .iter()
+                .map(|&(node, _)| system.load[unknown(node)])
+                .sum();
+            for &(node, _) in body {
+                accelerations[unknown(node)] = force / mass;
+            }
+        }
+    }
+    accelerations
+}
+
+fn contact_facts(built: &Built, contact: usize) -> String {
+    let system = &built.system;
     let approach = approach(system, contact);
     let pair = &system.contacts[contact];
     let law = pair.law.get().name();
@@ -230,9 +294,12 @@ fn contact_facts(system: &System, contact: usize) -> String {
         true => format!("least gap {:.4e} m", approach.gap),
         false => "nothing opposite at the start".to_string(),
     };
-    let impact = match approach.impact.is_finite() {
-        true => format!("first possible impact at {:.4e} s", approach.impact),
-        false => "nothing approaches at the start".to_string(),
+    let impact = match approach.impact {
+        impact if impact <= built.end => format!("first possible impact at {impact:.4e} s"),
+        impact if impact.is_finite() => {
+            "no impact before the end, as bodies move at the start".to_string()
+        }
+        _ => "nothing approaches at the start".to_string(),
     };
     format!(
         "{law} law, {} points {}, {sliding} sliding, {gap}, {impact}{}",

@@ -4,6 +4,7 @@
 //! sides it lies; a force history is come nearest to by golden section, which needs a distance with one minimum. A range of
 //! more than two decades is searched in the logarithm of the value.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use carom_output::Folder;
@@ -118,11 +119,19 @@ fn quantity(to: &str, name: &str, value: &str) -> Result<Goal, SweepError> {
     }
 }
 
+/// Most bytes of a force history, 1 GiB.
+const LARGEST: u64 = 1 << 30;
+
+fn read_text(path: &Path) -> io::Result<String> {
+    let bytes = carom_mesh::read::file::regular(path, LARGEST)?;
+    String::from_utf8(bytes).map_err(io::Error::other)
+}
+
 /// A force history from a CSV table of numbers.
 fn history(path: &Path) -> Result<StepForce, SweepError> {
     let name = path.display().to_string();
     let refuse = |problem: Problem| wrong("--to", &name, problem);
-    let text = std::fs::read_to_string(path).map_err(|cause| {
+    let text = read_text(path).map_err(|cause| {
         refuse(Problem::new(
             "",
             format!("cannot read the force history `{name}`: {cause}"),

@@ -1,9 +1,13 @@
 //! The texts that make up a case: the file, and the overrides of the command line.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
+use carom_mesh::read::file;
+
 use crate::error::Problem;
+
+/// Most bytes of a case file, 16 MiB: cases are written by people, and meshes stand in files of their own.
+const LARGEST: u64 = 16 << 20;
 
 /// A text with a name to show in messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,7 +43,7 @@ impl Input {
                 problem
             }]);
         }
-        let bytes = fs::read(path).map_err(|cause| {
+        let bytes = file::regular(path, LARGEST).map_err(|cause| {
             vec![Problem::new(
                 "",
                 format!("cannot read the case file `{name}`: {cause}"),

@@ -3,7 +3,7 @@
 use crate::error::Problem;
 use crate::schema::{
     Adaptive, Capture, Case, Contact, Count, Integration, IntegrationWith, LargestStep, Law, Line,
-    Obstacle, Part, Sign, Step, StepRule, Time,
+    Obstacle, Part, Sign, Step, StepRule,
 };
 use crate::units::with_article;
 
@@ -19,11 +19,12 @@ pub(crate) fn check(case: &Case) -> Vec<Problem> {
     for (name, contact) in case.contact.iter() {
         check_contact(&format!("contact.{name}"), contact, &mut problems);
     }
-    check_time(&case.time, &mut problems);
+    check_time(case, &mut problems);
     problems
 }
 
-fn check_time(time: &Time, problems: &mut Vec<Problem>) {
+fn check_time(case: &Case, problems: &mut Vec<Problem>) {
+    let time = &case.time;
     let begin = time.stage.map_or(0.0, |stage| stage.end.0);
     if begin > time.end.0 {
         let message = "the static stage ends after the time to simulate";
@@ -32,14 +33,28 @@ fn check_time(time: &Time, problems: &mut Vec<Problem>) {
         return;
     }
     if !time.is_static() {
+        let of_zones =
+            !case.zone.is_empty() && case.zone.iter().all(|(_, zone)| zone.scheme.is_some());
+        let everywhere = (!case.zone.is_empty()).then_some("a scheme for each zone");
         let keys = [
-            ("step", time.step.is_none(), "step = { courant = 0.5 }"),
-            ("scheme", time.scheme.is_none(), "scheme.theta = {}"),
+            (
+                "step",
+                time.step.is_none(),
+                "step = { courant = 0.5 }",
+                None,
+            ),
+            (
+                "scheme",
+                time.scheme.is_none() && !of_zones,
+                "scheme.theta = {}",
+                everywhere,
+            ),
         ];
-        for (key, _, example) in keys.into_iter().filter(|(_, missing, _)| *missing) {
+        for (key, _, example, other) in keys.into_iter().filter(|(_, missing, ..)| *missing) {
             let message = format!("`{key}` is missing in `time`");
             let problem = Problem::new("time", message);
-            problems.push(problem.accepted([example, "a static stage up to `end`"]));
+            let accepted = [example].into_iter().chain(other);
+            problems.push(problem.accepted(accepted.chain(["a static stage up to `end`"])));
         }
     }
     let given = match time.step {

@@ -128,13 +128,16 @@ fn print(summary: &Summary, folder: &Path) {
     }
     for (name, contact) in &summary.contacts {
         out!("  contact {name} ({} law)", contact.law);
-        out!(
-            "    mean force {}, peak of the mean over {}: {}, raw peak {}",
-            quantity(contact.mean_force, "N"),
-            quantity(contact.window, "s"),
-            quantity(contact.peak_mean_force, "N"),
-            quantity(contact.peak_force, "N")
-        );
+        let peak = quantity(contact.peak_force, "N");
+        match contact.mean_force.zip(contact.peak_mean_force) {
+            Some((mean, peak_of_mean)) => out!(
+                "    mean force {}, peak of the mean over {}: {}, raw peak {peak}",
+                quantity(mean, "N"),
+                quantity(contact.window, "s"),
+                quantity(peak_of_mean, "N")
+            ),
+            None => out!("    largest force {peak}"),
+        }
         let times = match (contact.first_closing, contact.last_release) {
             (Some(first), Some(last)) => format!(
                 ", closed from {} to {}",
@@ -151,10 +154,10 @@ fn print(summary: &Summary, folder: &Path) {
                 quantity(contact.impulsive, "N s")
             ),
         };
-        out!(
-            "    impulse {}{impulsive}{times}",
-            quantity(contact.impulse, "N s")
-        );
+        match contact.impulse {
+            Some(impulse) => out!("    impulse {}{impulsive}{times}", quantity(impulse, "N s")),
+            None => out!("    static: no impulse{times}"),
+        }
         if let Some(friction) = contact.friction {
             out!(
                 "    friction coefficient {}, largest friction force {}",

@@ -158,7 +158,7 @@ fn passage(system: &System, contact: usize) -> f64 {
 pub(crate) struct Step<'a> {
     /// Time at its start and end, s.
     pub(crate) span: [f64; 2],
-    /// Its length, s: the difference of the two but for rounding.
+    /// Its length, s: the difference of the two but for rounding; 0 of a static step, in which forces give no impulse.
     pub(crate) dt: f64,
     /// How forces make impulses in the scheme.
     pub(crate) impulse: Impulse,
@@ -258,7 +258,8 @@ impl Records {
         }
         let given = Given {
             span: step.span,
-            active,
+            // an impact begins with the dynamics
+            active: active && dt > 0.0,
             force: report.force,
             impulse: [0, 1, 2].map(|i| mean(before.1[i], resultant[i]) + projected.1[i]),
             impulsive: [0, 1, 2].map(|i| projected.1[i] + carried.1[i]),

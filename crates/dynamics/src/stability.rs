@@ -16,6 +16,11 @@ impl System {
     /// ω² is at most the largest eigenvalue of an element, plus that of the stiffness `Σ k_i n_i n_iᵀ` of compliant contact
     /// laws against the lumped mass, which is bounded by the largest row sum of `sqrt(k_i k_j) n_i · M⁻¹ n_j` over points
     /// i, j, paired as at the start. Points that face nothing then count with the lightest node of the system.
+    ///
+    /// Rayleigh damping acts with the velocity that is known before the forces, and shortens the step: with Ω the critical ω dt
+    /// without damping and c = α + β ω² a mode is stable for `(2 ω dt/Ω)² + 2 c dt ≤ 4` (from the characteristic polynomial
+    /// z² + (A - 2) z + 1 - A + ω² dt² with A = φ ω² dt² + c dt, Ω² = 4/(2φ - 1), at z = -1; φ = 1 for central differences). The largest
+    /// ω² and c bound all modes.
     pub fn critical_step(&self) -> f64 {
         let bodies = self.bodies.iter().map(Body::frequency_bound);
         self.critical_with(bodies.fold(0.0, f64::max))
@@ -46,7 +51,16 @@ impl System {
             .iter()
             .map(|contact| self.contact_bound(contact))
             .sum::<f64>();
-        self.scheme.get().critical().unwrap_or(2.0) / (bodies * bodies + contacts).sqrt()
+        let squared = bodies * bodies + contacts;
+        let damping = self.nonlinear.damping.iter();
+        let rates = damping.map(|damping| damping.mass + damping.stiffness * bodies * bodies);
+        let rate = rates.fold(0.0, f64::max);
+        let undamped = self.scheme.get().critical().unwrap_or(2.0);
+        let stiffness = 4.0 * squared / (undamped * undamped);
+        match rate > 0.0 {
+            true => 4.0 / (rate + (rate * rate + 4.0 * stiffness).sqrt()),
+            false => undamped / squared.sqrt(),
+        }
     }
 
     /// Bound of the eigenvalues of the stiffness of a contact against the lumped mass, 1/s².

@@ -24,6 +24,9 @@ pub struct System {
     pub mesh: Mesh,
     /// Unknowns per node.
     pub dim: usize,
+    /// Where places count from in what rounding leaves in forces, m: zero, since gaps are differences of places; without
+    /// contacts the corner of the mesh nearest to it, since bodies and links do not see where they lie.
+    pub(crate) origin: [f64; 3],
     /// Whether bodies are axisymmetric: x is then a radius.
     pub axisymmetric: bool,
     /// Reference coordinates by system number, m.
@@ -187,7 +190,12 @@ impl System {
             faces.map(|face| renumbered(face, &number)).collect()
         };
         let secondary_faces = model.contacts.iter().map(faces_of).collect();
+        let origin = match model.contacts.is_empty() {
+            true => nearest_corner(&x),
+            false => [0.0; 3],
+        };
         let system = System {
+            origin,
             tolerance: 1e-12 * model.mesh.size(),
             axisymmetric: model
                 .bodies
@@ -339,6 +347,11 @@ impl System {
         }
     }
 
+    /// Steps of the static stage before the dynamics; 0 without one. Time is no time in them: it says what loads and motions are.
+    pub fn static_steps(&self) -> u64 {
+        self.nonlinear.preload.map_or(0, |preload| preload.steps)
+    }
+
     /// Number of unknowns, held ones included.
     pub fn unknowns(&self) -> usize {
         self.fixed.len()
@@ -408,6 +421,17 @@ fn numbering(model: &Model) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
         nodes.into_iter().map(|(_, node)| node).collect(),
         parts,
     )
+}
+
+/// The place nearest to zero in the box around some places, m.
+fn nearest_corner(x: &[[f64; 3]]) -> [f64; 3] {
+    [0, 1, 2].map(|i| {
+        let along = x.iter().map(|x| x[i]);
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        0.0_f64.min(high).max(low)
+    })
 }
 
 fn node_masses(body: &Body, dim: usize, nodes: usize) -> Vec<(u32, f64)> {

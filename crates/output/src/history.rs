@@ -25,15 +25,14 @@ impl History {
         })
     }
 
-    /// Adds a row, one value per column in the order of the names. Every number is written with the fewest digits
-    /// that give it back exactly.
+    /// Adds a row, one value per column in the order of the names: a number, with the fewest digits that give it back exactly, or
+    /// nothing.
     ///
     /// # Errors
     /// [`Error::RowLength`]; [`Error::File`] if rows were due on the disk and did not fit. What was written before
     /// stays readable.
-    pub fn push(&mut self, values: &[f64]) -> Result<(), Error> {
-        self.rows
-            .push(values.iter().map(|value| Cell::Number(*value)))
+    pub fn push<'a>(&mut self, values: &[impl Into<Cell<'a>> + Copy]) -> Result<(), Error> {
+        self.rows.push(values.iter().map(|value| (*value).into()))
     }
 
     /// Hands all rows to the operating system: before a checkpoint, or when somebody wants to look.

@@ -184,6 +184,12 @@ impl Cell<'_> {
     }
 }
 
+impl From<f64> for Cell<'_> {
+    fn from(value: f64) -> Self {
+        Cell::Number(value)
+    }
+}
+
 impl From<Option<f64>> for Cell<'_> {
     fn from(value: Option<f64>) -> Self {
         value.map_or(Cell::Empty, Cell::Number)

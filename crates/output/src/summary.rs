@@ -173,14 +173,14 @@ pub struct Contact {
     /// Largest force of a single step, N. It does not converge with the mesh where the exact force jumps: read
     /// `peak_mean_force` beside it.
     pub peak_force: f64,
-    /// Largest mean of the force over `window`, N.
-    pub peak_mean_force: f64,
+    /// Largest mean of the force over `window`, N; `None` of a static run, whose steps take no time.
+    pub peak_mean_force: Option<f64>,
     /// Length of that window, s.
     pub window: f64,
-    /// `impulse` over the time spent closed, N; zero if never closed.
-    pub mean_force: f64,
-    /// Impulse over the run, N s: what the momentum of the bodies changes by.
-    pub impulse: f64,
+    /// `impulse` over the time spent closed, N; zero if never closed, `None` of a static run.
+    pub mean_force: Option<f64>,
+    /// Impulse over the dynamics, N s: what the momentum of the bodies changes by; `None` of a static run.
+    pub impulse: Option<f64>,
     /// The part of it that is in no force, N s: impulses of a projection, or of another stage after a step. The rest is the
     /// sum of forces times step.
     pub impulsive: f64,

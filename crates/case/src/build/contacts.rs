@@ -1,5 +1,8 @@
 //! Contacts: surfaces on the bodies, no penetration at the start, advice.
 
+use std::collections::BTreeSet;
+
+use carom_bodies::Kinematics;
 use carom_contact::law::Level;
 use carom_contact::law::{Reading, Restitution, Velocity};
 use carom_contact::{Initial, Integration, Law, Sliding};
@@ -48,6 +51,7 @@ impl Builder<'_> {
             let Some(law) = self.law(name, &contact.law, (&sides, &scheme)) else {
                 continue;
             };
+            self.warn_of_areas(name, &law, sections(bodies, &secondary, &primary));
             let sliding = match contact.sliding {
                 // the default waits for what makes the steps linear or not
                 Some(schema::Sliding::Small) | None => Sliding::Small,
@@ -141,6 +145,22 @@ impl Builder<'_> {
         }
     }
 
+    /// Warns where a law per area acts on the larger of two sections: the areas are those of the secondary side.
+    fn warn_of_areas(&mut self, name: &str, law: &Law, sections: Option<[f64; 2]>) {
+        let per_area = matches!(law, Law::Damped(_) | Law::Penalty(_) | Law::Compliance(_));
+        if let Some([secondary, primary]) = sections
+            && per_area
+            && secondary > primary * (1.0 + 1e-9)
+        {
+            self.warnings.push(format!(
+                "contact `{name}`: the {} law is per area, and its area is that of the secondary side, which is {:.4} times that of the primary one; make the side of the smaller section the secondary one, or give the law {:.4} times the value",
+                law.get().name(),
+                secondary / primary,
+                primary / secondary
+            ));
+        }
+    }
+
     /// Warns where forces at the nodes of quadratic faces are asked for: a uniform pressure gives the corners of a segment 1/6 of its
     /// force and the middle 4/6, where they stand for 1/4 and 1/2 of its length; corners in space get nothing, or tension.
     fn warn_of_nodes(&mut self, name: &str, given: Option<schema::Integration>, quadratic: bool) {
@@ -158,6 +178,62 @@ impl Builder<'_> {
             if *nonlinear && given.is_some_and(|given| given.sliding.is_none()) {
                 contact.sliding = Sliding::Finite;
             }
+        }
+    }
+
+    /// Refuses contacts between faces that another contact joins in the same way: their stiffnesses add up, and their
+    /// constraints are the same twice. Warns where the sides are exchanged.
+    pub(super) fn listed_twice(&mut self, contacts: &[ModelContact]) {
+        for (k, contact) in contacts.iter().enumerate() {
+            for other in &contacts[..k] {
+                let same = shares_faces(&contact.secondary, &other.secondary)
+                    && match (&contact.primary, &other.primary) {
+                        (ModelTarget::Rigid(one), ModelTarget::Rigid(two)) => one == two,
+                        (ModelTarget::Surface(one), ModelTarget::Surface(two)) => {
+                            shares_faces(one, two)
+                        }
+                        _ => false,
+                    };
+                if same {
+                    let message =
+                        format!("the contact `{}` joins the same faces already", other.name);
+                    let problem = Problem::new(format!("contact.{}", contact.name), message);
+                    self.problems.push(
+                        problem
+                            .found(format!("`{}` and `{}`", other.name, contact.name))
+                            .accepted(["one contact for a pair of faces"]),
+                    );
+                } else if let (ModelTarget::Surface(one), ModelTarget::Surface(two)) =
+                    (&contact.primary, &other.primary)
+                    && shares_faces(&contact.secondary, two)
+                    && shares_faces(one, &other.secondary)
+                {
+                    self.warnings.push(format!(
+                        "contact `{}`: the contact `{}` joins the same faces with secondary and primary exchanged: stiffnesses of penalty laws add up, and constraints may have no unique forces",
+                        contact.name, other.name
+                    ));
+                }
+            }
+        }
+    }
+
+    /// Refuses contacts whose secondary surface has no area: forces per area and shares of it mean nothing there.
+    pub(super) fn with_area(&mut self, system: &System) {
+        for contact in &system.contacts {
+            if contact.points.iter().any(|point| point.area > 0.0) {
+                continue;
+            }
+            let path = format!("contact.{}.secondary", contact.name);
+            let problem = Problem::new(
+                path,
+                "a surface without area: it lies on the axis of an axisymmetric body",
+            );
+            let problem = match self.case.contact.get(&contact.name) {
+                Some(given) => problem.found(&given.secondary),
+                None => problem,
+            };
+            self.problems
+                .push(problem.accepted(["a surface off the axis"]));
         }
     }
 
@@ -221,6 +297,34 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// The section of a bar (m²) or the thickness of a plane body (m) on both sides of a contact; none on an obstacle, and where
+/// bodies have none.
+fn sections(bodies: &[ModelBody], secondary: &Surface, primary: &ModelTarget) -> Option<[f64; 2]> {
+    let ModelTarget::Surface(primary) = primary else {
+        return None;
+    };
+    let section = |surface: &Surface| {
+        let parent = surface.faces.first()?.parent;
+        let owner = |body: &&ModelBody| body.spec.cells.binary_search(&parent).is_ok();
+        match bodies.iter().find(owner)?.spec.kinematics {
+            Kinematics::Axisymmetric | Kinematics::Solid => None,
+            other => Some(other.surface_factor(&[0.0; 3])),
+        }
+    };
+    Some([section(secondary)?, section(primary)?])
+}
+
+/// Whether two surfaces have a face in common.
+fn shares_faces(one: &Surface, two: &Surface) -> bool {
+    let face = |face: &carom_mesh::Face| {
+        let mut nodes = face.corners().to_vec();
+        nodes.sort_unstable();
+        nodes
+    };
+    let of_one: BTreeSet<Vec<u32>> = one.faces.iter().map(face).collect();
+    two.faces.iter().any(|other| of_one.contains(&face(other)))
 }
 
 /// Whether a side of a contact has quadratic faces.

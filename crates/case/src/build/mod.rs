@@ -12,6 +12,7 @@ mod nonlinear;
 mod obstacles;
 mod penetration;
 mod pieces;
+mod probes;
 mod reference;
 mod refused;
 mod supports;
@@ -61,8 +62,8 @@ pub struct Built {
 pub struct BuiltProbe {
     /// Name.
     pub name: String,
-    /// Nodes of the mesh.
-    pub nodes: Vec<u32>,
+    /// Nodes of the mesh, each with its weight in the mean, relative to the others.
+    pub nodes: Vec<(u32, f64)>,
     /// What is recorded.
     pub record: Vec<Motion>,
 }
@@ -123,7 +124,7 @@ impl Builder<'_> {
         let (supports, motions) = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
         let loads = self.loads(&mesh, &bodies);
-        let probes = self.probes(&mesh);
+        let probes = self.probes(&mesh, &bodies);
         if !self.problems.is_empty() {
             return None;
         }
@@ -132,6 +133,7 @@ impl Builder<'_> {
         let cells: Vec<Vec<carom_mesh::ElementId>> =
             bodies.iter().map(|body| body.spec.cells.clone()).collect();
         let contacts = self.contacts(&mesh, &bodies, &cells);
+        self.listed_twice(&contacts);
         self.nonlinear_in_zones();
         self.stresses_between(&bodies);
         self.contacts_outside(&mesh, &contacts, &joints);
@@ -191,6 +193,7 @@ impl Builder<'_> {
             }
         };
         self.able_to_act(&system);
+        self.with_area(&system);
         self.penetration(&system);
         self.moved(&system, &nodes);
         self.startable(&system);
@@ -248,21 +251,6 @@ impl Builder<'_> {
             )]));
         }
         components
-    }
-
-    fn probes(&mut self, mesh: &Mesh) -> Vec<BuiltProbe> {
-        let mut probes = Vec::new();
-        for (name, probe) in self.case.probe.iter() {
-            if let Some(group) = self.group(mesh, &format!("probe.{name}.on"), &probe.on) {
-                let nodes = mesh.group_nodes(group);
-                probes.push(BuiltProbe {
-                    name: name.to_string(),
-                    nodes,
-                    record: probe.record.clone(),
-                });
-            }
-        }
-        probes
     }
 }
 

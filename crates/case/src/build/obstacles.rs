@@ -134,7 +134,13 @@ impl Builder<'_> {
     }
 }
 
+/// The direction of a vector of any length but zero, brought near one first: squares of its components may be no numbers.
 fn unit(vector: [f64; 3]) -> [f64; 3] {
+    let largest = vector
+        .iter()
+        .fold(0.0_f64, |largest, n| largest.max(n.abs()));
+    // in two steps: one over the smallest numbers is infinite
+    let vector = vector.map(|n| n / largest);
     let length = vector.iter().map(|n| n * n).sum::<f64>().sqrt();
     vector.map(|n| n / length)
 }

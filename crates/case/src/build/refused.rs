@@ -19,8 +19,9 @@ impl Builder<'_> {
                     "time.step",
                     "the step is above the critical step of the explicit scheme",
                 );
-                problem.found(format!("{dt:.4e} s")).accepted([
-                    format!("at most {critical:.4e} s"),
+                let [found, most] = apart(*dt, *critical);
+                problem.found(format!("{found} s")).accepted([
+                    format!("at most {most} s"),
                     "step = { critical = 0.9 }".to_string(),
                 ])
             }
@@ -102,10 +103,11 @@ impl Builder<'_> {
                     Some(schema::Substeps::Own(_)) => format!("zone.{name}.substeps"),
                     _ => "time.step".to_string(),
                 };
+                let [found, most] = apart(steps * dt, steps * critical);
                 Problem::new(path, message)
-                    .found(format!("{dt:.4e} s"))
+                    .found(format!("an outer step of {found} s"))
                     .accepted([
-                        format!("an outer step of at most {:.4e} s", steps * critical),
+                        format!("an outer step of at most {most} s"),
                         format!("zone.{name}.substeps = {enough}"),
                     ])
             }
@@ -119,6 +121,16 @@ impl Builder<'_> {
             _ => self.refused(cause).note(format!("in the zone `{name}`")),
         }
     }
+}
+
+/// A value and the bound below it, with the digits that tell them apart and keep the bound a bound: four decimals at least.
+fn apart(value: f64, bound: f64) -> [String; 2] {
+    let text = |decimals: usize| [value, bound].map(|number| format!("{number:.decimals$e}"));
+    let enough = |decimals: &usize| {
+        let [found, most] = text(*decimals);
+        found != most && most.parse::<f64>().is_ok_and(|most| most <= bound)
+    };
+    text((4..17).find(enough).unwrap_or(17))
 }
 
 /// The key of a body that its error is about.

@@ -42,6 +42,7 @@ impl Builder<'_> {
                     self.once(&path, &nodes, axis, &moved);
                     moved.extend(nodes.iter().map(|&node| ((node, axis), name)));
                     displacement[axis] = self.movement(&path, points);
+                    self.warn_of_a_jump(&path, displacement[axis].as_ref());
                 }
                 let nodes = nodes.clone();
                 motions.push(Prescribed {
@@ -102,6 +103,17 @@ impl Builder<'_> {
                 self.problems.push(clash(&path, node, "holds", other));
                 told.push(path);
             }
+        }
+    }
+
+    /// Warns of a prescribed displacement that is not zero at the start: its nodes jump in the first step. A static stage takes
+    /// it as any other load.
+    fn warn_of_a_jump(&mut self, path: &str, motion: Option<&Amplitude>) {
+        let start = motion.map_or(0.0, |motion| motion.at(0.0));
+        if start != 0.0 && self.case.time.stage.is_none() {
+            self.warnings.push(format!(
+                "{path}: the displacement is {start:.4e} m at time 0: the nodes jump there in the first step, which is a shock to the body; begin with displacement = 0 at time = 0"
+            ));
         }
     }
 

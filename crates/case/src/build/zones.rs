@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use carom_dynamics::{LinkKind, ModelContact, ModelTarget, ModelZone};
-use carom_mesh::{ElementId, Mesh};
+use carom_mesh::ElementId;
 
+use super::Builder;
 use super::time::scheme;
-use super::{Builder, BuiltProbe};
 use crate::error::Problem;
 use crate::schema::{self, InnerSteps, Link, Step, StepRule, Substeps};
 
@@ -72,7 +72,10 @@ impl Builder<'_> {
             self.problems
                 .push(problem.accepted(["step = { courant = ... }", "a fixed step"]));
         }
-        if !plan.zones.is_empty() && self.case.zone.iter().all(|(_, zone)| zone.scheme.is_some()) {
+        if !plan.zones.is_empty()
+            && self.case.time.scheme.is_some()
+            && self.case.zone.iter().all(|(_, zone)| zone.scheme.is_some())
+        {
             self.warnings
                 .push("time.scheme: every zone has its own scheme, so this one is not used".into());
         }
@@ -334,33 +337,6 @@ impl Builder<'_> {
         }
         let default = self.case.time.scheme();
         self.laws(|name| schemes.get(name).copied().unwrap_or(default));
-    }
-
-    /// Refuses probes on nodes that no body has any more.
-    pub(super) fn within_bodies(
-        &mut self,
-        mesh: &Mesh,
-        probes: &[BuiltProbe],
-        of: &[Vec<ElementId>],
-    ) {
-        if self.case.arlequin.is_empty() {
-            return;
-        }
-        let mut used = vec![false; mesh.nodes.len()];
-        let nodes = of
-            .iter()
-            .flatten()
-            .flat_map(|&cell| mesh.element_nodes(cell));
-        nodes.for_each(|&node| used[node as usize] = true);
-        for probe in probes {
-            if probe.nodes.iter().any(|&node| !used[node as usize]) {
-                let message =
-                    "the probe has nodes of cells that are removed inside an overlapping body";
-                let problem = Problem::new(format!("probe.{}.on", probe.name), message);
-                self.problems
-                    .push(problem.accepted(["a group of the body that stays"]));
-            }
-        }
     }
 }
 

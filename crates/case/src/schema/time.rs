@@ -18,8 +18,8 @@ pub struct Time {
     /// Time step of the dynamics; required unless the whole case is static. With zones: the outer step; `courant` and
     /// `critical` then refer to the zones that take it.
     pub step: Option<Step>,
-    /// Time scheme of the dynamics; required unless the whole case is static. With zones: the scheme of every zone
-    /// without its own.
+    /// Time scheme of the dynamics; required unless the whole case is static or every zone has its own. With zones: the scheme
+    /// of every zone without its own.
     pub scheme: Option<Scheme>,
     /// Solution of nonlinear steps.
     #[serde(default)]

@@ -3,6 +3,7 @@
 // Helpers of tests panic as the tests themselves do.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+mod checks;
 mod compare;
 mod defaults;
 mod grades;

@@ -191,3 +191,89 @@ time = {{ end = 2.0, step.courant = 0.5, scheme.{scheme} }}
         assert!(told(scheme, law).is_empty(), "{scheme}, {law}");
     }
 }
+
+#[test]
+fn a_support_that_jumps_at_the_start_is_told() {
+    let told = |course: &str, more: &str| {
+        let text = format!(
+            r#"
+carom = 1
+mesh.generate.bar.line = {{ from = [0.0], to = [1.0], elements = 5 }}
+material.soft = {{ density = 1.0, elastic = {{ young = 1.0, poisson = 0.0 }} }}
+body.bar = {{ region = "bar", material = "soft", section.bar.area = 1.0 }}
+support.end = {{ on = "bar.left", move.x = {course} }}
+time = {{ end = 2.0, step = 0.1, scheme.newmark = {{}}{more} }}
+"#
+        );
+        let input = Input::from_text("case.toml", &text, &[]);
+        let (case, locator) = parse(&input).unwrap();
+        build(&case, &locator, &input).unwrap().warnings
+    };
+    let from = |start: f64| {
+        format!("[{{ time = 0.0, displacement = {start} }}, {{ time = 1.0, displacement = 0.1 }}]")
+    };
+    assert!(told(&from(0.0), "").is_empty());
+    let warnings = told(&from(0.02), "");
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(
+        warnings[0].starts_with("support.end.move.x: the displacement is 2.0000e-2 m at time 0")
+    );
+    // the first value holds before its time
+    assert_eq!(told("[{ time = 0.5, displacement = 0.1 }]", "").len(), 1);
+    // equilibrium is found, and nothing jumps
+    assert!(told(&from(0.02), ", static = { end = 1.0, steps = 2 }").is_empty());
+}
+
+#[test]
+fn contacts_with_exchanged_sides_are_told() {
+    let text = r#"
+carom = 1
+mesh.generate.one.line = { from = [0.0], to = [1.0], elements = 5 }
+mesh.generate.two.line = { from = [1.0], to = [2.0], elements = 5 }
+material.soft = { density = 1.0, elastic = { young = 1.0, poisson = 0.0 } }
+body.one = { region = "one", material = "soft", section.bar.area = 1.0 }
+body.two = { region = "two", material = "soft", section.bar.area = 1.0 }
+contact.a = { secondary = "one.right", primary = "two.left", law.penalty.stiffness = 1.0 }
+contact.b = { secondary = "two.left", primary = "one.right", law.penalty.stiffness = 1.0 }
+time = { end = 2.0, step = 0.1, scheme.theta = {} }
+"#;
+    let input = Input::from_text("case.toml", text, &[]);
+    let (case, locator) = parse(&input).unwrap();
+    let warnings = build(&case, &locator, &input).unwrap().warnings;
+    assert!(
+        warnings[0].starts_with("contact `b`: the contact `a` joins the same faces"),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn a_law_per_area_on_the_larger_of_two_sections_is_told() {
+    let told = |areas: [f64; 2], law: &str| {
+        let [one, two] = areas;
+        let text = format!(
+            r#"
+carom = 1
+mesh.generate.one.line = {{ from = [0.0], to = [1.0], elements = 5 }}
+mesh.generate.two.line = {{ from = [1.0], to = [2.0], elements = 5 }}
+material.soft = {{ density = 1.0, elastic = {{ young = 1.0, poisson = 0.0 }} }}
+body.one = {{ region = "one", material = "soft", section.bar.area = {one} }}
+body.two = {{ region = "two", material = "soft", section.bar.area = {two} }}
+contact.shock = {{ secondary = "one.right", primary = "two.left", law.{law} }}
+time = {{ end = 2.0, step = 0.1, scheme.theta = {{}} }}
+"#
+        );
+        let input = Input::from_text("case.toml", &text, &[]);
+        let (case, locator) = parse(&input).unwrap();
+        build(&case, &locator, &input).unwrap().warnings
+    };
+    let penalty = "penalty.stiffness = 1.0";
+    let warnings = told([3.0, 2.0], penalty);
+    assert!(
+        warnings[0].contains("which is 1.5000 times that of the primary one"),
+        "{warnings:?}"
+    );
+    assert!(told([2.0, 3.0], penalty).is_empty());
+    assert!(told([2.0, 2.0], penalty).is_empty());
+    // a force between nodes, whatever their areas
+    assert!(told([3.0, 2.0], "velocity = {}").is_empty());
+}

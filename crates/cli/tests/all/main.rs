@@ -7,5 +7,6 @@ mod bad_input;
 mod commands;
 mod compare;
 mod folders;
+mod inputs;
 mod run;
 mod streams;

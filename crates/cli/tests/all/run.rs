@@ -141,12 +141,16 @@ fn a_contact_problem_without_solution_ends_the_run_and_is_kept() {
     case("two-bars", work.path());
     let file = work.path().join("case.toml");
     let text = fs::read_to_string(&file).unwrap();
-    // the same contact twice: the forces of the two cannot be told apart
+    // the same contact from its other side too: the forces of the two cannot be told apart
     let (start, end) = (
         text.find("[contact.shock]").unwrap(),
         text.find("[time]").unwrap(),
     );
-    let twice = text[start..end].replace("shock", "again");
+    let twice = text[start..end]
+        .replace("shock", "again")
+        .replace("secondary", "third")
+        .replace("primary", "secondary")
+        .replace("third", "primary");
     let text = text
         .replace("[time]", &format!("{twice}[time]"))
         .replace("[reference.two-bars]", "");

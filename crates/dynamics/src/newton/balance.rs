@@ -242,9 +242,10 @@ impl Newton {
         let system = Arc::clone(&self.system);
         self.next.records.follow(&self.state.records);
         self.next.time = self.state.time + self.dt;
-        let impulse = match self.map.inertia.x == 0.0 {
-            true => Impulse::weights(0.0, 1.0),
-            false => self.map.contact_impulse,
+        // without inertia forces give no impulse, and closing is no impact
+        let (impulse, dt) = match self.map.inertia.x == 0.0 {
+            true => (Impulse::weights(0.0, 1.0), 0.0),
+            false => (self.map.contact_impulse, self.dt),
         };
         for k in 0..system.contacts.len() {
             let (old, new) = (&self.state.interface, &self.next.interface);
@@ -270,7 +271,7 @@ impl Newton {
             } = &mut self.next;
             let step = Step {
                 span: [self.state.time, time],
-                dt: self.dt,
+                dt,
                 impulse,
                 forces: [&old.force, &interface.force],
                 report: &report,

@@ -272,14 +272,19 @@ impl Newton {
     }
 
     /// Norm of what rounding of the positions leaves in the internal forces, N. Displacements cannot be told apart within
-    /// ε |u|, which changes the force of each unknown by about ε K_ii |u|, at random.
+    /// ε |u|, which changes the force of each unknown by about ε K_ii |u|, at random. Places count from
+    /// [`System::origin`](crate::System).
     pub(super) fn rounding(&self) -> f64 {
         let places = self
             .system
             .x
             .iter()
             .zip(self.state.motion.u.chunks(self.system.dim));
-        let sizes = places.flat_map(|(x, u)| x.iter().zip(u).map(|(x, u)| x.abs() + u.abs()));
+        let origin = self.system.origin;
+        let sizes = places.flat_map(|(x, u)| {
+            let along = x.iter().zip(origin).zip(u);
+            along.map(|((x, origin), u)| (x - origin).abs() + u.abs())
+        });
         2.0 * f64::EPSILON
             * self
                 .effective

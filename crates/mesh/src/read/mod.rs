@@ -4,6 +4,7 @@
 //! as far as the file goes (syntax, counts, node tags, finite coordinates); whether the elements are fit for
 //! computation is [`Mesh::check`]. Coordinates are taken as they stand: [`Mesh::scale`] makes them metres.
 
+pub mod file;
 pub mod gmsh;
 
 use std::fmt;
@@ -14,6 +15,9 @@ use crate::Mesh;
 
 /// Extensions of the files that [`read`] takes.
 pub const EXTENSIONS: &[&str] = &["msh"];
+
+/// Most bytes of a mesh file: 16 GiB, some hundred million nodes.
+const LARGEST: u64 = 16 << 30;
 
 /// Reads the mesh in a file; the extension, in any case, says the format: `.msh` is Gmsh's ([`gmsh`]).
 ///
@@ -26,7 +30,7 @@ pub fn read(path: &Path) -> Result<Mesh, ReadError> {
             found: extension.into_owned(),
         });
     }
-    let bytes = std::fs::read(path).map_err(|source| ReadError::Unreadable {
+    let bytes = file::regular(path, LARGEST).map_err(|source| ReadError::Unreadable {
         path: path.to_owned(),
         source,
     })?;

@@ -108,10 +108,12 @@ pub const COLUMNS: [Column; 29] = [
     }),
     hidden("peak_force_n", "N", |v| v.contact().map(|c| c.peak_force)),
     hidden("peak_mean_force_n", "N", |v| {
-        v.contact().map(|c| c.peak_mean_force)
+        v.contact().and_then(|c| c.peak_mean_force)
     }),
     hidden("window_s", "s", |v| v.contact().map(|c| c.window)),
-    hidden("impulse_n_s", "N s", |v| v.contact().map(|c| c.impulse)),
+    hidden("impulse_n_s", "N s", |v| {
+        v.contact().and_then(|c| c.impulse)
+    }),
     hidden("energy_residual", "", |v| {
         Some(v.summary.energy.relative_residual)
     }),

@@ -166,10 +166,10 @@ impl Done {
         let both = self.contact().zip(standard.contact());
         Errors {
             force: self.history.force.distance(&standard.history.force),
-            overshoot: both.and_then(|(own, its)| over(own.peak_force, its.peak_mean_force)),
+            overshoot: both.and_then(|(own, its)| over(own.peak_force, its.peak_mean_force?)),
             mean_overshoot: both
-                .and_then(|(own, its)| over(own.peak_mean_force, its.peak_mean_force)),
-            impulse: both.and_then(|(own, its)| over(own.impulse, its.impulse)),
+                .and_then(|(own, its)| over(own.peak_mean_force?, its.peak_mean_force?)),
+            impulse: both.and_then(|(own, its)| over(own.impulse?, its.impulse?)),
         }
     }
 }

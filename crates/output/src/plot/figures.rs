@@ -7,6 +7,12 @@ const TIME: Axis = Axis {
     unit: "s",
 };
 
+/// The abscissa of a static run, in which it only says what loads and motions are.
+pub const PSEUDO_TIME: Axis = Axis {
+    quantity: "pseudo-time of the loads",
+    unit: "s",
+};
+
 /// The curves of the contact figure, SI: computed and exact ones together.
 #[derive(Clone, Debug, Default)]
 pub struct ContactCurves<'a> {

@@ -14,7 +14,7 @@ mod thin;
 
 use std::path::Path;
 
-pub use figures::{ContactCurves, EnergyCurves, contact_figure, energy_figure};
+pub use figures::{ContactCurves, EnergyCurves, PSEUDO_TIME, contact_figure, energy_figure};
 pub(crate) use film::{Frame, Patch, Scene, film_figure};
 pub use logarithmic::{Logarithmic, Series};
 pub(crate) use model::{Shape, model_figure};

@@ -63,7 +63,9 @@ fn draw(results: &mut Results, errors: &mut Vec<Error>) -> Vec<String> {
         let svg = model_figure(system.dim, &zoning.zones, &shapes);
         ("plots/model.svg", svg)
     });
-    let drawn = results.curves.draw(reference, results.last.time);
+    let drawn = results
+        .curves
+        .draw(reference, (results.last.time, results.is_static()));
     let film = results.film.draw(system);
     let film = film.map(|figure| ("plots/film.svg", figure));
     let drawn = model.into_iter().chain(drawn).chain(film);
@@ -196,6 +198,7 @@ pub(super) fn courant(system: &System, step: f64) -> Option<f64> {
 fn contacts(results: &Results) -> BTreeMap<String, Contact> {
     let system = &results.system;
     let all = system.contacts.iter().zip(&results.impacts.contacts);
+    let in_time = |value: f64| (!results.is_static()).then_some(value);
     let one = |(k, (contact, totals)): (usize, (&Pair, &ContactTotals))| {
         let none = ContactRecord::default();
         let records = &results.last.records;
@@ -212,14 +215,13 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
             Contact {
                 law: contact.law.get().name().to_owned(),
                 peak_force: record.peak_force,
-                peak_mean_force: totals.mean.peak(),
+                peak_mean_force: in_time(totals.mean.peak()),
                 window: totals.window,
-                mean_force: if closed > 0.0 {
-                    record.impulse() / closed
-                } else {
-                    0.0
-                },
-                impulse: record.impulse(),
+                mean_force: in_time(match closed > 0.0 {
+                    true => record.impulse() / closed,
+                    false => 0.0,
+                }),
+                impulse: in_time(record.impulse()),
                 impulsive: record.impulse_of_jumps(),
                 friction: (system.friction[k] > 0.0).then_some(Friction {
                     coefficient: system.friction[k],
@@ -234,7 +236,7 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 energy_crushed: record.energy_crushed,
                 mixed_supports: matches!(contact.integration, Integration::Weak { .. })
                     .then_some(record.mixed),
-                impacts: impacts().count() + usize::from(still_closed),
+                impacts: impacts().count() + usize::from(still_closed && !results.is_static()),
                 restitution: impacts()
                     .last()
                     .and_then(|impact| impact.restitution)

@@ -4,7 +4,8 @@ use carom_dynamics::{State, StepReport, System};
 
 use crate::Error;
 use crate::plot::{
-    ContactCurves, Curve, EnergyCurves, Figure, Role, contact_figure, energy_figure,
+    Axis, ContactCurves, Curve, EnergyCurves, Figure, PSEUDO_TIME, Role, contact_figure,
+    energy_figure,
 };
 use crate::results::exact::{Polyline, force_curve, motion_curves};
 use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor};
@@ -109,9 +110,10 @@ impl Curves {
     pub(crate) fn draw(
         &self,
         reference: Option<&Reference>,
-        end: f64,
+        (end, is_static): (f64, bool),
     ) -> Vec<(&'static str, Result<String, Error>)> {
         let mut figures = Vec::new();
+        let abscissa = is_static.then_some(PSEUDO_TIME);
         if self.total.is_empty() {
             return figures;
         }
@@ -120,13 +122,18 @@ impl Curves {
                 Some(_) => "plots/contact.svg",
                 None => "plots/probe.svg",
             };
-            figures.push((name, self.contact_svg(reference, end)));
+            figures.push((name, self.contact_svg(reference, end, abscissa)));
         }
-        figures.push(("plots/energy.svg", self.energy_svg()));
+        figures.push(("plots/energy.svg", self.energy_svg(abscissa)));
         figures
     }
 
-    fn contact_svg(&self, reference: Option<&Reference>, end: f64) -> Result<String, Error> {
+    fn contact_svg(
+        &self,
+        reference: Option<&Reference>,
+        end: f64,
+        abscissa: Option<Axis>,
+    ) -> Result<String, Error> {
         let exact: Vec<[Polyline; 3]> = reference.map_or(Vec::new(), |reference| {
             let bodies = 0..reference.solution.motions().len().min(self.motions.len());
             bodies
@@ -162,10 +169,10 @@ impl Curves {
             force: force_curves,
             acceleration: curves(2),
         };
-        contact_figure(&self.title, curves).svg()
+        along(contact_figure(&self.title, curves), abscissa).svg()
     }
 
-    fn energy_svg(&self) -> Result<String, Error> {
+    fn energy_svg(&self, abscissa: Option<Axis>) -> Result<String, Error> {
         let columns = [
             &self.kinetic,
             &self.strain,
@@ -190,7 +197,15 @@ impl Curves {
                 residual: vec![at(4)],
             },
         );
-        figure.svg()
+        along(figure, abscissa).svg()
+    }
+}
+
+/// The figure over another abscissa, if there is one.
+fn along(figure: Figure<'_>, abscissa: Option<Axis>) -> Figure<'_> {
+    Figure {
+        abscissa: abscissa.unwrap_or(figure.abscissa),
+        ..figure
     }
 }
 

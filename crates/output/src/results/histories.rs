@@ -12,7 +12,7 @@ use carom_dynamics::{ContactReport, State, StepReport, System};
 use crate::history::column;
 use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor};
 use crate::results::{Probe, Settings, Zoning};
-use crate::rows::unique;
+use crate::rows::{Cell, unique};
 use crate::{Error, Folder, History};
 
 const FILE: &str = "histories.csv";
@@ -32,7 +32,7 @@ pub(crate) struct Histories {
     contact: Option<History>,
     links: bool,
     probes: Vec<([bool; 3], Vec<Sensor>)>,
-    row: Vec<f64>,
+    row: Vec<Cell<'static>>,
 }
 
 impl Histories {
@@ -79,22 +79,22 @@ impl Histories {
         let motion = &state.motion;
         let vectors = [&motion.u, &motion.v, &motion.a];
         row.clear();
-        row.push(report.time);
+        row.push(report.time.into());
         for (k, contact) in report.contacts.iter().enumerate() {
             put(system, (k, contact), row);
             if let Some(point) = point.filter(|point| point.contact == k) {
                 for (_, sensor) in &point.sides {
-                    row.extend(vectors.map(|vector| sensor.of(vector)));
+                    row.extend(vectors.map(|vector| Cell::from(sensor.of(vector))));
                 }
             }
         }
         for (recorded, sensors) in &self.probes {
             for (vector, _) in vectors.iter().zip(recorded).filter(|(_, on)| **on) {
-                row.extend(sensors.iter().map(|sensor| sensor.of(vector)));
+                row.extend(sensors.iter().map(|sensor| Cell::from(sensor.of(vector))));
             }
         }
         let balance = &report.balance;
-        row.extend([
+        let energies = [
             balance.kinetic,
             balance.strain,
             balance.scheme_energy,
@@ -102,30 +102,36 @@ impl Histories {
             balance.work_contact,
             balance.dissipation_scheme,
             balance.energy_residual,
-        ]);
-        row.extend(self.links.then_some(balance.work_links));
+        ];
+        row.extend(energies.map(Cell::Number));
+        row.extend(self.links.then_some(Cell::Number(balance.work_links)));
         if system.is_nonlinear() {
-            row.extend([
+            let further = [
                 balance.hardening,
                 balance.work_supports,
                 balance.dissipation_material,
                 balance.dissipation_damping,
                 balance.dissipation_friction,
                 balance.work_obstacles,
-            ]);
+            ];
+            row.extend(further.map(Cell::Number));
         }
-        row.extend(&balance.momentum.linear[..dim]);
-        row.extend(&balance.momentum_residual.linear[..dim]);
-        row.extend(&balance.momentum.angular[turns(system)]);
-        row.extend(&balance.momentum_residual.angular[turns(system)]);
-        row.push(report.passes as f64);
+        let momenta = [&balance.momentum, &balance.momentum_residual];
+        let linear = momenta.iter().flat_map(|momentum| &momentum.linear[..dim]);
+        row.extend(linear.copied().map(Cell::Number));
+        let turns = turns(system);
+        let angular = momenta
+            .iter()
+            .flat_map(|momentum| &momentum.angular[turns.clone()]);
+        row.extend(angular.copied().map(Cell::Number));
+        row.push(Cell::Number(report.passes as f64));
         file.push(row)?;
         let Some(file) = &mut self.contact else {
             return Ok(());
         };
         for (end, _, contacts) in report.parts() {
             row.clear();
-            row.push(end);
+            row.push(end.into());
             for (k, contact) in contacts.iter().enumerate() {
                 put(system, (k, contact), row);
             }
@@ -143,13 +149,24 @@ impl Histories {
 }
 
 /// Adds what a contact did to a row, in the order of [`contact_columns`].
-fn put(system: &System, (k, contact): (usize, &ContactReport), row: &mut Vec<f64>) {
-    row.push(contact.force);
-    row.extend(system.has_impulses(k).then_some(contact.impulsive));
-    row.extend(&contact.resultant[..system.dim]);
-    row.extend([contact.gap, contact.rate, contact.closed as f64]);
+fn put(system: &System, (k, contact): (usize, &ContactReport), row: &mut Vec<Cell>) {
+    row.push(contact.force.into());
+    row.extend(
+        system
+            .has_impulses(k)
+            .then_some(Cell::Number(contact.impulsive)),
+    );
+    row.extend(
+        contact.resultant[..system.dim]
+            .iter()
+            .copied()
+            .map(Cell::Number),
+    );
+    // the gap of what faces nothing does not exist
+    row.push(Some(contact.gap).filter(|gap| *gap != f64::INFINITY).into());
+    row.extend([contact.rate, contact.closed as f64].map(Cell::Number));
     if system.friction[k] > 0.0 {
-        row.extend([contact.friction, contact.slipping as f64]);
+        row.extend([contact.friction, contact.slipping as f64].map(Cell::Number));
     }
 }
 

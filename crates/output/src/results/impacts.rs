@@ -76,11 +76,12 @@ impl Impacts {
         state: &State,
         report: &StepReport,
     ) -> Result<(), Error> {
-        for (_, dt, contacts) in report.parts() {
+        let parts = report
+            .parts()
+            .filter(|_| report.step > system.static_steps());
+        for (_, dt, contacts) in parts {
             for (totals, contact) in self.contacts.iter_mut().zip(contacts) {
-                if report.step > 0 {
-                    totals.mean.push(dt, contact.force);
-                }
+                totals.mean.push(dt, contact.force);
                 totals.peak_friction = totals.peak_friction.max(contact.friction);
                 if contact.closed > 0 {
                     totals.closed += dt;

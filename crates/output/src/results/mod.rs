@@ -72,8 +72,8 @@ pub struct Settings {
 pub struct Probe {
     /// Name as in the case file.
     pub name: String,
-    /// Nodes of the mesh; those that no body uses are left out.
-    pub nodes: Vec<u32>,
+    /// Nodes of the mesh, each with its weight in the mean, relative to the others; nodes that no body uses are left out.
+    pub nodes: Vec<(u32, f64)>,
     /// Whether the displacement is written, m.
     pub displacement: bool,
     /// Whether the velocity is written, m/s.
@@ -242,6 +242,12 @@ impl Results {
             Some(fields) => fields.take(&mut self.folder, &self.system, state),
             None => Ok(()),
         }
+    }
+
+    /// Whether the run has taken static steps alone: its time is none.
+    fn is_static(&self) -> bool {
+        let steps = self.system.static_steps();
+        steps > 0 && self.last.step <= steps
     }
 
     /// Ends the tables and the thread, and keeps what the summary needs. Everything is tried, whatever fails.

@@ -32,13 +32,15 @@ impl Sensor {
     }
 }
 
-/// Sensors of a probe: the mean motion of its nodes, one per component of the system.
+/// Sensors of a probe: the weighted mean motion of its nodes, one per component of the system.
 ///
 /// # Errors
 /// [`Error::Probe`] if none of its nodes belongs to a body.
 pub(crate) fn of_probe(system: &System, probe: &Probe) -> Result<Vec<Sensor>, Error> {
-    let numbers = probe.nodes.iter().map(|&node| system.number[node as usize]);
-    let nodes: Vec<u32> = numbers.filter(|&node| node != u32::MAX).collect();
+    let numbers = probe.nodes.iter();
+    let numbers = numbers.map(|&(node, weight)| (system.number[node as usize], weight));
+    let nodes: Vec<(u32, f64)> = numbers.filter(|(node, _)| *node != u32::MAX).collect();
+    let total: f64 = nodes.iter().map(|(_, weight)| weight).sum();
     if nodes.is_empty() {
         return Err(Error::Probe {
             name: probe.name.clone(),
@@ -48,7 +50,7 @@ pub(crate) fn of_probe(system: &System, probe: &Probe) -> Result<Vec<Sensor>, Er
     let component = |i: u32| Sensor {
         terms: nodes
             .iter()
-            .map(|node| (dim * node + i, 1.0 / nodes.len() as f64))
+            .map(|(node, weight)| (dim * node + i, weight / total))
             .collect(),
     };
     Ok((0..dim).map(component).collect())

@@ -109,11 +109,12 @@ impl Quantity {
         let done = run.variant.done()?;
         let exact = done.summary.exact.as_ref();
         let (value, exact) = match self {
-            Quantity::Impulse => (done.contact()?.impulse, exact.map(|e| e.impulse)),
-            Quantity::MeanForce => (done.contact()?.mean_force, run.exact_mean_force),
-            Quantity::PeakMeanForce => {
-                (done.contact()?.peak_mean_force, exact.map(|e| e.peak_force))
-            }
+            Quantity::Impulse => (done.contact()?.impulse?, exact.map(|e| e.impulse)),
+            Quantity::MeanForce => (done.contact()?.mean_force?, run.exact_mean_force),
+            Quantity::PeakMeanForce => (
+                done.contact()?.peak_mean_force?,
+                exact.map(|e| e.peak_force),
+            ),
             Quantity::PeakForce => (done.contact()?.peak_force, exact.map(|e| e.peak_force)),
             Quantity::ForceError => (exact?.force_error?, Some(0.0)),
             Quantity::DisplacementError => (exact?.displacement_error?, Some(0.0)),

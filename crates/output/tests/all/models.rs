@@ -166,7 +166,10 @@ pub fn all_fields(every: f64) -> Option<Fields> {
 pub fn probe(system: &System, name: &str, group: &str) -> Probe {
     Probe {
         name: name.to_owned(),
-        nodes: system.mesh.group_nodes(&system.mesh.groups[group]),
+        nodes: {
+            let nodes = system.mesh.group_nodes(&system.mesh.groups[group]);
+            nodes.into_iter().map(|node| (node, 1.0)).collect()
+        },
         displacement: true,
         velocity: true,
         acceleration: true,

@@ -144,9 +144,9 @@ fn two_bars_leave_a_row_per_step_and_figures_that_follow_from_the_rows() {
     let largest = force.iter().copied().fold(0.0, f64::max);
     assert_eq!(contact.peak_force, largest);
     let impulse = dt * force.iter().sum::<f64>();
-    assert!((contact.impulse / impulse - 1.0).abs() < 1e-13);
+    assert!((contact.impulse.unwrap() / impulse - 1.0).abs() < 1e-13);
     let closed = force.iter().filter(|force| **force > 0.0).count() as f64;
-    assert!((contact.mean_force / (impulse / (closed * dt)) - 1.0).abs() < 1e-13);
+    assert!((contact.mean_force.unwrap() / (impulse / (closed * dt)) - 1.0).abs() < 1e-13);
     let steps = (contact.window / dt).round() as usize;
     assert_eq!(
         steps, 10,
@@ -156,7 +156,7 @@ fn two_bars_leave_a_row_per_step_and_figures_that_follow_from_the_rows() {
         .windows(steps)
         .map(|w| w.iter().sum::<f64>() / steps as f64);
     let peak = means.fold(0.0, f64::max);
-    assert!((contact.peak_mean_force / peak - 1.0).abs() < 1e-13);
+    assert!((contact.peak_mean_force.unwrap() / peak - 1.0).abs() < 1e-13);
     let gap = of("contact.shock.gap_m")
         .iter()
         .copied()
@@ -183,7 +183,7 @@ fn two_bars_leave_a_row_per_step_and_figures_that_follow_from_the_rows() {
     assert!((exact.exact_restitution.unwrap() - 1.0).abs() < 1e-12);
     let mass = 7844.0 * AREA * LENGTH;
     // the striker keeps what its impulse has left it
-    let separation = 2.0 * contact.impulse / mass - SPEED;
+    let separation = 2.0 * contact.impulse.unwrap() / mass - SPEED;
     assert!((exact.restitution.unwrap() - separation / SPEED).abs() < 1e-12);
 
     let (_, impacts) = tables::read(&folder.join("impacts.csv"));
@@ -191,7 +191,7 @@ fn two_bars_leave_a_row_per_step_and_figures_that_follow_from_the_rows() {
     assert_eq!(impacts[0][0], "shock");
     assert_eq!(
         impacts[0][4].parse::<f64>().unwrap(),
-        contact.peak_mean_force
+        contact.peak_mean_force.unwrap()
     );
     for name in ["plots/contact.svg", "plots/energy.svg", "report.html"] {
         assert!(
@@ -318,7 +318,7 @@ fn an_impact_cut_by_the_end_of_the_run_is_unfinished() {
     let at = |name: &str| &impacts[0][names.iter().position(|n| n == name).unwrap()];
     assert!(at("duration_s").is_empty() && at("rebound_speed_m_s").is_empty());
     let impulse: f64 = at("impulse_n_s").parse().unwrap();
-    assert!((impulse / contact.impulse - 1.0).abs() < 1e-13);
+    assert!((impulse / contact.impulse.unwrap() - 1.0).abs() < 1e-13);
 }
 
 #[test]
