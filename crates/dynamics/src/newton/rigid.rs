@@ -15,7 +15,7 @@ use crate::system::System;
 pub(super) const INDEPENDENT: f64 = 1e-6;
 
 impl Newton {
-    /// Begins with the rigid motion of each part that is nearest to its velocity. The motion of no acceleration turns elements
+    /// Begins with the rigid motion of each part that is nearest to its velocity. The motion of no acceleration may turn elements
     /// inside out where velocities alternate from step to step, as a trapezoidal rule leaves them in stiff modes: the
     /// displacements of these modes stay what they are.
     pub(super) fn predict_rigidly(&mut self) {

@@ -72,6 +72,16 @@ impl Newton {
     /// # Errors
     /// No equilibrium, an element or a matrix that fails.
     pub(super) fn solve(&mut self) -> Result<(), Error> {
+        let solved = self.iterate(false);
+        match solved {
+            // elements inside out: once more from another guess
+            Err(Error::Body(_)) if self.map.inertia.x != 0.0 => self.iterate(true),
+            other => other,
+        }
+    }
+
+    /// The iterations from the motion of no acceleration, or from the rigid one.
+    fn iterate(&mut self, rigidly: bool) -> Result<(), Error> {
         let passes = self.system.nonlinear.iteration.passes;
         let (mut limit, most) = (passes, MOVES * passes);
         self.residuals.clear();
@@ -79,14 +89,14 @@ impl Newton {
         self.floating.begin();
         self.mixing.clear();
         self.predict();
+        if rigidly {
+            self.predict_rigidly();
+        }
         let interface = &mut self.next.interface;
         interface.clone_from(&self.state.interface);
         self.guess_slips();
         self.take_weak();
-        if self.evaluate(true).is_err() {
-            self.predict_rigidly();
-            self.evaluate(true)?;
-        }
+        self.evaluate(true)?;
         self.vectors.ahead.clear();
         self.search.iter_mut().for_each(Search::begin_step);
         self.pair(true);
