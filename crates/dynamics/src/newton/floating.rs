@@ -57,6 +57,10 @@ pub(super) struct Floating {
     load: Vec<f64>,
     /// The same when contact with something else carried a part last; empty if none did.
     carried: Vec<f64>,
+    /// For how many iterations contact has carried a part that is loaded along a motion with no contact on its way.
+    tipping: usize,
+    /// Size of that load in the first of them.
+    tipped: f64,
 }
 
 impl Floating {
@@ -91,6 +95,8 @@ impl Floating {
             weight: WEIGHT,
             load: Vec::new(),
             carried: Vec::new(),
+            tipping: 0,
+            tipped: 0.0,
         })
     }
 
@@ -99,6 +105,7 @@ impl Floating {
         self.weight = WEIGHT;
         self.load.clear();
         self.carried.clear();
+        (self.tipping, self.tipped) = (0, 0.0);
     }
 }
 
@@ -170,7 +177,10 @@ impl Newton {
         let (system, parts) = (Arc::clone(&self.system), Arc::clone(&self.floating.parts));
         let rigid = Rigid::new(&system, &parts, Some(&self.places()));
         let Some(c) = self.certain_load(&rigid, scale) else {
-            return Ok(false);
+            return match self.tips(&rigid) {
+                true => Err(self.unheld(&rigid, &self.floating.carried)),
+                false => Ok(false),
+            };
         };
         let Some(way) = self.way_to_contact(&rigid, &c) else {
             return Err(self.unheld(&rigid, &c));
@@ -209,6 +219,27 @@ impl Newton {
         }
         let least = (self.system.nonlinear.iteration.tolerance * scale).max(self.rounding());
         (norm(&c) > least).then_some(c)
+    }
+
+    /// Whether contact carries a part that has gone on, for as many iterations as may be taken, along a motion with no contact on
+    /// its way, and its load has not become less than half.
+    fn tips(&mut self, rigid: &Rigid) -> bool {
+        let load = norm(&self.floating.load);
+        let carried = self.floating.load == self.floating.carried && load > self.left_over;
+        if !carried {
+            return false;
+        }
+        let free = self.way_to_contact(rigid, &self.floating.load).is_none();
+        let floating = &mut self.floating;
+        if !free || load < 0.5 * floating.tipped {
+            (floating.tipping, floating.tipped) = (0, 0.0);
+            return false;
+        }
+        if floating.tipping == 0 {
+            floating.tipped = load;
+        }
+        floating.tipping += 1;
+        floating.tipping >= self.system.nonlinear.iteration.passes
     }
 
     /// The error of iterations that ended out of balance: the load along a motion that nothing holds, where most is that and

@@ -257,6 +257,8 @@ impl Newton {
         let whole = self.stable_level(end - first)?;
         let mut control = self.state.control;
         let (mut done, mut level) = (0u64, whole);
+        // a cause that an attempt has named says more than the end of the last one
+        let mut unheld: Option<Error> = None;
         // kept only by a step that goes in parts
         let mut start: Option<State> = None;
         let parts = 1u64 << self.system.nonlinear.iteration.halvings;
@@ -288,6 +290,9 @@ impl Newton {
                 }
                 Err(error) if level < self.system.nonlinear.iteration.halvings => {
                     tracing::debug!("step {}: {error}; halved", taken + 1);
+                    if matches!(error, Error::Unheld { .. }) {
+                        unheld.get_or_insert(error);
+                    }
                     control.failed += 1;
                     level += 1;
                 }
@@ -295,7 +300,7 @@ impl Newton {
                     if let Some(start) = start {
                         self.state = start;
                     }
-                    return Err(error);
+                    return Err(unheld.unwrap_or(error));
                 }
             }
         }
