@@ -187,7 +187,10 @@ impl OpenImpact {
             peak_force: self.peak_force,
             impulse: norm(impulse),
             impulsive: match norm(impulse) > 0.0 {
-                true => dot(self.impulsive.each_ref().map(Sum::get), impulse) / norm(impulse),
+                true => dot(
+                    self.impulsive.each_ref().map(Sum::get),
+                    impulse.map(|part| part / norm(impulse)),
+                ),
                 false => 0.0,
             },
             approach,
@@ -295,6 +298,11 @@ impl Sides<'_> {
     /// The unit vector along the sum of the normal impulses; zero without any. What supports hold in a component, as a plane
     /// of symmetry does, has no part in it, unless little else is left.
     fn direction(&self, normal: [f64; 3]) -> [f64; 3] {
+        let size = norm(normal);
+        if size == 0.0 {
+            return [0.0; 3];
+        }
+        let normal = normal.map(|n| n / size);
         let mut free = normal;
         for (i, n) in free.iter_mut().enumerate() {
             let mut axis = [0.0; 3];
@@ -303,16 +311,8 @@ impl Sides<'_> {
                 *n = 0.0;
             }
         }
-        let whole = dot(normal, normal);
-        let chosen = if dot(free, free) >= 0.5 * whole {
-            free
-        } else {
-            normal
-        };
-        match whole > 0.0 {
-            true => chosen.map(|n| n / norm(chosen)),
-            false => [0.0; 3],
-        }
+        let chosen = if dot(free, free) >= 0.5 { free } else { normal };
+        chosen.map(|n| n / norm(chosen))
     }
 
     /// Whether supports hold a part of a side in a direction.
@@ -362,10 +362,20 @@ fn crossing(system: &System, contact: usize) -> f64 {
     across.fold(0.0, f64::max)
 }
 
+/// |a|, of numbers whose squares are beyond what there is as well.
 fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
+    a[0].hypot(a[1]).hypot(a[2])
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn impulses_whose_squares_overflow_have_a_size() {
+        let size = super::norm([3e200, 0.0, -4e200]);
+        assert!((size / 5e200 - 1.0).abs() < 1e-15, "{size}");
+    }
 }

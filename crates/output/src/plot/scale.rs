@@ -178,11 +178,13 @@ pub fn engineering(unit: &str, largest: f64) -> (f64, String) {
         .and_then(|index| PREFIXES.get(index));
     match prefix {
         _ if thousands == 0 => plain,
-        // Nobody writes kiloseconds, and metres and metres per second beyond a thousand stay what they are.
-        _ if thousands > 0 && matches!(unit, "s" | "m" | "m/s") => plain,
+        // Nobody writes kiloseconds, and metres and metres per second beyond a thousand stay what they are, up to a million.
+        _ if thousands == 1 && matches!(unit, "s" | "m" | "m/s") => plain,
         // A power of ten reads worse than a few zeros.
         _ if !bare && (1e-2..1e4).contains(&largest) => plain,
-        Some(prefix) if bare => (1000_f64.powi(thousands), format!("{prefix}{unit}")),
+        Some(prefix) if bare && !(thousands > 1 && matches!(unit, "s" | "m" | "m/s")) => {
+            (1000_f64.powi(thousands), format!("{prefix}{unit}"))
+        }
         _ => {
             let power = superscript(&(3 * thousands).to_string());
             (
@@ -282,6 +284,8 @@ mod tests {
         assert_eq!(quantity(66_740.0, "N"), "66.7 kN");
         assert_eq!(quantity(-2.5e-6, "m"), "−2.50 µm");
         assert_eq!(quantity(0.0, "J"), "0 J");
+        assert_eq!(quantity(7.7e149, "s"), "7.70·10¹⁴⁹ s");
+        assert_eq!(quantity(2500.0, "s"), "2500 s");
         assert_eq!(quantity(2.0e6, "m/s²"), "2.00·10⁶ m/s²");
         assert_eq!(quantity(-2.2e-16, "J"), "−2.20·10⁻¹⁶ J");
         assert_eq!(quantity(0.9904, ""), "0.990");
