@@ -1,7 +1,7 @@
 //! The two streams of the program: everything that it prints goes through this file.
 //!
 //! Texts of a case (titles, names, groups of a mesh, paths) may hold control characters, which a terminal would obey, and may be
-//! of any length: here they become visible escapes, and [`line`] cuts them.
+//! of any length: here they become visible escapes, and [`line()`] cuts them.
 //!
 //! A reader that goes away (`carom schema | head`) ends the output and nothing else. Any other failure of standard output (a
 //! full disk) is kept until the end of the program: [`close`] names it and gives the exit code. What standard error does not take
@@ -118,7 +118,7 @@ pub fn line(text: &str) -> Cow<'_, str> {
     shortened(text, LONGEST)
 }
 
-/// As [`line`], cut after so many letters.
+/// As [`line()`], cut after so many letters.
 pub fn shortened(text: &str, longest: usize) -> Cow<'_, str> {
     match text.char_indices().nth(longest) {
         None => escaped(text, obeyed),
