@@ -61,6 +61,10 @@ impl Driver {
     /// The gap is the parabola through its value and rate at the start and its value at the end.
     fn arrival(&self, point: usize) -> f64 {
         let gap = self.state.interface.gap[point] - AIM * self.system.tolerance;
+        if gap <= 0.0 {
+            // there already, to the rounding of the cut: the parabola's other root is where the point would leave again
+            return 0.0;
+        }
         let slope = self.rows.product(point, &self.state.motion.v);
         let end = self.free_gap(point) - AIM * self.system.tolerance;
         let bend = ((end - gap) / self.dt - slope) / self.dt;
