@@ -1,25 +1,24 @@
 //! Unilateral contact between surfaces.
 //!
 //! surfaces → pairing → rows (gap, normal, derivative of the gap) → law with sign fields → relation between gap, rate
-//! and force at the end of a step. The crate knows places and unknowns, never bodies: the time scheme and the
-//! interface problem, which solve for the forces, live in `carom-dynamics`.
+//! and force at the end of a step. The crate knows places and unknowns, never bodies. Laws are those of `carom-laws`;
+//! the problems that solve for the forces are those of `carom-nonsmooth`.
 //!
 //! Signs: gap positive when open, gap rate positive when opening, force and pressure positive in compression.
 
 mod contact;
 mod initial;
-pub mod law;
 mod obstacle;
 mod pairing;
 mod point;
 mod rows;
 mod search;
 mod sight;
-mod weak;
 
+pub use carom_laws as law;
+pub use carom_laws::Law;
 pub use contact::{Contact, Integration, Places, Sliding, Target};
 pub use initial::{Initial, Penetration};
-pub use law::Law;
 pub use obstacle::{
     Cylinder, Distance, Motion, Obstacle, Placed, Plane, RigidSurface, Shape, Side, Sphere,
     Translation, Turn,
@@ -29,4 +28,3 @@ pub use point::Point;
 pub use rows::Rows;
 pub use search::{Held, Search};
 pub use sight::Sight;
-pub use weak::Weak;

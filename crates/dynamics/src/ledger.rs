@@ -220,20 +220,23 @@ pub(crate) struct Squares {
     pub(crate) stage: f64,
 }
 
-impl EnergyIdentity {
+impl Energies {
     /// The term of the energy that the scheme balances beside kinetic and strain energy, J.
-    fn stored(&self, energies: &Energies) -> f64 {
-        self.inertia * energies.acceleration + self.memory * energies.memory + energies.lagged
+    fn of_scheme(&self, identity: &EnergyIdentity) -> f64 {
+        identity.inertia * self.acceleration + identity.memory * self.memory + self.lagged
     }
+}
 
-    fn dissipation(&self, squares: &Squares) -> f64 {
-        self.velocity * squares.velocity
-            + self.displacement * squares.displacement
-            + self.acceleration * squares.acceleration
-            + self.filtered * squares.filtered
-            + self.mixed * squares.mixed
-            + self.contact * squares.contact
-            + squares.stage
+impl Squares {
+    /// What the scheme dissipates in the step, J.
+    fn dissipation(&self, identity: &EnergyIdentity) -> f64 {
+        identity.velocity * self.velocity
+            + identity.displacement * self.displacement
+            + identity.acceleration * self.acceleration
+            + identity.filtered * self.filtered
+            + identity.mixed * self.mixed
+            + identity.contact * self.contact
+            + self.stage
     }
 }
 
@@ -243,7 +246,7 @@ impl Ledger {
         let balance = Balance {
             kinetic: energies.kinetic,
             strain: energies.strain,
-            scheme_energy: identity.stored(energies),
+            scheme_energy: energies.of_scheme(identity),
             momentum: energies.momentum,
             ..Balance::default()
         };
@@ -301,7 +304,7 @@ impl Ledger {
         self.work_loads.add(works[0]);
         self.work_contact.add(works[1]);
         self.work_links.add(works[2]);
-        self.dissipation.add(identity.dissipation(squares));
+        self.dissipation.add(squares.dissipation(identity));
         for (k, force) in forces.iter().enumerate() {
             // contacts, and supports against them, in their own way
             let impulse = impulses[[0, 1, 0, 1, 0][k]];
@@ -326,7 +329,7 @@ impl Ledger {
 
     /// The energy of the scheme has another term with the next size of the step: what it gains by that is no work.
     pub(crate) fn resize(&mut self, identity: &EnergyIdentity, energies: &Energies) {
-        let lost = self.balance.scheme_energy - identity.stored(energies);
+        let lost = self.balance.scheme_energy - energies.of_scheme(identity);
         self.dissipation.add(lost);
         self.resized.add(lost);
     }
@@ -410,7 +413,7 @@ impl Ledger {
         let (work_loads, work_contact) = (self.work_loads.get(), self.work_contact.get());
         let work_links = self.work_links.get();
         let dissipation_scheme = self.dissipation.get();
-        let scheme_energy = identity.stored(energies);
+        let scheme_energy = energies.of_scheme(identity);
         let start = &self.initial;
         let change = (energies.kinetic - start.kinetic)
             + (energies.strain - start.strain)

@@ -7,13 +7,11 @@
 mod compliance;
 mod contacts;
 mod control;
-mod coulomb;
 mod driver;
 mod error;
 mod exchange;
 mod impact;
 mod initial;
-mod interface;
 mod ledger;
 mod march;
 mod mass;
@@ -24,14 +22,16 @@ mod nonlinear;
 mod operator;
 mod records;
 mod resultant;
-pub mod scheme;
 mod small;
 mod stability;
 mod state;
-mod step_map;
 mod sum;
 mod system;
 mod zones;
+
+use carom_nonsmooth::{coulomb, interface};
+pub use carom_schemes as scheme;
+use carom_schemes::step_map;
 
 pub use control::{Adaptive, Closing, Control};
 pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};

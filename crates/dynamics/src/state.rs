@@ -7,6 +7,7 @@ use crate::control::Control;
 use crate::exchange::Exchange;
 use crate::ledger::{Balance, Ledger};
 use crate::records::Records;
+use crate::step_map::Known;
 use crate::{Error, System};
 
 /// State at an accepted instant.
@@ -52,6 +53,17 @@ pub struct Motion {
     pub link_force: Vec<f64>,
     /// Histories of the materials at the integration points, body after body; empty where no material has one.
     pub history: Vec<f64>,
+}
+
+impl<'a> From<&'a Motion> for Known<'a> {
+    fn from(motion: &'a Motion) -> Known<'a> {
+        Known {
+            u: &motion.u,
+            v: &motion.v,
+            a: &motion.a,
+            memory: &motion.memory,
+        }
+    }
 }
 
 impl Motion {

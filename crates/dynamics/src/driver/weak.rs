@@ -1,7 +1,8 @@
 //! The weak forms of the contacts of a step: what they add to the compliance, and their multipliers.
 
 use carom_contact::law::Level;
-use carom_contact::{Integration, Rows, Weak};
+use carom_contact::{Integration, Rows};
+use carom_nonsmooth::Weak;
 
 use crate::error::Error;
 use crate::system::System;
@@ -40,7 +41,11 @@ impl WeakForms {
             let Integration::Weak { r } = contact.integration else {
                 return Ok(None);
             };
-            let weak = Weak::new(&contact.points, r).map_err(|cause| Error::WeakForm {
+            let points = contact
+                .points
+                .iter()
+                .map(|point| (point.carriers(), point.area));
+            let weak = Weak::new(points, r).map_err(|cause| Error::WeakForm {
                 contact: contact.name.clone(),
                 cause,
             })?;

@@ -26,7 +26,6 @@ mod stability;
 mod stops;
 mod supports;
 mod trough;
-mod weak_form;
 mod whole;
 
 #[global_allocator]

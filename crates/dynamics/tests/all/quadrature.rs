@@ -4,12 +4,13 @@ use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{
     Adhesion, Capture, Damped, Displacement, Level, Penalty, Reading, Velocity,
 };
-use carom_contact::{Integration, Law, Plane, Weak};
+use carom_contact::{Integration, Law, Plane};
 use carom_dynamics::{
     Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, scheme,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface, generate};
+use carom_nonsmooth::Weak;
 
 const DISPLACEMENT: Law = Law::Displacement(Displacement { projection: false });
 const VELOCITY: Law = Law::Velocity(Velocity {
@@ -190,7 +191,8 @@ fn a_tilted_edge_has_mixed_supports_obeys_its_law_and_keeps_its_balances() {
             panic!("an exact law")
         };
         let mut turned = driver(square(scheme, law, TILTED), Integration::Weak { r });
-        let form = Weak::new(&turned.system().contacts[0].points, r).unwrap();
+        let points = turned.system().contacts[0].points.iter();
+        let form = Weak::new(points.map(|point| (point.carriers(), point.area)), r).unwrap();
         let mut p = Vec::new();
         let start_in_way = scheme.get().step_map(turned.system().dt).start_in_way();
         for _ in 0..60 {

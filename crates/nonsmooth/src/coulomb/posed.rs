@@ -1,0 +1,176 @@
+//! The problem that is to be solved, as the solver and the measure of its error see it.
+
+use carom_laws::{End, Relation, Status};
+
+use super::Tangential;
+use crate::interface::Candidate;
+
+/// Mobility over that of the whole candidate up to which a direction counts as held, and the square of the part of the
+/// sliding that may be along it.
+const HELD: f64 = 1e-9;
+
+/// A problem with friction over n candidates. Row `i w` of D belongs to the normal of candidate i, the `tangents` rows
+/// after it to its tangents, w = 1 + `tangents`.
+#[derive(Clone, Copy)]
+pub struct Posed<'a> {
+    /// The candidates.
+    pub candidates: &'a [Candidate],
+    /// What friction adds to each.
+    pub friction: &'a [Tangential],
+    /// Tangents of a candidate: 1 in the plane, 2 in space.
+    pub tangents: usize,
+    /// D over all rows, row-major, symmetric.
+    pub d: &'a [f64],
+    /// [s_g, s_v, s_t], the factors of D p in the gap, in the rate, and in the sliding quantity.
+    pub s: [f64; 3],
+    /// Defect over the largest force with which forces are taken where no nearer ones are found.
+    pub tolerance: f64,
+}
+
+impl<'a> Posed<'a> {
+    /// Candidates.
+    pub(super) fn len(&self) -> usize {
+        self.candidates.len()
+    }
+
+    /// Rows of D.
+    pub(super) fn rows(&self) -> usize {
+        self.len() * (1 + self.tangents)
+    }
+
+    /// The row of the normal of candidate `i`.
+    pub(super) fn normal(&self, i: usize) -> usize {
+        i * (1 + self.tangents)
+    }
+
+    /// One row of D.
+    pub(super) fn d(&self, row: usize) -> &'a [f64] {
+        let n = self.rows();
+        &self.d[row * n..(row + 1) * n]
+    }
+
+    /// The relation of a candidate; of an open one, that of its closure.
+    pub(super) fn relation(&self, i: usize, status: Status) -> Relation {
+        let candidate = &self.candidates[i];
+        let status = match status {
+            Status::Open => Status::Closed,
+            other => other,
+        };
+        candidate.law.get().relation(status, &candidate.local)
+    }
+
+    /// Factor of D p in a relation of candidate `i`.
+    pub(super) fn factor(&self, i: usize, relation: &Relation) -> f64 {
+        let [gap, rate] = self.factors(i);
+        relation.gap * gap + relation.rate * rate
+    }
+
+    /// Factors of D p in gap and rate of candidate `i`.
+    fn factors(&self, i: usize) -> [f64; 2] {
+        self.candidates[i].factors([self.s[0], self.s[1]])
+    }
+
+    /// What a relation says before the forces of the step.
+    pub(super) fn free(&self, i: usize, relation: &Relation) -> f64 {
+        let candidate = &self.candidates[i];
+        relation.gap * candidate.local.gap_free
+            + relation.rate * candidate.rate_free
+            + relation.offset
+    }
+
+    /// Derivative of a relation with respect to the force of its own candidate: it turns what the relation says into
+    /// newtons.
+    pub(super) fn slope(&self, i: usize, relation: &Relation) -> f64 {
+        let row = self.normal(i);
+        let slope = self.factor(i, relation) * self.d(row)[row] + relation.compliance;
+        if slope > 0.0 { slope } else { 1.0 }
+    }
+
+    /// Force per sliding, N over the unit of q, that makes both comparable in candidate `i`.
+    pub(super) fn weight(&self, i: usize) -> f64 {
+        let row = self.normal(i);
+        let own: f64 = (row + 1..=row + self.tangents)
+            .map(|row| self.d(row)[row])
+            .sum();
+        let slope = self.s[2] * own / self.tangents as f64;
+        if slope > 0.0 { 1.0 / slope } else { 1.0 }
+    }
+
+    /// Projector on the tangents along which forces of candidate `i` move it while its normal relation holds.
+    ///
+    /// A node on a plane of symmetry moves in that plane alone. Its rows of D are then dependent, but for what rounding of
+    /// places leaves, and tangential forces across the plane, which the support takes, are not decided by anything. They
+    /// are zero here. With S the tangential block of D less what the normal force takes back,
+    /// `S = D_tt - f D_tn D_nt / (f D_nn + compliance)`, held are eigenvectors of S of (nearly) no mobility along which
+    /// there is no sliding either: a surface whose motion is prescribed slides, and has friction.
+    pub(super) fn mobile(&self, i: usize) -> [[f64; 2]; 2] {
+        let row = self.normal(i);
+        let relation = self.relation(i, Status::Closed);
+        let back = self.factor(i, &relation) / self.slope(i, &relation);
+        let pressed = self.s[2] * self.free(i, &relation) / self.slope(i, &relation);
+        let (mut s, mut sliding, mut size, mut trace) = ([[0.0; 2]; 2], [0.0; 2], 0.0, 0.0);
+        for k in 0..self.tangents {
+            let d = self.d(row + 1 + k);
+            for l in 0..self.tangents {
+                s[k][l] = d[row + 1 + l] - back * d[row] * self.d(row)[row + 1 + l];
+            }
+            let free = self.friction[i].free[k];
+            sliding[k] = free - pressed * d[row];
+            size += free.powi(2) + (pressed * d[row]).powi(2);
+            trace += d[row + 1 + k];
+        }
+        let least = HELD * (trace + self.d(row)[row]);
+        let slides = |along: f64| along.powi(2) > HELD * size;
+        let mut mobile = [[1.0, 0.0], [0.0, 1.0]];
+        if least == 0.0 {
+            return mobile;
+        }
+        for (value, vector) in eigen(&s, self.tangents) {
+            let along = vector[0] * sliding[0] + vector[1] * sliding[1];
+            if value > least || slides(along) {
+                continue;
+            }
+            for k in 0..2 {
+                for l in 0..2 {
+                    mobile[k][l] -= vector[k] * vector[l];
+                }
+            }
+        }
+        mobile
+    }
+
+    /// End of the step in candidate `i` with the force `force`, with (D p)_n in all, and without its own forces.
+    pub(super) fn end(&self, i: usize, force: f64, product: f64, others: f64) -> End {
+        let candidate = &self.candidates[i];
+        let [gap, rate] = self.factors(i);
+        End {
+            gap_released: candidate.local.gap_free + gap * others,
+            gap: candidate.local.gap_free + gap * product,
+            rate: candidate.rate_free + rate * product,
+            force,
+        }
+    }
+
+    /// (D p)_row of the forces of candidate `i` alone.
+    pub(super) fn own(&self, i: usize, row: usize, p: &[f64]) -> f64 {
+        let first = self.normal(i);
+        (first..=first + self.tangents)
+            .map(|column| self.d(row)[column] * p[column])
+            .sum()
+    }
+}
+
+/// Eigenvalues and unit eigenvectors of a symmetric matrix of `n` rows, one or two.
+fn eigen(s: &[[f64; 2]; 2], n: usize) -> impl Iterator<Item = (f64, [f64; 2])> {
+    let (mean, half) = (0.5 * (s[0][0] + s[1][1]), 0.5 * (s[0][0] - s[1][1]));
+    let radius = half.hypot(s[0][1]);
+    let angle = 0.5 * s[0][1].atan2(half);
+    let pairs = match n {
+        1 => [(s[0][0], [1.0, 0.0]), (f64::INFINITY, [0.0; 2])],
+        _ => [
+            (mean + radius, [angle.cos(), angle.sin()]),
+            (mean - radius, [-angle.sin(), angle.cos()]),
+        ],
+    };
+    pairs.into_iter()
+}

@@ -1,0 +1,153 @@
+//! The solver: Newton passes, and sweeps where they bring nothing.
+
+use carom_laws::Status;
+
+use super::trial::Trial;
+use super::{FrictionFailure, Posed, Slip, newton, sweep};
+
+/// Largest defect of a solution, relative to the terms that should balance in its candidate. Passes go on to it where they
+/// can; where they bring nothing more, [`Posed::tolerance`] decides.
+const TOLERANCE: f64 = 1e-12;
+/// Newton passes without progress before sweeps.
+const PATIENCE: usize = 10;
+/// Newton passes of a round.
+const PASSES: usize = 200;
+/// Shift of the linear systems, and halvings of a pass whose whole length does not reduce the defects, in each round in
+/// turn. The large shift makes proximal steps: where D is singular or the contacts jam, it keeps forces that little
+/// decides from running away.
+const MEANS: [(f64, i32); 3] = [(newton::SHIFT, 0), (newton::SHIFT, 8), (1e-3, 8)];
+/// Sweeps of the first round; each further round makes twice as many.
+const SWEEPS: usize = 16;
+/// Rounds of passes and sweeps.
+const ROUNDS: usize = 9;
+
+/// Solver with its memory.
+#[derive(Default)]
+pub struct Coulomb {
+    /// Normal force of each candidate, N.
+    pub forces: Vec<f64>,
+    /// Tangential force of each candidate, N.
+    pub tangential: Vec<[f64; 2]>,
+    /// Normal status of each candidate.
+    pub statuses: Vec<Status>,
+    /// Tangential status of each candidate.
+    pub slips: Vec<Slip>,
+    /// Newton passes of the last solve.
+    pub passes: usize,
+    /// Sweeps of the last solve.
+    pub sweeps: usize,
+    trial: Trial,
+    best: Trial,
+    start: Trial,
+    change: Vec<f64>,
+    reversals: Vec<u32>,
+}
+
+impl Coulomb {
+    /// Solves for the forces and statuses.
+    pub fn solve(&mut self, problem: &Posed) -> Result<(), FrictionFailure> {
+        (self.passes, self.sweeps) = (0, 0);
+        self.reversals.clear();
+        self.reversals.resize(problem.len(), 0);
+        self.change.clear();
+        self.change.resize(problem.rows(), 0.0);
+        self.trial.start(problem);
+        self.best = self.trial.clone();
+        self.best.merit = f64::INFINITY;
+        for round in 0..ROUNDS {
+            if self.newton(problem, MEANS[round % MEANS.len()]) {
+                self.finish(problem);
+                return Ok(());
+            }
+            self.trial = self.best.clone();
+            if self.trial.is_near(problem) {
+                self.finish(problem);
+                return Ok(());
+            }
+            for _ in 0..SWEEPS << round {
+                sweep::sweep(problem, &mut self.trial);
+            }
+            self.sweeps += SWEEPS << round;
+            self.trial.measure(problem, &self.reversals);
+            self.best = self.trial.clone();
+        }
+        if self.trial.worst.0 <= TOLERANCE || self.trial.is_near(problem) {
+            self.finish(problem);
+            return Ok(());
+        }
+        let (defect, candidate) = self.best.worst;
+        Err(FrictionFailure {
+            candidate,
+            defect,
+            passes: self.passes,
+            sweeps: self.sweeps,
+        })
+    }
+
+    /// Newton passes while they bring the trial nearer; whether it is a solution then. `best` is the nearest trial.
+    /// `means`: shift and halvings.
+    fn newton(&mut self, problem: &Posed, means: (f64, i32)) -> bool {
+        let mut patience = PATIENCE;
+        for _ in 0..PASSES {
+            if patience == 0 {
+                break;
+            }
+            if self.best.merit.is_finite() && self.trial.worst.0 <= TOLERANCE {
+                return true;
+            }
+            self.passes += 1;
+            if newton::step(problem, &self.trial, means.0, &mut self.change).is_err() {
+                return false;
+            }
+            self.advance(problem, means.1);
+            if self.trial.merit < 0.999 * self.best.merit {
+                self.best.clone_from(&self.trial);
+                patience = PATIENCE;
+            } else {
+                patience -= 1;
+            }
+        }
+        false
+    }
+
+    /// Goes along the change, all the way or, within some halvings, as far as the defects fall; all the way if they
+    /// never do.
+    fn advance(&mut self, problem: &Posed, halvings: i32) {
+        self.start.clone_from(&self.trial);
+        for halving in (0..=halvings).chain([0]) {
+            let share = 0.5_f64.powi(halving);
+            self.trial.clone_from(&self.start);
+            for (p, change) in self.trial.p.iter_mut().zip(&self.change) {
+                *p += share * change;
+            }
+            self.trial.measure(problem, &self.reversals);
+            if self.trial.merit < (1.0 - 0.01 * share) * self.start.merit {
+                break;
+            }
+        }
+        let statuses = self.trial.statuses.iter().zip(&self.start.statuses);
+        for ((now, before), reversals) in statuses.zip(&mut self.reversals) {
+            *reversals += u32::from(now != before);
+        }
+    }
+
+    /// Takes the forces of the trial over, tension cut off where the law wants it.
+    fn finish(&mut self, problem: &Posed) {
+        let p = |row: usize| self.trial.p[row];
+        self.statuses.clone_from(&self.trial.statuses);
+        self.slips.clone_from(&self.trial.slips);
+        self.forces.clear();
+        self.tangential.clear();
+        for (i, candidate) in problem.candidates.iter().enumerate() {
+            let row = problem.normal(i);
+            let cut = p(row) < 0.0 && candidate.law.get().clips();
+            self.forces.push(if cut { 0.0 } else { p(row) });
+            let second = if problem.tangents == 2 {
+                p(row + 2)
+            } else {
+                0.0
+            };
+            self.tangential.push([p(row + 1), second]);
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! Nonsmooth Gauss-Seidel: one candidate after the other, each solved exactly while the others stand.
+
+use carom_laws::{Relation, Status};
+
+use super::Posed;
+use super::trial::Trial;
+
+/// Bisections of the slip: down to rounding.
+const BISECTIONS: usize = 60;
+/// Passes of the status of one candidate.
+const TURNS: u32 = 12;
+
+/// One sweep over all candidates; forces and D p of the trial change, its defects do not.
+pub(super) fn sweep(problem: &Posed, trial: &mut Trial) {
+    for i in 0..problem.len() {
+        let (row, width) = (problem.normal(i), 1 + problem.tangents);
+        let mut others = [0.0; 3];
+        for (k, others) in others.iter_mut().enumerate().take(width) {
+            *others = trial.product[row + k] - problem.own(i, row + k, &trial.p);
+        }
+        let forces = solve(problem, i, &mut trial.statuses[i], &others);
+        for k in 0..width {
+            let change = forces[k] - trial.p[row + k];
+            if change != 0.0 {
+                trial.p[row + k] = forces[k];
+                // D is symmetric: its row is its column
+                for (product, d) in trial.product.iter_mut().zip(problem.d(row + k)) {
+                    *product += change * d;
+                }
+            }
+        }
+    }
+}
+
+/// The forces [P, t] of one candidate, with `others` = D p of all other candidates in its rows.
+fn solve(problem: &Posed, i: usize, status: &mut Status, others: &[f64; 3]) -> [f64; 3] {
+    let (row, candidate) = (problem.normal(i), &problem.candidates[i]);
+    let law = candidate.law.get();
+    let mut forces = [0.0; 3];
+    for turn in 0..TURNS {
+        forces = match *status {
+            Status::Open => [0.0; 3],
+            status => closed(problem, i, &problem.relation(i, status), others),
+        };
+        let product = others[0]
+            + (0..=problem.tangents)
+                .map(|k| problem.d(row)[row + k] * forces[k])
+                .sum::<f64>();
+        let end = problem.end(i, forces[0], product, others[0]);
+        let asked = law.status(*status, &end, &candidate.local, turn);
+        if asked == *status {
+            break;
+        }
+        *status = asked;
+    }
+    forces
+}
+
+/// The forces of a closed candidate: those that stick, if the bound lets them, else those of the slip q = -λ t with the
+/// λ > 0 at which |t| = μ P. The equations are linear for a given λ; λ = 0 sticks, λ → ∞ is frictionless.
+fn closed(problem: &Posed, i: usize, relation: &Relation, others: &[f64; 3]) -> [f64; 3] {
+    let (row, point) = (problem.normal(i), &problem.friction[i]);
+    let factor = problem.factor(i, relation);
+    let scale = 1.0 / problem.weight(i);
+    let mut a = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut rhs = [0.0; 3];
+    for k in 0..=problem.tangents {
+        let s = if k == 0 { factor } else { problem.s[2] };
+        for l in 0..=problem.tangents {
+            a[k][l] = s * problem.d(row + k)[row + l];
+        }
+        rhs[k] = -s * others[k]
+            - match k {
+                0 => problem.free(i, relation),
+                _ => point.free[k - 1],
+            };
+    }
+    hold(&problem.mobile(i), scale, (&mut a, &mut rhs));
+    a[0][0] += relation.compliance;
+    let frictionless = [rhs[0] / problem.slope(i, relation), 0.0, 0.0];
+    if point.mu == 0.0 {
+        return frictionless;
+    }
+    let at = |lambda: f64| {
+        let mut a = a;
+        for (k, a) in a.iter_mut().enumerate().skip(1).take(problem.tangents) {
+            a[k] += lambda;
+        }
+        gauss(a, rhs)
+    };
+    let beyond = |x: &[f64; 3]| x[1].hypot(x[2]) > point.mu * x[0];
+    // the share of rounding keeps two equal rows apart
+    let stuck = at(f64::EPSILON * scale);
+    if !beyond(&stuck) {
+        return stuck;
+    }
+    if frictionless[0] <= 0.0 {
+        return frictionless;
+    }
+    // λ = scale (1 - x)/x, x from 0 (frictionless) to 1 (stick)
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if beyond(&at(scale * (1.0 - middle) / middle)) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    match low > 0.0 {
+        true => at(scale * (1.0 - low) / low),
+        false => frictionless,
+    }
+}
+
+/// Replaces the equations of tangents that supports hold by those of no force there.
+fn hold(mobile: &[[f64; 2]; 2], scale: f64, (a, rhs): (&mut [[f64; 3]; 3], &mut [f64; 3])) {
+    let (full, right) = (*a, *rhs);
+    for k in 0..2 {
+        let [first, second] = mobile[k];
+        for l in 0..3 {
+            let unit = if l == k + 1 { 1.0 } else { 0.0 };
+            let held = if l == 0 { 0.0 } else { unit - mobile[k][l - 1] };
+            a[k + 1][l] = first * full[1][l] + second * full[2][l] + scale * held;
+        }
+        rhs[k + 1] = first * right[1] + second * right[2];
+    }
+}
+
+/// Solution of three equations whose diagonal blocks are positive (semi-)definite, pivots by size.
+fn gauss(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
+    for k in 0..3 {
+        let pivot = (k..3).fold(k, |best, row| {
+            if a[row][k].abs() > a[best][k].abs() {
+                row
+            } else {
+                best
+            }
+        });
+        a.swap(k, pivot);
+        b.swap(k, pivot);
+        for row in k + 1..3 {
+            let share = a[row][k] / a[k][k];
+            for column in k..3 {
+                a[row][column] -= share * a[k][column];
+            }
+            b[row] -= share * b[k];
+        }
+    }
+    for k in (0..3).rev() {
+        let known: f64 = (k + 1..3).map(|column| a[k][column] * b[column]).sum();
+        b[k] = (b[k] - known) / a[k][k];
+    }
+    b
+}

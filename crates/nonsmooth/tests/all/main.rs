@@ -1,0 +1,6 @@
+//! Facts about the weak form on faces of meshes.
+
+// Helpers of tests panic as the tests themselves do.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod weak_form;
