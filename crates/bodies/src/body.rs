@@ -1,272 +1,139 @@
-//! A body: elements with one kinematics and one material.
+//! What a system is made of. All that differs between the kinds of bodies is decided here.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Mat3;
-use carom_elements::Kind;
-use carom_materials::{Law, Plane};
 use carom_mesh::{ElementId, Mesh};
 
-use crate::Error;
-use crate::bar::Bar;
-use crate::block::{Block, Physics, Scratch, Visit};
-use crate::continuum;
-use crate::finite::{Cells, Finite, Formulation, Shape};
-use crate::together::Together;
-use crate::weights::CellWeights;
-use crate::{Kinematics, size, stability};
+use crate::block::Scratch;
+use crate::distortion::Distortion;
+use crate::solid::{BodySpec, Solid};
+use crate::{Error, Placement, Stored};
 
-/// What a body is made of.
-#[derive(Clone, Debug)]
-pub struct BodySpec {
-    /// Name as in the case file.
-    pub name: String,
-    /// Cells of the mesh.
-    pub cells: Vec<ElementId>,
-    /// Kinematics and section.
-    pub kinematics: Kinematics,
-    /// Material.
-    pub material: Law,
-    /// How the elements integrate the internal work; anything but [`Formulation::Full`] needs a law at finite strain.
-    pub formulation: Formulation,
-    /// Weights of inertia and internal work; none for a body that is alone in its volume.
-    pub weights: Option<CellWeights>,
-}
-
-impl BodySpec {
-    /// A body whose elements are integrated in full, alone in its volume.
-    pub fn new(
-        name: impl Into<String>,
-        cells: Vec<ElementId>,
-        kinematics: Kinematics,
-        material: impl Into<Law>,
-    ) -> BodySpec {
-        BodySpec {
-            name: name.into(),
-            cells,
-            kinematics,
-            material: material.into(),
-            formulation: Formulation::Full,
-            weights: None,
-        }
-    }
-}
-
-/// A discretised body, at small strain or total Lagrangian.
+/// A body: mass, forces f(u, v), their derivatives, energies.
 #[derive(Debug)]
-pub struct Body {
-    name: String,
-    kinematics: Kinematics,
-    material: Law,
-    cells: Vec<ElementId>,
-    blocks: Vec<Block>,
-    /// The elements at finite strain; none at small strain. The blocks then give masses.
-    pub(crate) finite: Option<Finite>,
-    dim: usize,
-    smallest: f64,
+pub enum Body {
+    /// A solid or a bar.
+    Solid(Solid),
 }
 
 impl Body {
-    /// Builds a body on a mesh. `number`: system number of each mesh node.
+    /// Builds a solid or a bar on a mesh. `number`: system number of each mesh node.
     ///
     /// # Errors
-    /// No element, elements of a wrong dimension, a negative radius in axisymmetry, weights that are too few or too many
-    /// or give a negative mass or stiffness.
+    /// As [`Solid::new`].
     pub fn new(mesh: &Mesh, spec: BodySpec, number: &[u32]) -> Result<Body, Error> {
-        if spec.cells.is_empty() {
-            return Err(Error::Empty { body: spec.name });
-        }
-        check(mesh, &spec)?;
-        let mut x = vec![[0.0; 3]; mesh.nodes.len()];
-        for (node, &system) in number.iter().enumerate() {
-            if system != u32::MAX {
-                x[system as usize] = mesh.nodes[node];
-            }
-        }
-        let elastic = spec.material.initial();
-        let physics = match spec.kinematics {
-            Kinematics::Bar { area } => Physics::Bar(Bar {
-                young: elastic.young,
-                area,
-                density: elastic.density,
-            }),
-            kinematics => Physics::Continuum(continuum::Law::new(kinematics, elastic, mesh.dim)),
-        };
-        let mut cells = Vec::with_capacity(spec.cells.len());
-        let mut blocks = Vec::new();
-        let mut finite_cells = Vec::new();
-        let shape = Shape {
-            kinematics: spec.kinematics,
-            formulation: spec.formulation,
-            shear_modulus: elastic.shear_modulus(),
-        };
-        for kind in Kind::ALL {
-            let of_kind: Vec<ElementId> = spec
-                .cells
-                .iter()
-                .copied()
-                .filter(|&cell| mesh.kind(cell) == kind)
-                .collect();
-            let nodes = of_kind.iter().flat_map(|&cell| mesh.element_nodes(cell));
-            let elements: Vec<u32> = nodes.map(|&node| number[node as usize]).collect();
-            if !elements.is_empty() {
-                let of_kind = |all: &CellWeights| all.of_kind(mesh, &spec.cells, kind);
-                let weights = spec.weights.as_ref().map(of_kind);
-                blocks.push(Block::new(kind, physics, &elements, &x, weights.as_ref()));
-                if spec.material.finite().is_some() {
-                    finite_cells.push(Cells::new(kind, &shape, elements, &x, weights.as_ref()));
-                }
-            }
-            cells.extend(of_kind);
-        }
-        let body = Body {
-            name: spec.name,
-            kinematics: spec.kinematics,
-            material: spec.material,
-            smallest: cells
-                .iter()
-                .map(|&cell| size::smallest(mesh, cell))
-                .fold(f64::INFINITY, f64::min),
-            cells,
-            blocks,
-            finite: (spec.material.finite().is_some())
-                .then(|| Finite::new(spec.material, finite_cells)),
-            dim: mesh.dim,
-        };
-        if spec.weights.is_some() {
-            body.check_mass(mesh)?;
-            body.check_stiffness()?;
-        }
-        Ok(body)
+        Solid::new(mesh, spec, number).map(Body::Solid)
     }
 
-    fn check_mass(&self, mesh: &Mesh) -> Result<(), Error> {
-        let (mut place, mut negative) = (0, None);
-        self.each_matrix(false, &mut |element| {
-            for (a, &mass) in element.lumped.iter().enumerate() {
-                if mass.is_nan() || mass < 0.0 {
-                    negative.get_or_insert((place, a, mass));
-                }
-            }
-            place += 1;
-        });
-        let Some((place, a, mass)) = negative else {
-            return Ok(());
-        };
-        Err(Error::NegativeMass {
-            body: self.name.clone(),
-            cell: self.cells[place],
-            node: mesh.element_nodes(self.cells[place])[a],
-            mass,
-        })
-    }
-
-    fn check_stiffness(&self) -> Result<(), Error> {
-        let mut first = 0;
-        for block in &self.blocks {
-            if let Some((place, weight)) = block.negative_stiffness() {
-                return Err(Error::NegativeStiffness {
-                    body: self.name.clone(),
-                    cell: self.cells[first + place],
-                    weight,
-                });
-            }
-            first += block.len();
+    /// The solid or bar that it is, if it is one.
+    pub fn as_solid(&self) -> Option<&Solid> {
+        match self {
+            Body::Solid(solid) => Some(solid),
         }
-        Ok(())
     }
 
     /// Name as in the case file.
     pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Kinematics and section.
-    pub fn kinematics(&self) -> Kinematics {
-        self.kinematics
-    }
-
-    /// Material.
-    pub fn material(&self) -> &Law {
-        &self.material
+        match self {
+            Body::Solid(solid) => solid.name(),
+        }
     }
 
     /// Cells of the mesh, in the order of [`Body::stresses`].
     pub fn cells(&self) -> &[ElementId] {
-        &self.cells
+        match self {
+            Body::Solid(solid) => solid.cells(),
+        }
     }
 
-    /// Elements by kind, in the order of [`Body::cells`].
-    pub(crate) fn blocks(&self) -> &[Block] {
-        &self.blocks
+    /// Whether forces are linear in displacement and velocity, so that the derivatives never change.
+    pub fn is_linear(&self) -> bool {
+        match self {
+            Body::Solid(solid) => solid.is_linear(),
+        }
     }
 
-    /// Unknowns of a node.
-    pub(crate) fn dim(&self) -> usize {
-        self.dim
+    /// Time that a wave needs to pass over its smallest element, s; zero without waves.
+    pub fn passage(&self) -> f64 {
+        match self {
+            Body::Solid(solid) => solid.smallest_size() / solid.wave_speed(),
+        }
     }
 
-    /// Speed of compression waves in m/s.
-    pub fn wave_speed(&self) -> f64 {
-        self.material.wave_speed(self.kinematics.plane())
+    /// Numbers that it keeps from one step to the next.
+    pub fn history_len(&self) -> usize {
+        match self {
+            Body::Solid(solid) => solid.history_len(),
+        }
     }
 
-    /// Smallest size of an element over its faces, in m: the h_e of the Courant number c dt / h_e.
-    pub fn smallest_size(&self) -> f64 {
-        self.smallest
+    /// Writes the history of a body that nothing has happened to, [`Body::history_len`] numbers.
+    pub fn start_history(&self, out: &mut [f64]) {
+        match self {
+            Body::Solid(solid) => solid.start_history(out),
+        }
     }
 
-    /// Adds the internal forces f(u) (N) of this body at small strain to `f` and returns its strain energy U(u) (J);
-    /// [`Body::finite_force`] serves all bodies.
+    /// Adds the internal forces f(u) = K u (N) of a linear body to `f` and returns its stored energy U(u) (J);
+    /// [`Body::force`] serves all bodies.
     ///
     /// `u`, `f`: system vectors, m and N. `scratch`: this body's own, empty before the first call; later calls allocate
     /// nothing. The sums run in a fixed order whatever the number of threads.
     pub fn internal_force(&self, u: &[f64], scratch: &mut Scratch, f: &mut [f64]) -> f64 {
-        debug_assert!(self.is_linear());
-        let chunks = || self.blocks.iter().flat_map(|block| &block.chunks);
-        if scratch.forces.is_empty() {
-            let lists = chunks().map(|chunk| vec![[0.0; 3]; chunk.nodes.len()]);
-            scratch.forces = lists.collect();
-            scratch.energies = vec![0.0; scratch.forces.len()];
+        match self {
+            Body::Solid(solid) => solid.internal_force(u, scratch, f),
         }
-        let (mut forces, mut energies) = (&mut scratch.forces[..], &mut scratch.energies[..]);
-        for block in &self.blocks {
-            let (block_forces, rest) = forces.split_at_mut(block.chunks.len());
-            forces = rest;
-            let (block_energies, rest) = energies.split_at_mut(block.chunks.len());
-            energies = rest;
-            block.forces(self.dim, u, block_forces, block_energies);
-        }
-        for (chunk, force) in chunks().zip(&scratch.forces) {
-            for (&node, f_a) in chunk.nodes.iter().zip(force) {
-                let first = self.dim * node as usize;
-                for i in 0..self.dim {
-                    f[first + i] += f_a[i];
-                }
-            }
-        }
-        scratch.energies.iter().sum()
     }
 
-    /// Adds the lumped mass (kg) to the entries of a system vector: the row sums ∫ ρ N_a dV of linear elements, and of
-    /// quadratic ones, where these are zero or negative at corners, the diagonal of the consistent mass scaled to the
-    /// mass of the element. Hinton, Rock and Zienkiewicz (1976).
-    pub fn add_lumped_mass(&self, mass: &mut [f64]) {
-        let dim = self.dim;
-        self.each_matrix(false, &mut |element| {
-            for (&node, lumped) in element.nodes.iter().zip(element.lumped) {
-                for i in 0..dim {
-                    mass[dim * node as usize + i] += lumped;
-                }
-            }
-        });
-    }
-
-    /// Adds `stiffness_factor` K + `mass_factor` M (consistent) to the rows of one connected part.
+    /// Adds the internal forces (N) to the system vector `f`, writes the history at the end of the step into `new` and
+    /// returns the energies.
     ///
-    /// At finite strain K is that of the undeformed body, fully integrated. `part`: system numbers of the unknowns that `matrix` holds; elements outside are left out.
+    /// `scratch`: this body's own, empty before the first call; later calls allocate nothing. Sums run in a fixed order
+    /// whatever the number of threads. After an error `f` and `new` are of no use.
+    ///
+    /// # Errors
+    /// An element whose law gives no stress; a law without stress between two displacements.
+    pub fn force(
+        &self,
+        at: &Placement,
+        new: &mut [f64],
+        scratch: &mut Scratch,
+        f: &mut [f64],
+    ) -> Result<Stored, Error> {
+        match self {
+            Body::Solid(solid) => solid.force(at, new, scratch, f),
+        }
+    }
+
+    /// Adds `by_u` ∂f/∂u (N/m) + `by_v` ∂f/∂v (N s/m) to a matrix over all unknowns of the system.
+    ///
+    /// The derivatives are by `at.u` and `at.v`, with `at.from` held.
+    ///
+    /// # Errors
+    /// As [`Body::force`]. The matrix is then of no use.
+    pub fn add_tangent(
+        &self,
+        at: &Placement,
+        [by_u, _by_v]: [f64; 2],
+        matrix: &mut Csr,
+    ) -> Result<(), Error> {
+        match self {
+            // its forces do not depend on the velocity
+            Body::Solid(solid) => solid.add_tangent(at, by_u, matrix),
+        }
+    }
+
+    /// Adds the lumped mass (kg) to the entries of a system vector.
+    pub fn add_lumped_mass(&self, mass: &mut [f64]) {
+        match self {
+            Body::Solid(solid) => solid.add_lumped_mass(mass),
+        }
+    }
+
+    /// Adds `stiffness_factor` K + `mass_factor` M (consistent) to the rows of one connected part, K that of the undeformed
+    /// body. `part`: system numbers of the unknowns that `matrix` holds; elements outside are left out.
     pub fn assemble(
         &self,
         stiffness_factor: f64,
@@ -274,184 +141,54 @@ impl Body {
         part: &Range<usize>,
         matrix: &mut Csr,
     ) {
-        let dim = self.dim;
-        self.each_matrix(true, &mut |element| {
-            let (nodes, k, m) = (element.nodes, element.stiffness, element.mass);
-            let n = nodes.len();
-            if !part.contains(&(dim * nodes[0] as usize)) {
-                return;
-            }
-            for row in 0..dim * n {
-                let (a, i) = (row / dim, row % dim);
-                let dof = dim * nodes[a] as usize + i;
-                for column in 0..dim * n {
-                    let (b, j) = (column / dim, column % dim);
-                    let other = dim * nodes[b] as usize + j;
-                    let mut value = stiffness_factor * k[row * dim * n + column];
-                    if i == j {
-                        value += mass_factor * m[a * n + b];
-                    }
-                    matrix.add(dof - part.start, other - part.start, value);
-                }
-            }
-        });
+        match self {
+            Body::Solid(solid) => solid.assemble(stiffness_factor, mass_factor, part, matrix),
+        }
     }
 
     /// System numbers of the nodes of each element, in the order of [`Body::cells`].
     pub fn each_element(&self, visit: &mut dyn FnMut(&[u32])) {
-        for block in &self.blocks {
-            block.elements(visit);
+        match self {
+            Body::Solid(solid) => solid.each_element(visit),
         }
     }
 
-    /// Volume (m³) and mean stress (Pa) of each element, in the order of [`Body::cells`].
-    ///
-    /// At finite strain the current volume and the Cauchy stress of `history`, that of this body at `u`; not numbers in an
-    /// element whose law gives none.
+    /// Volume (m³) and mean stress (Pa) of each element, in the order of [`Body::cells`]; see [`Solid::stresses`].
     pub fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
-        if let Some(finite) = &self.finite {
-            return finite.stresses(u, history);
+        match self {
+            Body::Solid(solid) => solid.stresses(u, history),
         }
-        let mut out = Vec::with_capacity(self.cells.len());
-        for block in &self.blocks {
-            block.stresses(self.dim, u, &mut out);
-        }
-        out
     }
 
     /// Mean equivalent plastic strain of each element in the `history` of this body, in the order of [`Body::cells`]; none of
-    /// a law without plasticity.
+    /// a body without plasticity.
     pub fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
-        self.finite.as_ref()?.plastic_strains(history)
+        match self {
+            Body::Solid(solid) => solid.plastic_strains(history),
+        }
     }
 
-    /// Upper bound of the angular frequencies (rad/s) with lumped mass: the largest eigenvalue of M_e⁻¹ K_e over parts of
-    /// the body that add up to it bounds that of the body (Irons). An explicit step is stable below 2/ω.
-    ///
-    /// The parts are the elements, and if that is less, one part of all elements in which weights vary and of four layers
-    /// around them, with a bound of its own (Collatz, Wielandt: B = M⁻¹ |K| has no negative entry, so that its spectral
-    /// radius, not below λ, is at most max_i (B x)_i / x_i for any x > 0). With linear weights on straight bars the step
-    /// keeps 0.983, where the elements alone give 0.943. Elements whose weights are all zero do not count; a node with
-    /// stiffness and no mass in its part makes the bound infinite. At finite strain it is that of the undeformed body, fully
-    /// integrated, which no other formulation exceeds on rectangular elements as long as the hourglass factor is not above 1:
-    /// hourglass modes have at most 4 μ κ/(ρ h²), h the least edge, and full integration at least 4 (λ + 2μ)/(ρ h²).
+    /// Upper bound of the angular frequencies (rad/s) with its lumped mass; see [`Solid::frequency_bound`].
     pub fn frequency_bound(&self) -> f64 {
-        let varying: Vec<bool> = self.blocks.iter().flat_map(Block::varying).collect();
-        let (mut place, mut even, mut uneven) = (0, 0.0, 0.0);
-        let dim = self.dim;
-        let mut scaled = Vec::new();
-        self.each_matrix(true, &mut |element| {
-            stability::scale(dim, element.stiffness, element.lumped, &mut scaled);
-            let value = stability::largest_eigenvalue(&mut scaled);
-            let largest = if varying[place] {
-                &mut uneven
-            } else {
-                &mut even
-            };
-            *largest = f64::max(*largest, value);
-            place += 1;
-        });
-        if uneven > even {
-            uneven = uneven.min(self.together(varying));
+        match self {
+            Body::Solid(solid) => solid.frequency_bound(),
         }
-        f64::max(even, uneven).sqrt()
     }
 
-    /// Bound of the eigenvalue of the elements marked and their neighbours, taken out of the body.
-    fn together(&self, mut marked: Vec<bool>) -> f64 {
-        // by then a motion at the ends of the weights has died away
-        const LAYERS: usize = 4;
-        let mut elements = Vec::new();
-        self.each_element(&mut |nodes| elements.push(nodes.to_vec()));
-        for _ in 0..LAYERS {
-            let touched = elements.iter().zip(&marked).filter(|(_, marked)| **marked);
-            let nodes: BTreeSet<u32> = touched.flat_map(|(nodes, _)| nodes).copied().collect();
-            for (element, marked) in elements.iter().zip(&mut marked) {
-                *marked |= element.iter().any(|node| nodes.contains(node));
-            }
+    /// The same about a displacement; see [`Solid::frequency_bound_at`].
+    ///
+    /// # Errors
+    /// As [`Body::force`].
+    pub fn frequency_bound_at(&self, at: &Placement) -> Result<f64, Error> {
+        match self {
+            Body::Solid(solid) => solid.frequency_bound_at(at),
         }
-        let mut kept = marked.iter();
-        elements.retain(|_| kept.next() == Some(&true));
-        let mut together = Together::new(self.dim, &elements);
-        let mut place = 0;
-        self.each_matrix(true, &mut |element| {
-            if marked[place] {
-                together.add(element.nodes, element.stiffness, element.lumped);
-            }
-            place += 1;
-        });
-        together.largest_eigenvalue()
     }
 
-    pub(crate) fn each_matrix(&self, stiffness: bool, visit: &mut Visit) {
-        for block in &self.blocks {
-            block.matrices(self.dim, stiffness, visit);
+    /// The largest rotation and strain of elements whose rotations and strains must be small; see [`Solid::distortion`].
+    pub fn distortion(&self, u: &[f64], point: usize, before: &Distortion) -> Option<Distortion> {
+        match self {
+            Body::Solid(solid) => solid.distortion(u, point, before),
         }
     }
-}
-
-fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
-    if let Some(weights) = &spec.weights {
-        weights.check(&spec.name, mesh, &spec.cells)?;
-    }
-    check_formulation(mesh, spec)?;
-    let dim = spec.kinematics.dim();
-    for &cell in &spec.cells {
-        let element = mesh.kind(cell).table();
-        if element.dim != dim || (dim > 1 && mesh.dim != dim) {
-            return Err(Error::WrongElement {
-                body: spec.name.clone(),
-                found: element.name,
-                kinematics: spec.kinematics.name(),
-                dim,
-            });
-        }
-        if element.kind == Kind::Bar3 {
-            return Err(Error::QuadraticBar {
-                body: spec.name.clone(),
-            });
-        }
-        if spec.kinematics == Kinematics::Axisymmetric {
-            for &node in mesh.element_nodes(cell) {
-                let radius = mesh.nodes[node as usize][0];
-                if radius < 0.0 {
-                    return Err(Error::NegativeRadius {
-                        body: spec.name.clone(),
-                        node,
-                        radius,
-                    });
-                }
-            }
-        }
-    }
-    Ok(())
-}
-
-fn check_formulation(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
-    let body = || spec.name.clone();
-    if spec.material.finite().is_none() {
-        return match spec.formulation {
-            Formulation::Full => Ok(()),
-            _ => Err(Error::LinearFormulation { body: body() }),
-        };
-    }
-    if spec.kinematics.plane() != Plane::Full {
-        return Err(Error::FiniteKinematics {
-            body: body(),
-            kinematics: spec.kinematics.name(),
-        });
-    }
-    if let Formulation::Reduced { .. } = spec.formulation {
-        for &cell in &spec.cells {
-            let kind = mesh.kind(cell);
-            let single = kind.table().stiffness_rule.points.len() == 1;
-            if !single && kind != Kind::Quad4 && kind != Kind::Hex8 {
-                return Err(Error::NotReduced {
-                    body: body(),
-                    found: kind.table().name,
-                });
-            }
-        }
-    }
-    Ok(())
 }

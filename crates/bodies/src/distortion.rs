@@ -16,7 +16,7 @@ use carom_algebra::tensor::Mat3;
 use carom_elements::Kind;
 use rayon::prelude::*;
 
-use crate::Body;
+use crate::Solid;
 use crate::bar::Bar;
 use crate::block::{Block, Chunk, Physics, by_nodes};
 use crate::continuum::{Law, Point};
@@ -26,7 +26,7 @@ use crate::continuum::{Law, Point};
 pub struct Extreme {
     /// The value.
     pub value: f64,
-    /// Where: place in [`Body::cells`].
+    /// Where: place in [`Solid::cells`].
     pub cell: u32,
 }
 
@@ -130,7 +130,7 @@ impl Search {
     }
 }
 
-impl Body {
+impl Solid {
     /// The largest rotation and strain of the elements in the displacement `u` (m, system vector), or those of `before` where
     /// they are larger; none at finite strain. `point`: which integration point of each element is looked at, in rounds.
     /// Allocates nothing, and gives the same for any number of threads.

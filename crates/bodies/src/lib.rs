@@ -15,15 +15,17 @@ mod kinematics;
 mod lanes;
 mod single;
 mod size;
+mod solid;
 mod stability;
 mod together;
 mod weights;
 
 pub use block::Scratch;
-pub use body::{Body, BodySpec};
+pub use body::Body;
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};
 pub use kinematics::{Kinematics, MassKind};
 pub use size::{height, smallest as smallest_size};
+pub use solid::{BodySpec, Solid};
 pub use weights::CellWeights;

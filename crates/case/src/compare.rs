@@ -165,7 +165,8 @@ fn standard(
 fn finest(base: &Job, input: &Input) -> Result<(Job, Refined), SweepError> {
     let built = base.build().map_err(|problems| base.refuse(problems))?;
     let bodies = built.system.bodies.iter();
-    let bars = bodies.map(|body| body.kinematics().dim()).max() == Some(1);
+    let solids = bodies.filter_map(|body| body.as_solid());
+    let bars = solids.map(|body| body.kinematics().dim()).max() == Some(1);
     let halvings = HALVINGS[usize::from(!bars)];
     let factor = 2u32.pow(halvings);
     let step = format!("time.step={:?}", built.system.dt / f64::from(factor));

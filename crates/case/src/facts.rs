@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use carom_bodies::Body;
 use carom_contact::{Contact, Integration, Places, Rows, Search, Sliding, Target};
 use carom_dynamics::{LinkKind, ModelLink, ModelZone, System, Zoned, step_count};
 
@@ -40,6 +41,9 @@ pub fn facts(built: &Built) -> Vec<Fact> {
         ),
     )];
     for (k, body) in system.bodies.iter().enumerate() {
+        let Some(body) = body.as_solid() else {
+            continue;
+        };
         let (speed, size) = (body.wave_speed(), extent(system, k));
         facts.push(fact(
             format!("body {}", body.name()),
@@ -101,7 +105,8 @@ fn courant(system: &System) -> String {
     let crossing = system
         .bodies
         .iter()
-        .map(|body| body.smallest_size() / body.wave_speed())
+        .map(Body::passage)
+        .filter(|passage| *passage > 0.0)
         .fold(f64::INFINITY, f64::min);
     format!("Courant number {:.3}", system.dt / crossing)
 }

@@ -349,7 +349,8 @@ fn lasting(system: &System, contact: usize, duration: f64) -> f64 {
 fn crossing(system: &System, contact: usize) -> f64 {
     let (secondary, primary) = system.sides[contact];
     let bodies = [Some(secondary), primary].into_iter().flatten();
-    let across = bodies.map(|body| {
+    let across = bodies.filter_map(|body| {
+        let waves = system.bodies[body].as_solid()?.wave_speed();
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for &(node, _) in &system.body_masses[body] {
             for i in 0..3 {
@@ -357,7 +358,7 @@ fn crossing(system: &System, contact: usize) -> f64 {
                 high[i] = high[i].max(system.x[node as usize][i]);
             }
         }
-        norm([0, 1, 2].map(|i| high[i] - low[i])) / system.bodies[body].wave_speed()
+        Some(norm([0, 1, 2].map(|i| high[i] - low[i])) / waves)
     });
     across.fold(0.0, f64::max)
 }

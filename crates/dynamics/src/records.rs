@@ -1,5 +1,6 @@
 //! Extrema, impulses and impacts, gathered at every step whatever is written.
 
+use carom_bodies::Body;
 use serde::{Deserialize, Serialize};
 
 use crate::impact::{Given, Impact, OpenImpact};
@@ -150,8 +151,7 @@ fn passage(system: &System, contact: usize) -> f64 {
     let (secondary, primary) = system.sides[contact];
     let sides = [Some(secondary), primary].into_iter().flatten();
     let bodies = sides.map(|body| &system.bodies[body]);
-    let times = bodies.map(|body| body.smallest_size() / body.wave_speed());
-    times.fold(0.0, f64::max)
+    bodies.map(Body::passage).fold(0.0, f64::max)
 }
 
 /// What a step adds to the record of a contact.

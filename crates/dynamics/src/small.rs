@@ -5,7 +5,7 @@
 //! since the largest at which it looked: near the largest strain of a run it therefore looks at it. The looks of the last
 //! kind are few, since between a thousandth of the energy and all of it there are only so many quarters: 31.
 
-use carom_bodies::{Distortion, Extreme};
+use carom_bodies::{Distortion, Extreme, Solid};
 use carom_contact::{Places, Rows, Search, Target};
 use carom_mesh::Face;
 use serde::{Deserialize, Serialize};
@@ -206,7 +206,8 @@ impl Watched {
             })
         };
         // ends of bars have no length
-        let element = system.bodies[system.sides[number].0].smallest_size();
+        let body = system.bodies[system.sides[number].0].as_solid();
+        let element = body.map_or(f64::INFINITY, Solid::smallest_size);
         watched.lengths = (0..contact.points.len())
             .map(|point| {
                 let (unknowns, _) = watched.initial.row(point);

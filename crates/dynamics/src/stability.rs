@@ -35,6 +35,7 @@ impl System {
         for (body, history) in self.bodies.iter().zip(&self.nonlinear.histories) {
             let at = Placement {
                 u: &motion.u,
+                v: &motion.v,
                 from: None,
                 dt: self.dt,
                 old: &motion.history[history.clone()],

@@ -4,9 +4,9 @@ use carom_algebra::csr::Csr;
 
 use super::{Placement, Stored};
 use crate::block::Scratch;
-use crate::body::Body;
+use crate::solid::Solid;
 
-impl Body {
+impl Solid {
     /// Adds K u, or K (u_0 + u)/2 between two displacements, whose work is exactly U(u) - U(u_0); the energy is U(u).
     pub(super) fn linear_force(
         &self,

@@ -6,8 +6,8 @@
 use carom_algebra::csr::Csr;
 
 use crate::block::Scratch;
-use crate::body::Body;
 use crate::error::Error;
+use crate::solid::Solid;
 use crate::stability;
 
 mod between;
@@ -47,12 +47,14 @@ pub enum Formulation {
 pub struct Placement<'a> {
     /// Displacement, system vector, m.
     pub u: &'a [f64],
+    /// Velocity at the same instant, system vector, m/s.
+    pub v: &'a [f64],
     /// Displacement at the start of the step, for the algorithmic stress between the two, whose work over the step is the
     /// change of the stored energy; none for the stress at `u`.
     pub from: Option<&'a [f64]>,
     /// Time since the history `old`, s.
     pub dt: f64,
-    /// History of this body at the start of the step, [`Body::history_len`] numbers.
+    /// History of this body at the start of the step, [`Solid::history_len`] numbers.
     pub old: &'a [f64],
 }
 
@@ -67,7 +69,7 @@ pub struct Stored {
     pub dissipated: f64,
 }
 
-impl Body {
+impl Solid {
     /// Whether forces are linear in the displacement: small strain.
     pub fn is_linear(&self) -> bool {
         self.finite.is_none()
@@ -83,7 +85,7 @@ impl Body {
         self.finite.as_ref().map_or(0, Finite::history_len)
     }
 
-    /// Writes the history of a body that nothing has happened to, [`Body::history_len`] numbers.
+    /// Writes the history of a body that nothing has happened to, [`Solid::history_len`] numbers.
     pub fn start_history(&self, out: &mut [f64]) {
         if let Some(finite) = &self.finite {
             finite.start_history(out);
@@ -99,7 +101,7 @@ impl Body {
     ///
     /// # Errors
     /// An element whose law gives no stress; a law without stress between two displacements.
-    pub fn finite_force(
+    pub fn force(
         &self,
         at: &Placement,
         new: &mut [f64],
@@ -121,7 +123,7 @@ impl Body {
     /// and one at finite strain the symmetric part of ∂f/∂u, which is not symmetric there.
     ///
     /// # Errors
-    /// As [`Body::finite_force`]. The matrix is then of no use.
+    /// As [`Solid::force`]. The matrix is then of no use.
     pub fn add_tangent(&self, at: &Placement, factor: f64, matrix: &mut Csr) -> Result<(), Error> {
         match &self.finite {
             None => {
@@ -136,14 +138,14 @@ impl Body {
     }
 
     /// Upper bound of the angular frequencies (rad/s) with lumped mass about a displacement: the largest magnitude of an
-    /// eigenvalue of M_e⁻¹ K_e over the elements, with the tangents K_e there. [`Body::frequency_bound`] is that of the
+    /// eigenvalue of M_e⁻¹ K_e over the elements, with the tangents K_e there. [`Solid::frequency_bound`] is that of the
     /// undeformed body.
     ///
     /// An element that shortens in the direction of a wave keeps its mass, and its tangent grows. Costs about 2 n³ flops a
     /// dozen times for each element of n unknowns: not for every step.
     ///
     /// # Errors
-    /// As [`Body::finite_force`].
+    /// As [`Solid::force`].
     pub fn frequency_bound_at(&self, at: &Placement) -> Result<f64, Error> {
         let Some(finite) = &self.finite else {
             return Ok(self.frequency_bound());

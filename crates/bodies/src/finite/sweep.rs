@@ -238,6 +238,7 @@ impl Finite {
             let length = cells.len() * new.len();
             let at = Placement {
                 u,
+                v: &[],
                 from: None,
                 dt: 0.0,
                 old: &history[kept..kept + length],

@@ -53,11 +53,12 @@ fn forces_at_finite_strain_allocate_nothing_after_the_first_call() {
                 let mut scratch = Scratch::default();
                 let at = Placement {
                     u: &u,
+                    v: &[],
                     from,
                     dt: 1.0,
                     old: &[],
                 };
-                let mut force = || sample.body.finite_force(&at, &mut [], &mut scratch, &mut f);
+                let mut force = || sample.body.force(&at, &mut [], &mut scratch, &mut f);
                 force().unwrap();
                 let before = allocations();
                 for _ in 0..10 {

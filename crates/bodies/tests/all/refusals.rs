@@ -1,6 +1,6 @@
 //! What a body refuses.
 
-use carom_bodies::{Body, BodySpec, CellWeights, Error, Kinematics};
+use carom_bodies::{BodySpec, CellWeights, Error, Kinematics, Solid};
 use carom_mesh::{ElementId, Mesh, generate};
 
 use crate::sample::{MATERIAL, cells};
@@ -20,7 +20,7 @@ fn refusal_of(
         ..BodySpec::new("arm", cells, kinematics, MATERIAL)
     };
     let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
-    Body::new(mesh, spec, &number).unwrap_err()
+    Solid::new(mesh, spec, &number).unwrap_err()
 }
 
 #[test]

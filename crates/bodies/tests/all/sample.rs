@@ -2,7 +2,7 @@
 
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
-use carom_bodies::{Body, BodySpec, CellWeights, Formulation, Kinematics, Scratch};
+use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, Scratch, Solid};
 use carom_elements::Kind;
 use carom_materials::{Elastic, Law};
 use carom_mesh::{ElementId, Mesh, generate, raise};
@@ -22,7 +22,7 @@ pub const AREA: f64 = 0.6;
 pub struct Sample {
     pub name: String,
     pub mesh: Mesh,
-    pub body: Body,
+    pub body: Solid,
     pub formulation: Formulation,
     /// System number of each mesh node.
     pub number: Vec<u32>,
@@ -55,7 +55,7 @@ impl Sample {
         };
         Sample {
             name: format!("{name}, {}", kinematics.name()),
-            body: Body::new(&mesh, spec, &number).unwrap(),
+            body: Solid::new(&mesh, spec, &number).unwrap(),
             n: mesh.dim * used,
             x: mesh.nodes[..used].iter().rev().copied().collect(),
             mesh,
@@ -77,7 +77,7 @@ impl Sample {
                 *self.body.material(),
             )
         };
-        let body = Body::new(&self.mesh, spec, &self.number).unwrap();
+        let body = Solid::new(&self.mesh, spec, &self.number).unwrap();
         let name = format!("{}, weighted", self.name);
         Sample { name, body, ..self }
     }

@@ -1,6 +1,6 @@
 //! Bodies that carry a part of their inertia and of their internal work.
 
-use carom_bodies::{Body, BodySpec, CellWeights, Kinematics};
+use carom_bodies::{BodySpec, CellWeights, Kinematics, Solid};
 use carom_mesh::{ElementId, generate};
 use carom_testing::Random;
 
@@ -139,7 +139,7 @@ fn weights_follow_their_cells_and_zeros_leave_them_out() {
                 weights,
                 ..BodySpec::new("b", cells, kinematics, MATERIAL)
             };
-            Body::new(&sample.mesh, spec, &sample.number).unwrap()
+            Solid::new(&sample.mesh, spec, &sample.number).unwrap()
         };
         let weighted = body(order.clone(), Some(of_both(weights.collect())));
         let kept = (0..count).filter(|&k| kept(k)).map(|k| order[k]);
@@ -149,7 +149,7 @@ fn weights_follow_their_cells_and_zeros_leave_them_out() {
         let error = (bounds.0 / bounds.1 - 1.0).abs();
         assert!(error < 1e-13, "{}: {error}", sample.name);
         let u = Random(55).vector(sample.n);
-        let of = |body: Body| {
+        let of = |body: Solid| {
             let sample = Sample {
                 name: String::new(),
                 mesh: sample.mesh.clone(),

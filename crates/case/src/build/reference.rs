@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use carom_bodies::{Body, Kinematics};
+use carom_bodies::{Body, Kinematics, Solid};
 use carom_contact::{Places, Rows, Search};
 use carom_dynamics::{System, step_count};
 use carom_exact::{Bar, Impact, Solution};
@@ -158,7 +158,8 @@ fn solve(
     };
     let normal = rows.normal(0);
     let area: f64 = contact.points.iter().map(|point| point.area).sum();
-    let width = |body: usize| width(system.bodies[body].kinematics());
+    let solid = |body: usize| system.bodies[body].as_solid();
+    let width = |body: usize| solid(body).map_or(1.0, |solid| width(solid.kinematics()));
     let one = bar(system, &one, normal, (sides, area))?;
     let impact = match primary {
         None => Impact::Wall { bar: one, gap },
@@ -195,8 +196,12 @@ fn bar(
     inward: [f64; 3],
     (sides, area): (Sides, f64),
 ) -> Result<Bar, String> {
+    let solid = |index: usize| system.bodies[index].as_solid();
     let body: &Body = &system.bodies[indices[0]];
-    let alike = |&index: &usize| system.bodies[index].material() == body.material();
+    let Some(material) = solid(indices[0]).map(Solid::material) else {
+        return Err(format!("body `{}` is not a bar", body.name()));
+    };
+    let alike = |&index: &usize| solid(index).map(Solid::material) == Some(material);
     if !indices.iter().all(alike) {
         return Err(format!(
             "the bodies joined to `{}` have other materials",
@@ -216,7 +221,7 @@ fn bar(
         .for_each(|(s, _)| (near, far) = (near.min(s), far.max(s)));
     let length = far - near;
     let mass: f64 = indices.iter().map(|&index| system.body_mass(index)).sum();
-    let density = body.material().density();
+    let density = material.density();
     if (mass - density * area * length).abs() > 1e-6 * mass {
         return Err(format!(
             "body `{}` is not a bar whose section, {area} m², meets the other side everywhere",
@@ -233,8 +238,8 @@ fn bar(
         ));
     }
     let modulus = match sides {
-        Sides::Free => body.material().initial().young,
-        Sides::Blocked => body.material().initial().wave_modulus(Plane::Full),
+        Sides::Free => material.initial().young,
+        Sides::Blocked => material.initial().wave_modulus(Plane::Full),
     };
     let mut bar = Bar::new(length, area, modulus, density);
     if places.clone().any(|(s, node)| at_far(s) && clamped(node)) {

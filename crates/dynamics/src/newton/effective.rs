@@ -40,6 +40,8 @@ pub(super) struct At<'a> {
     pub(super) time: f64,
     /// Configuration of the internal forces, m.
     pub(super) u: &'a [f64],
+    /// Velocity at the same instant, m/s.
+    pub(super) v: &'a [f64],
     /// The one at the start, for stresses between the two.
     pub(super) from: Option<&'a [f64]>,
     /// Histories at the start of the step.
@@ -236,15 +238,16 @@ fn assemble(system: &System, at: &At, a: &mut Csr) -> Result<(), Error> {
     for (k, body) in system.bodies.iter().enumerate() {
         let placement = Placement {
             u: at.u,
+            v: at.v,
             from: at.from,
             dt: at.dt,
             old: &at.history[system.nonlinear.histories[k].clone()],
         };
-        body.add_tangent(&placement, map.force.x, a)?;
-        let damping = system.nonlinear.damping.get(k).copied().unwrap_or_default();
         let rate = super::loads::damping_rate(map).x;
+        body.add_tangent(&placement, [map.force.x, rate], a)?;
+        let damping = system.nonlinear.damping.get(k).copied().unwrap_or_default();
         if damping.stiffness != 0.0 {
-            body.add_tangent(&placement, rate * damping.stiffness, a)?;
+            body.add_tangent(&placement, [rate * damping.stiffness, 0.0], a)?;
         }
         if damping.mass != 0.0 {
             for &(node, m) in &system.body_masses[k] {

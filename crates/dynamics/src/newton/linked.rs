@@ -120,14 +120,16 @@ impl Newton {
             push_cliques(body, system.dim, &(0..n), &mut cliques);
         }
         let mut stiffness = Csr::from_cliques(n, &cliques);
+        let still = vec![0.0; n];
         for (k, body) in system.bodies.iter().enumerate() {
             let at = Placement {
                 u: &origin.u,
+                v: &still,
                 from: None,
                 dt: self.dt,
                 old: &origin.history[system.nonlinear.histories[k].clone()],
             };
-            body.add_tangent(&at, 1.0, &mut stiffness)?;
+            body.add_tangent(&at, [1.0, 0.0], &mut stiffness)?;
         }
         let weights = system.scheme.link_weights().unwrap_or([0.0, 1.0]);
         let map = self.linear_map();

@@ -7,8 +7,8 @@ use crate::nonlinear::{Amplitude, NumberedForce};
 use crate::step_map::{Row, StepMap};
 use crate::system::System;
 
-/// The velocity that damping forces are taken at: at the instant of the internal forces, or of an explicit step the one
-/// that is known before the forces.
+/// The velocity that forces depend on: at the instant of the internal forces, or of an explicit step the one that is known
+/// before the forces.
 pub(super) fn damping_rate(map: &StepMap) -> Row {
     let velocity = &map.velocity;
     if map.force.x == 0.0 {
@@ -49,7 +49,7 @@ impl Newton {
         }
     }
 
-    /// Damping forces at the x of the iteration, N.
+    /// Rayleigh's damping forces at the velocity of the iteration, N.
     pub(super) fn evaluate_damping(&mut self) {
         let system = &*self.system;
         let vectors = &mut self.vectors;
@@ -57,8 +57,7 @@ impl Newton {
         if system.nonlinear.damping.is_empty() || self.map.inertia.x == 0.0 {
             return;
         }
-        let rate = damping_rate(&self.map);
-        rate.whole(&self.state.motion, &vectors.x, &[], &mut vectors.work);
+        vectors.work.copy_from_slice(&vectors.rate);
         for (k, damping) in system.nonlinear.damping.iter().enumerate() {
             if damping.mass != 0.0 {
                 for &(node, m) in &system.body_masses[k] {

@@ -120,8 +120,10 @@ struct Vectors {
     before: Vec<f64>,
     free: Vec<f64>,
     begun: Vec<f64>,
-    /// A configuration or a velocity.
+    /// A configuration or an acceleration.
     place: Vec<f64>,
+    /// Velocity at the instant of the internal forces.
+    rate: Vec<f64>,
     /// Displacement at the end of the step, predicted; empty where no contact is paired ahead.
     ahead: Vec<f64>,
     work: Vec<f64>,
@@ -184,6 +186,7 @@ impl Newton {
                 free: zeros(),
                 begun: zeros(),
                 place: zeros(),
+                rate: zeros(),
                 ahead: Vec::new(),
                 work: zeros(),
                 history: state.motion.history.clone(),
@@ -382,13 +385,14 @@ impl Newton {
         let system = &*self.system;
         let Vectors {
             place: configuration,
+            rate,
             internal,
             history,
             ..
         } = &mut self.vectors;
-        let u = match place {
-            Which::Place => &configuration[..],
-            Which::Next => &self.next.motion.u[..],
+        let (u, v) = match place {
+            Which::Place => (&configuration[..], &rate[..]),
+            Which::Next => (&self.next.motion.u[..], &self.next.motion.v[..]),
         };
         let from = from.then_some(&self.state.motion.u[..]);
         internal.fill(0.0);
@@ -398,12 +402,12 @@ impl Newton {
             let range = system.nonlinear.histories[k].clone();
             let at = Placement {
                 u,
+                v,
                 from,
                 dt,
                 old: &self.state.motion.history[range.clone()],
             };
-            let stored =
-                body.finite_force(&at, &mut history[range], &mut self.scratch[k], internal)?;
+            let stored = body.force(&at, &mut history[range], &mut self.scratch[k], internal)?;
             sum.strain += stored.strain;
             sum.hardening += stored.hardening;
             sum.dissipated += stored.dissipated;
@@ -416,7 +420,7 @@ impl Newton {
 /// A configuration of the step.
 #[derive(Clone, Copy)]
 enum Which {
-    /// The scratch configuration.
+    /// The scratch configuration and velocity.
     Place,
     /// The end of the step.
     Next,

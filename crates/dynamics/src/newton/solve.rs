@@ -9,6 +9,7 @@ use carom_mesh::ElementId;
 
 use super::effective::{At, Turning};
 use super::floating::{GROWTH as HEAVIER, LARGEST};
+use super::loads::damping_rate;
 use super::{Newton, Which};
 use crate::error::Error;
 use crate::step_map::StepMap;
@@ -211,6 +212,8 @@ impl Newton {
             .mass
             .multiply(&vectors.place, &mut vectors.inertia);
         if first || map.force.x != 0.0 {
+            let rate = damping_rate(&map);
+            rate.whole(motion, &vectors.x, &[], &mut vectors.rate);
             self.evaluate_damping();
             let vectors = &mut self.vectors;
             map.force
@@ -388,6 +391,7 @@ impl Newton {
             },
             time: self.instant(),
             u: &self.vectors.place,
+            v: &self.vectors.rate,
             from: self.between().then_some(&motion.u[..]),
             history: &motion.history,
             proximal: (floats, self.floating.weight),

@@ -68,6 +68,7 @@ impl Newton {
     fn begin(&mut self) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
         self.vectors.place.clone_from(&self.state.motion.u);
+        self.vectors.rate.clone_from(&self.state.motion.v);
         let stored = self.internal((Which::Place, false), 0.0)?;
         self.state
             .motion

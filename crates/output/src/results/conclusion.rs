@@ -190,8 +190,8 @@ fn time(system: &System, last: &Last, zones: Option<&Zones>) -> Time {
 
 /// Largest step times wave speed over element size.
 pub(super) fn courant(system: &System, step: f64) -> Option<f64> {
-    let bodies = system.bodies.iter();
-    let all = bodies.map(|body| body.wave_speed() * step / body.smallest_size());
+    let solids = system.bodies.iter().filter_map(|body| body.as_solid());
+    let all = solids.map(|body| body.wave_speed() * step / body.smallest_size());
     all.reduce(f64::max)
 }
 

@@ -155,5 +155,7 @@ fn mean_window(system: &System, zoning: Option<&Zoning>, contact: usize) -> f64 
         }
     }
     let diagonal = (0..3).map(|i| (high[i] - low[i]).powi(2)).sum::<f64>();
-    WINDOW * diagonal.sqrt() / system.bodies[body].wave_speed()
+    // a body without waves has no front
+    let solid = system.bodies[body].as_solid();
+    solid.map_or(0.0, |solid| WINDOW * diagonal.sqrt() / solid.wave_speed())
 }

@@ -1,6 +1,6 @@
 //! Limits, refusals, threads.
 
-use carom_bodies::{Body, BodySpec, Error, Formulation, Kinematics, Placement, Scratch};
+use carom_bodies::{BodySpec, Error, Formulation, Kinematics, Placement, Scratch, Solid};
 use carom_elements::Kind;
 use carom_materials::Failure;
 use carom_mesh::{Mesh, generate};
@@ -72,7 +72,7 @@ fn what_makes_no_sense_at_finite_strain_is_refused() {
             formulation,
             ..BodySpec::new("arm", cells(&mesh, 2), kinematics, material)
         };
-        Body::new(&mesh, spec, &number).unwrap_err()
+        Solid::new(&mesh, spec, &number).unwrap_err()
     };
     let law = elastic()[0].1;
     let stress = Kinematics::PlaneStress { thickness: 1.0 };
@@ -105,7 +105,7 @@ fn reduced_integration_of_a_quadratic_element_is_refused() {
             elastic()[0].1,
         )
     };
-    let error = Body::new(&mesh, spec, &number).unwrap_err();
+    let error = Solid::new(&mesh, spec, &number).unwrap_err();
     assert!(
         matches!(error, Error::NotReduced { found: "quad8", .. }),
         "{error}"
@@ -126,11 +126,12 @@ fn forces_energies_and_tangents_have_the_same_bits_on_any_number_of_threads() {
                 let (mut scratch, mut f) = (Scratch::default(), vec![0.0; sample.n]);
                 let at = Placement {
                     u: &u,
+                    v: &[],
                     from: None,
                     dt: 1.0,
                     old: &[],
                 };
-                let force = |_| sample.body.finite_force(&at, &mut [], &mut scratch, &mut f);
+                let force = |_| sample.body.force(&at, &mut [], &mut scratch, &mut f);
                 let energies: Vec<f64> = (0..2).map(force).map(|s| s.unwrap().strain).collect();
                 let mut matrix = sample.pattern();
                 sample.body.add_tangent(&at, 2.0, &mut matrix).unwrap();

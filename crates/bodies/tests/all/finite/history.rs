@@ -69,7 +69,7 @@ fn a_step_of_no_time_and_no_motion_changes_nothing() {
         let (mut f_again, mut history) = (vec![0.0; sample.n], again.old.clone());
         let body = &sample.body;
         let kept = body
-            .finite_force(&at, &mut history, &mut Default::default(), &mut f_again)
+            .force(&at, &mut history, &mut Default::default(), &mut f_again)
             .unwrap();
         let error = crate::sample::distance(&f, &f_again);
         // the elastic trial state is recovered from the history to round-off

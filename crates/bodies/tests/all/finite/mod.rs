@@ -129,6 +129,7 @@ impl<'a> Step<'a> {
     fn at<'b>(&'b self, u: &'b [f64]) -> Placement<'b> {
         Placement {
             u,
+            v: &[],
             from: self.from,
             dt: 0.1,
             old: &self.old,
@@ -138,7 +139,7 @@ impl<'a> Step<'a> {
     fn run(&self, u: &[f64]) -> Result<(Vec<f64>, Stored, Vec<f64>), Error> {
         let (mut f, mut new) = (vec![0.0; self.sample.n], vec![f64::NAN; self.old.len()]);
         let body = &self.sample.body;
-        let stored = body.finite_force(&self.at(u), &mut new, &mut Scratch::default(), &mut f)?;
+        let stored = body.force(&self.at(u), &mut new, &mut Scratch::default(), &mut f)?;
         Ok((f, stored, new))
     }
 

@@ -121,7 +121,9 @@ fn of_bodies(
 
 /// What to write for a body that turns or stretches.
 fn instead(system: &System, body: usize) -> String {
-    let body = &system.bodies[body];
+    let Some(body) = system.bodies[body].as_solid() else {
+        return String::new();
+    };
     let (name, elastic) = (body.name(), body.material().initial());
     match (body.takes_finite_strain(), body.kinematics().dim()) {
         (true, _) => format!(
