@@ -5,11 +5,12 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
+use crate::commands::{RUN, TEST};
 use crate::files::{is, list};
 use crate::pages;
-use crate::{RUN, TEST};
+use crate::place::beside;
 
 /// Folder of the book's pages.
 const BOOK: &str = "docs/src";
@@ -119,26 +120,6 @@ fn anchor(title: &str) -> String {
         _ => letter.is_alphanumeric().then_some(letter),
     });
     letters.flat_map(char::to_lowercase).collect()
-}
-
-/// The path of `target` as seen from `file`, without `.` and `..`.
-pub fn beside(file: &Path, target: &str) -> PathBuf {
-    let mut path = PathBuf::new();
-    for part in file
-        .parent()
-        .unwrap_or(Path::new(""))
-        .join(target)
-        .components()
-    {
-        match part {
-            Component::ParentDir => {
-                path.pop();
-            }
-            Component::CurDir => {}
-            part => path.push(part),
-        }
-    }
-    path
 }
 
 fn link_problem(root: &Path, file: &Path, link: &str, included: bool) -> Option<String> {

@@ -1,7 +1,8 @@
 //! The project's checks: `cargo xtask check` is what a contributor runs before a commit and what CI runs. `cargo xtask
 //! chapter` makes the measured tables of the manual anew, `cargo xtask pages` the texts that pages include.
 //!
-//! Quick things first: what the repository holds (`files`), the documentation (`docs`), who uses whom (`layers`), format,
+//! Quick things first: what the repository holds (`files`), the documentation (`docs`), who uses whom (`layers`,
+//! `circles`), format,
 //! lints, pages of the API, one build of the dependencies for all commands (`builds`), then the README's test command.
 
 // A tool for the terminal: printing is its work.
@@ -9,19 +10,19 @@
 
 mod builds;
 mod chapter;
+mod circles;
+mod commands;
 mod docs;
 mod files;
 mod layers;
 mod pages;
+mod place;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-/// The README's two commands, word for word: here, in `.ci/run`, and in the README.
-pub const RUN: &str = "cargo run --release -- run cases/two-bars/case.toml";
-/// See [`RUN`].
-pub const TEST: &str = "cargo test --release --workspace";
+use commands::TEST;
 
 const CLIPPY: &str = "cargo clippy --release --workspace --all-targets -- -D warnings";
 const DOC: &str = "cargo doc --release --workspace --no-deps";
@@ -29,10 +30,11 @@ const DOC: &str = "cargo doc --release --workspace --no-deps";
 /// A named check: what is wrong, one line each, or nothing.
 type Check = (&'static str, fn(&Path) -> Vec<String>);
 
-const CHECKS: [Check; 8] = [
+const CHECKS: [Check; 9] = [
     ("files", files::check),
     ("documentation", docs::check),
     ("layers", layers::check),
+    ("circles", circles::check),
     ("format", |root| command(root, "cargo fmt --all -- --check")),
     ("lints", |root| command(root, CLIPPY)),
     ("pages of the API", |root| command(root, DOC)),

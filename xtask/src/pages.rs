@@ -14,8 +14,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::docs::beside;
 use crate::files::{is, list};
+use crate::place::beside;
 
 const BEGIN: &str = "<!-- include ";
 const CLOSE: &str = " -->";

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use carom_case::{Choices, Input};
 
+use crate::load::refuse;
 use crate::sweep;
 use crate::terminal::{line, out};
 
@@ -32,13 +33,13 @@ pub fn compare(arguments: &Arguments) -> u8 {
     let common = &arguments.common;
     let input = match Input::read(&common.case, &common.set) {
         Ok(input) => input,
-        Err(problems) => return crate::refuse(&[], &problems),
+        Err(problems) => return refuse(&[], &problems),
     };
     let mut beside = Vec::new();
     for other in &arguments.beside {
         match Input::read(other, &[]) {
             Ok(input) => beside.push(input),
-            Err(problems) => return crate::refuse(&[], &problems),
+            Err(problems) => return refuse(&[], &problems),
         }
     }
     let choices = Choices {

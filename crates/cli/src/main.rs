@@ -5,6 +5,8 @@
 
 mod compare;
 mod diagnostics;
+mod exit;
+mod load;
 mod new;
 mod progress;
 mod run;
@@ -16,9 +18,10 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use carom_case::{Built, Input, Problem};
 use clap::{Parser, Subcommand};
 
+use crate::exit::{BAD, BAD_INPUT, FAILED};
+use crate::load::{keep_offenders, load_with};
 use crate::terminal::{err, line, out};
 
 /// Computes the impact of deformable bodies: a case file, a run, a report.
@@ -73,15 +76,6 @@ enum Command {
     },
 }
 
-/// Exit code of bad input.
-const BAD_INPUT: u8 = 2;
-/// Exit code of a run that failed.
-const FAILED: u8 = 3;
-/// Exit code of a run or a verification with a quantity out of its bound.
-const BAD: u8 = 4;
-/// Exit code of an interrupted run.
-const INTERRUPTED: u8 = 130;
-
 fn main() -> ExitCode {
     let code = match Arguments::try_parse() {
         Ok(arguments) => obey(arguments),
@@ -112,42 +106,6 @@ fn obey(Arguments { log, command }: Arguments) -> u8 {
         Command::New { template, file } => new::new(template.as_deref(), &file),
         Command::Verify { name, quick } => verify(name.as_deref(), quick),
     }
-}
-
-/// Reads and builds a case, or prints all its problems.
-fn load(case: &Path, set: &[String]) -> Result<(Input, carom_case::schema::Case, Built), u8> {
-    load_with(case, set, |_| Ok(()))
-}
-
-/// As [`load`]; `keep` sees the problems after they are printed.
-fn load_with(
-    case: &Path,
-    set: &[String],
-    keep: impl Fn(&[Problem]) -> Result<(), carom_output::Error>,
-) -> Result<(Input, carom_case::schema::Case, Built), u8> {
-    let input = Input::read(case, set).map_err(|problems| refuse(&[], &problems))?;
-    let refused = |problems: Vec<Problem>| {
-        let code = refuse(&input.sources, &problems);
-        if let Err(error) = keep(&problems) {
-            err!("error: {error}");
-        }
-        code
-    };
-    let (parsed, locator) = carom_case::parse(&input).map_err(refused)?;
-    let built = carom_case::build(&parsed, &locator, &input).map_err(refused)?;
-    Ok((input, parsed, built))
-}
-
-/// Writes the cells that problems are about beside the case.
-fn keep_offenders(case: &Path, problems: &[Problem]) -> Result<(), carom_output::Error> {
-    let mut offenders = problems.iter().filter_map(|one| one.offenders.as_ref());
-    offenders.try_for_each(|cells| cells.write(case))
-}
-
-fn refuse(sources: &[carom_case::Source], problems: &[Problem]) -> u8 {
-    let styled = std::io::stderr().is_terminal();
-    terminal::write_styled(&diagnostics::render(sources, problems, styled));
-    BAD_INPUT
 }
 
 fn check(case: &Path, set: &[String]) -> u8 {

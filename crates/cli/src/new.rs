@@ -4,8 +4,8 @@ use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use crate::exit::{BAD_INPUT, FAILED};
 use crate::terminal::{err, out};
-use crate::{BAD_INPUT, FAILED};
 
 /// A case to start from.
 struct Template {

@@ -11,9 +11,10 @@ use carom_output::plot::quantity;
 use carom_output::summary::Newton;
 use carom_output::{Grade, Summary};
 
+use crate::exit::{BAD, FAILED, INTERRUPTED};
+use crate::load::load;
 use crate::progress::Progress;
 use crate::terminal::{err, line, out};
-use crate::{BAD, FAILED, INTERRUPTED};
 
 /// Arguments of `carom run`.
 #[derive(clap::Args)]
@@ -33,7 +34,7 @@ pub struct Arguments {
 
 /// Runs a case; returns the exit code.
 pub fn run(arguments: &Arguments) -> u8 {
-    let (input, case, built) = match crate::load(&arguments.case, &arguments.set) {
+    let (input, case, built) = match load(&arguments.case, &arguments.set) {
         Ok(loaded) => loaded,
         Err(code) => return code,
     };

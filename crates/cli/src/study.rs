@@ -3,8 +3,10 @@
 use carom_case::{Axis, Fit, Goal, Input, SweepError};
 use carom_output::study::RAW_PEAK;
 
+use crate::exit::FAILED;
+use crate::load::refuse;
+use crate::sweep;
 use crate::terminal::{err, line, out};
-use crate::{FAILED, sweep};
 
 /// Arguments of `carom study`.
 #[derive(clap::Args)]
@@ -37,7 +39,7 @@ pub fn study(arguments: &Arguments) -> u8 {
     let common = &arguments.common;
     let input = match Input::read(&common.case, &common.set) {
         Ok(input) => input,
-        Err(problems) => return crate::refuse(&[], &problems),
+        Err(problems) => return refuse(&[], &problems),
     };
     if let (Some(key), Some(between), Some(to)) =
         (&arguments.fit, &arguments.between, &arguments.to)

@@ -9,9 +9,10 @@ use carom_case::{Sweep, SweepError};
 use carom_dynamics::Observer;
 use carom_output::compare::{Outcome, Variant};
 
+use crate::exit::{FAILED, INTERRUPTED};
+use crate::load;
 use crate::progress::Progress;
 use crate::terminal::{err, line, out};
-use crate::{FAILED, INTERRUPTED};
 
 /// Letters in a line of a table.
 pub const WIDTH: usize = 120;
@@ -72,7 +73,7 @@ impl Arguments {
 /// Prints why there is no table; returns the exit code.
 pub fn refuse(error: &SweepError) -> u8 {
     match error {
-        SweepError::Input { sources, problems } => crate::refuse(sources, problems),
+        SweepError::Input { sources, problems } => load::refuse(sources, problems),
         SweepError::Output(error) => {
             err!("error: {error}");
             FAILED

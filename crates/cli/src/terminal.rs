@@ -12,7 +12,7 @@ use std::fmt;
 use std::io::{self, ErrorKind, Write};
 use std::sync::Mutex;
 
-use crate::FAILED;
+use crate::exit::FAILED;
 
 /// Letters of a text of the user, or of a message around it, that are shown.
 pub const LONGEST: usize = 1000;

@@ -1,7 +1,7 @@
 //! Eight-node quadrilateral on [-1, 1]², serendipity functions: corners, then the middle of the edges 01, 12, 23, 30.
 
 use crate::quadratic::{serendipity_gradient, serendipity_shape};
-use crate::{Element, Face, Kind, natural, quad4, quad9, quadrature};
+use crate::{Element, Kind, natural, quad4, quad9, quadrature};
 
 pub static ELEMENT: Element = Element {
     kind: Kind::Quad8,
@@ -10,7 +10,7 @@ pub static ELEMENT: Element = Element {
     dim: 2,
     nodes: 8,
     reference: quad9::NODES.split_at(8).0,
-    faces: &FACES,
+    faces: &quad9::FACES,
     gmsh: 16,
     gmsh_order: natural(8),
     vtk: 23,
@@ -21,18 +21,3 @@ pub static ELEMENT: Element = Element {
     mass_rule: &quadrature::SQUARE_9,
     contains: quad4::ELEMENT.contains,
 };
-
-/// Those of quad9 too.
-pub(crate) const FACES: [Face; 4] = [
-    face(&[0, 1, 4]),
-    face(&[1, 2, 5]),
-    face(&[2, 3, 6]),
-    face(&[3, 0, 7]),
-];
-
-const fn face(nodes: &'static [usize]) -> Face {
-    Face {
-        kind: Kind::Bar3,
-        nodes,
-    }
-}

@@ -2,7 +2,7 @@
 //! 01, 12, 23, 30, the centre.
 
 use crate::quadratic::{product_gradient, product_shape};
-use crate::{Element, Kind, natural, quad4, quad8, quadrature};
+use crate::{Element, Face, Kind, natural, quad4, quadrature};
 
 pub static ELEMENT: Element = Element {
     kind: Kind::Quad9,
@@ -11,7 +11,7 @@ pub static ELEMENT: Element = Element {
     dim: 2,
     nodes: 9,
     reference: &NODES,
-    faces: &quad8::FACES,
+    faces: &FACES,
     gmsh: 10,
     gmsh_order: natural(9),
     vtk: 28,
@@ -34,3 +34,18 @@ pub(crate) static NODES: [[f64; 3]; 9] = [
     [-1.0, 0.0, 0.0],
     [0.0, 0.0, 0.0],
 ];
+
+/// Those of quad8 too.
+pub(crate) const FACES: [Face; 4] = [
+    face(&[0, 1, 4]),
+    face(&[1, 2, 5]),
+    face(&[2, 3, 6]),
+    face(&[3, 0, 7]),
+];
+
+const fn face(nodes: &'static [usize]) -> Face {
+    Face {
+        kind: Kind::Bar3,
+        nodes,
+    }
+}

@@ -4,6 +4,7 @@ mod elastic;
 mod hyperelastic;
 mod j2_plasticity;
 mod lagrange;
+mod list;
 mod material;
 mod maxwell;
 mod mooney_rivlin;
@@ -14,7 +15,8 @@ mod st_venant_kirchhoff;
 
 pub use elastic::{Elastic, Plane};
 pub use j2_plasticity::J2Plasticity;
-pub use material::{Conserving, Failure, Law, Material, Response, Tangent, Want};
+pub use list::Law;
+pub use material::{Conserving, Failure, Material, Response, Tangent, Want};
 pub use maxwell::{Branch, MAX_BRANCHES, Maxwell};
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hooke::NeoHooke;

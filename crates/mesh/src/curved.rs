@@ -6,7 +6,7 @@
 
 use carom_elements::{Element, Kind, MAX_FACE_NODES, map};
 
-use crate::project::{difference, dot};
+use crate::vector::{difference, dot};
 
 /// Bound on the passes of [`on_patch`]; five are usual.
 const MAX_PASSES: usize = 50;

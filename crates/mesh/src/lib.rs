@@ -6,6 +6,7 @@
 
 mod bounds;
 mod curved;
+mod element_id;
 mod free;
 pub mod generate;
 pub mod inside;
@@ -17,14 +18,16 @@ pub mod read;
 pub mod refine;
 pub mod search;
 pub mod surface;
+mod vector;
 
 mod error;
 #[cfg(test)]
 mod random;
 
 pub use bounds::Bounds;
+pub use element_id::ElementId;
 pub use error::Error;
-pub use mesh::{Block, Defect, ElementId, Group, Mesh, gather};
+pub use mesh::{Block, Defect, Group, Mesh, gather};
 pub use parts::Parts;
 pub use project::{Projection, project};
 pub use raise::raise;

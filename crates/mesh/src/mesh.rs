@@ -9,7 +9,7 @@ use std::fmt;
 
 use carom_elements::{Kind, MAX_NODES, map};
 
-use crate::Error;
+use crate::{ElementId, Error};
 
 /// A mesh: nodes, elements by kind, named groups of elements.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,15 +31,6 @@ pub struct Block {
     pub kind: Kind,
     /// Node numbers (from 0, all below the number of nodes), as many per element as the kind has nodes.
     pub nodes: Vec<u32>,
-}
-
-/// An element of a mesh: its block and its place there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct ElementId {
-    /// Index in [`Mesh::blocks`].
-    pub block: u32,
-    /// Index of the element in its block.
-    pub index: u32,
 }
 
 /// A named group of elements of one dimension.

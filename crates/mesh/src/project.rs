@@ -6,6 +6,7 @@
 
 use carom_elements::{Kind, MAX_FACE_NODES, MAX_NODES, map};
 
+use crate::vector::{difference, dot};
 use crate::{Face, curved};
 
 /// How far outside a face, in reference units, a projection still counts as inside: round-off at shared edges.
@@ -200,14 +201,6 @@ impl Patch {
             0.0,
         ]
     }
-}
-
-pub(crate) fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(crate) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

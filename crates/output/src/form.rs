@@ -1,7 +1,6 @@
 //! How a number is shown to people.
 
 use crate::plot::{quantity, scientific};
-use crate::report::percent;
 
 /// How a number is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,3 +34,11 @@ impl Form {
         }
     }
 }
+
+/// A part as per cent.
+pub(crate) fn percent(part: f64) -> String {
+    format!("{:.2} %", 100.0 * part).replace('-', "−")
+}
+
+/// What stands for a value that does not exist.
+pub(crate) const NOTHING: &str = "–";

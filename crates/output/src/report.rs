@@ -8,12 +8,10 @@ use std::path::Path;
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 
+use crate::form::{NOTHING, percent};
 use crate::plot::{digits, quantity, scientific};
 use crate::summary::Summary;
 use crate::{Error, ImpactRow, atomic};
-
-/// What stands for a value that does not exist.
-pub(crate) const NOTHING: &str = "–";
 
 /// What the page shows.
 #[derive(Clone, Copy, Debug)]
@@ -77,11 +75,6 @@ pub(crate) fn environment() -> Result<Environment<'static>, Error> {
     environment.add_filter("bytes", |value: Value| show(&value, bytes));
     environment.add_template("style.css", include_str!("../templates/style.css"))?;
     Ok(environment)
-}
-
-/// A part as per cent.
-pub(crate) fn percent(part: f64) -> String {
-    format!("{:.2} %", 100.0 * part).replace('-', "−")
 }
 
 fn show(value: &Value, text: impl Fn(f64) -> String) -> String {

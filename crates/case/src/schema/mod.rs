@@ -9,16 +9,14 @@ mod contact;
 mod load;
 mod material;
 mod mesh;
+mod named;
 mod obstacle;
 mod output;
 mod quantity;
 mod time;
 mod zone;
 
-use std::borrow::Cow;
-use std::collections::BTreeMap;
-
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -35,6 +33,7 @@ pub use contact::{
 pub use load::{AmplitudePoint, Load};
 pub use material::{Branch, Elastic, J2, Material, Maxwell, MooneyRivlin};
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
+pub use named::Named;
 pub use obstacle::{
     Cylinder, NormalVector, Obstacle, ObstacleMotion, ObstaclePoint, Plane, Side, Sphere, Surface,
     Turn,
@@ -102,59 +101,6 @@ pub struct Case {
     /// An exact solution to compare with.
     pub reference: Option<Reference>,
 }
-
-/// Things by name. A name is made of ASCII letters, digits, `_` and `-`: it becomes part of file and column names.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct Named<T>(pub BTreeMap<String, T>);
-
-impl<T> Default for Named<T> {
-    fn default() -> Named<T> {
-        Named(BTreeMap::new())
-    }
-}
-
-impl<T> Named<T> {
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// The names, in alphabetical order.
-    pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.0.keys().map(String::as_str)
-    }
-
-    /// Names and things, in alphabetical order of the names.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, &T)> {
-        self.0.iter().map(|(name, thing)| (name.as_str(), thing))
-    }
-
-    /// The thing called `name`.
-    pub fn get(&self, name: &str) -> Option<&T> {
-        self.0.get(name)
-    }
-}
-
-impl<T: JsonSchema> JsonSchema for Named<T> {
-    fn inline_schema() -> bool {
-        true
-    }
-    fn schema_name() -> Cow<'static, str> {
-        format!("Named{}", T::schema_name()).into()
-    }
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        schemars::json_schema!({
-            "type": "object",
-            "additionalProperties": generator.subschema_for::<T>(),
-            "propertyNames": { "pattern": NAME_PATTERN },
-            "minProperties": 1,
-        })
-    }
-}
-
-/// Names, as a regular expression for editors.
-const NAME_PATTERN: &str = "^[A-Za-z0-9_-]+$";
 
 /// Whether `name` matches the pattern of names.
 pub(crate) fn is_name(name: &str) -> bool {

@@ -2,7 +2,7 @@
 
 use crate::compare::{Done, Variant};
 use crate::form::Form;
-use crate::report::NOTHING;
+use crate::form::NOTHING;
 use crate::rows::Cell;
 use crate::table::Table;
 

@@ -12,7 +12,7 @@ pub(crate) mod page;
 pub use columns::{COLUMNS, Column};
 pub use history::{History, Recorder, StepForce};
 
-use crate::report::percent;
+use crate::form::percent;
 use crate::results::Reference;
 use crate::summary::{Contact, Summary};
 use crate::verdict::{Grade, Line, force_error};

@@ -3,6 +3,8 @@
 //! plotters places everything on whole pixels, so the drawing is made [`FINE`] times too large and shown smaller:
 //! lines are then placed, and are as wide, as they should be.
 
+use std::path::Path;
+
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -10,7 +12,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::scale::{Scale, Shown, extremes, quantity, shown};
 use super::thin::{clip, thin};
 use super::{Curve, Figure, Panel, Role};
-use crate::Error;
+use crate::{Error, atomic};
 
 /// Units of the drawing per displayed pixel.
 const FINE: i32 = 4;
@@ -50,6 +52,32 @@ pub(super) const COMPUTED: [RGBColor; 12] = [
 type Area<'a, 'b> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 type Chart<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 pub(super) type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+impl Figure<'_> {
+    /// The figure as an SVG document.
+    ///
+    /// A panel with `clip` set shows the range from the 1st to the 99th percentile of its computed curves (and all
+    /// of the exact ones) if the full range is more than 1.6 times that; how many samples lie beyond, and the
+    /// farthest of them, is then written over the panel.
+    ///
+    /// # Errors
+    /// [`Error::CurveLength`], [`Error::NotFinite`], [`Error::Backwards`] for a curve that cannot be drawn;
+    /// [`Error::EmptyPanel`]; [`Error::Drawing`] if the drawing library fails.
+    pub fn svg(&self) -> Result<String, Error> {
+        for panel in &self.panels {
+            panel.check()?;
+        }
+        draw(self)
+    }
+
+    /// Writes the figure as one `.svg` file, whole or not at all.
+    ///
+    /// # Errors
+    /// As [`Figure::svg`], and [`Error::File`].
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        atomic::write_text(path, &self.svg()?)
+    }
+}
 
 /// The figure as an SVG document; its curves are checked already.
 pub fn draw(figure: &Figure) -> Result<String, Error> {

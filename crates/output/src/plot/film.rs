@@ -5,9 +5,11 @@
 //! picture stays small whatever the mesh. The drawing is written as SVG directly: it has no axes.
 
 mod squares;
+mod tone;
 
 use std::fmt::Write as _;
 
+use self::tone::{Flat, LEVELS, SHADES, Tone, Window, colour};
 use super::scale::quantity;
 use crate::Error;
 
@@ -22,7 +24,6 @@ const SPACE: f64 = 12.0;
 const MARGIN: f64 = 0.04;
 /// Faces in a frame beyond which it is drawn in squares, and the squares along its longer side.
 const FACES: usize = 2000;
-const SQUARES: f64 = 220.0;
 /// Mean size of a face in pixels below which its edges are not drawn.
 const FINE: f64 = 5.0;
 /// Height in pixels of the stripes that obstacles are drawn with.
@@ -32,20 +33,6 @@ const STRIPE: f64 = 1.0;
 /// upward.
 const EYE: [f64; 3] = [0.38, -0.79, 0.48];
 
-/// From nothing to the largest value; ever darker, so that it can be read without colours.
-const COLOURS: [[f64; 3]; 5] = [
-    [238.0, 242.0, 246.0],
-    [169.0, 207.0, 229.0],
-    [79.0, 156.0, 201.0],
-    [43.0, 95.0, 165.0],
-    [27.0, 42.0, 99.0],
-];
-/// Steps of colour.
-const LEVELS: usize = 24;
-/// Steps of shade of solids, the part of the colour that the darkest of them keeps, and where the light comes from: to the
-/// right, upward, towards the viewer.
-const SHADES: usize = 8;
-const DARK: f64 = 0.84;
 const LIGHT: [f64; 3] = [-0.2, 0.6, 0.77];
 
 /// A face, or a plane cell, with its value.
@@ -78,48 +65,6 @@ pub(crate) struct Scene<'a> {
     pub(crate) field: (&'a str, &'a str),
     /// Gap of a place over the rigid obstacles at a time in s, m: negative inside. Asked in the plane only.
     pub(crate) gap: &'a dyn Fn(f64, [f64; 3]) -> f64,
-}
-
-/// A polygon in the plane of the picture.
-struct Flat {
-    points: Vec<[f64; 2]>,
-    tone: Tone,
-    depth: f64,
-}
-
-/// A colour: the step of its value, and how much light falls on it, the most being `SHADES - 1`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Tone {
-    level: usize,
-    shade: usize,
-}
-
-impl Tone {
-    /// Of a value in full light.
-    fn bright(level: usize) -> Tone {
-        Tone {
-            level,
-            shade: SHADES - 1,
-        }
-    }
-}
-
-/// Where a frame is drawn: pixels per metre, the corner of the model's box (m), the corner of the frame and its size (px).
-struct Window {
-    scale: f64,
-    low: [f64; 2],
-    corner: [f64; 2],
-    size: [f64; 2],
-}
-
-impl Window {
-    /// Pixels of a place, downward.
-    fn at(&self, x: [f64; 2]) -> [f64; 2] {
-        [
-            self.corner[0] + self.scale * (x[0] - self.low[0]),
-            self.corner[1] + self.size[1] - self.scale * (x[1] - self.low[1]),
-        ]
-    }
 }
 
 /// The film strip of these instants as an SVG document.
@@ -460,19 +405,6 @@ fn draw_obstacles(scene: &Scene, time: f64, window: &Window, svg: &mut String) {
 
 fn stripe(path: &mut String, [x, y]: [f64; 2], length: f64) {
     let _ = write!(path, "M{x:.1},{y:.1}h{length:.1}");
-}
-
-/// A colour of the scale, `#rrggbb`.
-fn colour(tone: Tone) -> String {
-    let place = tone.level as f64 / (LEVELS - 1) as f64 * (COLOURS.len() - 1) as f64;
-    let below = (place as usize).min(COLOURS.len() - 2);
-    let part = place - below as f64;
-    let light = DARK + (1.0 - DARK) * tone.shade as f64 / (SHADES - 1) as f64;
-    let [r, g, b] = [0, 1, 2].map(|i| {
-        let [from, to] = [COLOURS[below][i], COLOURS[below + 1][i]];
-        (light * (from + part * (to - from))).round() as u8
-    });
-    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 #[cfg(test)]

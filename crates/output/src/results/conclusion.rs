@@ -6,19 +6,31 @@ use carom_contact::{Contact as Pair, Integration};
 use carom_dynamics::{ContactRecord, Ledger, System};
 
 use crate::plot::model_figure;
-use crate::results::costs::{counts, newton, timings};
+use crate::results::costs::{counts, courant, newton, timings};
 use crate::results::exact;
 use crate::results::impacts::ContactTotals;
 use crate::results::lines::{Evidence, judge};
-use crate::results::{Comparison, Ending, Last, Results};
+use crate::results::totals::Last;
+use crate::results::{Comparison, Ending, Results};
 use crate::summary::{
     Angular, Contact, Energy, Exact, Friction, Model, Momentum, Rejected, Summary, Time, Zones,
     hash,
 };
 use crate::{Error, Report, atomic};
 
+impl Results {
+    /// Writes figures, report and summary, after the run has told its end to the observers
+    /// ([`carom_dynamics::march`] does, after a failed run too).
+    ///
+    /// # Errors
+    /// The first file that could not be written; the others are written nevertheless.
+    pub fn conclude(self, ending: &Ending) -> Result<Summary, Error> {
+        conclude(self, ending)
+    }
+}
+
 /// Writes figures, report and summary. Everything is tried; the first error is returned.
-pub(crate) fn conclude(mut results: Results, ending: &Ending) -> Result<Summary, Error> {
+fn conclude(mut results: Results, ending: &Ending) -> Result<Summary, Error> {
     let mut errors = Vec::new();
     let figures = draw(&mut results, &mut errors);
     let report = keep(results.folder.file("report.html"), &mut errors);
@@ -186,13 +198,6 @@ fn time(system: &System, last: &Last, zones: Option<&Zones>) -> Time {
         largest_step: last.control.range[1],
         courant,
     }
-}
-
-/// Largest step times wave speed over element size.
-pub(super) fn courant(system: &System, step: f64) -> Option<f64> {
-    let solids = system.bodies.iter().filter_map(|body| body.as_solid());
-    let all = solids.map(|body| body.wave_speed() * step / body.smallest_size());
-    all.reduce(f64::max)
 }
 
 fn contacts(results: &Results) -> BTreeMap<String, Contact> {

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use carom_dynamics::{Costs, Stepper, System, Whole, ZoneDriver};
 
-use crate::results::conclusion::courant;
 use crate::results::{Ending, Results};
 use crate::summary::{Counts, Link, Newton, Zone, Zones};
 
@@ -121,4 +120,11 @@ impl Zones {
 /// Unknowns that no support holds.
 fn free(system: &System) -> usize {
     system.fixed.iter().filter(|fixed| !**fixed).count()
+}
+
+/// Largest step times wave speed over element size.
+pub(super) fn courant(system: &System, step: f64) -> Option<f64> {
+    let solids = system.bodies.iter().filter_map(|body| body.as_solid());
+    let all = solids.map(|body| body.wave_speed() * step / body.smallest_size());
+    all.reduce(f64::max)
 }

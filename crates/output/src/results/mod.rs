@@ -18,19 +18,17 @@ mod histories;
 mod impacts;
 mod lines;
 pub(crate) mod sensor;
+mod settings;
+mod totals;
 pub(crate) mod trace;
 mod zoning;
 
-use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use carom_dynamics::{
-    Control, Costs, Ledger, Observer, Records, State, StepReport, Stepper, System,
-};
-use carom_exact::Solution;
+use carom_dynamics::{Observer, State, StepReport, Stepper, System};
 
-use crate::summary::{self, Summary, Zones};
+use crate::summary;
 use crate::{Error, Folder, atomic, checkpoint};
 use exact::Comparison;
 use fields::FieldOutput;
@@ -40,95 +38,9 @@ use histories::Histories;
 use impacts::Impacts;
 use sensor::ContactPoint;
 
+pub use settings::{Ending, Fields, Probe, Reference, Settings};
+use totals::{Last, Totals};
 pub use zoning::Zoning;
-
-/// What is written and where.
-#[derive(Clone, Debug)]
-pub struct Settings {
-    /// The results folder; an earlier one is replaced, any other folder refused ([`Folder::create`]).
-    pub folder: PathBuf,
-    /// Title of the case.
-    pub title: String,
-    /// Text of the case file: copied to `case.toml` and shown in the report.
-    pub case_text: String,
-    /// Version of the program.
-    pub version: String,
-    /// Time scheme with its parameters, as text: `theta, theta = 0.5`.
-    pub scheme: String,
-    /// Histories of groups of nodes.
-    pub probes: Vec<Probe>,
-    /// Fields for ParaView; `None`: none.
-    pub fields: Option<Fields>,
-    /// Exact solution to compare with.
-    pub reference: Option<Reference>,
-    /// Zones and weights of a model in zones.
-    pub zoning: Option<Zoning>,
-    /// Warnings of the check.
-    pub warnings: Vec<String>,
-}
-
-/// A history of the mean motion of a group of nodes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Probe {
-    /// Name as in the case file.
-    pub name: String,
-    /// Nodes of the mesh, each with its weight in the mean, relative to the others; nodes that no body uses are left out.
-    pub nodes: Vec<(u32, f64)>,
-    /// Whether the displacement is written, m.
-    pub displacement: bool,
-    /// Whether the velocity is written, m/s.
-    pub velocity: bool,
-    /// Whether the acceleration is written, m/s².
-    pub acceleration: bool,
-}
-
-impl Probe {
-    /// Displacement, velocity, acceleration.
-    fn recorded(&self) -> [bool; 3] {
-        [self.displacement, self.velocity, self.acceleration]
-    }
-}
-
-/// Fields on the bodies, chosen here, and on the contact surfaces, always.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fields {
-    /// Time between two of them, s. The first is at the start, the last at the end, whatever this is.
-    pub every: f64,
-    /// Displacement of the nodes, m.
-    pub displacement: bool,
-    /// Velocity of the nodes, m/s.
-    pub velocity: bool,
-    /// Acceleration of the nodes, m/s².
-    pub acceleration: bool,
-    /// Mean stress of the cells and its von Mises equivalent, Pa.
-    pub stress: bool,
-}
-
-/// An exact solution of a contact, from time 0 of the run.
-#[derive(Clone, Debug)]
-pub struct Reference {
-    /// Name as in the case file: `two-bars`.
-    pub name: String,
-    /// The solution; it is compared as far as it goes.
-    pub solution: Solution,
-    /// Index of the contact in the system.
-    pub contact: usize,
-    /// Unit vector from the secondary to the primary side.
-    pub axis: [f64; 3],
-}
-
-/// How the run ended.
-#[derive(Clone, Debug)]
-pub struct Ending<'a> {
-    /// Why it did not come to its end time, in a sentence; `None` if it did.
-    pub unfinished: Option<String>,
-    /// What the steps cost.
-    pub costs: &'a Costs,
-    /// What the zones of a run in zones did.
-    pub zones: Option<Zones>,
-    /// Wall time of the whole run, reading and factorisation included.
-    pub wall: Duration,
-}
 
 /// The observer that writes the results folder.
 ///
@@ -149,35 +61,6 @@ pub struct Results {
     /// Mean velocity of the bodies at the start, m/s.
     start: Vec<[f64; 3]>,
     last: Last,
-}
-
-/// What is counted over the steps.
-#[derive(Debug, Default)]
-struct Totals {
-    /// Passes of the status loop.
-    passes: u64,
-    /// Most passes in a step.
-    most_passes: u64,
-    /// Accepted states with an energy or a force that is not finite.
-    not_finite: u64,
-    /// Time spent in here by the run itself.
-    spent: Duration,
-}
-
-/// The last accepted state, as far as the summary needs it.
-#[derive(Debug, Default)]
-struct Last {
-    step: u64,
-    time: f64,
-    control: Control,
-    ledger: Ledger,
-    records: Records,
-    /// Largest residual of the momentum that contacts give to a body, and largest momentum of one, N s; `None` where nothing moves.
-    exchange: Option<[f64; 2]>,
-    /// Mean velocity of the bodies, m/s.
-    velocities: Vec<[f64; 3]>,
-    /// Whether each contact has a force.
-    closed: Vec<bool>,
 }
 
 impl Results {
@@ -299,15 +182,6 @@ impl Results {
     /// A name that leaves the folder; the file cannot be written.
     pub fn attach(&mut self, name: &str, text: &str) -> Result<(), Error> {
         atomic::write_text(&self.folder.file(name)?, text)
-    }
-
-    /// Writes figures, report and summary, after the run has told its end to the observers
-    /// ([`carom_dynamics::march`] does, after a failed run too).
-    ///
-    /// # Errors
-    /// The first file that could not be written; the others are written nevertheless.
-    pub fn conclude(self, ending: &Ending) -> Result<Summary, Error> {
-        conclusion::conclude(self, ending)
     }
 }
 

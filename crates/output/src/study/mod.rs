@@ -6,12 +6,12 @@
 mod orders;
 mod page;
 mod quantities;
+mod run;
 
 pub use orders::{Fit, consecutive, differences, extrapolate, fit, saturation};
 pub use page::RAW_PEAK;
 pub use quantities::{Measure, Quantity};
-
-use crate::compare::Variant;
+pub use run::Run;
 
 /// All runs, in the order of the table.
 #[derive(Clone, Debug)]
@@ -35,19 +35,6 @@ pub enum Abscissa {
     Key,
     /// Nothing: the key has no numbers.
     Nothing,
-}
-
-/// One run.
-#[derive(Clone, Debug)]
-pub struct Run {
-    /// Name, outcome and overrides.
-    pub variant: Variant,
-    /// Abscissa of the orders; `None` if there is none.
-    pub x: Option<f64>,
-    /// Mean of the exact force over the exact contact, N, where the case names an exact solution.
-    pub exact_mean_force: Option<f64>,
-    /// Values of the keys of all axes but the first; empty where there is one axis. Orders are taken among runs that share it.
-    pub series: String,
 }
 
 /// What is known of the convergence of one quantity.

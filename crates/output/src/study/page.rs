@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use minijinja::{Value, context};
 
 use crate::compare::page::inner;
+use crate::form::NOTHING;
 use crate::plot::{Logarithmic, Series, quantity, rounded};
-use crate::report::{NOTHING, environment};
+use crate::report::environment;
 use crate::rows::Cell;
 use crate::study::{Abscissa, Order, Quantity, Run, Source, Study};
 use crate::table::{Table, write_csv};

@@ -4,7 +4,7 @@ use carom_elements::{Kind, MAX_NODES};
 
 use super::builder::Builder;
 use super::cursor::{Cursor, Fault};
-use super::kind;
+use super::kind::kind;
 
 /// Reads `$Nodes`: the count in text, then for each node its tag and coordinates.
 pub(super) fn nodes(cursor: &mut Cursor, builder: &mut Builder) -> Result<(), Fault> {

@@ -6,7 +6,7 @@ use carom_elements::{Kind, MAX_NODES};
 
 use super::builder::Builder;
 use super::cursor::{Cursor, Fault};
-use super::kind;
+use super::kind::kind;
 
 /// Tags of the physical groups of each geometric entity, by dimension and tag of the entity.
 pub(super) type Entities = BTreeMap<(u64, i64), Vec<u64>>;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::{Flat, SQUARES, Tone, Window, colour};
+use super::tone::{Flat, SQUARES, Tone, Window, colour};
 
 /// Writes the faces of a frame, the far ones first, as one path for each colour.
 pub(super) fn draw(flats: &[Flat], window: &Window, svg: &mut String) {

@@ -1,3 +1,4 @@
+use super::tone::SQUARES;
 use super::*;
 
 fn no_obstacle(_: f64, _: [f64; 3]) -> f64 {

@@ -1,0 +1,46 @@
+//! Reading a case, or printing why it cannot be read.
+
+use std::io::IsTerminal;
+use std::path::Path;
+
+use carom_case::{Built, Input, Problem};
+
+use crate::exit::BAD_INPUT;
+use crate::terminal::err;
+use crate::{diagnostics, terminal};
+
+/// Reads and builds a case, or prints all its problems.
+pub fn load(case: &Path, set: &[String]) -> Result<(Input, carom_case::schema::Case, Built), u8> {
+    load_with(case, set, |_| Ok(()))
+}
+
+/// As [`load`]; `keep` sees the problems after they are printed.
+pub fn load_with(
+    case: &Path,
+    set: &[String],
+    keep: impl Fn(&[Problem]) -> Result<(), carom_output::Error>,
+) -> Result<(Input, carom_case::schema::Case, Built), u8> {
+    let input = Input::read(case, set).map_err(|problems| refuse(&[], &problems))?;
+    let refused = |problems: Vec<Problem>| {
+        let code = refuse(&input.sources, &problems);
+        if let Err(error) = keep(&problems) {
+            err!("error: {error}");
+        }
+        code
+    };
+    let (parsed, locator) = carom_case::parse(&input).map_err(refused)?;
+    let built = carom_case::build(&parsed, &locator, &input).map_err(refused)?;
+    Ok((input, parsed, built))
+}
+
+/// Writes the cells that problems are about beside the case.
+pub fn keep_offenders(case: &Path, problems: &[Problem]) -> Result<(), carom_output::Error> {
+    let mut offenders = problems.iter().filter_map(|one| one.offenders.as_ref());
+    offenders.try_for_each(|cells| cells.write(case))
+}
+
+pub fn refuse(sources: &[carom_case::Source], problems: &[Problem]) -> u8 {
+    let styled = std::io::stderr().is_terminal();
+    terminal::write_styled(&diagnostics::render(sources, problems, styled));
+    BAD_INPUT
+}

@@ -1,0 +1,70 @@
+//! Why a mesh could not be read.
+
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+
+/// Why a mesh could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The operating system does not give the file.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// No reader takes the extension.
+    #[error("{}: found the extension \"{found}\", expected one of: {}", path.display(), expected.join(", "))]
+    Extension {
+        /// The file.
+        path: PathBuf,
+        /// Its extension, empty if it has none.
+        found: String,
+        /// Extensions that are read.
+        expected: &'static [&'static str],
+    },
+    /// The content breaks the rules of the format.
+    #[error("{}, {place}: found {found}, expected {expected}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// Where in the file.
+        place: Place,
+        /// What stands there.
+        found: String,
+        /// What should.
+        expected: String,
+    },
+    /// The content is sound, but of a sort that Carom does not read.
+    #[error("{}, {place}: {found} cannot be read; accepted: {accepted}", path.display())]
+    Unsupported {
+        /// The file.
+        path: PathBuf,
+        /// Where in the file.
+        place: Place,
+        /// What stands there.
+        found: String,
+        /// What would be read.
+        accepted: String,
+    },
+}
+
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line of a text file, from 1.
+    Line(usize),
+    /// A byte of a binary file, from 0.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Line(line) => write!(f, "line {line}"),
+            Place::Byte(byte) => write!(f, "byte {byte}"),
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! What a line looks at, and what it finds.
+
+use carom_dynamics::System;
+
+use crate::results::totals::{Last, Totals};
+use crate::summary::{Energy, Exact, Momentum, Zones};
+use crate::verdict::Line;
+
+/// What a line looks at.
+pub(crate) struct Evidence<'a> {
+    pub(crate) system: &'a System,
+    pub(crate) last: &'a Last,
+    pub(crate) totals: &'a Totals,
+    pub(crate) zones: Option<&'a Zones>,
+    pub(crate) energy: &'a Energy,
+    pub(crate) momentum: &'a Momentum,
+    pub(crate) exact: Option<&'a Exact>,
+}
+
+/// What a line finds.
+pub(crate) enum Finding {
+    /// A number with its grade.
+    Line(Line),
+    /// What cannot be checked in this run, and why.
+    Unchecked(String),
+    /// Nothing: the run has none of what the line is about.
+    Absent,
+}
+
+/// The largest of named numbers, one that is no number first.
+pub(super) fn worst<'a>(all: impl Iterator<Item = (&'a str, f64)>) -> Option<(&'a str, f64)> {
+    all.reduce(
+        |worst, other| match worst.1.is_nan() || worst.1 >= other.1 {
+            true => worst,
+            false => other,
+        },
+    )
+}

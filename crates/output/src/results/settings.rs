@@ -1,0 +1,98 @@
+//! What is written and where, and what the results are told of the run.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use carom_dynamics::Costs;
+use carom_exact::Solution;
+
+use crate::results::Zoning;
+use crate::summary::Zones;
+
+/// What is written and where.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The results folder; an earlier one is replaced, any other folder refused ([`Folder::create`]).
+    pub folder: PathBuf,
+    /// Title of the case.
+    pub title: String,
+    /// Text of the case file: copied to `case.toml` and shown in the report.
+    pub case_text: String,
+    /// Version of the program.
+    pub version: String,
+    /// Time scheme with its parameters, as text: `theta, theta = 0.5`.
+    pub scheme: String,
+    /// Histories of groups of nodes.
+    pub probes: Vec<Probe>,
+    /// Fields for ParaView; `None`: none.
+    pub fields: Option<Fields>,
+    /// Exact solution to compare with.
+    pub reference: Option<Reference>,
+    /// Zones and weights of a model in zones.
+    pub zoning: Option<Zoning>,
+    /// Warnings of the check.
+    pub warnings: Vec<String>,
+}
+
+/// A history of the mean motion of a group of nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// Name as in the case file.
+    pub name: String,
+    /// Nodes of the mesh, each with its weight in the mean, relative to the others; nodes that no body uses are left out.
+    pub nodes: Vec<(u32, f64)>,
+    /// Whether the displacement is written, m.
+    pub displacement: bool,
+    /// Whether the velocity is written, m/s.
+    pub velocity: bool,
+    /// Whether the acceleration is written, m/s².
+    pub acceleration: bool,
+}
+
+impl Probe {
+    /// Displacement, velocity, acceleration.
+    pub(crate) fn recorded(&self) -> [bool; 3] {
+        [self.displacement, self.velocity, self.acceleration]
+    }
+}
+
+/// Fields on the bodies, chosen here, and on the contact surfaces, always.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fields {
+    /// Time between two of them, s. The first is at the start, the last at the end, whatever this is.
+    pub every: f64,
+    /// Displacement of the nodes, m.
+    pub displacement: bool,
+    /// Velocity of the nodes, m/s.
+    pub velocity: bool,
+    /// Acceleration of the nodes, m/s².
+    pub acceleration: bool,
+    /// Mean stress of the cells and its von Mises equivalent, Pa.
+    pub stress: bool,
+}
+
+/// An exact solution of a contact, from time 0 of the run.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// Name as in the case file: `two-bars`.
+    pub name: String,
+    /// The solution; it is compared as far as it goes.
+    pub solution: Solution,
+    /// Index of the contact in the system.
+    pub contact: usize,
+    /// Unit vector from the secondary to the primary side.
+    pub axis: [f64; 3],
+}
+
+/// How the run ended.
+#[derive(Clone, Debug)]
+pub struct Ending<'a> {
+    /// Why it did not come to its end time, in a sentence; `None` if it did.
+    pub unfinished: Option<String>,
+    /// What the steps cost.
+    pub costs: &'a Costs,
+    /// What the zones of a run in zones did.
+    pub zones: Option<Zones>,
+    /// Wall time of the whole run, reading and factorisation included.
+    pub wall: Duration,
+}
