@@ -7,6 +7,7 @@
 
 use std::time::{Duration, Instant};
 
+use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, BodySpec, Kinematics, Scratch};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
@@ -71,7 +72,8 @@ fn sweep(criterion: &mut Criterion, name: &str, mesh: &Mesh, kinematics: Kinemat
     let count = cells.len() as u64;
     let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
     let spec = BodySpec::new(name, cells, kinematics, MATERIAL);
-    let body = match Body::new(mesh, spec, &number) {
+    let unknowns = Unknowns::translations(mesh.dim, mesh.nodes.len());
+    let body = match Body::new(mesh, spec, &number, &unknowns) {
         Ok(body) => body,
         Err(error) => {
             println!("{error}");

@@ -8,6 +8,7 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use carom_algebra::unknowns::Unknowns;
 use carom_contact::law::Displacement;
 use carom_contact::{Contact, Integration, Law, Places, Point, Rows, Search, Sliding, Target};
 use carom_elements::Kind;
@@ -33,6 +34,7 @@ fn main() {
 fn sheet(criterion: &mut Criterion, side: u32) -> Vec<String> {
     let (x, contact) = scene(side);
     let n = f64::from(side * side);
+    let unknowns = Unknowns::translations(3, x.len());
     let mut lines = Vec::new();
     for (name, step) in [("first", 0.0), ("fast", 1.0), ("slow", 0.01)] {
         let mut u = vec![0.0; 3 * x.len()];
@@ -45,7 +47,7 @@ fn sheet(criterion: &mut Criterion, side: u32) -> Vec<String> {
             sheet.iter_mut().step_by(3).for_each(|u| *u += way);
             way = -way;
             let places = Places {
-                dim: 3,
+                unknowns: &unknowns,
                 time: 0.0,
                 x: &x,
                 u: &u,

@@ -12,5 +12,6 @@ pub mod pattern;
 pub mod reduce;
 pub mod solver;
 pub mod tensor;
+pub mod unknowns;
 
 pub use error::Error;

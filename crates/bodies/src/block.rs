@@ -4,6 +4,7 @@
 //! number of threads.
 
 use carom_algebra::tensor::Mat3;
+use carom_algebra::unknowns::Unknowns;
 use carom_elements::{Kind, MAX_NODES};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -36,6 +37,8 @@ fn chunk_length(kind: Kind) -> usize {
 pub(crate) struct Matrices<'a> {
     /// System numbers of its nodes.
     pub(crate) nodes: &'a [u32],
+    /// First unknowns of its nodes.
+    pub(crate) first: &'a [u32],
     /// N/m, row-major over node-major unknowns; empty where it is not wanted.
     pub(crate) stiffness: &'a [f64],
     /// Scalar consistent mass in kg, row-major over nodes.
@@ -91,11 +94,23 @@ pub(crate) struct Block {
 pub(crate) struct Chunk {
     /// System numbers of the nodes.
     pub(crate) nodes: Vec<u32>,
+    /// First unknowns of the nodes.
+    pub(crate) first: Vec<u32>,
     /// Coordinates of the nodes in m.
     x: Vec<[f64; 3]>,
     /// Nodes of each element, as places in `nodes`.
     pub(crate) connectivity: Vec<u32>,
     weights: Option<ChunkWeights>,
+}
+
+/// What elements are made on.
+pub(crate) struct Nodes<'a> {
+    /// System numbers of the nodes of each element, flat.
+    pub(crate) elements: &'a [u32],
+    /// Coordinates by system number, m.
+    pub(crate) x: &'a [[f64; 3]],
+    /// Unknowns of the nodes of the system.
+    pub(crate) unknowns: &'a Unknowns,
 }
 
 /// Buffers of the internal-force sweep: one list of nodal forces and one energy per chunk.
@@ -110,13 +125,11 @@ pub struct Scratch {
 }
 
 impl Block {
-    /// `elements`: system numbers of the nodes of each element, flat; `x`: coordinates by system number; `weights`: of
-    /// these elements in their order.
+    /// `weights`: of these elements in their order.
     pub(crate) fn new(
         kind: Kind,
         physics: Physics,
-        elements: &[u32],
-        x: &[[f64; 3]],
+        of: &Nodes,
         weights: Option<&CellWeights>,
     ) -> Block {
         let per = kind.table().nodes;
@@ -130,7 +143,8 @@ impl Block {
                 ChunkWeights::new(inertia, stiffness, per, &stiffness_points)
             })
         };
-        let chunks = elements
+        let chunks = of
+            .elements
             .chunks(length)
             .enumerate()
             .map(|(place, elements)| {
@@ -141,7 +155,11 @@ impl Block {
                 let place = |node: &u32| nodes.partition_point(|n| n < node) as u32;
                 Chunk {
                     connectivity: elements.iter().map(place).collect(),
-                    x: nodes.iter().map(|&node| x[node as usize]).collect(),
+                    x: nodes.iter().map(|&node| of.x[node as usize]).collect(),
+                    first: nodes
+                        .iter()
+                        .map(|&node| of.unknowns.first(node) as u32)
+                        .collect(),
                     nodes,
                     weights,
                 }
@@ -157,7 +175,7 @@ impl Block {
     }
 
     /// Internal forces (N, one entry per chunk node) and strain energy (J) of each chunk, for the displacement `u` (m,
-    /// system vector with `dim` entries per node).
+    /// a system vector).
     pub(crate) fn forces(
         &self,
         dim: usize,
@@ -241,6 +259,7 @@ impl Block {
                 self.lump(&m, &mut lumped);
                 visit(&Matrices {
                     nodes: &element_nodes::<N, _>(element, |node| chunk.nodes[node]),
+                    first: &element_nodes::<N, _>(element, |node| chunk.first[node]),
                     stiffness: &k,
                     mass: &m,
                     lumped: &lumped,
@@ -391,7 +410,7 @@ impl Sweep<'_> {
                 for a in 0..N {
                     let place = element[a] as usize;
                     let x_a = &self.chunk.x[place];
-                    let u_a = &self.u[D * self.chunk.nodes[place] as usize..][..D];
+                    let u_a = &self.u[self.chunk.first[place] as usize..][..D];
                     for i in 0..D {
                         x[a][i].0[k] = x_a[i];
                         u[a][i].0[k] = u_a[i];
@@ -444,7 +463,7 @@ impl Chunk {
     ) -> ([[f64; 3]; N], [[f64; 3]; N]) {
         let x = element_nodes::<N, _>(element, |node| self.x[node]);
         let u = element_nodes::<N, _>(element, |node| {
-            let first = dim * self.nodes[node] as usize;
+            let first = self.first[node] as usize;
             let mut u_a = [0.0; 3];
             u_a[..dim].copy_from_slice(&u[first..first + dim]);
             u_a
@@ -506,8 +525,11 @@ mod tests {
         let block = Block::new(
             kind,
             physics,
-            &elements,
-            &x.collect::<Vec<_>>(),
+            &Nodes {
+                elements: &elements,
+                x: &x.collect::<Vec<_>>(),
+                unknowns: &Unknowns::translations(element.dim, total),
+            },
             weights.as_ref(),
         );
         let u = (0..element.dim * total).map(|i| (i as f64).cos());

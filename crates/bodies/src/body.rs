@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Mat3;
+use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
 use crate::block::Scratch;
@@ -19,12 +20,17 @@ pub enum Body {
 }
 
 impl Body {
-    /// Builds a solid or a bar on a mesh. `number`: system number of each mesh node.
+    /// Builds a solid or a bar on a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the system.
     ///
     /// # Errors
     /// As [`Solid::new`].
-    pub fn new(mesh: &Mesh, spec: BodySpec, number: &[u32]) -> Result<Body, Error> {
-        Solid::new(mesh, spec, number).map(Body::Solid)
+    pub fn new(
+        mesh: &Mesh,
+        spec: BodySpec,
+        number: &[u32],
+        unknowns: &Unknowns,
+    ) -> Result<Body, Error> {
+        Solid::new(mesh, spec, number, unknowns).map(Body::Solid)
     }
 
     /// The solid or bar that it is, if it is one.

@@ -1,7 +1,7 @@
 //! Discretised bodies: mass, internal forces, stiffness, energies, stresses and their stability limit.
 //!
-//! A body does not know what touches it, nor how time goes on. Vectors of unknowns are those of the whole system:
-//! node `i` of the system owns the entries `dim * i .. dim * i + dim`.
+//! A body does not know what touches it, nor how time goes on. Vectors of unknowns are those of the whole system;
+//! which of their entries belong to a node is told by the map of [`unknowns`](carom_algebra::unknowns).
 
 mod bar;
 mod block;

@@ -5,13 +5,14 @@ use std::ops::Range;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Mat3;
+use carom_algebra::unknowns::Unknowns;
 use carom_elements::Kind;
 use carom_materials::{Law, Plane};
 use carom_mesh::{ElementId, Mesh};
 
 use crate::Error;
 use crate::bar::Bar;
-use crate::block::{Block, Physics, Scratch, Visit};
+use crate::block::{Block, Nodes, Physics, Scratch, Visit};
 use crate::continuum;
 use crate::finite::{Cells, Finite, Formulation, Shape};
 use crate::together::Together;
@@ -69,12 +70,17 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Builds a body on a mesh. `number`: system number of each mesh node.
+    /// Builds a body on a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the system.
     ///
     /// # Errors
     /// No element, elements of a wrong dimension, a negative radius in axisymmetry, weights that are too few or too many
     /// or give a negative mass or stiffness.
-    pub fn new(mesh: &Mesh, spec: BodySpec, number: &[u32]) -> Result<Solid, Error> {
+    pub fn new(
+        mesh: &Mesh,
+        spec: BodySpec,
+        number: &[u32],
+        unknowns: &Unknowns,
+    ) -> Result<Solid, Error> {
         if spec.cells.is_empty() {
             return Err(Error::Empty { body: spec.name });
         }
@@ -114,9 +120,14 @@ impl Solid {
             if !elements.is_empty() {
                 let of_kind = |all: &CellWeights| all.of_kind(mesh, &spec.cells, kind);
                 let weights = spec.weights.as_ref().map(of_kind);
-                blocks.push(Block::new(kind, physics, &elements, &x, weights.as_ref()));
+                let nodes = Nodes {
+                    elements: &elements,
+                    x: &x,
+                    unknowns,
+                };
+                blocks.push(Block::new(kind, physics, &nodes, weights.as_ref()));
                 if spec.material.finite().is_some() {
-                    finite_cells.push(Cells::new(kind, &shape, elements, &x, weights.as_ref()));
+                    finite_cells.push(Cells::new(kind, &shape, &nodes, weights.as_ref()));
                 }
             }
             cells.extend(of_kind);
@@ -240,8 +251,8 @@ impl Solid {
             block.forces(self.dim, u, block_forces, block_energies);
         }
         for (chunk, force) in chunks().zip(&scratch.forces) {
-            for (&node, f_a) in chunk.nodes.iter().zip(force) {
-                let first = self.dim * node as usize;
+            for (&first, f_a) in chunk.first.iter().zip(force) {
+                let first = first as usize;
                 for i in 0..self.dim {
                     f[first + i] += f_a[i];
                 }
@@ -256,9 +267,9 @@ impl Solid {
     pub fn add_lumped_mass(&self, mass: &mut [f64]) {
         let dim = self.dim;
         self.each_matrix(false, &mut |element| {
-            for (&node, lumped) in element.nodes.iter().zip(element.lumped) {
+            for (&first, lumped) in element.first.iter().zip(element.lumped) {
                 for i in 0..dim {
-                    mass[dim * node as usize + i] += lumped;
+                    mass[first as usize + i] += lumped;
                 }
             }
         });
@@ -276,17 +287,17 @@ impl Solid {
     ) {
         let dim = self.dim;
         self.each_matrix(true, &mut |element| {
-            let (nodes, k, m) = (element.nodes, element.stiffness, element.mass);
-            let n = nodes.len();
-            if !part.contains(&(dim * nodes[0] as usize)) {
+            let (first, k, m) = (element.first, element.stiffness, element.mass);
+            let n = first.len();
+            if !part.contains(&(first[0] as usize)) {
                 return;
             }
             for row in 0..dim * n {
                 let (a, i) = (row / dim, row % dim);
-                let dof = dim * nodes[a] as usize + i;
+                let dof = first[a] as usize + i;
                 for column in 0..dim * n {
                     let (b, j) = (column / dim, column % dim);
-                    let other = dim * nodes[b] as usize + j;
+                    let other = first[b] as usize + j;
                     let mut value = stiffness_factor * k[row * dim * n + column];
                     if i == j {
                         value += mass_factor * m[a * n + b];

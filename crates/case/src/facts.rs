@@ -198,7 +198,7 @@ pub(crate) fn approach(system: &System, contact: usize) -> Approach {
 /// The same from another displacement, m.
 pub(crate) fn approach_from(system: &System, contact: usize, u: &[f64]) -> Approach {
     let places = Places {
-        dim: system.dim,
+        unknowns: &system.unknowns,
         time: 0.0,
         x: &system.x,
         u,
@@ -268,7 +268,7 @@ fn accelerations(system: &System) -> Vec<f64> {
     for body in &system.body_masses {
         let mass: f64 = body.iter().map(|(_, mass)| mass).sum();
         for i in 0..system.dim {
-            let unknown = |node: u32| system.dim * node as usize + i;
+            let unknown = |node: u32| system.unknowns.first(node) + i;
             let held = body.iter().any(|&(node, _)| system.fixed[unknown(node)]);
             // radial forces move no ring as a whole
             if held || system.axisymmetric && i == 0 {

@@ -1,5 +1,6 @@
 //! One contact: secondary points that carry the forces, what they face, and the law between them.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_elements::MAX_FACE_NODES;
 use carom_mesh::{Face, Projection};
 
@@ -71,13 +72,13 @@ pub struct Contact {
 /// Positions of the system's nodes: reference coordinates and a displacement.
 #[derive(Clone, Copy, Debug)]
 pub struct Places<'a> {
-    /// Unknowns per node.
-    pub dim: usize,
+    /// Unknowns of the nodes.
+    pub unknowns: &'a Unknowns,
     /// Time, s: where obstacles are that move.
     pub time: f64,
     /// Reference coordinates by system number, m.
     pub x: &'a [[f64; 3]],
-    /// Displacement, `dim` entries per node, m.
+    /// Displacement, a system vector, m.
     pub u: &'a [f64],
 }
 
@@ -85,11 +86,18 @@ impl Places<'_> {
     /// Current position of a node in m.
     pub fn of(&self, node: u32) -> [f64; 3] {
         let mut place = self.x[node as usize];
-        let first = self.dim * node as usize;
-        for (x, u) in place.iter_mut().zip(&self.u[first..first + self.dim]) {
+        for (x, u) in place
+            .iter_mut()
+            .zip(&self.u[self.unknowns.translations_of(node)])
+        {
             *x += u;
         }
         place
+    }
+
+    /// Dimension of space.
+    pub fn dim(&self) -> usize {
+        self.unknowns.dim()
     }
 }
 
@@ -188,7 +196,7 @@ impl Contact {
 
 fn add_point(places: &Places, point: &Point, normal: &[f64; 3], rows: &mut Rows) {
     for (node, n) in point.carriers() {
-        rows.add_node(places.dim, node, &normal.map(|m| n * m));
+        rows.add_node(places, node, &normal.map(|m| n * m));
     }
 }
 
@@ -198,7 +206,7 @@ fn add_row(places: &Places, point: &Point, foot: &Projection, face: &Face, rows:
     let mut shape = [0.0; MAX_FACE_NODES];
     (face.kind.table().shape)(&foot.xi, &mut shape[..corners.len()]);
     for (&node, n) in corners.iter().zip(shape) {
-        rows.add_node(places.dim, node, &foot.normal.map(|m| -n * m));
+        rows.add_node(places, node, &foot.normal.map(|m| -n * m));
     }
 }
 
@@ -245,7 +253,7 @@ mod tests {
         rows.clear();
         contact.pair(
             &Places {
-                dim: 3,
+                unknowns: &Unknowns::translations(3, 26),
                 time: 0.0,
                 x: &x,
                 u: &vec![0.0; 78],

@@ -82,6 +82,8 @@ impl Contact {
 
 #[cfg(test)]
 mod tests {
+    use carom_algebra::unknowns::Unknowns;
+
     use super::*;
     use crate::law::Displacement;
     use crate::{Integration, Law, Plane, Point, Sliding, Target};
@@ -105,7 +107,7 @@ mod tests {
         };
         let x = [[0.0, 0.5, 0.0], [1.0, -0.25, 0.0], [2.0, -1e-12, 0.0]];
         let places = Places {
-            dim: 2,
+            unknowns: &Unknowns::translations(2, 3),
             time: 0.0,
             x: &x,
             u: &[0.0; 6],

@@ -114,6 +114,7 @@ impl Point {
 
 #[cfg(test)]
 mod tests {
+    use carom_algebra::unknowns::Unknowns;
     use carom_elements::Kind;
     use carom_mesh::{ElementId, face_nodes};
 
@@ -139,7 +140,7 @@ mod tests {
         ];
         let points = Point::of_faces(&[face(Kind::Quad4, &[0, 1, 2, 3])], &x, |_| 0.5);
         let places = Places {
-            dim: 3,
+            unknowns: &Unknowns::translations(3, 4),
             time: 0.0,
             x: &x,
             u: &[0.0; 12],

@@ -1,5 +1,7 @@
 //! The rows of the gap operator N = ∂g/∂u, one per contact point, in one pool.
 
+use crate::Places;
+
 /// Gaps, normals and derivatives of the gaps of a list of contact points, at one configuration.
 ///
 /// `ġ = N v + ∂g/∂t`, the last by the given motion of an obstacle, and a force P in a point acts on the unknowns as
@@ -146,10 +148,10 @@ impl Rows {
     }
 
     /// Adds to the row of the point pushed last the motion of a node along `direction`.
-    pub(crate) fn add_node(&mut self, dim: usize, node: u32, direction: &[f64; 3]) {
-        for (i, &n) in direction.iter().enumerate().take(dim) {
+    pub(crate) fn add_node(&mut self, places: &Places, node: u32, direction: &[f64; 3]) {
+        for (unknown, &n) in places.unknowns.translations_of(node).zip(direction) {
             if n != 0.0 {
-                self.dofs.push(dim as u32 * node + i as u32);
+                self.dofs.push(unknown as u32);
                 self.coefficients.push(n);
             }
         }

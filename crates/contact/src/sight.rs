@@ -11,6 +11,7 @@
 //!   body there, so that the far side, at the whole thickness, is out of view until the body is pressed together to half
 //!   of it.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_elements::{MAX_FACE_NODES, map};
 use carom_mesh::{Bounds, BoxTree, Face, Projection};
 
@@ -167,7 +168,7 @@ impl Sight {
     fn limit_to_thickness(&mut self, points: &[Point], target: &[Face], x: &[[f64; 3]]) {
         let rest = vec![0.0; 3 * x.len()];
         let places = Places {
-            dim: 3,
+            unknowns: &Unknowns::translations(3, x.len()),
             time: 0.0,
             x,
             u: &rest,

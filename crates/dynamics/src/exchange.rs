@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use carom_algebra::unknowns::Kind;
 use serde::{Deserialize, Serialize};
 
 use crate::records::ContactRecord;
@@ -39,7 +40,9 @@ struct Part {
 fn total(system: &System, part: &Range<usize>, force: &impl Fn(usize) -> f64) -> [f64; 3] {
     let mut total = [0.0; 3];
     for unknown in part.clone() {
-        total[(unknown - part.start) % system.dim] += force(unknown);
+        if let Kind::Translation(axis) = system.unknowns.kind(unknown) {
+            total[axis] += force(unknown);
+        }
     }
     axial(system, total)
 }

@@ -331,8 +331,7 @@ impl Sides<'_> {
 fn each_free(system: &System, body: Option<usize>, mut visit: impl FnMut(usize, usize, f64)) {
     let nodes = body.map_or(&[][..], |body| &system.body_masses[body][..]);
     for &(node, m) in nodes {
-        for i in 0..system.dim {
-            let unknown = system.dim * node as usize + i;
+        for (i, unknown) in system.unknowns.translations_of(node).enumerate() {
             if !system.fixed[unknown] {
                 visit(unknown, i, m);
             }

@@ -1,5 +1,6 @@
 //! Contacts that penetrate at the start: refused, offset, or their nodes moved before bodies are built.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_contact::{Contact, Initial, Integration, Places, Sight, Target};
 
 use crate::Error;
@@ -31,9 +32,10 @@ impl Model {
                 contact.integration = Integration::Node;
                 let number: Vec<u32> = (0..self.mesh.nodes.len() as u32).collect();
                 let numbered = numbered(&contact, self, &number, &self.mesh.nodes);
-                let u = self.displacement();
+                let unknowns = Unknowns::translations(self.mesh.dim, self.mesh.nodes.len());
+                let u = self.displacement(&unknowns);
                 let places = Places {
-                    dim: self.mesh.dim,
+                    unknowns: &unknowns,
                     time: 0.0,
                     x: &self.mesh.nodes,
                     u: &u,
@@ -58,14 +60,14 @@ impl Model {
     }
 
     /// Initial displacement of the nodes of the mesh, m.
-    fn displacement(&self) -> Vec<f64> {
-        let dim = self.mesh.dim;
-        let mut u = vec![0.0; dim * self.mesh.nodes.len()];
+    fn displacement(&self, unknowns: &Unknowns) -> Vec<f64> {
+        let mut u = vec![0.0; unknowns.len()];
         for body in &self.bodies {
             for &cell in &body.spec.cells {
                 for &node in self.mesh.element_nodes(cell) {
-                    let first = dim * node as usize;
-                    u[first..first + dim].copy_from_slice(&body.displacement[..dim]);
+                    for (unknown, given) in unknowns.of(node).zip(body.displacement) {
+                        u[unknown] = given;
+                    }
                 }
             }
         }

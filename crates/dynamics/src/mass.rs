@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
+use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, MassKind};
 
 use crate::model::ModelBody;
@@ -30,16 +31,17 @@ impl Mass {
         }
     }
 
-    /// That of bodies on `nodes` nodes.
-    pub(crate) fn of(bodies: &[Body], specs: &[ModelBody], dim: usize, nodes: usize) -> Mass {
-        let mut lumped = vec![0.0; dim * nodes];
+    /// That of bodies.
+    pub(crate) fn of(bodies: &[Body], specs: &[ModelBody], unknowns: &Unknowns) -> Mass {
+        let n = unknowns.len();
+        let mut lumped = vec![0.0; n];
         let mut cliques = Cliques::new();
         let mut consistent = Vec::new();
         for (body, spec) in bodies.iter().zip(specs) {
             match spec.mass {
                 MassKind::Lumped => body.add_lumped_mass(&mut lumped),
                 MassKind::Consistent => {
-                    push_cliques(body, dim, &(0..dim * nodes), &mut cliques);
+                    push_cliques(body, unknowns, &(0..n), &mut cliques);
                     consistent.push(body);
                 }
             }
@@ -50,9 +52,9 @@ impl Mass {
                 consistent: None,
             };
         }
-        let mut matrix = Csr::from_cliques(dim * nodes, &cliques);
+        let mut matrix = Csr::from_cliques(n, &cliques);
         for body in consistent {
-            body.assemble(0.0, 1.0, &(0..dim * nodes), &mut matrix);
+            body.assemble(0.0, 1.0, &(0..n), &mut matrix);
         }
         Mass {
             lumped,

@@ -10,6 +10,7 @@
 //! Source: Khenous, Laborde, Renard, European Journal of Mechanics A 27 (2008), mass redistribution under conservation of
 //! mass, centre of mass and inertia; the weights of the least change are derived here.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, MassKind};
 
 use crate::error::Error;
@@ -24,7 +25,7 @@ pub(crate) fn redistribute(
     model: &Model,
     bodies: &[Body],
     number: &[u32],
-    x: &[[f64; 3]],
+    (x, unknowns): (&[[f64; 3]], &Unknowns),
     (mass, body_masses): (&mut Mass, &mut [Vec<(u32, f64)>]),
 ) -> Result<Vec<u32>, Error> {
     let dim = model.mesh.dim;
@@ -56,16 +57,16 @@ pub(crate) fn redistribute(
             refused("its other nodes are too few to take the mass of its contact nodes and keep the centre of mass")
         })?;
         for (&(node, old), m) in masses.iter().zip(&new) {
-            for i in 0..dim {
-                mass.lumped[dim * node as usize + i] += m - old;
+            for unknown in unknowns.translations_of(node) {
+                mass.lumped[unknown] += m - old;
             }
         }
         for (entry, m) in masses.iter_mut().zip(new) {
             entry.1 = m;
         }
     }
-    let without: Vec<u32> = (0..(dim * x.len()) as u32)
-        .filter(|unknown| bare[*unknown as usize / dim])
+    let without: Vec<u32> = (0..unknowns.len() as u32)
+        .filter(|&unknown| bare[unknowns.node(unknown as usize) as usize])
         .collect();
     for &unknown in &without {
         mass.lumped[unknown as usize] = 0.0;

@@ -1,5 +1,6 @@
 //! Everything from which a system is built.
 
+use carom_algebra::unknowns::Kind;
 use carom_bodies::{BodySpec, MassKind};
 use carom_contact::{Initial, Integration, Law, Obstacle, Sliding};
 use carom_mesh::{Mesh, Surface};
@@ -77,8 +78,20 @@ impl ModelBody {
 pub struct Support {
     /// Nodes of the mesh.
     pub nodes: Vec<u32>,
-    /// Directions held.
+    /// Translations held.
     pub fix: [bool; 3],
+    /// Rotations held, of nodes that have any.
+    pub fix_rotations: [bool; 3],
+}
+
+impl Support {
+    /// Whether it holds unknowns of a kind.
+    pub(crate) fn holds(&self, kind: Kind) -> bool {
+        match kind {
+            Kind::Translation(axis) => self.fix[axis],
+            Kind::Rotation(axis) => self.fix_rotations[axis],
+        }
+    }
 }
 
 /// A contact before numbering.

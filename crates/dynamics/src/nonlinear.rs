@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, FollowerPressure};
 use carom_contact::law::Level;
 use carom_contact::{Contact, Integration};
@@ -232,13 +233,13 @@ pub(crate) struct NumberedNonlinear {
 }
 
 impl NumberedNonlinear {
-    /// Numbers loads and motions. `number`: system numbers of the mesh nodes; `fixed`: unknowns held by supports.
+    /// Numbers loads and motions. `number`: system numbers of the mesh nodes; `unknowns`: of the system; `fixed`: unknowns held by supports.
     ///
     /// # Errors
     /// A motion prescribed in a direction that a support holds.
     pub(crate) fn new(
         model: &Model,
-        number: &[u32],
+        (number, unknowns): (&[u32], &Unknowns),
         bodies: &[Body],
         fixed: &[bool],
     ) -> Result<NumberedNonlinear, Error> {
@@ -257,7 +258,7 @@ impl NumberedNonlinear {
                 numbered.amplitudes.push(amplitude.clone());
                 let of_bodies = |node: &&u32| number[**node as usize] != u32::MAX;
                 for &node in motion.nodes.iter().filter(of_bodies) {
-                    let unknown = dim * number[node as usize] as usize + i;
+                    let unknown = unknowns.first(number[node as usize]) + i;
                     if fixed[unknown]
                         || numbered
                             .follows
@@ -279,7 +280,7 @@ impl NumberedNonlinear {
         for load in &given.loads {
             numbered.loads.push(NumberedLoad {
                 amplitude: load.amplitude.clone(),
-                force: numbered_force(load, model, number),
+                force: numbered_force(load, model, (number, unknowns)),
             });
         }
         let mut first = 0;
@@ -319,8 +320,11 @@ fn needs_newton(contact: &ModelContact) -> bool {
     contact.friction > 0.0 || moves || matches!(contact.integration, Integration::Mortar { .. })
 }
 
-fn numbered_force(load: &Load, model: &Model, number: &[u32]) -> NumberedForce {
-    let dim = model.mesh.dim;
+fn numbered_force(
+    load: &Load,
+    model: &Model,
+    (number, unknowns): (&[u32], &Unknowns),
+) -> NumberedForce {
     let owner = load.surface.faces.first().and_then(|face| {
         let owns = |body: &ModelBody| body.spec.cells.contains(&face.parent);
         model.bodies.iter().position(owns)
@@ -330,7 +334,7 @@ fn numbered_force(load: &Load, model: &Model, number: &[u32]) -> NumberedForce {
         LoadKind::Pressure(pressure) => {
             let kinematics = model.bodies[body].spec.kinematics;
             let (faces, x) = (&load.surface.faces, &model.mesh.nodes);
-            let load = FollowerPressure::new(faces, x, number, dim, kinematics);
+            let load = FollowerPressure::new(faces, x, number, unknowns, kinematics);
             NumberedForce::Follower(load, pressure)
         }
         LoadKind::Traction(traction) => {
@@ -339,9 +343,10 @@ fn numbered_force(load: &Load, model: &Model, number: &[u32]) -> NumberedForce {
             let areas = load.surface.node_areas(&model.mesh, unit);
             let mut forces = Vec::new();
             for (&node, area) in load.surface.nodes.iter().zip(areas) {
-                let node = number[node as usize] as usize;
-                let of = |i: usize| ((dim * node + i) as u32, area * traction[i]);
-                forces.extend((0..dim).map(of));
+                let own = unknowns
+                    .translations_of(number[node as usize])
+                    .zip(traction);
+                forces.extend(own.map(|(unknown, t)| (unknown as u32, area * t)));
             }
             NumberedForce::Dead(forces)
         }

@@ -33,15 +33,13 @@ pub(crate) enum Column {
 
 impl Operator {
     /// Factorises a symmetric positive definite matrix; unknowns marked `fixed` are taken out.
+    /// `nodes`: node of each unknown.
     pub(crate) fn factored(
         matrix: &Csr,
         fixed: &[bool],
-        dim: usize,
+        nodes: &[u32],
     ) -> Result<Operator, AlgebraError> {
-        let groups: Vec<u32> = (0..matrix.n as u32)
-            .map(|unknown| unknown / dim as u32)
-            .collect();
-        let factor = Cholesky::new(&matrix.with_identity(fixed), &groups)?;
+        let factor = Cholesky::new(&matrix.with_identity(fixed), &groups(nodes))?;
         Ok(Operator::Factored(Box::new(factor)))
     }
 
@@ -193,8 +191,9 @@ impl Operators {
                 return Ok(Operator::diagonal(&diagonal, fixed));
             }
             let a = assembled(system, part, mass_factor, stiffness_factor);
-            let node = system.mesh_node[part.start / system.dim];
-            Operator::factored(&a, fixed, system.dim).map_err(|cause| Error::Factor {
+            let nodes = &system.unknowns.node_of_each()[part.clone()];
+            let node = system.mesh_node[nodes[0] as usize];
+            Operator::factored(&a, fixed, nodes).map_err(|cause| Error::Factor {
                 matrix,
                 node,
                 cause,
@@ -239,6 +238,19 @@ impl Operators {
     }
 }
 
+/// Numbers without gaps of the nodes of unknowns, nodes ascending.
+fn groups(nodes: &[u32]) -> Vec<u32> {
+    let mut number = 0;
+    let mut last = nodes.first().copied();
+    let group = |&node: &u32| {
+        if last != Some(node) {
+            (last, number) = (Some(node), number + 1);
+        }
+        number
+    };
+    nodes.iter().map(group).collect()
+}
+
 /// `mass_factor` M + `stiffness_factor` K of one part.
 pub(crate) fn assembled(
     system: &System,
@@ -248,7 +260,7 @@ pub(crate) fn assembled(
 ) -> Csr {
     let mut cliques = Cliques::new();
     for body in &system.bodies {
-        push_cliques(body, system.dim, part, &mut cliques);
+        push_cliques(body, &system.unknowns, part, &mut cliques);
     }
     let mut a = Csr::from_cliques(part.len(), &cliques);
     for body in &system.bodies {

@@ -25,13 +25,15 @@ impl Resultant {
     /// configuration without any.
     pub(crate) fn at(system: &System, displacements: &[&[f64]], f: &[f64]) -> Resultant {
         let mut sum = Resultant::default();
-        let (dim, share) = (system.dim, 1.0 / displacements.len() as f64);
-        for (node, f) in f.chunks_exact(dim).enumerate() {
-            let (mut force, mut x) = ([0.0; 3], system.x[node]);
-            force[..dim].copy_from_slice(f);
+        let (unknowns, share) = (&system.unknowns, 1.0 / displacements.len() as f64);
+        for node in 0..system.x.len() {
+            let mut x = system.x[node];
+            let node = node as u32;
+            let force = unknowns.vector(node, f);
             for u in displacements {
-                for i in 0..dim {
-                    x[i] += share * u[dim * node + i];
+                let u = unknowns.vector(node, u);
+                for i in 0..3 {
+                    x[i] += share * u[i];
                 }
             }
             for i in 0..3 {

@@ -5,6 +5,7 @@
 //! since the largest at which it looked: near the largest strain of a run it therefore looks at it. The looks of the last
 //! kind are few, since between a thousandth of the energy and all of it there are only so many quarters: 31.
 
+use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_bodies::{Distortion, Extreme, Solid};
 use carom_contact::{Places, Rows, Search, Target};
 use carom_mesh::Face;
@@ -211,7 +212,7 @@ impl Watched {
         watched.lengths = (0..contact.points.len())
             .map(|point| {
                 let (unknowns, _) = watched.initial.row(point);
-                let mut nodes = unknowns.iter().map(|i| i / system.dim as u32);
+                let mut nodes = unknowns.iter().map(|&i| system.unknowns.node(i as usize));
                 let length = least(&other, &mut nodes);
                 let mut carriers = contact.points[point].carriers().map(|(node, _)| node);
                 let length = match length.is_finite() {
@@ -228,7 +229,7 @@ impl Watched {
     fn pair_initially(&mut self, system: &System, number: usize, (time, still): (f64, &[f64])) {
         self.initial.clear();
         let places = Places {
-            dim: system.dim,
+            unknowns: &system.unknowns,
             time,
             x: &system.x,
             u: still,
@@ -240,7 +241,7 @@ impl Watched {
     fn look(&mut self, system: &System, number: usize, rows: &mut Rows, state: &mut State) {
         let contact = &system.contacts[number];
         let places = Places {
-            dim: system.dim,
+            unknowns: &system.unknowns,
             time: state.time,
             x: &system.x,
             u: &state.motion.u,
@@ -258,7 +259,7 @@ impl Watched {
             let time = state.time;
             if force > 0.0 {
                 if slides {
-                    let way = slide(&self.initial, point, (system.dim, &state.motion.u));
+                    let way = slide(&self.initial, point, (&system.unknowns, &state.motion.u));
                     found.slide.take(way / length, node, time);
                 }
                 if gap.is_finite() {
@@ -277,15 +278,18 @@ impl Watched {
 }
 
 /// Way of a point along the surface that it was paired with, m: the relative displacement that a row is the normal part of.
-fn slide(rows: &Rows, point: usize, (dim, u): (usize, &[f64])) -> f64 {
+fn slide(rows: &Rows, point: usize, (map, u): (&Unknowns, &[f64])) -> f64 {
     let normal = rows.normal(point);
     let (unknowns, coefficients) = rows.row(point);
     // an entry of the row is s n_i, of a node with the share s in the relative motion: s = Σ_i (s n_i) n_i
     let mut way = [0.0; 3];
     for (&unknown, c) in unknowns.iter().zip(coefficients) {
-        let share = c * normal[unknown as usize % dim];
-        let first = unknown as usize / dim * dim;
-        for (way, u) in way.iter_mut().zip(&u[first..first + dim]) {
+        let Kind::Translation(axis) = map.kind(unknown as usize) else {
+            continue;
+        };
+        let share = c * normal[axis];
+        let moved = map.vector(map.node(unknown as usize), u);
+        for (way, u) in way.iter_mut().zip(moved) {
             *way += share * u;
         }
     }

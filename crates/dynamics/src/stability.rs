@@ -89,7 +89,7 @@ impl System {
         let mut rows = Rows::default();
         rows.clear();
         let places = Places {
-            dim: self.dim,
+            unknowns: &self.unknowns,
             time: 0.0,
             x: &self.x,
             u: &self.initial_displacement,

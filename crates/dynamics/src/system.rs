@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use carom_algebra::pattern::Cliques;
+use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_bodies::{Body, Kinematics, MassKind, height};
 use carom_contact::law::Level;
 use carom_contact::{Contact, Initial, Places, Target};
@@ -22,8 +23,10 @@ use crate::{Adaptive, Error, Scheme};
 pub struct System {
     /// The mesh, in m.
     pub mesh: Mesh,
-    /// Unknowns per node.
+    /// Dimension of space.
     pub dim: usize,
+    /// Which unknowns each node has, and where.
+    pub unknowns: Unknowns,
     /// Where places count from in what rounding leaves in forces, m: zero, since gaps are differences of places; without
     /// contacts the corner of the mesh nearest to it, since bodies and links do not see where they lie.
     pub(crate) origin: [f64; 3],
@@ -120,40 +123,38 @@ impl System {
             .iter()
             .map(|&node| model.mesh.nodes[node as usize])
             .collect();
-        let body = |body: &ModelBody| Body::new(&model.mesh, body.spec.clone(), &number);
+        let unknowns = Unknowns::translations(dim, x.len());
+        let body = |body: &ModelBody| Body::new(&model.mesh, body.spec.clone(), &number, &unknowns);
         let bodies = model
             .bodies
             .iter()
             .map(body)
             .collect::<Result<Vec<_>, _>>()?;
-        let mut fixed = vec![false; dim * x.len()];
+        let mut fixed = vec![false; unknowns.len()];
         for support in &model.supports {
-            for &node in support
-                .nodes
-                .iter()
-                .filter(|&&node| number[node as usize] != u32::MAX)
-            {
-                for i in 0..dim {
-                    fixed[dim * number[node as usize] as usize + i] |= support.fix[i];
+            let numbers = support.nodes.iter().map(|&node| number[node as usize]);
+            for node in numbers.filter(|&node| node != u32::MAX) {
+                for unknown in unknowns.of(node) {
+                    fixed[unknown] |= support.holds(unknowns.kind(unknown));
                 }
             }
         }
-        let mut mass = Mass::of(&bodies, &model.bodies, dim, x.len());
+        let mut mass = Mass::of(&bodies, &model.bodies, &unknowns);
         let mut body_masses: Vec<_> = bodies
             .iter()
-            .map(|body| node_masses(body, dim, x.len()))
+            .map(|body| node_masses(body, &unknowns))
             .collect();
         let masses = (&mut mass, &mut body_masses[..]);
-        let massless = redistribute(&model, &bodies, &number, &x, masses)?;
-        let mut load = vec![0.0; dim * x.len()];
+        let massless = redistribute(&model, &bodies, &number, (&x, &unknowns), masses)?;
+        let mut load = vec![0.0; unknowns.len()];
         for &(node, m) in body_masses.iter().flatten() {
-            for i in 0..dim {
-                load[dim * node as usize + i] += m * model.gravity[i];
+            for (unknown, gravity) in unknowns.translations_of(node).zip(model.gravity) {
+                load[unknown] += m * gravity;
             }
         }
-        let nonlinear = NumberedNonlinear::new(&model, &number, &bodies, &fixed)?;
+        let nonlinear = NumberedNonlinear::new(&model, (&number, &unknowns), &bodies, &fixed)?;
         let (mut initial_displacement, initial_velocity) =
-            initial(&model, &body_masses, &fixed, dim);
+            initial(&model, &body_masses, &fixed, &unknowns);
         for follows in &nonlinear.follows {
             fixed[follows.unknown as usize] = true;
             initial_displacement[follows.unknown as usize] = 0.0;
@@ -165,7 +166,7 @@ impl System {
             .collect();
         let ways = model.contacts.iter().map(|contact| contact.initial);
         let places = Places {
-            dim,
+            unknowns: &unknowns,
             time: 0.0,
             x: &x,
             u: &initial_displacement,
@@ -207,8 +208,9 @@ impl System {
             number,
             parts: parts
                 .into_iter()
-                .map(|part| dim * part.start..dim * part.end)
+                .map(|part| unknowns.of_range(part))
                 .collect(),
+            unknowns,
             bodies,
             body_masses,
             mass,
@@ -378,8 +380,9 @@ impl System {
         let (mut momentum, mut total) = ([0.0; 3], 0.0);
         for &(node, m) in &self.body_masses[body] {
             total += m;
-            for i in 0..self.dim {
-                momentum[i] += m * v[self.dim * node as usize + i];
+            let v = self.unknowns.vector(node, v);
+            for i in 0..3 {
+                momentum[i] += m * v[i];
             }
         }
         momentum.map(|p| p / total)
@@ -388,7 +391,13 @@ impl System {
     /// An unknown of a body.
     pub(crate) fn first_unknown(&self, body: usize) -> usize {
         let node = self.body_masses[body].first().map_or(0, |(node, _)| *node);
-        self.dim * node as usize
+        self.unknowns.first(node)
+    }
+
+    /// Nodes of a range of unknowns that has all of theirs.
+    pub(crate) fn nodes_of(&self, unknowns: &Range<usize>) -> Range<usize> {
+        let [first, last] = [unknowns.start, unknowns.end - 1];
+        self.unknowns.node(first) as usize..self.unknowns.node(last) as usize + 1
     }
 
     /// Mass of a body, kg.
@@ -434,22 +443,27 @@ fn nearest_corner(x: &[[f64; 3]]) -> [f64; 3] {
     })
 }
 
-fn node_masses(body: &Body, dim: usize, nodes: usize) -> Vec<(u32, f64)> {
-    let mut mass = vec![0.0; dim * nodes];
+fn node_masses(body: &Body, unknowns: &Unknowns) -> Vec<(u32, f64)> {
+    let mut mass = vec![0.0; unknowns.len()];
     body.add_lumped_mass(&mut mass);
-    (0..nodes)
-        .filter(|&node| mass[dim * node] > 0.0)
-        .map(|node| (node as u32, mass[dim * node]))
+    let first = (0..unknowns.len()).filter(|&i| unknowns.kind(i) == Kind::Translation(0));
+    first
+        .filter(|&first| mass[first] > 0.0)
+        .map(|first| (unknowns.node(first), mass[first]))
         .collect()
 }
 
 /// Adds the unknowns of each element of a body that lies in a part, counted from the first of the part.
-pub(crate) fn push_cliques(body: &Body, dim: usize, part: &Range<usize>, cliques: &mut Cliques) {
+pub(crate) fn push_cliques(
+    body: &Body,
+    map: &Unknowns,
+    part: &Range<usize>,
+    cliques: &mut Cliques,
+) {
     let mut unknowns = Vec::new();
     body.each_element(&mut |nodes| {
-        if part.contains(&(dim * nodes[0] as usize)) {
-            let of_node =
-                |&node: &u32| (0..dim).map(move |i| (dim * node as usize + i - part.start) as u32);
+        if part.contains(&map.first(nodes[0])) {
+            let of_node = |&node: &u32| map.of(node).map(|i| (i - part.start) as u32);
             unknowns.clear();
             unknowns.extend(nodes.iter().flat_map(of_node));
             cliques.push(&unknowns);
@@ -461,13 +475,12 @@ fn initial(
     model: &Model,
     masses: &[Vec<(u32, f64)>],
     fixed: &[bool],
-    dim: usize,
+    unknowns: &Unknowns,
 ) -> (Vec<f64>, Vec<f64>) {
     let (mut u, mut v) = (vec![0.0; fixed.len()], vec![0.0; fixed.len()]);
     for (body, masses) in model.bodies.iter().zip(masses) {
         for &(node, _) in masses {
-            for i in 0..dim {
-                let dof = dim * node as usize + i;
+            for (i, dof) in unknowns.translations_of(node).enumerate() {
                 if !fixed[dof] {
                     u[dof] = body.displacement[i];
                     v[dof] = body.velocity[i];

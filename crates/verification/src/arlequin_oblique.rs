@@ -135,6 +135,7 @@ impl Strip {
             supports.push(Support {
                 nodes: (0..mesh.nodes.len() as u32).collect(),
                 fix: [false, true, false],
+                fix_rotations: [false; 3],
             });
         }
         let zone = |name: &str, body, scheme| ModelZone {

@@ -127,7 +127,7 @@ impl Sums {
         for (node, place) in system.x.iter().enumerate() {
             let (mut x, mut f) = (*place, [0.0; 3]);
             for i in 0..dim {
-                let dof = dim * node + i;
+                let dof = system.unknowns.first(node as u32) + i;
                 if sliding == Sliding::Finite {
                     x[i] += motion.u[dof];
                 }

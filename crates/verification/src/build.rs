@@ -169,6 +169,7 @@ pub(crate) fn support(mesh: &Mesh, name: &str, fix: [bool; 3]) -> Result<Support
     Ok(Support {
         nodes: mesh.group_nodes(group(mesh, name)?),
         fix,
+        fix_rotations: [false; 3],
     })
 }
 

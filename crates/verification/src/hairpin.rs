@@ -55,7 +55,8 @@ impl Hairpin {
         for (node, x) in system.x.iter().enumerate() {
             let upper = usize::from(x[up] < 0.0);
             let part = (x[0] / LENGTH).max(0.0).powi(2);
-            velocity[self.dim * node + up] = -x[up].signum() * self.flung[upper] * part;
+            velocity[system.unknowns.first(node as u32) + up] =
+                -x[up].signum() * self.flung[upper] * part;
         }
         let mut newton = Newton::new(system)?;
         newton.restart(&vec![0.0; velocity.len()], &velocity)?;

@@ -26,7 +26,7 @@ impl Kept {
         for &(node, m) in system.body_masses.iter().flatten() {
             mass += m;
             for i in 0..system.dim {
-                let at = system.dim * node as usize + i;
+                let at = system.unknowns.first(node) + i;
                 centre[i] += m * (system.x[node as usize][i] + state.motion.u[at]);
             }
         }

@@ -98,6 +98,7 @@ pub fn bounces(
         supports: vec![Support {
             nodes: mesh.group_nodes(group(&mesh, "bar.right")?),
             fix: [true, false, false],
+            fix_rotations: [false; 3],
         }],
         contacts: vec![ModelContact::new(
             "wall",

@@ -44,19 +44,17 @@ fn force(newton: &Newton) -> f64 {
     let upper = |node: &usize| system.x[*node][up] > 0.0;
     let nodes = (0..system.x.len()).filter(upper);
     nodes
-        .map(|node| newton.state().motion.contact_force[system.dim * node + up])
+        .map(|node| newton.state().motion.contact_force[system.unknowns.first(node as u32) + up])
         .sum()
 }
 
 /// The unknowns of the whole that are those of the half, in their order.
 fn image(half: &Newton, whole: &Newton) -> Vec<usize> {
-    let (dim, all) = (half.system().dim, &whole.system().x);
+    let (unknowns, all) = (&whole.system().unknowns, &whole.system().x);
     let same = |a: &[f64; 3], b: &[f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-9);
     let nodes = half.system().x.iter();
     let nodes = nodes.filter_map(|x| all.iter().position(|y| same(x, y)));
-    nodes
-        .flat_map(|node| dim * node..dim * (node + 1))
-        .collect()
+    nodes.flat_map(|node| unknowns.of(node as u32)).collect()
 }
 
 /// Largest differences of motion, over half the distance, and of force, over the largest force.

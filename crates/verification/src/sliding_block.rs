@@ -96,6 +96,7 @@ impl Rough {
             supports.push(Support {
                 nodes: vec![wall],
                 fix: [true; 3],
+                fix_rotations: [false; 3],
             });
         }
         let mut bodies = Vec::new();

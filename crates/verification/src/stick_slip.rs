@@ -93,7 +93,7 @@ fn floor(name: &str, law: Law, dt: f64) -> Result<Vec<Row>, Error> {
     let system = newton.system();
     let mut pulled = vec![0.0; system.unknowns()];
     for (node, _) in system.x.iter().enumerate().filter(|(_, x)| x[0] >= 0.0) {
-        pulled[system.dim * node] = PULLED;
+        pulled[system.unknowns.first(node as u32)] = PULLED;
     }
     let still = vec![0.0; system.unknowns()];
     newton.restart(&pulled, &still)?;

@@ -128,7 +128,10 @@ impl Bar {
         let (system, u) = (self.newton.system(), &self.newton.state().motion.u);
         let node = system.number[node as usize] as usize;
         let mut place = system.x[node];
-        for (x, u) in place.iter_mut().zip(&u[system.dim * node..][..system.dim]) {
+        for (x, u) in place
+            .iter_mut()
+            .zip(&u[system.unknowns.translations_of(node as u32)])
+        {
             *x += u;
         }
         place

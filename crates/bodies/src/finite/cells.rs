@@ -5,6 +5,7 @@ use carom_elements::{Kind, MAX_NODES, map};
 use super::Formulation;
 use super::hourglass::Hourglass;
 use crate::Kinematics;
+use crate::block::Nodes;
 use crate::weights::CellWeights;
 
 /// Unknowns of the largest element.
@@ -21,6 +22,8 @@ pub(crate) struct Cells {
     pub(super) points: usize,
     /// System numbers of the nodes, element after element.
     pub(super) number: Vec<u32>,
+    /// First unknowns of these nodes.
+    pub(super) first: Vec<u32>,
     /// dN_a/dX of each element, point and node, in 1/m; in axisymmetry the third entry is N_a/R.
     gradients: Vec<[f64; 3]>,
     /// dV of each element and point, m³.
@@ -49,13 +52,11 @@ struct Point {
 }
 
 impl Cells {
-    /// `number`: system numbers of the nodes, element after element; `x`: coordinates by system number; `weights`: those
-    /// of these elements.
+    /// `weights`: those of these elements.
     pub(crate) fn new(
         kind: Kind,
         shape: &Shape,
-        number: Vec<u32>,
-        x: &[[f64; 3]],
+        of: &Nodes,
         weights: Option<&CellWeights>,
     ) -> Cells {
         let table = kind.table();
@@ -80,13 +81,18 @@ impl Cells {
                 }
                 _ => None,
             },
-            number,
+            number: of.elements.to_vec(),
+            first: of
+                .elements
+                .iter()
+                .map(|&node| of.unknowns.first(node) as u32)
+                .collect(),
         };
         for place in 0..cells.len() {
             let x_e: Vec<[f64; 3]> = cells
                 .element_nodes(place)
                 .iter()
-                .map(|&node| x[node as usize])
+                .map(|&node| of.x[node as usize])
                 .collect();
             let nodal = weights.map(|w| &w.stiffness[place * table.nodes..][..table.nodes]);
             let mut points = points(kind, shape.kinematics, &x_e, nodal);
@@ -118,6 +124,11 @@ impl Cells {
         &self.number[element * self.nodes..][..self.nodes]
     }
 
+    /// First unknowns of the nodes of an element.
+    pub(super) fn element_first(&self, element: usize) -> &[u32] {
+        &self.first[element * self.nodes..][..self.nodes]
+    }
+
     pub(super) fn gradients(&self, element: usize, point: usize) -> &[[f64; 3]] {
         &self.gradients[(element * self.points + point) * self.nodes..][..self.nodes]
     }
@@ -135,9 +146,9 @@ impl Cells {
     /// Entries of a system vector at the nodes of an element.
     pub(super) fn gather(&self, element: usize, u: &[f64]) -> [f64; MAX_UNKNOWNS] {
         let mut u_e = [0.0; MAX_UNKNOWNS];
-        let nodes = self.element_nodes(element);
-        for (u_a, &node) in u_e.chunks_exact_mut(self.dim).zip(nodes) {
-            u_a.copy_from_slice(&u[self.dim * node as usize..][..self.dim]);
+        let all = self.element_first(element);
+        for (u_a, &first) in u_e.chunks_exact_mut(self.dim).zip(all) {
+            u_a.copy_from_slice(&u[first as usize..][..self.dim]);
         }
         u_e
     }

@@ -45,8 +45,8 @@ impl Solid {
         let (mut unknowns, mut block) = (Vec::new(), Vec::new());
         self.each_matrix(true, &mut |element| {
             unknowns.clear();
-            let of_node = |&node: &u32| (0..dim as u32).map(move |i| dim as u32 * node + i);
-            unknowns.extend(element.nodes.iter().flat_map(of_node));
+            let of_node = |&first: &u32| first..first + dim as u32;
+            unknowns.extend(element.first.iter().flat_map(of_node));
             block.clear();
             block.extend(element.stiffness.iter().map(|k| factor * k));
             matrix.add_block(&unknowns, &block);

@@ -153,9 +153,9 @@ impl Solid {
         let mut masses = Vec::new();
         self.each_matrix(false, &mut |element| masses.extend(element.lumped));
         let (mut largest, mut scaled, mut first): (f64, _, _) = (0.0, Vec::new(), 0);
-        let visited = finite.each_tangent(at, &mut |nodes, dim, k| {
-            let masses = &masses[first..first + nodes.len()];
-            first += nodes.len();
+        let visited = finite.each_tangent(at, &mut |of_nodes, dim, k| {
+            let masses = &masses[first..first + of_nodes.len()];
+            first += of_nodes.len();
             stability::scale(dim, k, masses, &mut scaled);
             let norm = scaled.iter().map(|b| b * b).sum::<f64>().sqrt();
             // no eigenvalue is beyond the norm

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use carom_algebra::csr::Csr;
+use carom_algebra::unknowns::Unknowns;
 use carom_elements::{Kind, MAX_NODES, map};
 use carom_mesh::Face;
 
@@ -28,8 +29,8 @@ pub struct FollowerPressure {
 #[derive(Clone, Debug)]
 struct Loaded {
     kind: Kind,
-    /// System numbers.
-    nodes: Vec<u32>,
+    /// First unknowns of its nodes.
+    first: Vec<u32>,
     /// Reference positions in m.
     x: Vec<[f64; 3]>,
     axis: [f64; 3],
@@ -49,24 +50,28 @@ struct Point<'a> {
 }
 
 impl FollowerPressure {
-    /// `faces`: on nodes of the mesh; `x`: their positions in m; `number`: system number of each mesh node; `dim`: unknowns of
-    /// a node; `kinematics`: of the body that they bound.
+    /// `faces`: on nodes of the mesh; `x`: their positions in m; `number`: system number of each mesh node;
+    /// `unknowns`: of the nodes of the system; `kinematics`: of the body that they bound.
     pub fn new(
         faces: &[Face],
         x: &[[f64; 3]],
         number: &[u32],
-        dim: usize,
+        unknowns: &Unknowns,
         kinematics: Kinematics,
     ) -> FollowerPressure {
         let loaded = |face: &Face| Loaded {
             kind: face.kind,
-            nodes: face.corners().iter().map(|&n| number[n as usize]).collect(),
+            first: face
+                .corners()
+                .iter()
+                .map(|&n| unknowns.first(number[n as usize]) as u32)
+                .collect(),
             x: face.corners().iter().map(|&n| x[n as usize]).collect(),
             axis: face.axis,
         };
         FollowerPressure {
             kinematics,
-            dim,
+            dim: unknowns.dim(),
             faces: faces.iter().map(loaded).collect(),
         }
     }
@@ -76,7 +81,7 @@ impl FollowerPressure {
         let dim = self.dim;
         for face in &self.faces {
             if face.kind == Kind::Point1 {
-                let first = dim * face.nodes[0] as usize;
+                let first = face.first[0] as usize;
                 for i in 0..dim {
                     f[first + i] -= p * self.kinematics.surface_factor(&face.x[0]) * face.axis[i];
                 }
@@ -84,8 +89,8 @@ impl FollowerPressure {
             }
             self.each_point(face, u, &mut |point| {
                 let area = self.area(point);
-                for (n, &node) in point.n.iter().zip(&face.nodes) {
-                    let f = &mut f[dim * node as usize..][..dim];
+                for (n, &first) in point.n.iter().zip(&face.first) {
+                    let f = &mut f[first as usize..][..dim];
                     for (f, area) in f.iter_mut().zip(&area) {
                         *f -= p * point.weight * n * area;
                     }
@@ -104,7 +109,7 @@ impl FollowerPressure {
         let dim = self.dim;
         let (mut unknowns, mut block) = (Vec::new(), Vec::new());
         for face in self.faces.iter().filter(|face| face.kind != Kind::Point1) {
-            let n = dim * face.nodes.len();
+            let n = dim * face.first.len();
             block.clear();
             block.resize(n * n, 0.0);
             self.each_point(face, u, &mut |point| {
@@ -118,8 +123,8 @@ impl FollowerPressure {
                 }
             }
             unknowns.clear();
-            let of_node = |&node: &u32| (0..dim as u32).map(move |i| dim as u32 * node + i);
-            unknowns.extend(face.nodes.iter().flat_map(of_node));
+            let of_node = |&first: &u32| first..first + dim as u32;
+            unknowns.extend(face.first.iter().flat_map(of_node));
             matrix.add_block(&unknowns, &block);
         }
     }
@@ -172,8 +177,8 @@ impl FollowerPressure {
     fn each_point(&self, face: &Loaded, u: &[f64], visit: &mut dyn FnMut(&Point)) {
         let table = face.kind.table();
         let mut x = face.x.clone();
-        for (x, &node) in x.iter_mut().zip(&face.nodes) {
-            let u = &u[self.dim * node as usize..][..self.dim];
+        for (x, &first) in x.iter_mut().zip(&face.first) {
+            let u = &u[first as usize..][..self.dim];
             x.iter_mut().zip(u).for_each(|(x, u)| *x += u);
         }
         let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);

@@ -43,7 +43,7 @@ struct Piece {
     fault: Option<(usize, Fault)>,
 }
 
-/// What is called for each element: system numbers of its nodes, unknowns of a node, tangent in N/m, row-major.
+/// What is called for each element: first unknowns of its nodes, unknowns of a node, tangent in N/m, row-major.
 pub(super) type VisitTangent<'a> = dyn FnMut(&[u32], usize, &mut [f64]) + 'a;
 
 /// A place in the body, and what went wrong there.
@@ -95,8 +95,8 @@ impl Finite {
                 stored.dissipated += piece.stored.dissipated;
             }
             let forces = elements.forces.chunks_exact(cells.dim);
-            for (f_a, &node) in forces.zip(&cells.number) {
-                let f = &mut f[cells.dim * node as usize..][..cells.dim];
+            for (f_a, &first) in forces.zip(&cells.first) {
+                let f = &mut f[first as usize..][..cells.dim];
                 for (f, f_a) in f.iter_mut().zip(f_a) {
                     *f += f_a;
                 }
@@ -183,10 +183,10 @@ impl Finite {
         matrix: &mut Csr,
     ) -> Result<(), Failed> {
         let mut unknowns = Vec::new();
-        self.each_tangent(at, &mut |nodes, dim, k| {
+        self.each_tangent(at, &mut |first, dim, k| {
             unknowns.clear();
-            let of_node = |&node: &u32| (0..dim as u32).map(move |i| dim as u32 * node + i);
-            unknowns.extend(nodes.iter().flat_map(of_node));
+            let of_node = |&first: &u32| first..first + dim as u32;
+            unknowns.extend(first.iter().flat_map(of_node));
             k.iter_mut().for_each(|k| *k *= factor);
             matrix.add_block(&unknowns, k);
         })
@@ -221,7 +221,7 @@ impl Finite {
                 for (place, result) in results.drain(..).enumerate() {
                     result.map_err(|fault| (first + begin + place, fault))?;
                     let k = &mut tangents[place * entries..][..entries];
-                    visit(cells.element_nodes(begin + place), cells.dim, k);
+                    visit(cells.element_first(begin + place), cells.dim, k);
                 }
             }
             first += cells.len();

@@ -1,5 +1,6 @@
 //! What a body refuses.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{BodySpec, CellWeights, Error, Kinematics, Solid};
 use carom_mesh::{ElementId, Mesh, generate};
 
@@ -20,7 +21,8 @@ fn refusal_of(
         ..BodySpec::new("arm", cells, kinematics, MATERIAL)
     };
     let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
-    Solid::new(mesh, spec, &number).unwrap_err()
+    let unknowns = Unknowns::translations(mesh.dim, mesh.nodes.len());
+    Solid::new(mesh, spec, &number, &unknowns).unwrap_err()
 }
 
 #[test]

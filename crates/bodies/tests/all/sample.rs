@@ -2,6 +2,7 @@
 
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
+use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{BodySpec, CellWeights, Formulation, Kinematics, Scratch, Solid};
 use carom_elements::Kind;
 use carom_materials::{Elastic, Law};
@@ -55,13 +56,24 @@ impl Sample {
         };
         Sample {
             name: format!("{name}, {}", kinematics.name()),
-            body: Solid::new(&mesh, spec, &number).unwrap(),
+            body: Solid::new(
+                &mesh,
+                spec,
+                &number,
+                &Unknowns::translations(mesh.dim, used),
+            )
+            .unwrap(),
             n: mesh.dim * used,
             x: mesh.nodes[..used].iter().rev().copied().collect(),
             mesh,
             number,
             formulation,
         }
+    }
+
+    /// Of the nodes of the body.
+    pub fn unknowns(&self) -> Unknowns {
+        Unknowns::translations(self.mesh.dim, self.x.len())
     }
 
     /// The same body with weights.
@@ -77,7 +89,7 @@ impl Sample {
                 *self.body.material(),
             )
         };
-        let body = Solid::new(&self.mesh, spec, &self.number).unwrap();
+        let body = Solid::new(&self.mesh, spec, &self.number, &self.unknowns()).unwrap();
         let name = format!("{}, weighted", self.name);
         Sample { name, body, ..self }
     }

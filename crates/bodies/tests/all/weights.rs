@@ -139,7 +139,7 @@ fn weights_follow_their_cells_and_zeros_leave_them_out() {
                 weights,
                 ..BodySpec::new("b", cells, kinematics, MATERIAL)
             };
-            Solid::new(&sample.mesh, spec, &sample.number).unwrap()
+            Solid::new(&sample.mesh, spec, &sample.number, &sample.unknowns()).unwrap()
         };
         let weighted = body(order.clone(), Some(of_both(weights.collect())));
         let kept = (0..count).filter(|&k| kept(k)).map(|k| order[k]);

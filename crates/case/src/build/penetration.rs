@@ -12,7 +12,7 @@ impl Builder<'_> {
     pub(super) fn penetration(&mut self, system: &System) {
         let slack = system.tolerance.max(1e-9 * system.mesh.size());
         let places = Places {
-            dim: system.dim,
+            unknowns: &system.unknowns,
             time: 0.0,
             x: &system.x,
             u: &system.initial_displacement,

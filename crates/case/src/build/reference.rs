@@ -136,7 +136,7 @@ fn solve(
     rows.clear();
     contact.pair(
         &Places {
-            dim: system.dim,
+            unknowns: &system.unknowns,
             time: 0.0,
             x: &system.x,
             u: &system.initial_displacement,
@@ -228,7 +228,7 @@ fn bar(
             body.name()
         ));
     }
-    let held = |node: u32, i: usize| system.fixed[system.dim * node as usize + i];
+    let held = |node: u32, i: usize| system.fixed[system.unknowns.first(node) + i];
     let clamped = |node: u32| (0..system.dim).any(|i| inward[i].abs() > 0.5 && held(node, i));
     let at_far = |s: f64| far - s < 1e-6 * length;
     if places.clone().any(|(s, node)| clamped(node) && !at_far(s)) {
@@ -248,8 +248,8 @@ fn bar(
     let first = places
         .clone()
         .find(|&(_, node)| !clamped(node))
-        .map_or(0, |(_, node)| system.dim * node as usize);
-    let velocity = along(&system.initial_velocity[first..first + system.dim]);
+        .map_or(0, |(_, node)| node);
+    let velocity = along(&system.unknowns.vector(first, &system.initial_velocity));
     let gravity: f64 = along(&gravity(system, indices));
     Ok(bar.with_velocity(velocity).with_gravity(-gravity))
 }
@@ -262,8 +262,9 @@ fn gravity(system: &System, indices: &[usize]) -> Vec<f64> {
     let nodes: BTreeSet<u32> = masses.map(|(node, _)| *node).collect();
     let mut force = vec![0.0; system.dim];
     for node in nodes {
-        for (i, force) in force.iter_mut().enumerate() {
-            *force += system.load[system.dim * node as usize + i];
+        let load = system.unknowns.vector(node, &system.load);
+        for (force, load) in force.iter_mut().zip(load) {
+            *force += load;
         }
     }
     force.iter().map(|f| f / mass).collect()

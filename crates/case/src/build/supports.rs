@@ -50,7 +50,11 @@ impl Builder<'_> {
                     displacement,
                 });
             }
-            supports.push(Support { nodes, fix });
+            supports.push(Support {
+                nodes,
+                fix,
+                fix_rotations: [false; 3],
+            });
         }
         self.not_held(&moved, &held);
         (supports, motions)

@@ -3,7 +3,7 @@
 use carom_algebra::tensor::Vec3;
 
 use super::stencil::{Stencil, tangent_vectors};
-use crate::Rows;
+use crate::{Places, Rows};
 
 /// The sum being made: blocks of the rows N and T of each node, in the order in which nodes appear.
 #[derive(Clone, Debug, Default)]
@@ -71,7 +71,8 @@ impl Merge {
     }
 
     /// Appends gap and rows of the sum; its normal is the mean one, and the directions of the tangents are square to it.
-    pub fn push(&self, dim: usize, rows: &mut Rows, tangents: &mut [Rows; 2]) {
+    pub fn push(&self, places: &Places, rows: &mut Rows, tangents: &mut [Rows; 2]) {
+        let dim = places.dim();
         let length = self.normal.norm();
         let normal: [f64; 3] = match length > 0.0 {
             true => (self.normal / length).into(),
@@ -87,9 +88,9 @@ impl Merge {
             rows.set_rate(self.rates[k + 1]);
         }
         for (node, blocks) in &self.blocks {
-            rows.add_node(dim, *node, &blocks[0].into());
+            rows.add_node(places, *node, &blocks[0].into());
             for (k, rows) in tangents[..dim - 1].iter_mut().enumerate() {
-                rows.add_node(dim, *node, &blocks[k + 1].into());
+                rows.add_node(places, *node, &blocks[k + 1].into());
             }
         }
     }

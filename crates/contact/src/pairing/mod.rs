@@ -180,11 +180,11 @@ impl Pairing {
     }
 
     /// Appends a point that stands for `area` and is what one stencil is; without one it faces nothing.
-    fn push(&mut self, area: f64, stencil: Option<Stencil>) {
+    fn push(&mut self, places: &Places, area: f64, stencil: Option<Stencil>) {
         self.areas.push(area);
         match stencil {
             Some(stencil) => {
-                stencil.push(self.dim, &mut self.rows, &mut self.tangents);
+                stencil.push(places, &mut self.rows, &mut self.tangents);
                 self.terms.push((self.stencils.len() as u32, 1.0));
                 self.stencils.push(stencil);
             }
@@ -195,7 +195,13 @@ impl Pairing {
 
     /// Appends a point that is the mean of stencils with the given weights, and stands for their sum. Where that is not
     /// above `least` the point faces nothing, and stands for `area`.
-    fn push_sum(&mut self, area: f64, least: f64, shares: &[Share], merge: &mut Merge) {
+    fn push_sum(
+        &mut self,
+        places: &Places,
+        (area, least): (f64, f64),
+        shares: &[Share],
+        merge: &mut Merge,
+    ) {
         let total: f64 = shares.iter().map(|share| share.weight).sum();
         if total > least {
             self.areas.push(total);
@@ -205,7 +211,7 @@ impl Pairing {
                 merge.add(&self.stencils[share.stencil as usize], weight, self.dim);
                 self.terms.push((share.stencil, weight));
             }
-            merge.push(self.dim, &mut self.rows, &mut self.tangents);
+            merge.push(places, &mut self.rows, &mut self.tangents);
         } else {
             self.areas.push(area);
             self.push_open();
@@ -246,7 +252,7 @@ impl Contact {
     /// Which points face what is decided as in [`Contact::pair`]; the gaps are the same, and so are the rows of points
     /// whose foot is not at a rim.
     pub fn pair_fully(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
-        pairing.dim = places.dim;
+        pairing.dim = places.dim();
         self.renew(places, search);
         let first = pairing.len();
         self.pair_points(places, search, pairing);
@@ -263,7 +269,7 @@ impl Contact {
         }
         for (k, point) in self.points.iter().enumerate() {
             let stencil = Stencil::new(self, places, search, (point, self.view(k), pairing.span));
-            pairing.push(point.area, stencil);
+            pairing.push(places, point.area, stencil);
         }
     }
 }

@@ -189,7 +189,8 @@ impl Mortar {
         for (number, point) in contact.points.iter().enumerate() {
             let own = shares.partition_point(|share| share.point as usize <= number);
             let (these, rest) = shares.split_at(own);
-            pairing.push_sum(point.area, LEAST * point.area, these, &mut work.merge);
+            let least = LEAST * point.area;
+            pairing.push_sum(places, (point.area, least), these, &mut work.merge);
             shares = rest;
         }
         pairing.work = work;

@@ -19,6 +19,8 @@ pub(crate) struct Stencil {
     gap: f64,
     normal: [f64; 3],
     foot: Foot,
+    /// First unknowns of its nodes, in the order of [`Stencil::relative`].
+    first: [u32; 2 * NODES],
 }
 
 #[derive(Clone, Debug)]
@@ -71,10 +73,11 @@ impl Stencil {
                 if found.gap == f64::INFINITY {
                     return None;
                 }
-                Some(Stencil {
+                let stencil = Stencil {
                     point: *point,
                     gap: found.gap,
                     normal: found.normal,
+                    first: [0; 2 * NODES],
                     foot: Foot::Obstacle {
                         hessian: found.hessian,
                         velocity: placed.velocity(&x),
@@ -84,7 +87,8 @@ impl Stencil {
                             span.map(|after| places.time + after),
                         ),
                     },
-                })
+                };
+                Some(stencil.numbered(places))
             }
             Target::Surface(faces) => {
                 let (foot, face) = search.facing(places, faces, view, &x)?;
@@ -106,10 +110,11 @@ impl Stencil {
             *position = places.of(node);
         }
         (face.kind.table().shape)(&foot.xi, &mut shape[..face.corners().len()]);
-        Stencil {
+        let stencil = Stencil {
             point: *point,
             gap: foot.gap,
             normal: foot.normal,
+            first: [0; 2 * NODES],
             foot: Foot::Face(Foothold {
                 face: *face,
                 x: positions,
@@ -118,11 +123,22 @@ impl Stencil {
                 r: [0, 1, 2].map(|i| x[i] - foot.point[i]),
                 inside: foot.inside,
             }),
+        };
+        stencil.numbered(places)
+    }
+
+    fn numbered(mut self, places: &Places) -> Stencil {
+        let mut first = self.first;
+        for (first, (node, _)) in first.iter_mut().zip(self.relative()) {
+            *first = places.unknowns.first(node) as u32;
         }
+        self.first = first;
+        self
     }
 
     /// Appends gap and rows.
-    pub fn push(&self, dim: usize, rows: &mut Rows, tangents: &mut [Rows; 2]) {
+    pub fn push(&self, places: &Places, rows: &mut Rows, tangents: &mut [Rows; 2]) {
+        let dim = places.dim();
         rows.push(self.gap, self.normal);
         rows.set_resultant(self.resultant().into());
         rows.set_rate(self.rate(&self.normal));
@@ -137,9 +153,9 @@ impl Stencil {
             if let Some(turning) = &turning {
                 n = (Vec3::from(n) + turning[i]).into();
             }
-            rows.add_node(dim, node, &n);
+            rows.add_node(places, node, &n);
             for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
-                rows.add_node(dim, node, &t.map(|t| c * t));
+                rows.add_node(places, node, &t.map(|t| c * t));
             }
         }
     }
@@ -208,9 +224,9 @@ impl Stencil {
     /// The unknowns of the stencil's nodes and how many they are.
     pub fn unknowns(&self, dim: usize) -> ([u32; UNKNOWNS], usize) {
         let (mut unknowns, mut n) = ([0; UNKNOWNS], 0);
-        for (node, _) in self.relative() {
-            for i in 0..dim {
-                unknowns[n] = (dim as u32) * node + i as u32;
+        for first in &self.first[..self.relative().count()] {
+            for unknown in *first..*first + dim as u32 {
+                unknowns[n] = unknown;
                 n += 1;
             }
         }

@@ -1,5 +1,6 @@
 //! Surfaces that are tied rather than in contact: the mortar integrals of both sides.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_mesh::Face;
 
 use super::{Basis, Mortar, Pairing};
@@ -43,7 +44,7 @@ impl Tie {
             offsets: Vec::new(),
         };
         let places = Places {
-            dim,
+            unknowns: &Unknowns::translations(dim, x.len()),
             time: 0.0,
             x,
             u: &vec![0.0; dim * x.len()],

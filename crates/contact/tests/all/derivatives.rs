@@ -1,5 +1,6 @@
 //! Rows and curvature of a point against one face or an obstacle.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_contact::{Contact, Places, Plane, Point, Rows, Search, Side, Sphere, Target};
 use carom_elements::Kind;
 use carom_testing::Random;
@@ -77,7 +78,7 @@ fn rows_and_curvature_are_derivatives_inside_faces_on_edges_and_in_corners() {
                 .map(|u| 0.02 * u)
                 .collect();
             let places = Places {
-                dim,
+                unknowns: &Unknowns::translations(dim, x.len()),
                 time: 0.0,
                 x: &x,
                 u: &u,
@@ -126,7 +127,7 @@ fn gaps_to_obstacles_have_their_curvature() {
             let contact = contact(points, target.clone());
             let u = vec![0.01; 3 * dim];
             let places = Places {
-                dim,
+                unknowns: &Unknowns::translations(dim, x.len()),
                 time: 0.0,
                 x: &flat,
                 u: &u,
@@ -144,7 +145,7 @@ fn tangents_are_square_to_the_normal_and_measure_sliding() {
         let dim = kind.table().dim + 1;
         let u = vec![0.0; dim * x.len()];
         let places = Places {
-            dim,
+            unknowns: &Unknowns::translations(dim, x.len()),
             time: 0.0,
             x: &x,
             u: &u,
@@ -195,7 +196,7 @@ fn tangents_turn_little_with_the_normal_about_every_axis() {
                 );
                 let contact = contact(vec![Point::at_node(0, 1.0, 1.0)], target);
                 let places = Places {
-                    dim: 3,
+                    unknowns: &Unknowns::translations(3, 1),
                     time: 0.0,
                     x: &[[0.0; 3]],
                     u: &[0.0; 3],

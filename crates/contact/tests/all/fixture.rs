@@ -46,13 +46,11 @@ pub fn full(pairing: &Pairing, point: usize, n: usize) -> Vec<f64> {
 
 /// The forces of a point have no resultant and no moment about the origin, hence about no point.
 pub fn assert_balanced(pairing: &Pairing, point: usize, places: &Places, tolerance: f64) {
-    let dim = places.dim;
     let row = full(pairing, point, places.u.len());
     let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
     for node in 0..places.x.len() {
         let x = places.of(node as u32);
-        let mut f = [0.0; 3];
-        f[..dim].copy_from_slice(&row[dim * node..dim * (node + 1)]);
+        let f = places.unknowns.vector(node as u32, &row);
         for i in 0..3 {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             force[i] += f[i];

@@ -1,5 +1,6 @@
 //! Weak gaps: what their forces are, what they cover, and their derivatives.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_contact::{
     Basis, Contact, Integration, Mortar, Pairing, Places, Plane, Search, Side, Sphere, Target,
 };
@@ -14,6 +15,7 @@ pub(crate) const BASES: [Basis; 2] = [Basis::Standard, Basis::Dual];
 /// Nodes of both sides, and the faces of each.
 pub(crate) struct Pair {
     pub(crate) dim: usize,
+    pub(crate) unknowns: Unknowns,
     pub(crate) x: Vec<[f64; 3]>,
     pub(crate) secondary: Vec<Face>,
     pub(crate) primary: Vec<Face>,
@@ -37,7 +39,7 @@ impl Pair {
 
     fn places<'a>(&'a self, u: &'a [f64]) -> Places<'a> {
         Places {
-            dim: self.dim,
+            unknowns: &self.unknowns,
             time: 0.0,
             x: &self.x,
             u,
@@ -88,6 +90,7 @@ fn lines(secondary: &[f64], primary: &[f64], gap: f64, kind: Kind) -> Pair {
     let (secondary, primary) = (line(secondary, gap, false), line(primary, 0.0, true));
     Pair {
         dim: 2,
+        unknowns: Unknowns::translations(2, x.len()),
         x,
         secondary,
         primary,
@@ -153,6 +156,7 @@ fn grids(kinds: [Kind; 2], cells: [[u32; 2]; 2], primary: [[f64; 2]; 2], gap: f6
     let primary = grid(&mut x, kinds[1], primary, cells[1], 0.0, true);
     Pair {
         dim: 3,
+        unknowns: Unknowns::translations(3, x.len()),
         x,
         secondary,
         primary,

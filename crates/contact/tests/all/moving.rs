@@ -1,5 +1,6 @@
 //! Obstacles that move: what their motion adds to the rates of gaps and to sliding.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_contact::{
     Basis, Integration, Mortar, Motion, Obstacle, Places, Plane, Rows, Search, Target, Translation,
 };
@@ -31,8 +32,9 @@ fn rows_of_gaps_and_of_sliding_have_the_velocity_of_the_obstacle() {
     };
     let mut contact = contact(points, Target::Rigid(moving));
     assert!(contact.moves());
+    let unknowns = Unknowns::translations(3, x.len());
     let places = |time| Places {
-        dim: 3,
+        unknowns: &unknowns,
         time,
         x: &x,
         u: &[0.0; 12],

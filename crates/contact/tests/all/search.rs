@@ -1,5 +1,6 @@
 //! The search with its memory against asking all faces.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_contact::{Contact, Places, Point, Rows, Search, Target};
 use carom_elements::Kind;
 use carom_mesh::{Face, project};
@@ -128,7 +129,7 @@ fn pairings_of_moving_surfaces_equal_brute_force_whatever_the_search_remembers()
             };
             let u = scene.displacement(time, 0.5);
             let places = Places {
-                dim: scene.dim,
+                unknowns: &Unknowns::translations(scene.dim, scene.x.len()),
                 time: 0.0,
                 x: &scene.x,
                 u: &u,
@@ -161,7 +162,7 @@ fn a_slow_surface_is_hardly_searched() {
     for step in 0..12 {
         let u: Vec<f64> = shape.iter().map(|u| 1e-2 * f64::from(step) * u).collect();
         let places = Places {
-            dim: 3,
+            unknowns: &Unknowns::translations(3, scene.x.len()),
             time: 0.0,
             x: &scene.x,
             u: &u,
@@ -185,7 +186,7 @@ fn memory_of_other_faces_does_no_harm() {
         for scene in &scenes {
             let u = vec![0.0; 3 * scene.x.len()];
             let places = Places {
-                dim: 3,
+                unknowns: &Unknowns::translations(3, scene.x.len()),
                 time: 0.0,
                 x: &scene.x,
                 u: &u,
@@ -204,7 +205,7 @@ fn memory_of_the_search_is_a_few_hundred_bytes_for_a_face() {
     let scene = Scene::new(Kind::Quad4, 100, 1);
     let u = vec![0.0; 3 * scene.x.len()];
     let places = Places {
-        dim: 3,
+        unknowns: &Unknowns::translations(3, scene.x.len()),
         time: 0.0,
         x: &scene.x,
         u: &u,
@@ -226,7 +227,7 @@ fn a_point_that_comes_back_twice_in_a_step_stays_with_its_face() {
         let sides = [-0.01, 0.01, -0.01, 0.01, -0.01, -0.01];
         sides.map(|side| {
             let places = Places {
-                dim: 2,
+                unknowns: &Unknowns::translations(2, x.len()),
                 time: 0.0,
                 x: &x,
                 u: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, side, 0.002],

@@ -1,5 +1,6 @@
 //! Surfaces that face themselves, and thin parts.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_contact::{
     Basis, Contact, Integration, Mortar, Places, Point, Rows, Search, Sight, Target,
 };
@@ -80,7 +81,7 @@ impl Fold {
 
     fn rows(&self, contact: &Contact, u: &[f64], search: &mut Search) -> Rows {
         let places = Places {
-            dim: 2,
+            unknowns: &Unknowns::translations(2, self.x.len()),
             time: 0.0,
             x: &self.x,
             u,
@@ -176,7 +177,7 @@ fn a_node_deep_in_a_thin_plate_is_pushed_back_to_the_side_it_came_from() {
     let sight = Sight::new((&points, &block), &plate, &x, Some(0.1));
     let mut contact = contact(points, Target::Surface(plate.to_vec()));
     let places = Places {
-        dim: 2,
+        unknowns: &Unknowns::translations(2, x.len()),
         time: 0.0,
         x: &x,
         u: &[0.0; 12],

@@ -1,5 +1,6 @@
 //! Weak gaps where a face of the secondary surface is steep over the primary one.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_contact::Pairing;
 use carom_elements::Kind;
 use carom_mesh::Face;
@@ -35,6 +36,7 @@ fn edge(dim: usize, angle: f64, gap: f64) -> Pair {
     let (secondary, primary) = (strip(&profile, false), strip(&floor, true));
     Pair {
         dim,
+        unknowns: Unknowns::translations(dim, x.len()),
         x,
         secondary,
         primary,

@@ -16,7 +16,7 @@ impl Driver {
     pub(super) fn pair_initially(&mut self) {
         let system = Arc::clone(&self.system);
         let places = Places {
-            dim: system.dim,
+            unknowns: &system.unknowns,
             time: 0.0,
             x: &system.x,
             u: &self.vectors.work,
@@ -70,7 +70,7 @@ impl Driver {
                     }
                     let u = if ahead { &self.vectors.work } else { u };
                     let places = Places {
-                        dim: system.dim,
+                        unknowns: &system.unknowns,
                         time: 0.0,
                         x: &system.x,
                         u,

@@ -180,7 +180,9 @@ fn beside_held(system: &System, rows: &Rows, point: usize) -> bool {
     let (contact, place) = system.point(point);
     let (dofs, _) = rows.row(point);
     contact.points[place].carriers().any(|(node, _)| {
-        let mut of_node = dofs.iter().filter(|dof| **dof / system.dim as u32 == node);
+        let mut of_node = dofs
+            .iter()
+            .filter(|dof| system.unknowns.node(**dof as usize) == node);
         of_node.all(|dof| system.fixed[*dof as usize])
     })
 }

@@ -173,7 +173,7 @@ impl Newton {
         let stored = energies.strain - start.strain + self.stored.hardening - start.hardening;
         let own = identity.inertia * energies.acceleration - start.scheme_energy;
         let scheme = inertia - gained - own + internal - stored - self.stored.dissipated;
-        let nodes = (system.unknowns() / system.dim) as f64;
+        let nodes = system.x.len() as f64;
         let travel = (0..new.u.len()).map(|i| (new.u[i] - old.u[i]).powi(2));
         let tolerated = Tolerated {
             energy: self.left_over * travel.sum::<f64>().sqrt(),

@@ -108,7 +108,7 @@ impl Newton {
         let search = &mut self.search[number];
         let Vectors { place, work, .. } = &mut self.vectors;
         let at = |u| Places {
-            dim: system.dim,
+            unknowns: &system.unknowns,
             time,
             x: &system.x,
             u,

@@ -5,6 +5,7 @@ use std::ops::Range;
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_algebra::solver::FactorStats;
+use carom_algebra::unknowns::Unknowns;
 use carom_bodies::Placement;
 use carom_contact::Pairing;
 
@@ -127,14 +128,16 @@ impl Effective {
                 free.add(i, i, weight * a.get(i, i).abs());
             }
         }
-        let factored = self.factorise(&free, system.dim);
+        let factored = self.factorise(&free, &system.unknowns);
         self.matrix = Some(a);
         factored.map_err(|cause| {
             // the factor is of no use any more, but it was computed
             self.retired = self.work();
             self.operators = None;
             let node = match &cause {
-                carom_algebra::Error::NotPositiveDefinite { unknown, .. } => *unknown / system.dim,
+                carom_algebra::Error::NotPositiveDefinite { unknown, .. } => {
+                    system.unknowns.node(*unknown) as usize
+                }
                 _ => 0,
             };
             Error::Factor {
@@ -145,7 +148,7 @@ impl Effective {
         })
     }
 
-    fn factorise(&mut self, free: &Csr, dim: usize) -> Result<(), carom_algebra::Error> {
+    fn factorise(&mut self, free: &Csr, unknowns: &Unknowns) -> Result<(), carom_algebra::Error> {
         if let Some(Operator::Factored(factor)) =
             self.operators.as_mut().map(|o| &mut o.operators[0])
         {
@@ -153,7 +156,7 @@ impl Effective {
         }
         let none = vec![false; free.n];
         self.operators = Some(Operators::whole(
-            Operator::factored(free, &none, dim)?,
+            Operator::factored(free, &none, unknowns.node_of_each())?,
             free.n,
         ));
         Ok(())
@@ -174,7 +177,7 @@ impl Effective {
         let n = system.unknowns();
         let mut cliques = Cliques::new();
         for body in &system.bodies {
-            push_cliques(body, system.dim, &(0..n), &mut cliques);
+            push_cliques(body, &system.unknowns, &(0..n), &mut cliques);
         }
         for row in &rows {
             cliques.push(row);
@@ -251,8 +254,7 @@ fn assemble(system: &System, at: &At, a: &mut Csr) -> Result<(), Error> {
         }
         if damping.mass != 0.0 {
             for &(node, m) in &system.body_masses[k] {
-                for i in 0..system.dim {
-                    let unknown = system.dim * node as usize + i;
+                for unknown in system.unknowns.translations_of(node) {
                     a.add(unknown, unknown, rate * damping.mass * m);
                 }
             }

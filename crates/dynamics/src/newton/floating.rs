@@ -116,7 +116,7 @@ fn size_of_elements(system: &System, part: &Range<usize>) -> f64 {
         body.each_element(&mut |nodes| {
             if !nodes
                 .iter()
-                .any(|&node| part.contains(&(system.dim * node as usize)))
+                .any(|&node| part.contains(&system.unknowns.first(node)))
             {
                 return;
             }
@@ -136,7 +136,7 @@ fn size_of_elements(system: &System, part: &Range<usize>) -> f64 {
 
 /// Whether a contact has the part on one side and something else on the other.
 fn touches(system: &System, part: &Range<usize>) -> bool {
-    let inside = |node: u32| part.contains(&(system.dim * node as usize));
+    let inside = |node: u32| part.contains(&system.unknowns.first(node));
     system.contacts.iter().any(|contact| {
         let nodes = contact.points.iter().flat_map(|point| point.carriers());
         let own: Vec<bool> = nodes.map(|(node, _)| inside(node)).collect();
@@ -154,7 +154,7 @@ fn touches(system: &System, part: &Range<usize>) -> bool {
 
 /// Name of the body at the first node of a part.
 fn body_of(system: &System, part: &Range<usize>) -> String {
-    let first = (part.start / system.dim) as u32;
+    let first = system.unknowns.node(part.start);
     let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(node, _)| *node == first);
     let body = system.body_masses.iter().position(owns).unwrap_or(0);
     system.bodies[body].name().to_string()

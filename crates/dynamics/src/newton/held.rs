@@ -22,7 +22,7 @@ impl Newton {
             let row = self.paired_at(contact);
             row.whole(&self.state.motion, &self.vectors.x, &[], &mut u);
             let places = Places {
-                dim: system.dim,
+                unknowns: &system.unknowns,
                 time: self.state.time + self.paired_after(contact),
                 x: &system.x,
                 u: &u,

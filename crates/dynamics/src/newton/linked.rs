@@ -117,7 +117,7 @@ impl Newton {
         let n = system.unknowns();
         let mut cliques = Cliques::new();
         for body in &system.bodies {
-            push_cliques(body, system.dim, &(0..n), &mut cliques);
+            push_cliques(body, &system.unknowns, &(0..n), &mut cliques);
         }
         let mut stiffness = Csr::from_cliques(n, &cliques);
         let still = vec![0.0; n];
@@ -158,7 +158,7 @@ impl Newton {
         let mut a = stiffness.clone();
         a.scale(map.force.x);
         system.mass.add_to(map.inertia.x, &(0..n), &mut a);
-        let operator = Operator::factored(&a, &system.fixed, system.dim);
+        let operator = Operator::factored(&a, &system.fixed, system.unknowns.node_of_each());
         let operator = operator.map_err(|cause| Error::Factor {
             matrix: "effective matrix",
             node: system.mesh_node[0],

@@ -61,8 +61,7 @@ impl Newton {
         for (k, damping) in system.nonlinear.damping.iter().enumerate() {
             if damping.mass != 0.0 {
                 for &(node, m) in &system.body_masses[k] {
-                    for i in 0..system.dim {
-                        let unknown = system.dim * node as usize + i;
+                    for unknown in system.unknowns.translations_of(node) {
                         vectors.damping[unknown] += damping.mass * m * vectors.work[unknown];
                     }
                 }

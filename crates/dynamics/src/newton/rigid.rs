@@ -6,6 +6,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use carom_algebra::unknowns::Kind;
 use carom_contact::Rows;
 
 use super::Newton;
@@ -82,14 +83,14 @@ impl<'a> Rigid<'a> {
                 continue;
             };
             for &(node, _) in masses {
-                let node = node as usize;
-                for i in 0..dim {
-                    places[node][i] = system.x[node][i] + u[dim * node + i];
+                let moved = system.unknowns.vector(node, u);
+                for (place, u) in places[node as usize].iter_mut().zip(moved) {
+                    *place += u;
                 }
             }
         }
         let frames = parts.iter().map(|part| {
-            let nodes = &places[part.start / dim..part.end / dim];
+            let nodes = &places[system.nodes_of(part)];
             let n = nodes.len() as f64;
             let centre = [0, 1, 2].map(|i| nodes.iter().map(|x| x[i]).sum::<f64>() / n);
             let far = |x: &[f64; 3]| (0..3).map(|i| (x[i] - centre[i]).abs()).fold(0.0, f64::max);
@@ -125,8 +126,11 @@ impl<'a> Rigid<'a> {
     fn at(&self, unknown: usize) -> Option<(usize, impl Iterator<Item = f64> + '_)> {
         let part = self.part_of(unknown)?;
         let frame = &self.frames[part];
-        let (node, i) = (unknown / self.system.dim, unknown % self.system.dim);
-        let place = &self.places[node];
+        let unknowns = &self.system.unknowns;
+        let Kind::Translation(i) = unknowns.kind(unknown) else {
+            return None;
+        };
+        let place = &self.places[unknowns.node(unknown) as usize];
         let x = [0, 1, 2].map(|j| (place[j] - frame.centre[j]) / frame.size);
         let values = self
             .modes
@@ -189,11 +193,14 @@ impl<'a> Rigid<'a> {
         let spinning = parts.filter(|(k, _)| self.frames[*k].spins);
         spinning.flat_map(move |(k, part)| {
             let (frame, turn) = (&self.frames[k], turns[k]);
-            let dim = self.system.dim;
-            part.clone().map(move |unknown| {
-                let place = &self.places[unknown / dim];
+            let unknowns = &self.system.unknowns;
+            part.clone().filter_map(move |unknown| {
+                let Kind::Translation(axis) = unknowns.kind(unknown) else {
+                    return None;
+                };
+                let place = &self.places[unknowns.node(unknown) as usize];
                 let from = [0, 1, 2].map(|i| place[i] - frame.centre[i]);
-                (unknown, beyond_linear(&turn, &from)[unknown % dim])
+                Some((unknown, beyond_linear(&turn, &from)[axis]))
             })
         })
     }
@@ -217,15 +224,15 @@ impl<'a> Rigid<'a> {
 
     /// Largest displacement of a node of a part in a motion, m.
     pub(super) fn reach(&self, part: usize, c: &[f64]) -> f64 {
-        let dim = self.system.dim;
         let of = |unknown: usize| -> f64 {
             let moved = self
                 .at(unknown)
                 .map(|(first, values)| values.zip(&c[first..]).map(|(v, c)| v * c).sum::<f64>());
             moved.unwrap_or(0.0)
         };
-        let nodes = self.parts[part].clone().step_by(dim);
-        let lengths = nodes.map(|node| (node..node + dim).map(|i| of(i).powi(2)).sum::<f64>());
+        let nodes = self.system.nodes_of(&self.parts[part]);
+        let unknowns = |node| self.system.unknowns.translations_of(node as u32);
+        let lengths = nodes.map(|node| unknowns(node).map(|i| of(i).powi(2)).sum::<f64>());
         lengths.fold(0.0, f64::max).sqrt()
     }
 
@@ -279,7 +286,7 @@ impl<'a> Rigid<'a> {
 /// Whether a part turns by finite angles.
 fn spins(system: &System, part: &Range<usize>) -> bool {
     let mut bodies = system.bodies.iter().zip(&system.body_masses);
-    let inside = |node: u32| part.contains(&(system.dim * node as usize));
+    let inside = |node: u32| part.contains(&system.unknowns.first(node));
     let stiff = bodies.any(|(body, masses)| {
         body.is_linear() && masses.first().is_some_and(|&(node, _)| inside(node))
     });

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use carom_algebra::unknowns::Kind;
 use carom_bodies::Body;
 use carom_contact::Search;
 use carom_mesh::ElementId;
@@ -275,10 +276,9 @@ impl Newton {
     /// |M v|/dt of the motion at the start of the step, N.
     fn momentum_scale(&self) -> f64 {
         let masses = self.system.body_masses.iter().flatten();
-        let dim = self.system.dim;
+        let unknowns = &self.system.unknowns;
         let squares = masses.map(|&(node, m)| {
-            let first = dim * node as usize;
-            let v = &self.state.motion.v[first..first + dim];
+            let v = &self.state.motion.v[unknowns.translations_of(node)];
             m * m * v.iter().map(|v| v * v).sum::<f64>()
         });
         squares.sum::<f64>().sqrt() / self.dt
@@ -288,15 +288,13 @@ impl Newton {
     /// ε |u|, which changes the force of each unknown by about ε K_ii |u|, at random. Places count from
     /// [`System::origin`](crate::System).
     pub(super) fn rounding(&self) -> f64 {
-        let places = self
-            .system
-            .x
-            .iter()
-            .zip(self.state.motion.u.chunks(self.system.dim));
-        let origin = self.system.origin;
-        let sizes = places.flat_map(|(x, u)| {
-            let along = x.iter().zip(origin).zip(u);
-            along.map(|((x, origin), u)| (x - origin).abs() + u.abs())
+        let (system, u) = (&self.system, &self.state.motion.u);
+        let sizes = (0..system.unknowns()).map(|unknown| match system.unknowns.kind(unknown) {
+            Kind::Translation(axis) => {
+                let x = &system.x[system.unknowns.node(unknown) as usize];
+                (x[axis] - system.origin[axis]).abs() + u[unknown].abs()
+            }
+            Kind::Rotation(_) => u[unknown].abs(),
         });
         2.0 * f64::EPSILON
             * self
@@ -516,7 +514,8 @@ impl Newton {
             true => i,
             false => best,
         };
-        let node = (0..system.unknowns()).fold(0, larger) / system.dim;
+        let worst = (0..system.unknowns()).fold(0, larger);
+        let node = system.unknowns.node(worst) as usize;
         let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(n, _)| *n as usize == node);
         let body = system.body_masses.iter().position(owns).unwrap_or(0);
         let contact = match self.worst_point() {

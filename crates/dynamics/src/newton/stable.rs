@@ -43,18 +43,20 @@ impl Newton {
     /// Largest rate at which the distance of two nodes of an element changes, relative to it, 1/s.
     fn largest_rate(&self) -> f64 {
         let (system, motion) = (&*self.system, &self.state.motion);
-        let dim = system.dim;
         let mut largest: f64 = 0.0;
         let mut visit = |nodes: &[u32]| {
             for (k, &a) in nodes.iter().enumerate() {
                 for &b in &nodes[..k] {
-                    let (a, b) = (a as usize, b as usize);
+                    let [u, v] = [&motion.u, &motion.v].map(|values| {
+                        let [a, b] = [a, b].map(|node| system.unknowns.vector(node, values));
+                        [0, 1, 2].map(|i| a[i] - b[i])
+                    });
+                    let [a, b] = [a, b].map(|node| system.x[node as usize]);
                     let (mut square, mut product) = (0.0, 0.0);
-                    for i in 0..dim {
-                        let apart = |at: &[f64]| at[dim * a + i] - at[dim * b + i];
-                        let x = system.x[a][i] - system.x[b][i] + apart(&motion.u);
+                    for i in 0..system.dim {
+                        let x = a[i] - b[i] + u[i];
                         square += x * x;
-                        product += x * apart(&motion.v);
+                        product += x * v[i];
                     }
                     largest = largest.max(product.abs() / square);
                 }

@@ -88,9 +88,8 @@ impl Joined {
             match zone.is_diagonal() {
                 true => add_diagonal(zone, unknowns, &mut matrix),
                 false => {
-                    let dim = zone.system.dim;
                     for i in 0..zone.system.unknowns() {
-                        groups[first + i] = (first + i - i % dim) as u32;
+                        groups[first + i] = (first + first_of_node(zone, i)) as u32;
                     }
                     add_implicit(zone, first, unknowns, &mut matrix);
                     group(zone, first, &mut groups[unknowns..]);
@@ -155,7 +154,7 @@ fn cliques(zones: &[Answer], first: &[usize], neighbours: &[Vec<u32>]) -> Clique
         if zone.is_diagonal() {
             continue;
         }
-        let (dim, first) = (zone.system.dim as u32, first as u32);
+        let (map, first) = (&zone.system.unknowns, first as u32);
         let mut dofs = Vec::new();
         for body in &zone.system.bodies {
             body.each_element(&mut |nodes| {
@@ -163,7 +162,7 @@ fn cliques(zones: &[Answer], first: &[usize], neighbours: &[Vec<u32>]) -> Clique
                 dofs.extend(
                     nodes
                         .iter()
-                        .flat_map(|node| (0..dim).map(move |i| first + dim * node + i)),
+                        .flat_map(|&node| map.of(node).map(move |i| first + i as u32)),
                 );
                 cliques.push(&dofs);
             });
@@ -229,7 +228,6 @@ fn add_implicit(zone: &Answer, first: usize, unknowns: usize, matrix: &mut Csr) 
 
 /// Puts each multiplier in the group of the node that it acts on most.
 fn group(zone: &Answer, first: usize, groups: &mut [u32]) {
-    let dim = zone.system.dim;
     for (row, terms) in zone.rows {
         let free = terms
             .iter()
@@ -239,9 +237,15 @@ fn group(zone: &Answer, first: usize, groups: &mut [u32]) {
             false => (most, at),
         });
         if let (_, Some(dof)) = most {
-            groups[*row as usize] = (first + dof - dof % dim) as u32;
+            groups[*row as usize] = (first + first_of_node(zone, dof)) as u32;
         }
     }
+}
+
+/// First unknown of the node of an unknown.
+fn first_of_node(zone: &Answer, unknown: usize) -> usize {
+    let unknowns = &zone.system.unknowns;
+    unknowns.first(unknowns.node(unknown))
 }
 
 /// Group numbers without gaps, in the order of the old ones.

@@ -226,7 +226,8 @@ fn rows(zoned: &Zoned, systems: &[Arc<System>]) -> Vec<Vec<(u32, LinkRow)>> {
             for (zone, sign, terms) in sides {
                 let system = &systems[zone];
                 let dof = |term: &carom_arlequin::Term| {
-                    system.number[term.node as usize] * system.dim as u32 + term.component
+                    let node = system.number[term.node as usize];
+                    system.unknowns.first(node) as u32 + term.component
                 };
                 let terms = terms
                     .iter()

@@ -326,12 +326,12 @@ impl Places {
         whole: &System,
         taken: &mut [bool],
     ) -> Places {
-        let dim = zone.dim as u32;
         let numbers = zone.mesh_node.iter().zip(0..);
         let unknowns: Vec<(u32, u32)> = numbers
             .flat_map(|(&node, own)| {
                 let number = whole.number[node as usize];
-                (0..dim).map(move |i| (dim * own + i, dim * number + i))
+                let [own, of_whole] = [zone.unknowns.of(own), whole.unknowns.of(number)];
+                own.zip(of_whole).map(|(own, of)| (own as u32, of as u32))
             })
             .collect();
         let mut own = unknowns.clone();

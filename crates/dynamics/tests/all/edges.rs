@@ -65,6 +65,7 @@ fn sheared(secondary: usize) -> Newton {
         supports: vec![Support {
             nodes: mesh.group_nodes(&mesh.groups["lower.bottom"]),
             fix: [true, true, false],
+            fix_rotations: [false; 3],
         }],
         gravity: [0.0; 3],
         scheme: Scheme::Newmark(scheme::Newmark {

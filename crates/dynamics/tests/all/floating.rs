@@ -240,7 +240,11 @@ fn blocks_that_only_touch_each_other_and_the_ground_carry_a_load_down() {
         for group in ["a.left", "b.left"] {
             let nodes = model.mesh.group_nodes(&model.mesh.groups[group]);
             let fix = [true, false, false];
-            model.supports.push(Support { nodes, fix });
+            model.supports.push(Support {
+                nodes,
+                fix,
+                fix_rotations: [false; 3],
+            });
         }
         let newton = pressed(model).unwrap();
         let (system, motion) = (newton.system(), &newton.state().motion);

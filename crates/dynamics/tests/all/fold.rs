@@ -68,6 +68,7 @@ fn pressed(depth: f64, way: f64) -> Newton {
         supports: vec![Support {
             nodes: mesh.group_nodes(&mesh.groups["b.bottom"]),
             fix: [true, true, false],
+            fix_rotations: [false; 3],
         }],
         gravity: [0.0; 3],
         scheme: Scheme::Newmark(scheme::Newmark {

@@ -86,6 +86,7 @@ impl Row {
         let supports = self.held.iter().map(|group| Support {
             nodes: mesh.group_nodes(&mesh.groups[*group]),
             fix: [true; 3],
+            fix_rotations: [false; 3],
         });
         Model {
             contacts: (1..self.lengths.len()).map(|k| contact(k - 1)).collect(),

@@ -140,6 +140,7 @@ fn damped_bar(scheme: Scheme, damping: Damping, steps: usize) -> (f64, Newton) {
     model.supports = vec![Support {
         nodes: held,
         fix: [true; 3],
+        fix_rotations: [false; 3],
     }];
     model.mesh = mesh;
     model.nonlinear.damping = vec![damping];

@@ -283,6 +283,7 @@ fn dynamics_begin_at_the_equilibrium_of_the_static_stage_with_the_velocities_giv
         model.supports.push(carom_dynamics::Support {
             nodes: model.mesh.group_nodes(group),
             fix: [true; 3],
+            fix_rotations: [false; 3],
         });
         model.nonlinear.preload = Some(carom_dynamics::Preload { end: 1.0, steps: 2 });
         let mut newton = newton(model);
@@ -369,6 +370,7 @@ fn rubber() -> Model {
         supports: vec![carom_dynamics::Support {
             nodes: mesh.group_nodes(&mesh.groups["bar.left"]),
             fix: [true, false, false],
+            fix_rotations: [false; 3],
         }],
         ..Model::new(
             vec![ModelBody {

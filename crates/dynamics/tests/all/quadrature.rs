@@ -300,7 +300,11 @@ fn a_held_node_of_the_surface_makes_its_multiplier_redundant_and_no_step_fail() 
         let mut model = square(scheme, law, [0.0, 1.0, 0.0]);
         let nodes = model.mesh.group_nodes(&model.mesh.groups["a.left"]);
         let fix = [false, true, false];
-        model.supports.push(Support { nodes, fix });
+        model.supports.push(Support {
+            nodes,
+            fix,
+            fix_rotations: [false; 3],
+        });
         let mut held = driver(model, weak(&law));
         for _ in 0..40 {
             held.step().unwrap();

@@ -174,6 +174,7 @@ fn started(mut model: Model, holds: &[(&str, [bool; 3])]) -> String {
         model.supports.push(Support {
             nodes: model.mesh.group_nodes(&model.mesh.groups[*group]),
             fix: *fix,
+            fix_rotations: [false; 3],
         });
     }
     model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });

@@ -95,6 +95,7 @@ fn on_a_block(edges: usize, friction: f64) -> Model {
     model.supports.push(Support {
         nodes: model.mesh.group_nodes(&model.mesh.groups["b.bottom"]),
         fix: [true, true, false],
+        fix_rotations: [false; 3],
     });
     model
 }

@@ -73,6 +73,7 @@ fn model(scheme: Scheme, law: Law, part: f64) -> Model {
         supports: vec![Support {
             nodes: mesh.group_nodes(&mesh.groups["bar.right"]),
             fix: [true; 3],
+            fix_rotations: [false; 3],
         }],
         ..Model::new(
             vec![ModelBody {

@@ -232,6 +232,7 @@ fn a_uniform_stress_rests_on_a_border_whose_nodes_do_not_match() {
     model.supports = vec![Support {
         nodes: held,
         fix: [true, false, false],
+        fix_rotations: [false; 3],
     }];
     model.nonlinear.loads = vec![load];
     for scheme in [HALF, TRAPEZOID, BETWEEN] {

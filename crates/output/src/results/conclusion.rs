@@ -152,7 +152,7 @@ fn model(system: &System) -> Model {
         let name = system.mesh.kind(*cell).table().name;
         *elements.entry(name.to_owned()).or_insert(0) += 1;
     }
-    let lumped = |node: &(u32, f64)| system.mass.lumped[system.dim * node.0 as usize] > 0.0;
+    let lumped = |node: &(u32, f64)| system.mass.lumped[system.unknowns.first(node.0)] > 0.0;
     let mass = system.bodies.iter().zip(&system.body_masses);
     let mass = mass.map(|(body, nodes)| {
         let kind = if nodes.iter().all(lumped) {

@@ -246,7 +246,7 @@ impl Volume {
         ];
         let chosen = chosen.into_iter().filter(|(_, on, _)| *on);
         let motions: Vec<(&str, Vec<[f64; 3]>)> = chosen
-            .map(|(name, _, values)| (name, vectors(system.dim, values)))
+            .map(|(name, _, values)| (name, vectors(system, values)))
             .collect();
         let point_fields = motions.iter().map(|(name, values)| Field {
             name,
@@ -301,7 +301,7 @@ impl Volume {
             path,
             &Grid {
                 time: snapshot.time,
-                points: &places(system, &system.x, &vectors(system.dim, &snapshot.u)),
+                points: &places(system, &system.x, &vectors(system, &snapshot.u)),
                 cells: &borrowed(&self.cells),
                 point_fields: &point_fields,
                 cell_fields: &cell_fields,
@@ -370,7 +370,7 @@ impl SurfaceGrid {
     fn of_points(system: &System, contact: usize, points: &[Point]) -> SurfaceGrid {
         let reference = vec![0.0; system.unknowns()];
         let places = Places {
-            dim: system.dim,
+            unknowns: &system.unknowns,
             time: 0.0,
             x: &system.x,
             u: &reference,
@@ -414,7 +414,7 @@ impl SurfaceGrid {
         let closed: Vec<i32> = status.iter().map(|s| sign(*s != Status::Open)).collect();
         let watched = interface.watched[range.clone()].iter();
         let watched: Vec<i32> = watched.map(|on| sign(*on)).collect();
-        let all = vectors(system.dim, &snapshot.u);
+        let all = vectors(system, &snapshot.u);
         let moved = |point: &Point| {
             point.carriers().fold([0.0; 3], |sum: [f64; 3], (node, n)| {
                 [0, 1, 2].map(|i| sum[i] + n * all[node as usize][i])
@@ -467,14 +467,11 @@ fn borrowed(cells: &[(Kind, Vec<u32>)]) -> Vec<Cells<'_>> {
 }
 
 /// One vector of three components per node.
-fn vectors(dim: usize, values: &[f64]) -> Vec<[f64; 3]> {
-    let nodes = values.chunks_exact(dim);
-    let vector = |node: &[f64]| {
-        let mut vector = [0.0; 3];
-        vector[..dim].copy_from_slice(node);
-        vector
-    };
-    nodes.map(vector).collect()
+fn vectors(system: &System, values: &[f64]) -> Vec<[f64; 3]> {
+    let nodes = 0..system.x.len() as u32;
+    nodes
+        .map(|node| system.unknowns.vector(node, values))
+        .collect()
 }
 
 /// A face as it is drawn, with the places of its nodes: in full, or by its corners where only these are points of the

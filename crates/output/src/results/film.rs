@@ -64,7 +64,7 @@ impl Film {
     fn keep(&mut self, system: &System, state: &State) {
         let (motion, interface) = (&state.motion, &state.interface);
         let places = Places {
-            dim: system.dim,
+            unknowns: &system.unknowns,
             time: state.time,
             x: &system.x,
             u: &motion.u,
@@ -210,7 +210,7 @@ impl Outlines {
     /// The picture of an instant; of an axisymmetric model both halves of the section.
     fn frame(&self, system: &System, still: &Still) -> Frame {
         let places = Places {
-            dim: system.dim,
+            unknowns: &system.unknowns,
             time: still.time,
             x: &system.x,
             u: &still.u,

@@ -17,9 +17,9 @@ pub(crate) struct Sensor {
 
 impl Sensor {
     /// The component along `axis` (unit vector) of the motion of a node (system number).
-    fn node(dim: usize, node: u32, axis: [f64; 3]) -> Sensor {
-        let first = dim as u32 * node;
-        let terms = (0..dim).map(|i| (first + i as u32, axis[i]));
+    fn node(system: &System, node: u32, axis: [f64; 3]) -> Sensor {
+        let unknowns = system.unknowns.translations_of(node);
+        let terms = unknowns.zip(axis).map(|(i, c)| (i as u32, c));
         Sensor {
             terms: terms.filter(|(_, c)| *c != 0.0).collect(),
         }
@@ -46,14 +46,16 @@ pub(crate) fn of_probe(system: &System, probe: &Probe) -> Result<Vec<Sensor>, Er
             name: probe.name.clone(),
         });
     }
-    let dim = system.dim as u32;
-    let component = |i: u32| Sensor {
+    let component = |i: usize| Sensor {
         terms: nodes
             .iter()
-            .map(|(node, weight)| (dim * node + i, weight / total))
+            .map(|(node, weight)| {
+                let unknown = system.unknowns.first(*node) + i;
+                (unknown as u32, weight / total)
+            })
             .collect(),
     };
-    Ok((0..dim).map(component).collect())
+    Ok((0..system.dim).map(component).collect())
 }
 
 /// The contact point whose motion is drawn.
@@ -82,7 +84,7 @@ pub(crate) fn contact_point(
     let total: f64 = contact.points.iter().map(|point| point.area).sum();
     let at_rest = vec![0.0; system.unknowns()];
     let places = Places {
-        dim: system.dim,
+        unknowns: &system.unknowns,
         time: 0.0,
         x: &system.x,
         u: &at_rest,
@@ -114,7 +116,7 @@ pub(crate) fn contact_point(
     }
     let nodes = [Some(secondary), primary].into_iter().zip(names);
     let side = |(node, name): (Option<u32>, Option<&str>)| {
-        let sensor = Sensor::node(system.dim, node?, axis);
+        let sensor = Sensor::node(system, node?, axis);
         Some((name.unwrap_or("primary").to_owned(), sensor))
     };
     Some(ContactPoint {
@@ -136,7 +138,7 @@ fn nearest(system: &System, nodes: impl Iterator<Item = u32>, to: &[f64; 3]) -> 
 /// Normal at a secondary node at the start; where it faces nothing yet, the way to the primary node.
 fn normal(system: &System, contact: usize, secondary: u32, primary: Option<u32>) -> [f64; 3] {
     let places = Places {
-        dim: system.dim,
+        unknowns: &system.unknowns,
         time: 0.0,
         x: &system.x,
         u: &system.initial_displacement,

@@ -1,5 +1,6 @@
 //! Limits, refusals, threads.
 
+use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{BodySpec, Error, Formulation, Kinematics, Placement, Scratch, Solid};
 use carom_elements::Kind;
 use carom_materials::Failure;
@@ -72,7 +73,7 @@ fn what_makes_no_sense_at_finite_strain_is_refused() {
             formulation,
             ..BodySpec::new("arm", cells(&mesh, 2), kinematics, material)
         };
-        Solid::new(&mesh, spec, &number).unwrap_err()
+        Solid::new(&mesh, spec, &number, &Unknowns::translations(2, 4)).unwrap_err()
     };
     let law = elastic()[0].1;
     let stress = Kinematics::PlaneStress { thickness: 1.0 };
@@ -105,7 +106,7 @@ fn reduced_integration_of_a_quadratic_element_is_refused() {
             elastic()[0].1,
         )
     };
-    let error = Solid::new(&mesh, spec, &number).unwrap_err();
+    let error = Solid::new(&mesh, spec, &number, &Unknowns::translations(2, 8)).unwrap_err();
     assert!(
         matches!(error, Error::NotReduced { found: "quad8", .. }),
         "{error}"

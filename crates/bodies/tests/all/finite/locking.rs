@@ -40,7 +40,7 @@ fn widening(sample: &Sample) -> f64 {
         &surface.faces,
         &mesh.nodes,
         &sample.number,
-        2,
+        &sample.unknowns(),
         Kinematics::Axisymmetric,
     );
     let mut f = vec![0.0; sample.n];

@@ -37,7 +37,7 @@ fn all_around(sample: &Sample) -> FollowerPressure {
         &surface.faces,
         &mesh.nodes,
         &sample.number,
-        sample.dim(),
+        &sample.unknowns(),
         kinematics,
     )
 }

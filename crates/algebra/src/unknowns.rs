@@ -1,0 +1,188 @@
+//! The map of unknowns: which entries of a system vector belong to a node, and what each of them is.
+//!
+//! A node has no unknowns, its translations, or its translations followed by its rotations. Nothing else decides where
+//! the unknowns of a node are: whoever needs them asks this map.
+
+use std::ops::Range;
+
+/// What an unknown is, with its axis: 0, 1, 2 for x, y, z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A displacement, m.
+    Translation(usize),
+    /// A rotation, rad; in the plane about z.
+    Rotation(usize),
+}
+
+/// Unknowns of the nodes of a system, those of a node next to each other, in the order of the nodes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Unknowns {
+    dim: usize,
+    /// First unknown of each node, and one end more.
+    first: Vec<u32>,
+    /// Node of each unknown.
+    node: Vec<u32>,
+}
+
+impl Unknowns {
+    /// Nodes that have `dim` translations each.
+    pub fn translations(dim: usize, nodes: usize) -> Unknowns {
+        Unknowns::new(dim, std::iter::repeat_n(NodeKind::Translations, nodes))
+    }
+
+    /// Nodes of these kinds in space of `dim` dimensions.
+    pub fn new(dim: usize, nodes: impl IntoIterator<Item = NodeKind>) -> Unknowns {
+        let (mut first, mut node) = (vec![0], Vec::new());
+        for (number, kind) in nodes.into_iter().enumerate() {
+            node.extend(std::iter::repeat_n(number as u32, kind.unknowns(dim)));
+            first.push(node.len() as u32);
+        }
+        Unknowns { dim, first, node }
+    }
+
+    /// Dimension of space: translations of a node that has any.
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.first.len() - 1
+    }
+
+    /// Number of unknowns.
+    pub fn len(&self) -> usize {
+        self.node.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.node.is_empty()
+    }
+
+    /// First unknown of a node; of a node without any, that of the next one.
+    pub fn first(&self, node: u32) -> usize {
+        self.first[node as usize] as usize
+    }
+
+    /// All unknowns of a node.
+    pub fn of(&self, node: u32) -> Range<usize> {
+        self.first(node)..self.first[node as usize + 1] as usize
+    }
+
+    /// All unknowns of nodes that follow each other.
+    pub fn of_range(&self, nodes: Range<usize>) -> Range<usize> {
+        self.first[nodes.start] as usize..self.first[nodes.end] as usize
+    }
+
+    /// Translations of a node: `dim` of them, or none.
+    pub fn translations_of(&self, node: u32) -> Range<usize> {
+        let all = self.of(node);
+        all.start..all.end.min(all.start + self.dim)
+    }
+
+    /// Rotations of a node.
+    pub fn rotations_of(&self, node: u32) -> Range<usize> {
+        self.translations_of(node).end..self.of(node).end
+    }
+
+    /// Node of an unknown.
+    pub fn node(&self, unknown: usize) -> u32 {
+        self.node[unknown]
+    }
+
+    /// Node of each unknown.
+    pub fn node_of_each(&self) -> &[u32] {
+        &self.node
+    }
+
+    /// Kind of an unknown.
+    pub fn kind(&self, unknown: usize) -> Kind {
+        let place = unknown - self.first(self.node[unknown]);
+        match (place < self.dim, self.dim) {
+            (true, _) => Kind::Translation(place),
+            (false, 2) => Kind::Rotation(2),
+            (false, _) => Kind::Rotation(place - self.dim),
+        }
+    }
+
+    /// The unknown of a node of a kind, if the node has it.
+    pub fn find(&self, node: u32, kind: Kind) -> Option<usize> {
+        let place = match (kind, self.dim) {
+            (Kind::Translation(axis), _) => axis,
+            (Kind::Rotation(axis), 2) => (axis == 2).then_some(2)?,
+            (Kind::Rotation(axis), dim) => dim + axis,
+        };
+        let unknown = self.first(node) + place;
+        (self.of(node).contains(&unknown) && self.kind(unknown) == kind).then_some(unknown)
+    }
+
+    /// The translations of a node in a system vector, with zeros beyond the dimension.
+    pub fn vector(&self, node: u32, values: &[f64]) -> [f64; 3] {
+        let mut vector = [0.0; 3];
+        for (to, from) in vector.iter_mut().zip(&values[self.translations_of(node)]) {
+            *to = *from;
+        }
+        vector
+    }
+}
+
+/// Which unknowns a node has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NodeKind {
+    /// None: it is carried by another node, or nothing moves it.
+    None,
+    /// Its translations.
+    Translations,
+    /// Its translations, and its rotations: one in the plane, three in space, none on a line.
+    WithRotations,
+}
+
+impl NodeKind {
+    fn unknowns(self, dim: usize) -> usize {
+        match (self, dim) {
+            (NodeKind::None, _) => 0,
+            (NodeKind::Translations, _) | (NodeKind::WithRotations, 0 | 1) => dim,
+            (NodeKind::WithRotations, 2) => 3,
+            (NodeKind::WithRotations, _) => 6,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_unknown_is_found_again_by_its_node_and_kind() {
+        let kinds = [
+            NodeKind::Translations,
+            NodeKind::None,
+            NodeKind::WithRotations,
+            NodeKind::None,
+        ];
+        for (dim, counts) in [(1, [1, 0, 1, 0]), (2, [2, 0, 3, 0]), (3, [3, 0, 6, 0])] {
+            let map = Unknowns::new(dim, kinds);
+            assert_eq!(map.nodes(), 4);
+            assert_eq!(map.len(), counts.iter().sum::<usize>());
+            for node in 0..4 {
+                assert_eq!(map.of(node).len(), counts[node as usize]);
+                for unknown in map.of(node) {
+                    assert_eq!(map.node(unknown), node);
+                    assert_eq!(map.find(node, map.kind(unknown)), Some(unknown));
+                }
+            }
+            assert_eq!(map.find(0, Kind::Rotation(2)), None);
+            assert_eq!(map.find(1, Kind::Translation(0)), None);
+            assert_eq!(map.of_range(0..4), 0..map.len());
+        }
+    }
+
+    #[test]
+    fn the_vector_of_a_node_is_that_of_its_translations() {
+        let map = Unknowns::new(2, [NodeKind::WithRotations, NodeKind::Translations]);
+        let values = [1.0, 2.0, 3.0, 4.0, 5.0];
+        assert_eq!(map.vector(0, &values), [1.0, 2.0, 0.0]);
+        assert_eq!(map.vector(1, &values), [4.0, 5.0, 0.0]);
+    }
+}
