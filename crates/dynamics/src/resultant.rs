@@ -26,7 +26,9 @@ impl Resultant {
     pub(crate) fn at(system: &System, displacements: &[&[f64]], f: &[f64]) -> Resultant {
         let mut sum = Resultant::default();
         let (unknowns, share) = (&system.unknowns, 1.0 / displacements.len() as f64);
-        for node in 0..system.x.len() {
+        // forces that a model does not have are an empty vector
+        let nodes = if f.is_empty() { 0 } else { system.x.len() };
+        for node in 0..nodes {
             let mut x = system.x[node];
             let node = node as u32;
             let force = unknowns.vector(node, f);
