@@ -132,6 +132,36 @@ impl Csr {
         }
     }
 
+    /// The rows and columns of the unknowns in `ranges`, numbered one range after the other; entries in other columns are left out.
+    pub fn restricted(&self, ranges: &[std::ops::Range<usize>]) -> Self {
+        let n = ranges.iter().map(|range| range.len()).sum();
+        let mut row_ptr = Vec::with_capacity(n + 1);
+        let (mut col, mut val) = (Vec::new(), Vec::new());
+        row_ptr.push(0);
+        for i in ranges.iter().cloned().flatten() {
+            let (columns, values) = self.row(i);
+            let mut first = 0;
+            for range in ranges {
+                let [begin, end] = [range.start, range.end]
+                    .map(|end| columns.partition_point(|&j| (j as usize) < end));
+                col.extend(
+                    columns[begin..end]
+                        .iter()
+                        .map(|&j| (j as usize - range.start + first) as u32),
+                );
+                val.extend_from_slice(&values[begin..end]);
+                first += range.len();
+            }
+            row_ptr.push(col.len());
+        }
+        Self {
+            n,
+            row_ptr,
+            col,
+            val,
+        }
+    }
+
     fn position(&self, i: usize, j: u32) -> usize {
         let (columns, _) = self.row(i);
         match columns.binary_search(&j) {
@@ -183,6 +213,17 @@ mod tests {
         assert_eq!(matrix.row(2), ([2].as_slice(), [1.0].as_slice()));
         assert_eq!(matrix.row(3), ([3].as_slice(), [1.0].as_slice()));
         assert_eq!(matrix.row(1), ([0, 1].as_slice(), [-2.0, 5.0].as_slice()));
+    }
+
+    #[test]
+    fn a_restriction_holds_the_entries_among_its_unknowns() {
+        let matrix = chain().restricted(&[0..1, 2..4]);
+        assert_eq!(matrix.n, 3);
+        assert_eq!(matrix.row(0), ([0].as_slice(), [2.0].as_slice()));
+        assert_eq!(matrix.row(1), ([1].as_slice(), [3.0].as_slice()));
+        let all = chain();
+        let same = all.restricted(&[0..2, 2..4]);
+        assert!((0..4).all(|i| same.row(i) == all.row(i)));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_dynamics::{Driver, ModelZone, Newton, Observer, Outcome, Stepper, Whole, march};
+use carom_dynamics::{Driver, ModelZone, Observer, Outcome, Stepper, Whole, march};
 use carom_output::summary::Zones;
 use carom_output::{Ending, Fields, Probe, Reference, Results, Settings, Summary, Zoning};
 use thiserror::Error as ThisError;
@@ -50,14 +50,11 @@ pub fn run(
     let system = || Arc::clone(&built.system);
     match &built.zoned {
         None => {
-            let mut driver: Box<dyn Stepper> = match built.system.is_nonlinear() {
-                false => Box::new(Driver::new(system()).map_err(Failed::Start)?),
-                true => Box::new(Newton::new(system()).map_err(Failed::Start)?),
-            };
+            let mut driver = Driver::new(system()).map_err(Failed::Start)?;
             let mut results = Results::create(settings(input, case, built, folder), system())?;
             let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
-            let outcome = march(&mut *driver, built.end, observers, stop);
-            conclude(results, outcome, (&*driver, None), begin)
+            let outcome = march(&mut driver, built.end, observers, stop);
+            conclude(results, outcome, (&driver, None), begin)
         }
         Some(zoned) => {
             let mut whole = Whole::new(zoned, system()).map_err(Failed::Start)?;

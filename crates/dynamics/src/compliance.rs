@@ -9,11 +9,13 @@ use carom_contact::Rows;
 
 use crate::operator::{Column, Operators};
 
-/// The response of one contact point, in the parts that it touches.
+/// The response of one contact point, in the groups of parts that it touches.
 struct Kept {
     dofs: Vec<u32>,
     coefficients: Vec<f64>,
     columns: Vec<(usize, Column)>,
+    /// Whether the column of a group has been dropped.
+    lacks: bool,
 }
 
 /// Columns of the points met so far, and D over the current candidates.
@@ -39,9 +41,13 @@ impl Compliance {
         }
     }
 
-    /// Drops all columns: the operators have changed.
-    pub(crate) fn forget(&mut self) {
-        self.kept.fill_with(|| None);
+    /// Drops the columns of some groups, whose operators have changed.
+    pub(crate) fn forget(&mut self, changed: impl Fn(usize) -> bool) {
+        for kept in self.kept.iter_mut().flatten() {
+            let before = kept.columns.len();
+            kept.columns.retain(|(group, _)| !changed(*group));
+            kept.lacks |= kept.columns.len() < before;
+        }
         self.candidates.clear();
         self.matrix.clear();
         self.version += 1;
@@ -96,45 +102,53 @@ impl Compliance {
     }
 
     fn is_current(&self, point: u32, rows: &Rows) -> bool {
-        let (dofs, coefficients) = rows.row(point as usize);
         let kept = &self.kept[point as usize];
         kept.as_ref()
-            .is_some_and(|kept| kept.dofs == dofs && kept.coefficients == coefficients)
+            .is_some_and(|kept| !kept.lacks && kept.is_of(rows.row(point as usize)))
     }
 
     fn compute(&mut self, points: &[u32], rows: &Rows, fixed: &[bool], operators: &mut Operators) {
-        let mut by_part: Vec<(Vec<u32>, Vec<SparseRow>)> =
-            vec![Default::default(); operators.parts.len()];
+        let mut by_group: Vec<(Vec<u32>, Vec<SparseRow>)> =
+            vec![Default::default(); operators.groups.len()];
         for &point in points {
             let (dofs, coefficients) = rows.row(point as usize);
-            self.kept[point as usize] = Some(Kept {
-                dofs: dofs.to_vec(),
-                coefficients: coefficients.to_vec(),
-                columns: Vec::new(),
-            });
+            let slot = &mut self.kept[point as usize];
+            let kept = match slot {
+                Some(kept) if kept.is_of((dofs, coefficients)) => kept,
+                _ => slot.insert(Kept {
+                    dofs: dofs.to_vec(),
+                    coefficients: coefficients.to_vec(),
+                    columns: Vec::new(),
+                    lacks: false,
+                }),
+            };
+            kept.lacks = false;
             for (&dof, &n) in dofs
                 .iter()
                 .zip(coefficients)
                 .filter(|(dof, _)| !fixed[**dof as usize])
             {
-                let part = operators.part_of(dof as usize);
-                let (owners, sparse) = &mut by_part[part];
+                let (group, place) = operators.home(dof as usize);
+                if kept.columns.iter().any(|(of, _)| *of == group) {
+                    continue;
+                }
+                let (owners, sparse) = &mut by_group[group];
                 if owners.last() != Some(&point) {
                     owners.push(point);
                     sparse.push(SparseRow::default());
                 }
                 if let Some(row) = sparse.last_mut() {
-                    row.dofs.push(dof - operators.parts[part].start as u32);
+                    row.dofs.push(place as u32);
                     row.coefficients.push(n);
                 }
             }
         }
-        for (part, (owners, sparse)) in by_part.into_iter().enumerate() {
+        for (group, (owners, sparse)) in by_group.into_iter().enumerate() {
             self.columns_computed += sparse.len();
-            let columns = operators.operators[part].respond(sparse);
+            let columns = operators.respond(group, sparse);
             for (point, column) in owners.into_iter().zip(columns) {
                 if let Some(kept) = &mut self.kept[point as usize] {
-                    kept.columns.push((part, column));
+                    kept.columns.push((group, column));
                 }
             }
         }
@@ -148,31 +162,34 @@ impl Compliance {
 
     fn entry(&self, one: u32, other: u32, operators: &Operators) -> f64 {
         let mut sum = 0.0;
-        for (part, column) in self.columns(one) {
+        for (group, column) in self.columns(one) {
             for (_, second) in self
                 .columns(other)
                 .iter()
-                .filter(|(second, _)| second == part)
+                .filter(|(second, _)| second == group)
             {
-                sum += operators.operators[*part].dot(column, second);
+                sum += operators.operator(*group).dot(column, second);
             }
         }
         sum
     }
 
-    /// D over points whose columns have just been computed, row-major, with the bits of `entry`: part after part, each at
+    /// D over points whose columns have just been computed, row-major, with the bits of `entry`: group after group, each at
     /// once.
     fn fresh(&self, points: &[u32], operators: &Operators) -> Vec<f64> {
         let mut matrix = vec![0.0; points.len().pow(2)];
-        for (part, operator) in operators.operators.iter().enumerate() {
-            let of_part = |&point: &u32| self.columns(point).iter().find(|(p, _)| *p == part);
+        for number in 0..operators.groups.len() {
+            let of_group = |&point: &u32| self.columns(point).iter().find(|(g, _)| *g == number);
             let (places, columns): (Vec<usize>, Vec<&Column>) = points
                 .iter()
                 .enumerate()
-                .filter_map(|(k, point)| of_part(point).map(|(_, column)| (k, column)))
+                .filter_map(|(k, point)| of_group(point).map(|(_, column)| (k, column)))
                 .unzip();
-            let block = operator.gram(&columns);
-            for (i, row) in places.iter().zip(block.chunks_exact(places.len().max(1))) {
+            if columns.is_empty() {
+                continue;
+            }
+            let block = operators.operator(number).gram(&columns);
+            for (i, row) in places.iter().zip(block.chunks_exact(places.len())) {
                 for (j, entry) in places.iter().zip(row) {
                     matrix[i * points.len() + j] += entry;
                 }
@@ -184,17 +201,17 @@ impl Compliance {
     /// N x of a point for the free motion, from the y of `begin`.
     pub(crate) fn free(&self, point: u32, operators: &Operators, y: &[f64]) -> f64 {
         let columns = self.columns(point).iter();
-        columns
-            .map(|(part, column)| {
-                operators.operators[*part].free(column, &y[operators.parts[*part].clone()])
-            })
-            .sum()
+        let of_group = |(group, column): &(usize, Column)| {
+            let y = operators.of_group(*group, y);
+            operators.operator(*group).free(column, y)
+        };
+        columns.map(of_group).sum()
     }
 
     /// Adds the force of a point to y, before `end`.
     pub(crate) fn add(&self, point: u32, force: f64, operators: &Operators, y: &mut [f64]) {
-        for (part, column) in self.columns(point) {
-            operators.operators[*part].add(column, force, &mut y[operators.parts[*part].clone()]);
+        for (group, column) in self.columns(point) {
+            operators.add(*group, column, force, y);
         }
     }
 
@@ -206,5 +223,12 @@ impl Compliance {
             Column::Factored(response) => response.bytes(),
         });
         bytes.sum::<usize>() + 8 * self.matrix.len()
+    }
+}
+
+impl Kept {
+    /// Whether it answers to this row.
+    fn is_of(&self, (dofs, coefficients): (&[u32], &[f64])) -> bool {
+        self.dofs == dofs && self.coefficients == coefficients
     }
 }

@@ -56,6 +56,8 @@ pub struct Control {
     pub grown: u64,
     /// Attempts dropped because they had no solution.
     pub failed: u64,
+    /// Part of the critical step that an explicit step at finite strain may have, s; infinite before it is known.
+    pub(crate) stable: f64,
     /// Relative change of lengths in the elements since an explicit step at finite strain was last compared with the
     /// critical one.
     pub(crate) changed: f64,
@@ -74,6 +76,7 @@ impl Control {
         Control {
             dt,
             taken: dt,
+            stable: f64::INFINITY,
             ..Control::default()
         }
     }

@@ -177,12 +177,6 @@ pub enum Error {
         /// Why.
         cause: &'static str,
     },
-    /// A contact whose obstacle moves, in a scheme whose rows are rates at bodies at rest.
-    #[error("contact '{contact}': its obstacle moves, which linear steps do not support")]
-    MovingObstacle {
-        /// Name of the contact.
-        contact: String,
-    },
     /// Surfaces that overlap at the start.
     #[error(
         "contact '{contact}': {points} points penetrate at the start, the deepest, at node {node}, by {depth:e} m"

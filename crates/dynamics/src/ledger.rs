@@ -199,6 +199,8 @@ pub(crate) struct Energies {
 pub(crate) struct Jump {
     /// Work of its impulses on the mean of the velocities around it, J.
     pub(crate) work: f64,
+    /// Work of obstacles that move in its impulses, J.
+    pub(crate) work_obstacles: f64,
     /// What the scheme's term in |a|² loses, J.
     pub(crate) dissipation: f64,
     /// Its impulses, from contacts and supports.
@@ -329,21 +331,27 @@ impl Ledger {
 
     /// The energy of the scheme has another term with the next size of the step: what it gains by that is no work.
     pub(crate) fn resize(&mut self, identity: &EnergyIdentity, energies: &Energies) {
-        let lost = self.balance.scheme_energy - energies.of_scheme(identity);
+        self.resize_to(energies.of_scheme(identity));
+    }
+
+    /// The same, with that term as it is at the start of the step, J.
+    pub(crate) fn resize_to(&mut self, term: f64) {
+        let lost = self.balance.scheme_energy - term;
         self.dissipation.add(lost);
         self.resized.add(lost);
     }
 
-    /// What the energy that the scheme balances has gained since the start beyond the work of the loads, J; not by the size of
+    /// What the energy that the scheme balances has gained since the start beyond the work from outside, J; not by the size of
     /// the step alone.
     pub(crate) fn free_energy(&self) -> f64 {
-        let energy = |balance: &Balance| balance.energy() + balance.scheme_energy;
-        energy(&self.balance) - energy(&self.initial) - self.balance.work_loads + self.resized.get()
+        let gained = self.balance.balanced() - self.initial.balanced();
+        gained - self.balance.work_given() + self.resized.get()
     }
 
     /// Adds a projection after the step just added.
     pub(crate) fn jump(&mut self, identity: &EnergyIdentity, energies: &Energies, jump: &Jump) {
         self.work_contact.add(jump.work);
+        self.beyond[4].add(jump.work_obstacles);
         self.dissipation.add(jump.dissipation);
         for (k, impulse) in jump.impulses.iter().enumerate() {
             for i in 0..3 {

@@ -17,7 +17,6 @@ mod march;
 mod mass;
 mod massless;
 mod model;
-mod newton;
 mod nonlinear;
 mod operator;
 mod records;
@@ -44,7 +43,6 @@ pub use ledger::{Balance, Ledger, Tolerated};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, march, step_count};
 pub use mass::Mass;
 pub use model::{Model, ModelBody, ModelContact, ModelTarget, Support};
-pub use newton::Newton;
 pub use nonlinear::{
     Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed, Refused,
 };
@@ -56,6 +54,5 @@ pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, Ste
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::System;
 pub use zones::{
-    LinkKind, ModelLink, ModelZone, Origin, Sample, Whole, ZoneDriver, Zoned, Zones, ZonesState,
-    mortar_rows,
+    LinkKind, ModelLink, ModelZone, Origin, Sample, Whole, Zoned, Zones, ZonesState, mortar_rows,
 };

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::coulomb::FrictionProblem;
-use crate::driver::{Costs, Driver};
+use crate::driver::Costs;
 use crate::error::Error;
 use crate::interface::InterfaceProblem;
 use crate::state::{State, StepReport};
@@ -50,36 +50,6 @@ impl FailedProblem<'_> {
             FailedProblem::Normal(problem) => problem.step,
             FailedProblem::Friction(problem) => problem.step,
         }
-    }
-}
-
-impl Stepper for Driver {
-    fn step(&mut self) -> Result<(), Error> {
-        self.step()
-    }
-
-    fn system(&self) -> &System {
-        self.system()
-    }
-
-    fn state(&self) -> &State {
-        self.state()
-    }
-
-    fn report(&self) -> &StepReport {
-        self.report()
-    }
-
-    fn saved(&self) -> Result<Vec<u8>, Error> {
-        self.state().to_bytes()
-    }
-
-    fn costs(&self) -> Costs {
-        self.costs()
-    }
-
-    fn failed_problem(&self) -> Option<FailedProblem<'_>> {
-        self.failed_problem().map(FailedProblem::Normal)
     }
 }
 

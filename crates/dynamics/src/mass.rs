@@ -62,10 +62,10 @@ impl Mass {
         }
     }
 
-    /// Adds factor · M to a matrix over the unknowns of `part`, counted from its first.
-    pub(crate) fn add_to(&self, factor: f64, part: &Range<usize>, a: &mut Csr) {
-        for (i, m) in self.lumped[part.clone()].iter().enumerate() {
-            a.add(i, i, factor * m);
+    /// Adds factor · M over the unknowns of `part` to a matrix whose first unknown is `origin`.
+    pub(crate) fn add_to(&self, factor: f64, part: &Range<usize>, origin: usize, a: &mut Csr) {
+        for (i, m) in part.clone().zip(&self.lumped[part.clone()]) {
+            a.add(i - origin, i - origin, factor * m);
         }
         let Some(mass) = &self.consistent else {
             return;
@@ -73,7 +73,7 @@ impl Mass {
         for i in part.clone() {
             let (columns, values) = mass.row(i);
             for (&j, m) in columns.iter().zip(values).filter(|(_, m)| **m != 0.0) {
-                a.add(i - part.start, j as usize - part.start, factor * m);
+                a.add(i - origin, j as usize - origin, factor * m);
             }
         }
     }

@@ -138,21 +138,9 @@ impl Default for Iteration {
 /// What of a model that needs the nonlinear solver is refused.
 #[derive(Clone, Debug, PartialEq, Eq, ThisError)]
 pub enum Refused {
-    /// The time scheme, by its name.
-    #[error("the scheme {0}")]
-    Scheme(&'static str),
-    /// An adaptive step.
-    #[error("an adaptive step")]
-    AdaptiveStep,
-    /// Contact nodes without mass.
-    #[error("contact nodes without mass")]
-    MasslessNodes,
     /// Where the law of a contact, by its name, holds.
     #[error("integration of contact '{0}'")]
     Integration(String),
-    /// The projection at closure of a contact, by its name.
-    #[error("projection of contact '{0}'")]
-    Projection(String),
     /// The damping of a body, by its name.
     #[error("damping of body '{0}'")]
     Damping(String),
@@ -199,6 +187,8 @@ impl Nonlinear {
 pub(crate) struct NumberedLoad {
     pub(crate) amplitude: Amplitude,
     pub(crate) force: NumberedForce,
+    /// Bodies that it acts on.
+    pub(crate) bodies: Vec<usize>,
 }
 
 /// Forces of a load at amplitude 1.
@@ -281,6 +271,7 @@ impl NumberedNonlinear {
             numbered.loads.push(NumberedLoad {
                 amplitude: load.amplitude.clone(),
                 force: numbered_force(load, model, (number, unknowns)),
+                bodies: loaded(load, model),
             });
         }
         let mut first = 0;
@@ -292,11 +283,11 @@ impl NumberedNonlinear {
         Ok(numbered)
     }
 
-    /// Whether any load turns with the body.
-    pub(crate) fn has_followers(&self) -> bool {
-        self.loads
-            .iter()
-            .any(|load| matches!(load.force, NumberedForce::Follower(..)))
+    /// Whether a load turns with a body.
+    pub(crate) fn has_follower(&self, body: usize) -> bool {
+        let turns = |load: &NumberedLoad| matches!(load.force, NumberedForce::Follower(..));
+        let mut loads = self.loads.iter();
+        loads.any(|load| turns(load) && load.bodies.contains(&body))
     }
 
     /// Displacement of the unknowns that follow a function of time, m.
@@ -318,6 +309,19 @@ impl NumberedNonlinear {
 fn needs_newton(contact: &ModelContact) -> bool {
     let moves = matches!(&contact.primary, ModelTarget::Rigid(obstacle) if obstacle.motion.moves());
     contact.friction > 0.0 || moves || matches!(contact.integration, Integration::Mortar { .. })
+}
+
+/// Bodies that a load acts on.
+fn loaded(load: &Load, model: &Model) -> Vec<usize> {
+    let owns = |body: &ModelBody| {
+        let mut faces = load.surface.faces.iter();
+        faces.any(|face| body.spec.cells.contains(&face.parent))
+    };
+    let bodies = model.bodies.iter().enumerate();
+    bodies
+        .filter(|(_, body)| owns(body))
+        .map(|(k, _)| k)
+        .collect()
 }
 
 fn numbered_force(
@@ -354,7 +358,8 @@ fn numbered_force(
 }
 
 impl Model {
-    /// Whether its steps are not linear, so that it needs the nonlinear solver, [`Newton`](crate::Newton).
+    /// Whether its steps are not linear, so that it has loads in time, damping, a static stage, friction, bodies at finite strain or obstacles that move: the energy of its
+    /// steps is then balanced by works, and not by the identity of the scheme.
     pub fn is_nonlinear(&self) -> bool {
         let finite = |body: &ModelBody| body.spec.material.finite().is_some();
         self.nonlinear.asks()
@@ -365,7 +370,8 @@ impl Model {
 }
 
 impl System {
-    /// Whether the model needs the nonlinear solver, [`Newton`](crate::Newton).
+    /// Whether the model has loads in time, damping, a static stage, friction, bodies at finite strain or obstacles that move: the energy of its
+    /// steps is then balanced by works, and not by the identity of the scheme.
     pub fn is_nonlinear(&self) -> bool {
         self.nonlinear.needed
     }
@@ -392,32 +398,7 @@ impl System {
         if !self.nonlinear.needed {
             return Ok(());
         }
-        let scheme = self.scheme.get();
-        let map = scheme.step_map(self.dt);
         let refuse = |what: Refused, why| Err(Error::Nonlinear { what, why });
-        if map.has_memory()
-            || map.uses_contact_acceleration()
-            || scheme.projects_predictor()
-            || scheme.restores_contact_work()
-        {
-            return refuse(
-                Refused::Scheme(scheme.name()),
-                "large transformations, friction, damping, loads in time and static stages take newmark, theta, \
-                 generalised-alpha, hht, central-difference, tchamwa-wielgosz, laursen-chawla and energy-momentum",
-            );
-        }
-        if self.adaptive.is_some() {
-            return refuse(
-                Refused::AdaptiveStep,
-                "the nonlinear solver halves steps by itself where it finds no equilibrium; give a fixed step",
-            );
-        }
-        if !self.massless.is_empty() {
-            return refuse(
-                Refused::MasslessNodes,
-                "they follow a linear equilibrium; leave the mass of the nodes as it is",
-            );
-        }
         let weak = |contact: &Contact| matches!(contact.integration, Integration::Weak { .. });
         for (contact, friction) in self.contacts.iter().zip(&self.friction) {
             let refused = || Refused::Integration(contact.name.clone());
@@ -435,12 +416,6 @@ impl System {
                      take node or mortar, or the displacement law",
                 );
             }
-        }
-        if let Some(contact) = self.contacts.iter().find(|contact| contact.law.projects()) {
-            return refuse(
-                Refused::Projection(contact.name.clone()),
-                "the projection at closure is for the linear driver; take the velocity law, or no projection",
-            );
         }
         for (damping, body) in self.nonlinear.damping.iter().zip(&self.bodies) {
             if damping.stiffness != 0.0 && !body.is_linear() {

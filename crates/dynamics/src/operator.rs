@@ -159,10 +159,59 @@ impl Operator {
     }
 }
 
-/// The operators of all parts.
+/// The operators of groups of connected parts: of a part alone, or of parts that contact forces join.
 pub(crate) struct Operators {
+    pub(crate) groups: Vec<Group>,
+    parts: Vec<Range<usize>>,
+    /// Group of each part, and where its unknowns begin there.
+    homes: Vec<(usize, usize)>,
+}
+
+/// Connected parts with one operator.
+pub(crate) struct Group {
+    /// Their unknowns.
     pub(crate) parts: Vec<Range<usize>>,
-    pub(crate) operators: Vec<Operator>,
+    /// The place of these unknowns in the y of `begin`, one part after the other.
+    place: Range<usize>,
+    /// `None` before the matrix is factored.
+    pub(crate) operator: Option<Operator>,
+    /// Room for their entries of a system vector, of more than one part.
+    gathered: Vec<f64>,
+}
+
+impl Group {
+    fn begin(&mut self, r: &[f64], y: &mut [f64]) {
+        let Some(operator) = &mut self.operator else {
+            return;
+        };
+        let y = &mut y[self.place.clone()];
+        if let [part] = &self.parts[..] {
+            return operator.begin(&r[part.clone()], y);
+        }
+        self.gathered.clear();
+        for part in &self.parts {
+            self.gathered.extend_from_slice(&r[part.clone()]);
+        }
+        operator.begin(&self.gathered, y);
+    }
+
+    fn end(&mut self, y: &mut [f64], x: &mut [f64]) {
+        let Some(operator) = &mut self.operator else {
+            return;
+        };
+        let y = &mut y[self.place.clone()];
+        if let [part] = &self.parts[..] {
+            return operator.end(y, &mut x[part.clone()]);
+        }
+        self.gathered.resize(y.len(), 0.0);
+        operator.end(y, &mut self.gathered);
+        let mut rest = &self.gathered[..];
+        for part in &self.parts {
+            let (own, others) = rest.split_at(part.len());
+            x[part.clone()].copy_from_slice(own);
+            rest = others;
+        }
+    }
 }
 
 impl Operators {
@@ -176,65 +225,99 @@ impl Operators {
         stiffness_factor: f64,
         matrix: &'static str,
     ) -> Result<Operators, Error> {
-        let mut held = system.fixed.clone();
-        if stiffness_factor == 0.0 {
-            // nothing moves what has neither mass nor stiffness
-            for &unknown in &system.massless {
-                held[unknown as usize] = true;
-            }
+        let mut operators = Operators::of(&system.parts, single(system.parts.len()));
+        let factors = |_: usize| stiffness_factor;
+        for group in &mut operators.groups {
+            let part = &group.parts[0];
+            let operator = of_part(system, part, mass_factor, &factors, matrix)?;
+            group.operator = Some(operator);
         }
-        let operator = |part: &Range<usize>| {
-            let fixed = &held[part.clone()];
-            if stiffness_factor == 0.0 && system.mass.consistent.is_none() {
-                let lumped = system.mass.lumped[part.clone()].iter();
-                let diagonal: Vec<f64> = lumped.map(|m| mass_factor * m).collect();
-                return Ok(Operator::diagonal(&diagonal, fixed));
-            }
-            let a = assembled(system, part, mass_factor, stiffness_factor);
-            let nodes = &system.unknowns.node_of_each()[part.clone()];
-            let node = system.mesh_node[nodes[0] as usize];
-            Operator::factored(&a, fixed, nodes).map_err(|cause| Error::Factor {
-                matrix,
-                node,
-                cause,
-            })
+        Ok(operators)
+    }
+
+    /// Room for the operators of groups of parts; every part is in one.
+    pub(crate) fn of(parts: &[Range<usize>], groups: Vec<Vec<usize>>) -> Operators {
+        let mut operators = Operators {
+            groups: Vec::new(),
+            parts: parts.to_vec(),
+            homes: vec![(0, 0); parts.len()],
         };
-        let operators = system
-            .parts
-            .iter()
-            .map(operator)
-            .collect::<Result<_, _>>()?;
-        Ok(Operators {
-            parts: system.parts.clone(),
-            operators,
-        })
+        operators.regroup(0, groups);
+        operators
     }
 
-    /// One operator for the whole system.
-    pub(crate) fn whole(operator: Operator, unknowns: usize) -> Operators {
-        Operators {
-            parts: std::iter::once(0..unknowns).collect(),
-            operators: vec![operator],
+    /// Replaces the groups from the number `first` on; returns those that were there.
+    pub(crate) fn regroup(&mut self, first: usize, groups: Vec<Vec<usize>>) -> Vec<Group> {
+        let old = self.groups.split_off(first);
+        for parts in groups {
+            let begin = self.groups.last().map_or(0, |group| group.place.end);
+            let mut offset = 0;
+            for &part in &parts {
+                self.homes[part] = (self.groups.len(), offset);
+                offset += self.parts[part].len();
+            }
+            self.groups.push(Group {
+                parts: parts.iter().map(|&part| self.parts[part].clone()).collect(),
+                place: begin..begin + offset,
+                operator: None,
+                gathered: Vec::new(),
+            });
         }
+        old
     }
 
-    /// `begin` on every part; vectors of the whole system.
+    /// `begin` on every group; `r` of the whole system.
     pub(crate) fn begin(&mut self, r: &[f64], y: &mut [f64]) {
-        for (part, operator) in self.parts.iter().zip(&mut self.operators) {
-            operator.begin(&r[part.clone()], &mut y[part.clone()]);
+        for group in &mut self.groups {
+            group.begin(r, y);
         }
     }
 
-    /// `end` on every part.
+    /// `end` on every group; `x` of the whole system.
     pub(crate) fn end(&mut self, y: &mut [f64], x: &mut [f64]) {
-        for (part, operator) in self.parts.iter().zip(&mut self.operators) {
-            operator.end(&mut y[part.clone()], &mut x[part.clone()]);
+        for group in &mut self.groups {
+            group.end(y, x);
         }
     }
 
-    /// The part that an unknown belongs to.
-    pub(crate) fn part_of(&self, unknown: usize) -> usize {
-        self.parts.partition_point(|part| part.end <= unknown)
+    /// The group of an unknown, and its number there.
+    pub(crate) fn home(&self, unknown: usize) -> (usize, usize) {
+        let part = self.parts.partition_point(|part| part.end <= unknown);
+        let (group, offset) = self.homes[part];
+        (group, offset + unknown - self.parts[part].start)
+    }
+
+    /// The operator of a group.
+    pub(crate) fn operator(&self, group: usize) -> &Operator {
+        match &self.groups[group].operator {
+            Some(operator) => operator,
+            None => unreachable!("no group answers before its matrix is factored"),
+        }
+    }
+
+    /// Columns of rows, which name unknowns of the group.
+    pub(crate) fn respond(&mut self, group: usize, rows: Vec<SparseRow>) -> Vec<Column> {
+        let operator = &mut self.groups[group].operator;
+        operator
+            .as_mut()
+            .map_or(Vec::new(), |operator| operator.respond(rows))
+    }
+
+    /// The part of the y of `begin` that is a group's.
+    pub(crate) fn of_group<'a>(&self, group: usize, y: &'a [f64]) -> &'a [f64] {
+        &y[self.groups[group].place.clone()]
+    }
+
+    /// Adds the force of one row to the y of `begin`.
+    pub(crate) fn add(&self, group: usize, column: &Column, force: f64, y: &mut [f64]) {
+        let place = self.groups[group].place.clone();
+        self.operator(group).add(column, force, &mut y[place]);
+    }
+
+    /// Sizes and uses of the factors.
+    pub(crate) fn stats(&self) -> impl Iterator<Item = &FactorStats> {
+        let operators = self.groups.iter().filter_map(|g| g.operator.as_ref());
+        operators.filter_map(Operator::stats)
     }
 }
 
@@ -251,21 +334,72 @@ fn groups(nodes: &[u32]) -> Vec<u32> {
     nodes.iter().map(group).collect()
 }
 
-/// `mass_factor` M + `stiffness_factor` K of one part.
+/// Each of some parts for itself.
+pub(crate) fn single(parts: usize) -> Vec<Vec<usize>> {
+    (0..parts).map(|part| vec![part]).collect()
+}
+
+/// `mass_factor` M + `stiffness_factors` K of one part, with a factor for each body; `matrix`: its name for messages.
+///
+/// # Errors
+/// The matrix is not positive definite.
+pub(crate) fn of_part(
+    system: &System,
+    part: &Range<usize>,
+    mass_factor: f64,
+    stiffness_factors: &dyn Fn(usize) -> f64,
+    matrix: &'static str,
+) -> Result<Operator, Error> {
+    let explicit = (0..system.bodies.len()).all(|body| stiffness_factors(body) == 0.0);
+    let mut held = system.fixed[part.clone()].to_vec();
+    if explicit {
+        // nothing moves what has neither mass nor stiffness
+        for &unknown in &system.massless {
+            if part.contains(&(unknown as usize)) {
+                held[unknown as usize - part.start] = true;
+            }
+        }
+    }
+    if explicit && system.mass.consistent.is_none() {
+        let lumped = system.mass.lumped[part.clone()].iter();
+        let diagonal: Vec<f64> = lumped.map(|m| mass_factor * m).collect();
+        return Ok(Operator::diagonal(&diagonal, &held));
+    }
+    let a = assembled(system, part, mass_factor, stiffness_factors);
+    factored(system, part, &a, &held, matrix)
+}
+
+/// The factor of the matrix of a part, or the error that names its first node.
+pub(crate) fn factored(
+    system: &System,
+    part: &Range<usize>,
+    a: &Csr,
+    held: &[bool],
+    matrix: &'static str,
+) -> Result<Operator, Error> {
+    let nodes = &system.unknowns.node_of_each()[part.clone()];
+    Operator::factored(a, held, nodes).map_err(|cause| Error::Factor {
+        matrix,
+        node: system.mesh_node[nodes[0] as usize],
+        cause,
+    })
+}
+
+/// `mass_factor` M + `stiffness_factors` K of one part, with a factor for each body.
 pub(crate) fn assembled(
     system: &System,
     part: &Range<usize>,
     mass_factor: f64,
-    stiffness_factor: f64,
+    stiffness_factors: &dyn Fn(usize) -> f64,
 ) -> Csr {
     let mut cliques = Cliques::new();
     for body in &system.bodies {
         push_cliques(body, &system.unknowns, part, &mut cliques);
     }
     let mut a = Csr::from_cliques(part.len(), &cliques);
-    for body in &system.bodies {
-        body.assemble(stiffness_factor, 0.0, part, &mut a);
+    for (k, body) in system.bodies.iter().enumerate() {
+        body.assemble(stiffness_factors(k), 0.0, part, &mut a);
     }
-    system.mass.add_to(mass_factor, part, &mut a);
+    system.mass.add_to(mass_factor, part, part.start, &mut a);
     a
 }

@@ -3,8 +3,8 @@
 use carom_bodies::Body;
 use serde::{Deserialize, Serialize};
 
+use crate::driver::Pushed;
 use crate::impact::{Given, Impact, OpenImpact};
-use crate::newton::Pushed;
 use crate::small::Smallness;
 use crate::state::{ContactReport, State};
 use crate::step_map::Impulse;

@@ -116,6 +116,20 @@ pub struct InterfaceState {
 }
 
 impl InterfaceState {
+    /// Becomes a copy, without new memory.
+    pub(crate) fn follow(&mut self, before: &InterfaceState) {
+        self.force.clone_from(&before.force);
+        self.friction.clone_from(&before.friction);
+        self.carried.clone_from(&before.carried);
+        self.gap.clone_from(&before.gap);
+        self.rate.clone_from(&before.rate);
+        self.opening.clone_from(&before.opening);
+        self.status.clone_from(&before.status);
+        self.watched.clone_from(&before.watched);
+        self.flight.clone_from(&before.flight);
+        self.crush.clone_from(&before.crush);
+    }
+
     /// Counts the time without force after a step of `dt` (s), from that of the state before.
     pub(crate) fn count_flights(&mut self, before: &[f64], dt: f64) {
         let points = self.flight.iter_mut().zip(&self.force).zip(before);

@@ -40,6 +40,8 @@ pub struct System {
     pub number: Vec<u32>,
     /// Unknowns of each connected part: bodies that touch only by contact are different parts.
     pub parts: Vec<Range<usize>>,
+    /// The part of each body.
+    pub(crate) part_of_body: Vec<usize>,
     /// Bodies.
     pub bodies: Vec<Body>,
     /// Lumped masses of the nodes of each body (system number, kg), for mean velocities.
@@ -195,7 +197,16 @@ impl System {
             true => nearest_corner(&x),
             false => [0.0; 3],
         };
+        let parts: Vec<Range<usize>> = parts
+            .into_iter()
+            .map(|part| unknowns.of_range(part))
+            .collect();
+        let part_of_body = body_masses.iter().map(|masses| {
+            let first = masses.first().map_or(0, |(node, _)| unknowns.first(*node));
+            part_of(&parts, first)
+        });
         let system = System {
+            part_of_body: part_of_body.collect(),
             origin,
             tolerance: 1e-12 * model.mesh.size(),
             axisymmetric: model
@@ -206,10 +217,7 @@ impl System {
             x,
             mesh_node,
             number,
-            parts: parts
-                .into_iter()
-                .map(|part| unknowns.of_range(part))
-                .collect(),
+            parts,
             unknowns,
             bodies,
             body_masses,
@@ -359,6 +367,11 @@ impl System {
         self.fixed.len()
     }
 
+    /// The connected part of an unknown.
+    pub(crate) fn part_of(&self, unknown: usize) -> usize {
+        part_of(&self.parts, unknown)
+    }
+
     /// Number of contact points over all contacts.
     pub fn points(&self) -> usize {
         self.first_point[self.contacts.len()]
@@ -430,6 +443,10 @@ fn numbering(model: &Model) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
         nodes.into_iter().map(|(_, node)| node).collect(),
         parts,
     )
+}
+
+fn part_of(parts: &[Range<usize>], unknown: usize) -> usize {
+    parts.partition_point(|part| part.end <= unknown)
 }
 
 /// The place nearest to zero in the box around some places, m.

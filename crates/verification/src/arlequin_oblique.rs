@@ -15,7 +15,7 @@
 //! them, are regressions, to 1 % of the figure.
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{LinkKind, Model, ModelLink, ModelZone, Support, ZoneDriver, Zoned, Zones};
+use carom_dynamics::{Driver, LinkKind, Model, ModelLink, ModelZone, Support, Zoned, Zones};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
 
@@ -203,7 +203,7 @@ impl Strip {
 
     /// ∫ ((v ± u')/2)² over the fine elements outside the overlap, from the values in their middles. Their first sides lie
     /// along x.
-    fn energies(&self, driver: &ZoneDriver) -> [f64; 2] {
+    fn energies(&self, driver: &Driver) -> [f64; 2] {
         let (x, motion) = (&driver.system().x, &driver.state().motion);
         let mut energies = [0.0; 2];
         driver.system().bodies[0].each_element(&mut |nodes| {

@@ -108,7 +108,7 @@ fn places(state: &mut ZonesState) -> impl Iterator<Item = &mut f64> {
 
 /// Whether each of the numbers of [`places`] is free.
 fn free(zones: &Zones) -> Vec<bool> {
-    let of_zone = |driver: &carom_dynamics::ZoneDriver| {
+    let of_zone = |driver: &carom_dynamics::Driver| {
         let fixed = &driver.system().fixed;
         let vectors = std::iter::repeat_n(fixed, 3).flatten();
         vectors.map(|fixed| !fixed).collect::<Vec<_>>()

@@ -44,7 +44,7 @@ fn projected() -> Result<Vec<Row>, Error> {
     let noise = |x: f64| (1e4 * x + 0.3).sin() + 0.5;
     let start = motion(&zones, |x| [0.0, noise(x)]);
     let momentum = |zones: &Zones, v: &dyn Fn(usize) -> Vec<f64>, square: bool| -> f64 {
-        let of = |(k, driver): (usize, &carom_dynamics::ZoneDriver)| {
+        let of = |(k, driver): (usize, &carom_dynamics::Driver)| {
             let masses = driver.system().mass.lumped.iter().zip(v(k));
             masses
                 .map(|(m, v)| m * if square { v * v } else { v })

@@ -14,7 +14,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration, Law};
-use carom_dynamics::{Driver, Model, ModelTarget, Newton, Nonlinear, Scheme, Stepper, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Nonlinear, Scheme, Stepper, System};
 use carom_materials::{Elastic, Law as Material, StVenantKirchhoff};
 use carom_mesh::{Mesh, generate};
 
@@ -103,7 +103,7 @@ impl Blocks {
         let system = System::new(self.model()?)?;
         let area = if self.dim == 3 { 1.0 } else { THICKNESS };
         let mut run: Box<dyn Stepper> = match newton {
-            true => Box::new(Newton::new(system)?),
+            true => Box::new(Driver::new(system)?),
             false => Box::new(Driver::new(system)?),
         };
         // 2 L / c = 1 s

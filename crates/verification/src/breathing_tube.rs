@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 use carom_bodies::{Formulation, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Model, Newton, Nonlinear, Scheme, System};
+use carom_dynamics::{Driver, Model, Nonlinear, Scheme, System};
 use carom_materials::{Elastic, Law, MooneyRivlin, NeoHooke, StVenantKirchhoff};
 use carom_mesh::generate;
 
@@ -53,7 +53,7 @@ struct Tube {
 }
 
 impl Tube {
-    fn newton(&self) -> Result<Newton, Error> {
+    fn newton(&self) -> Result<Driver, Error> {
         let size = [OUTER - INNER, 2.0 * PI];
         let mut mesh = generate::rectangle("tube", [INNER, 0.0], size, self.elements, false);
         for x in &mut mesh.nodes {
@@ -83,7 +83,7 @@ impl Tube {
             [out * x[0] - self.spin * x[1], out * x[1] + self.spin * x[0]]
         };
         let velocity: Vec<f64> = system.x.iter().flat_map(start).collect();
-        let mut newton = Newton::new(system)?;
+        let mut newton = Driver::new(system)?;
         newton.restart(&vec![0.0; velocity.len()], &velocity)?;
         Ok(newton)
     }

@@ -5,7 +5,7 @@ use carom_bodies::{BodySpec, CellWeights, Kinematics};
 use carom_contact::law::{Adhesion, Capture, Compliance, Damped, Displacement, Reading, Velocity};
 use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
-use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Scheme, Support, ZoneDriver, Zones};
+use carom_dynamics::{Driver, ModelBody, ModelContact, ModelTarget, Scheme, Support, Zones};
 use carom_materials::{Elastic, Law as Material, NeoHooke};
 use carom_mesh::{Group, Mesh, Surface};
 
@@ -135,9 +135,8 @@ pub(crate) fn plane_motion(
     zones: &Zones,
     of: impl Fn(&[f64; 3]) -> [[f64; 2]; 2],
 ) -> Vec<[Vec<f64>; 2]> {
-    let vectors = |driver: &ZoneDriver| {
-        [0, 1].map(|k| driver.system().x.iter().flat_map(|x| of(x)[k]).collect())
-    };
+    let vectors =
+        |driver: &Driver| [0, 1].map(|k| driver.system().x.iter().flat_map(|x| of(x)[k]).collect());
     zones.drivers().iter().map(vectors).collect()
 }
 

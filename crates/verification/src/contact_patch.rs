@@ -17,7 +17,7 @@ use carom_bodies::Kinematics;
 use carom_contact::law::Adhesion;
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::{
-    Amplitude, Model, ModelTarget, Newton, Nonlinear, Preload, Prescribed, Support, System,
+    Amplitude, Driver, Model, ModelTarget, Nonlinear, Preload, Prescribed, Support, System,
 };
 use carom_materials::{Elastic, Law as Material, NeoHooke, Plane};
 use carom_mesh::raise::raise;
@@ -235,8 +235,8 @@ impl Patch {
     }
 
     /// The blocks at the end of the static stage.
-    fn loaded(&self) -> Result<Newton, Error> {
-        let mut newton = Newton::new(System::new(self.model()?)?)?;
+    fn loaded(&self) -> Result<Driver, Error> {
+        let mut newton = Driver::new(System::new(self.model()?)?)?;
         for _ in 0..STAGE.1 {
             newton.step()?;
         }
@@ -294,7 +294,7 @@ impl Patch {
     }
 
     /// Largest errors of the stresses of all elements and of the pressures of all contact points, relative.
-    fn errors(&self, newton: &Newton) -> [f64; 2] {
+    fn errors(&self, newton: &Driver) -> [f64; 2] {
         let (system, state, dim) = (newton.system(), newton.state(), self.cells.dim);
         let (exact, _) = self.exact();
         let mut stress = 0.0_f64;

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 use carom_bodies::Kinematics;
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Model, ModelTarget, Newton, Nonlinear, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Nonlinear, Scheme, System};
 use carom_materials::Elastic;
 use carom_mesh::read::read;
 
@@ -41,7 +41,7 @@ const BALANCE: f64 = 1e-9;
 /// 2 - θ of the mid-point rule.
 const REACH: f64 = 1.5;
 
-fn newton(mesh: &str, facing_itself: bool) -> Result<Newton, Error> {
+fn newton(mesh: &str, facing_itself: bool) -> Result<Driver, Error> {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/crushed-tube");
     let mesh = read(&cases.join(mesh))?;
     let mut tube = neo_hooke(
@@ -71,7 +71,7 @@ fn newton(mesh: &str, facing_itself: bool) -> Result<Newton, Error> {
         nonlinear: Nonlinear::default(),
         mesh,
     })?;
-    Ok(Newton::new(system)?)
+    Ok(Driver::new(system)?)
 }
 
 type Place = [f64; 2];
@@ -90,7 +90,7 @@ fn distance(a: Place, b: Place, x: Place) -> f64 {
 }
 
 /// Depth of the surface node that lies deepest in a cell of which it is no corner, m.
-fn depth(newton: &Newton) -> f64 {
+fn depth(newton: &Driver) -> f64 {
     let (system, u) = (newton.system(), &newton.state().motion.u);
     let place = |node: u32| -> Place {
         let k = node as usize;
@@ -120,7 +120,7 @@ fn depth(newton: &Newton) -> f64 {
 }
 
 /// Largest way towards the surface, m, of the points inside that have closed in the last step; `before`: their gaps then.
-fn way_in(newton: &Newton, before: &[f64]) -> f64 {
+fn way_in(newton: &Driver, before: &[f64]) -> f64 {
     let inside = newton.system().first_point[1]..;
     let pairs = before.iter().zip(&newton.state().interface.gap[inside]);
     let entered = pairs.filter(|(before, now)| before.is_finite() && **before > 0.0 && **now < 0.0);

@@ -3,7 +3,7 @@
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
 use carom_dynamics::{
-    LinkKind, Model, ModelLink, ModelZone, Scheme, Support, ZoneDriver, Zoned, Zones,
+    Driver, LinkKind, Model, ModelLink, ModelZone, Scheme, Support, Zoned, Zones,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
@@ -133,7 +133,7 @@ impl GluedBar {
 
 /// Displacement and velocity of each zone from those at a place.
 pub(crate) fn motion(zones: &Zones, field: impl Fn(f64) -> [f64; 2]) -> Vec<[Vec<f64>; 2]> {
-    let of = |driver: &ZoneDriver| {
+    let of = |driver: &Driver| {
         [0, 1].map(|k| driver.system().x.iter().map(|x| field(x[0])[k]).collect())
     };
     zones.drivers().iter().map(of).collect()
@@ -163,7 +163,7 @@ fn gauss(s: f64) -> f64 {
 
 /// Energy of the characteristics (v + u')/2, which runs to the left, and (v - u')/2, in the elements of a zone whose
 /// middle lies from `from` to `to`: ∫ ((v ± u')/2)² dx, twice of which is their part of ½∫(v² + u'²) dx.
-pub(crate) fn characteristics(driver: &ZoneDriver, from: f64, to: f64) -> [f64; 2] {
+pub(crate) fn characteristics(driver: &Driver, from: f64, to: f64) -> [f64; 2] {
     let (x, motion) = (&driver.system().x, &driver.state().motion);
     let mut energies = [0.0; 2];
     driver.system().bodies[0].each_element(&mut |nodes| {

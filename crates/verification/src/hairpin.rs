@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use carom_bodies::Kinematics;
 use carom_contact::{Integration, Law};
-use carom_dynamics::{Model, ModelTarget, Newton, Nonlinear, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Nonlinear, Scheme, System};
 use carom_materials::Elastic;
 use carom_mesh::{Group, Mesh, generate};
 
@@ -48,7 +48,7 @@ impl Hairpin {
     ///
     /// # Errors
     /// A system that is refused.
-    pub(crate) fn newton(&self) -> Result<Newton, Error> {
+    pub(crate) fn newton(&self) -> Result<Driver, Error> {
         let system = self.system()?;
         let up = self.dim - 1;
         let mut velocity = vec![0.0; system.unknowns()];
@@ -58,7 +58,7 @@ impl Hairpin {
             velocity[system.unknowns.first(node as u32) + up] =
                 -x[up].signum() * self.flung[upper] * part;
         }
-        let mut newton = Newton::new(system)?;
+        let mut newton = Driver::new(system)?;
         newton.restart(&vec![0.0; velocity.len()], &velocity)?;
         Ok(newton)
     }

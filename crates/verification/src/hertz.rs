@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use carom_contact::{Basis, Integration};
-use carom_dynamics::{Amplitude, Model, Newton, Preload, Prescribed, System};
+use carom_dynamics::{Amplitude, Driver, Model, Preload, Prescribed, System};
 use carom_exact::hertz::{Pair, Solid};
 use carom_materials::Elastic;
 use carom_mesh::Mesh;
@@ -77,7 +77,7 @@ pub(crate) struct Errors {
 }
 
 /// A static contact, half-way and at the end of a prescribed motion, or of a load that grows, in [`Pressed::STEPS`] steps.
-pub(crate) struct Pressed(Newton);
+pub(crate) struct Pressed(Driver);
 
 impl Pressed {
     /// Steps of the static stage.
@@ -89,7 +89,7 @@ impl Pressed {
             end: 1.0,
             steps: Self::STEPS,
         });
-        let mut newton = Newton::new(System::new(model)?)?;
+        let mut newton = Driver::new(System::new(model)?)?;
         for _ in 0..Self::STEPS / 2 {
             newton.step()?;
         }

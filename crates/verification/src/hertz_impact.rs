@@ -20,7 +20,7 @@
 use carom_bodies::Kinematics;
 use carom_contact::{Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelTarget, Newton, Scheme, Stepper, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Scheme, Stepper, System};
 use carom_exact::hertz::{Collision, reduced_mass};
 use carom_materials::{Law as Material, NeoHooke};
 
@@ -85,7 +85,7 @@ impl Spheres {
         let linear = self.law != DISPLACEMENT && !system.is_nonlinear();
         let mut run: Box<dyn Stepper> = match linear {
             true => Box::new(Driver::new(system)?),
-            false => Box::new(Newton::new(system)?),
+            false => Box::new(Driver::new(system)?),
         };
         while run.state().time < 1.1 * exact.duration {
             run.step()?;

@@ -29,7 +29,7 @@ use std::path::Path;
 use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration};
 use carom_dynamics::{
-    Amplitude, Iteration, Model, ModelBody, ModelTarget, Newton, Nonlinear, Preload, Prescribed,
+    Amplitude, Driver, Iteration, Model, ModelBody, ModelTarget, Nonlinear, Preload, Prescribed,
     System,
 };
 use carom_materials::Elastic;
@@ -113,7 +113,7 @@ fn model(file: &str, friction: f64, integration: Integration, slides: u64) -> Re
 fn iron(file: &str, friction: f64, integration: Integration, slides: u64) -> Result<Run, Error> {
     let model = model(file, friction, integration, slides)?;
     let top = model.nonlinear.motions[0].nodes.clone();
-    let mut newton = Newton::new(System::new(model)?)?;
+    let mut newton = Driver::new(System::new(model)?)?;
     let (mut forces, mut pressed) = (Vec::new(), 0.0);
     for step in 0..DOWN + slides {
         newton.step()?;

@@ -22,7 +22,7 @@ use std::path::Path;
 use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Model, Newton, Nonlinear, Scheme, System};
+use carom_dynamics::{Driver, Model, Nonlinear, Scheme, System};
 use carom_materials::Elastic;
 use carom_mesh::read::read;
 
@@ -100,7 +100,7 @@ struct Impact {
 }
 
 fn strike(size: Size, scheme: Scheme, law: Law, integration: Integration) -> Result<Impact, Error> {
-    let mut newton = Newton::new(System::new(model(size, scheme, law, integration)?)?)?;
+    let mut newton = Driver::new(System::new(model(size, scheme, law, integration)?)?)?;
     while newton.state().time < END {
         newton.step()?;
     }
@@ -129,7 +129,7 @@ fn strike(size: Size, scheme: Scheme, law: Law, integration: Integration) -> Res
 }
 
 /// Angular momentum about the centre of mass, N m s.
-fn spin(newton: &Newton) -> f64 {
+fn spin(newton: &Driver) -> f64 {
     let (system, motion) = (newton.system(), &newton.state().motion);
     let (mut mass, mut centre) = (0.0, [0.0; 2]);
     for &(node, m) in &system.body_masses[0] {

@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 use carom_bodies::Kinematics;
 use carom_contact::Plane;
 use carom_dynamics::{
-    LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, Newton, Scheme, System, Zoned,
+    Driver, LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, Scheme, System, Zoned,
     Zones, mortar_rows,
 };
 use carom_materials::Elastic;
@@ -107,7 +107,7 @@ impl Ring {
         let mut body = ring_body(&mesh, "sector")?;
         body.spec.cells.extend(&mesh.groups["rest"].elements);
         let dt = self.dt / f64::from(SUBSTEPS);
-        let mut newton = Newton::new(System::new(self.model(mesh, vec![body], dt)?)?)?;
+        let mut newton = Driver::new(System::new(self.model(mesh, vec![body], dt)?)?)?;
         let mut forces = Vec::new();
         while forces.len() < (self.end / self.dt).round() as usize {
             let mut sum = 0.0;

@@ -19,7 +19,7 @@
 
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Newton, Scheme};
+use carom_dynamics::{Driver, Scheme};
 use carom_exact::closed_forms::penetration_bound_now;
 
 use crate::Error;
@@ -38,7 +38,7 @@ const SPEED: f64 = 0.2;
 const TOGETHER: usize = 20;
 
 /// Part of the force on the upper half along its axis of approach, N.
-fn force(newton: &Newton) -> f64 {
+fn force(newton: &Driver) -> f64 {
     let system = newton.system();
     let up = system.dim - 1;
     let upper = |node: &usize| system.x[*node][up] > 0.0;
@@ -49,7 +49,7 @@ fn force(newton: &Newton) -> f64 {
 }
 
 /// The unknowns of the whole that are those of the half, in their order.
-fn image(half: &Newton, whole: &Newton) -> Vec<usize> {
+fn image(half: &Driver, whole: &Driver) -> Vec<usize> {
     let (unknowns, all) = (&whole.system().unknowns, &whole.system().x);
     let same = |a: &[f64; 3], b: &[f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-9);
     let nodes = half.system().x.iter();

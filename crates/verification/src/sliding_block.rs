@@ -17,7 +17,7 @@
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::{Law, Motion, Obstacle, Plane, Translation};
-use carom_dynamics::{Model, ModelBody, ModelTarget, Newton, Scheme, State, Support, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, Scheme, State, Support, System};
 use carom_elements::Kind;
 use carom_exact::friction::Incline;
 use carom_materials::Elastic;
@@ -66,7 +66,7 @@ impl Rough {
         }
     }
 
-    pub(crate) fn start(&self) -> Result<Newton, Error> {
+    pub(crate) fn start(&self) -> Result<Driver, Error> {
         let mut mesh = match self.dim {
             2 => generate::rectangle("block", [0.0; 2], [LENGTH, HEIGHT], [1, 1], false),
             _ => generate::box_("block", [0.0; 3], [LENGTH, LENGTH, HEIGHT], [1; 3], false),
@@ -134,18 +134,18 @@ impl Rough {
             gravity: self.gravity,
             ..Model::new(bodies, mesh, self.scheme, self.dt)
         })?;
-        Ok(Newton::new(system)?)
+        Ok(Driver::new(system)?)
     }
 }
 
 /// Mean displacement in m and velocity in m/s of the block.
-pub(crate) fn place(newton: &Newton, state: &State) -> [[f64; 3]; 2] {
+pub(crate) fn place(newton: &Driver, state: &State) -> [[f64; 3]; 2] {
     let mean = |f: &[f64]| newton.system().mean_velocity(0, f);
     [mean(&state.motion.u), mean(&state.motion.v)]
 }
 
 /// Rows of the balance of a run.
-pub(crate) fn balances(name: &str, newton: &Newton) -> [Row; 2] {
+pub(crate) fn balances(name: &str, newton: &Driver) -> [Row; 2] {
     let ledger = &newton.state().ledger;
     let energy = ledger.largest_energy_residual / ledger.largest_energy;
     let momentum = ledger.largest_momentum_residual / ledger.largest_momentum;

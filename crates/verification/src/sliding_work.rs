@@ -19,7 +19,7 @@ use carom_bodies::Kinematics;
 use carom_contact::law::{Capture, Restitution};
 use carom_contact::{Cylinder, Integration, Law, Side};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelTarget, Newton, Scheme, Stepper, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Scheme, Stepper, System};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
 
@@ -244,7 +244,7 @@ impl Slide {
         let linear = self.mu == 0.0 && !self.scheme.get().is_between();
         let mut run: Box<dyn Stepper> = match linear {
             true => Box::new(Driver::new(system)?),
-            false => Box::new(Newton::new(system)?),
+            false => Box::new(Driver::new(system)?),
         };
         let mut found = Found {
             runs: 1,

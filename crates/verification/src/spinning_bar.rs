@@ -12,7 +12,7 @@
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Iteration, Model, ModelBody, Newton, Scheme, System};
+use carom_dynamics::{Driver, Iteration, Model, ModelBody, Scheme, System};
 use carom_materials::{Elastic, Law, NeoHooke};
 use carom_mesh::generate;
 
@@ -35,7 +35,7 @@ const ROUNDING: f64 = 1e-15;
 /// Steps a revolution.
 const STEPS: usize = 40;
 
-fn newton(scheme: Scheme, tolerance: f64) -> Result<Newton, Error> {
+fn newton(scheme: Scheme, tolerance: f64) -> Result<Driver, Error> {
     let corner = [-0.5 * LENGTH, -0.5 * HEIGHT];
     let mesh = generate::rectangle("bar", corner, [LENGTH, HEIGHT], [10, 1], false);
     let mut model = Model::new(
@@ -53,7 +53,7 @@ fn newton(scheme: Scheme, tolerance: f64) -> Result<Newton, Error> {
     let system = System::new(model)?;
     let spin = |node: &[f64; 3]| [-SPIN * node[1], SPIN * node[0]];
     let velocity: Vec<f64> = system.x.iter().flat_map(spin).collect();
-    let mut newton = Newton::new(system)?;
+    let mut newton = Driver::new(system)?;
     let still = vec![0.0; velocity.len()];
     newton.restart(&still, &velocity)?;
     Ok(newton)

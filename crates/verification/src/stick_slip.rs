@@ -15,7 +15,7 @@
 use std::f64::consts::PI;
 
 use carom_contact::Law;
-use carom_dynamics::Newton;
+use carom_dynamics::Driver;
 use carom_exact::friction::{Belt, RoughFloor};
 
 use crate::Error;
@@ -58,7 +58,7 @@ struct Seen {
 
 /// Runs until a time in s. `speed`: that against which sliding and sticking are measured, m/s.
 fn watch(
-    newton: &mut Newton,
+    newton: &mut Driver,
     until: f64,
     (floor, speed): (f64, f64),
     exact: impl Fn(f64) -> f64,

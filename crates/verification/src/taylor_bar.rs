@@ -24,7 +24,7 @@
 use std::path::Path;
 
 use carom_bodies::{BodySpec, Formulation, Kinematics};
-use carom_dynamics::{Model, ModelBody, Newton, Scheme, Support, System};
+use carom_dynamics::{Driver, Model, ModelBody, Scheme, Support, System};
 use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_mesh::{Mesh, generate, read};
 
@@ -48,7 +48,7 @@ const END: f64 = 80e-6;
 
 /// A bar that has hit the wall.
 struct Bar {
-    newton: Newton,
+    newton: Driver,
     /// Axis of the bar.
     axis: usize,
     top: Vec<u32>,
@@ -109,7 +109,7 @@ impl Bar {
             ..Model::new(vec![body], mesh, scheme, dt)
         })?;
         Ok(Bar {
-            newton: Newton::new(system)?,
+            newton: Driver::new(system)?,
             axis,
             top,
             foot,

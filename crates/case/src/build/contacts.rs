@@ -61,10 +61,7 @@ impl Builder<'_> {
             self.warn_of_nodes(name, contact.integration, quadratic);
             let integration = match contact.integration {
                 Some(given) => integration(given, &law, &sides),
-                None if quadratic => {
-                    self.mortared.push(name.to_string());
-                    mortar(Basis::default())
-                }
+                None if quadratic => mortar(Basis::default()),
                 None => Integration::Node,
             };
             contacts.push(ModelContact {

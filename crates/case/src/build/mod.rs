@@ -78,7 +78,6 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
         problems: Vec::new(),
         warnings: Vec::new(),
         springs: Vec::new(),
-        mortared: Vec::new(),
         plan: Plan {
             zones: Vec::new(),
             kind: LinkKind::GravouilCombescure,
@@ -103,8 +102,6 @@ struct Builder<'a> {
     warnings: Vec<String>,
     /// Name of each contact with the damped law, and twice the rate of its spring against the elements behind it, 1/s.
     springs: Vec<(String, f64)>,
-    /// Names of the contacts that are integrated by mortar because their faces are quadratic.
-    mortared: Vec<String>,
     /// The zones of the case.
     plan: Plan,
     /// Path of the case file.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use carom_dynamics::{
-    Damping, Iteration, Load, ModelBody, Newton, Nonlinear, Preload, Prescribed, System,
+    Damping, Driver, Iteration, Load, ModelBody, Nonlinear, Preload, Prescribed, System,
 };
 use carom_materials::Law;
 
@@ -99,7 +99,7 @@ impl Builder<'_> {
         if !self.problems.is_empty() || !self.plan.zones.is_empty() || !system.is_nonlinear() {
             return;
         }
-        if let Err(error) = Newton::new(Arc::clone(system)) {
+        if let Err(error) = Driver::new(Arc::clone(system)) {
             let problem = self.refused(&error);
             self.problems.push(problem);
         }

@@ -4,7 +4,7 @@ use carom_dynamics::{Error, Refused};
 
 use super::Builder;
 use crate::error::Problem;
-use crate::schema::{self, Contact, Nodes};
+use crate::schema;
 
 impl Builder<'_> {
     /// The problem behind an error of the system.
@@ -59,29 +59,12 @@ impl Builder<'_> {
     /// The problem behind what the nonlinear solver refuses.
     fn refused_nonlinear(&self, what: &Refused, why: &str) -> Problem {
         let path = match what {
-            Refused::Scheme(_) => "time.scheme".to_string(),
-            Refused::AdaptiveStep => "time.step.adaptive".to_string(),
             Refused::StaticStage => "time.static".to_string(),
-            Refused::MasslessNodes => {
-                let massless = |(_, contact): &(&str, &Contact)| contact.nodes == Nodes::Massless;
-                let name = self.case.contact.iter().find(massless);
-                format!("contact.{}.nodes", name.map_or("", |(name, _)| name))
-            }
             Refused::Integration(contact) => format!("contact.{contact}.integration"),
-            Refused::Projection(contact) => {
-                format!("contact.{contact}.law.displacement.projection")
-            }
             Refused::Damping(body) => format!("body.{body}.damping.stiffness"),
             Refused::Motion { .. } => "support".to_string(),
         };
-        let problem = Problem::new(path, format!("{what}: {why}"));
-        match self.mortared.is_empty() {
-            true => problem,
-            false => problem.note(format!(
-                "contact `{}` has quadratic faces, whose default is mortar, and with mortar the steps are nonlinear; integration = \"node\" keeps them linear, with pressures that oscillate by a third and more",
-                self.mortared.join("`, `")
-            )),
-        }
+        Problem::new(path, format!("{what}: {why}"))
     }
 
     /// The problem behind an error of a zone's system.
@@ -111,13 +94,6 @@ impl Builder<'_> {
                         format!("zone.{name}.substeps = {enough}"),
                     ])
             }
-            (
-                Error::Nonlinear {
-                    what: what @ Refused::Scheme(_),
-                    why,
-                },
-                Some(zone),
-            ) => Problem::new(&zone.scheme_path, format!("{what}: {why}")),
             _ => self.refused(cause).note(format!("in the zone `{name}`")),
         }
     }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use carom_case::{Built, Input, build, parse};
-use carom_dynamics::{Newton, march};
+use carom_dynamics::{Driver, march};
 
 fn built(input: &Input) -> Built {
     let (case, locator) = parse(input).unwrap();
@@ -30,13 +30,13 @@ law.displacement = {{}}
 }
 
 /// A case of the folder `cases`, run to its end.
-fn ran(name: &str, sets: &[&str]) -> Newton {
+fn ran(name: &str, sets: &[&str]) -> Driver {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../cases")
         .join(name);
     let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
     let built = built(&Input::read(&path.join("case.toml"), &sets).unwrap());
-    let mut newton = Newton::new(built.system.clone()).unwrap();
+    let mut newton = Driver::new(built.system.clone()).unwrap();
     march(&mut newton, built.end, &mut [], &|| false).unwrap();
     newton
 }
@@ -86,7 +86,7 @@ fn a_penetration_at_the_start_is_refused_told_or_removed_as_the_case_says() {
             ),
             "{warning}"
         );
-        let newton = Newton::new(built.system.clone()).unwrap();
+        let newton = Driver::new(built.system.clone()).unwrap();
         // the three nodes of the bottom lie 0.1 m below the plane
         for &found in &newton.state().interface.gap {
             assert!((found - gap).abs() < 1e-12, "{initial}: {found}");
@@ -110,7 +110,7 @@ load.pull = { on = "bar.right", traction = [1e3] }
 time = { static = { end = 1.0, steps = 2 }, end = 1.001, step = 1e-4, scheme.newmark = {} }
 "#;
     let built = built(&Input::from_text("case.toml", text, &[]));
-    let mut newton = Newton::new(built.system.clone()).unwrap();
+    let mut newton = Driver::new(built.system.clone()).unwrap();
     march(&mut newton, 1.0, &mut [], &|| false).unwrap();
     // u = σ x / E, to the tolerance of the iteration
     for (node, x) in built.system.x.iter().enumerate() {

@@ -1,448 +1,384 @@
-//! The balance of a step, the records of its contacts, and its report.
+//! The end of a step: its motion, and the balance of a step whose forces are not all linear.
+//!
+//! The balance of forces of the step, times the way Δu, is the balance of energy: what inertia takes beyond the change of
+//! the kinetic energy, and internal forces beyond what is stored and dissipated by the material, is the scheme's share, of
+//! no fixed sign. The residual is the work of what the iterations left unbalanced.
 
-use std::ops::Range;
 use std::sync::Arc;
 
-use carom_algebra::reduce::dot;
-use carom_contact::Rows;
+use carom_contact::law::Level;
 
-use super::{Driver, Forces, Vectors};
-use crate::ledger::{Energies, Squares, reactions};
-use crate::records::Step;
+use super::candidates::on_row;
+use super::start::energies;
+use super::{Driver, Which};
+use crate::error::Error;
+use crate::ledger::{Beyond, Squares, Tolerated};
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
-use crate::state::{ContactReport, InterfaceState, Motion, State};
 use crate::step_map::Impulse;
-use crate::system::System;
 
 impl Driver {
+    /// Writes the motion at the end of the step, its internal forces and histories.
+    pub(super) fn advance(&mut self) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        let (old, map) = (&self.state.motion, &self.map);
+        let new = &mut self.next.motion;
+        let (x, push) = (&self.vectors.x, &self.vectors.push);
+        map.displacement.whole(old, x, push, &mut new.u);
+        map.velocity.whole(old, x, push, &mut new.v);
+        map.acceleration.whole(old, x, push, &mut new.a);
+        if map.has_memory() {
+            map.memory.whole(old, x, push, &mut new.memory);
+        }
+        for i in system.massless.iter().map(|&unknown| unknown as usize) {
+            (new.v[i], new.a[i]) = ((new.u[i] - old.u[i]) / self.dt, 0.0);
+        }
+        if !system.nonlinear.follows.is_empty() {
+            self.follow_motions();
+        }
+        if self.map.inertia.x == 0.0 {
+            self.next.motion.v.fill(0.0);
+            self.next.motion.a.fill(0.0);
+            self.next.motion.memory.fill(0.0);
+        }
+        self.end_forces()?;
+        let new = &mut self.next.motion;
+        new.internal_force.copy_from_slice(&self.vectors.internal);
+        new.history.copy_from_slice(&self.vectors.history);
+        new.contact_force.copy_from_slice(&self.vectors.contact);
+        new.link_force.clone_from(&self.link_force);
+        self.end_interface();
+        self.crush();
+        Ok(())
+    }
+
+    /// Displacements and velocities of unknowns that follow a motion.
+    fn follow_motions(&mut self) {
+        let system = &*self.system;
+        let (old, new) = (&self.state.motion, &mut self.next.motion);
+        let time = self.state.time + self.dt;
+        system.nonlinear.prescribe(time, &mut new.u);
+        for follows in &system.nonlinear.follows {
+            let i = follows.unknown as usize;
+            // the mean rate: the end rate of a mid-point rule would swing about it
+            (new.v[i], new.a[i]) = ((new.u[i] - old.u[i]) / self.dt, 0.0);
+        }
+    }
+
+    /// Internal forces at the end of the step and in its balance; of a step that is linear in the unknown the other forces at
+    /// the x found too.
+    fn end_forces(&mut self) -> Result<(), Error> {
+        let affine = self.is_affine();
+        let known = self.map.force.x == 0.0;
+        let ended = match affine {
+            true => known && self.map.force == self.map.displacement,
+            false => self.between() || self.map.force == self.map.displacement,
+        };
+        if affine {
+            self.evaluate_inertia();
+            self.evaluate_rate();
+            self.evaluate_damping();
+        }
+        self.vectors
+            .balanced
+            .copy_from_slice(&self.vectors.internal);
+        if !ended {
+            self.stored = self.internal((Which::Next, false), self.dt)?;
+        }
+        if affine && !known && self.system.is_nonlinear() {
+            self.balance_linear_forces();
+        }
+        Ok(())
+    }
+
+    /// Internal forces of linear bodies where the balance of the step takes them.
+    fn balance_linear_forces(&mut self) {
+        match self.map.force_fraction {
+            Some(part) => {
+                let (old, new) = (&self.state.motion.internal_force, &self.vectors.internal);
+                for (i, f) in self.vectors.balanced.iter_mut().enumerate() {
+                    *f = (1.0 - part) * old[i] + part * new[i];
+                }
+            }
+            None => {
+                let super::Vectors { x, push, place, .. } = &mut self.vectors;
+                self.map.force.whole(&self.state.motion, x, push, place);
+                self.linear_forces();
+                let super::Vectors { balanced, work, .. } = &mut self.vectors;
+                balanced.copy_from_slice(work);
+            }
+        }
+    }
+
+    /// Gaps and rates at the end of the step, and times without force.
+    fn end_interface(&mut self) {
+        let system = Arc::clone(&self.system);
+        let interface = &mut self.next.interface;
+        interface.carried.clone_from(&interface.force);
+        interface.count_flights(&self.state.interface.flight, self.dt);
+        let start_in_way = self.map.start_in_way();
+        for (k, contact) in system.contacts.iter().enumerate() {
+            let ahead = self.map.displacement.since(&self.paired_at(k));
+            let of_rate = self.law(contact).get().level() == Level::Rate;
+            for point in system.first_point[k]..system.first_point[k + 1] {
+                let motion = &self.state.motion;
+                let xc = [&self.vectors.x[..], &self.vectors.push];
+                let rows = &self.pairing.rows;
+                let gap = rows.gap(point) + on_row(rows, point, &ahead, motion, xc);
+                let rate = match (
+                    self.map.rate == Default::default(),
+                    system.massless.is_empty(),
+                ) {
+                    (true, _) => 0.0,
+                    (false, true) => {
+                        on_row(rows, point, &self.map.rate, motion, xc) + rows.rate(point)
+                    }
+                    (false, false) => rows.product(point, &self.next.motion.v) + rows.rate(point),
+                };
+                let opening = match of_rate && start_in_way != 0.0 {
+                    true => (start_in_way * self.rate_at_start(point)).max(0.0),
+                    false => 0.0,
+                };
+                let interface = &mut self.next.interface;
+                interface.gap[point] = gap;
+                interface.rate[point] = rate;
+                interface.opening[point] = opening;
+            }
+        }
+    }
+
+    /// Renews the memory of the laws at the points that carry a force at the end of the step.
+    fn crush(&mut self) {
+        let (old, new) = (&self.state.interface, &mut self.next.interface);
+        new.crush.clone_from(&old.crush);
+        for point in 0..new.crush.len() {
+            if new.status[point] != carom_contact::law::Status::Open {
+                let law = &self.system.point(point).0.law;
+                new.crush[point] = law.crushed(old.crush[point], new.gap[point]);
+            }
+        }
+    }
+
+    /// The identity by which the ledger counts: that of the scheme where all forces are linear, otherwise as far as it is inertia
+    /// alone. The forces of bodies that are not linear give the energy that the scheme balances no other form; all else that the scheme
+    /// takes is found from its works.
+    pub(super) fn identity_of_ledger(&self) -> EnergyIdentity {
+        let identity = self.identity.unwrap_or_default();
+        match self.system.is_nonlinear() {
+            false => identity,
+            true => {
+                let keeps = self.system.scheme.get().keeps_acceleration();
+                EnergyIdentity {
+                    inertia: if keeps { identity.inertia } else { 0.0 },
+                    ..EnergyIdentity::default()
+                }
+            }
+        }
+    }
+
     /// Energy and momentum of the step.
-    pub(super) fn balance(&mut self, strain: f64) {
+    pub(super) fn balance(&mut self) {
+        match self.system.is_nonlinear() {
+            true => self.balance_by_works(),
+            false => self.balance_by_identity(),
+        }
+    }
+
+    /// Weights of the forces at the start and of the step in their works.
+    fn weights(&self) -> [f64; 2] {
+        let impulse = &self.map.impulse;
+        match (self.is_plain(), self.map.inertia.x == 0.0) {
+            _ if self.state.forces.is_empty() => [0.0, 1.0],
+            (true, _) => [impulse.old, impulse.new],
+            // along a static step forces go from one equilibrium to the next
+            (false, true) => [0.5, 0.5],
+            (false, false) => [0.0, 1.0],
+        }
+    }
+
+    /// Whether the forces of a dynamic step change the momentum as they are.
+    fn is_plain(&self) -> bool {
+        let impulse = &self.map.impulse;
+        impulse.gain == 1.0 && impulse.carry == 0.0 && self.map.inertia.x != 0.0
+    }
+
+    fn balance_by_works(&mut self) {
         let system = Arc::clone(&self.system);
-        let identity = self.identity.unwrap_or_default();
-        let new = &self.next.motion;
-        let lagged = lagged(
-            &system,
-            &identity,
-            (new, strain),
-            &mut self.vectors,
-            &mut self.forces,
-        );
-        let memory = remembered(
-            &system,
-            &identity,
-            &new.memory,
-            &mut self.vectors,
-            &mut self.forces,
-        );
-        let filtered = self.filtered(&identity);
-        let new = &self.next.motion;
-        let work = &mut self.vectors.work;
-        let energies = Energies {
-            memory,
-            lagged,
-            ..energies(&system, new, strain, work, identity.inertia != 0.0)
-        };
-        let [supports, held] = self.reactions();
+        let weights = self.weights();
+        let plain = self.is_plain();
+        let identity = self.identity_of_ledger();
+        let pushes = !self.vectors.push.is_empty();
+        // forces that push by themselves are in no other force of the balance
+        let of_contact = if pushes { [0.0, 1.0] } else { weights };
+        let friction = self.friction_work(of_contact);
+        let obstacles = self.obstacle_work(of_contact);
+        let own_before = identity.inertia * self.acceleration_at_the_start(&identity);
+        let factor = self.contact_factor();
         let (old, new) = (&self.state.motion, &self.next.motion);
-        let contact = Resultant::of(&system, &new.contact_force);
-        let loads = Resultant::of(&system, &system.load);
-        let weights = self.work_weights();
-        let stage = self.predictor_loss();
-        let Vectors {
-            residual: travel,
-            known,
-            work,
-            ..
-        } = &mut self.vectors;
-        let squares = Squares {
-            stage,
-            filtered,
-            ..squares(&system, &identity, (old, new), (travel, known, work))
-        };
-        if identity.lag != 0.0 {
-            for i in 0..travel.len() {
-                travel[i] -= identity.lag * (new.v[i] - old.v[i]);
+        let map = &self.map;
+        let vectors = &mut self.vectors;
+        let with_acceleration = identity.inertia != 0.0;
+        let of = (self.stored.strain, with_acceleration, Some(&new.u[..]));
+        let energies = energies(&system, new, of, &mut vectors.work);
+        let contact: Vec<f64> = vectors.contact.iter().map(|f| factor * f).collect();
+        if pushes {
+            for (f, c) in vectors.inertia.iter_mut().zip(&vectors.contact) {
+                *f -= map.contact * c;
             }
         }
-        let work_contact = weights.old * dot(travel, &old.contact_force)
-            + weights.new * dot(travel, &new.contact_force);
-        let work_loads = dot(travel, &system.load);
-        let work_links = match new.link_force.is_empty() {
-            true => 0.0,
-            false => {
-                let weights = &self.map.impulse;
-                weights.old * dot(travel, &old.link_force)
-                    + weights.new * dot(travel, &new.link_force)
+        let link: Vec<f64> = match self.link_force.is_empty() {
+            true => vec![0.0; system.unknowns()],
+            false => self.link_force.clone(),
+        };
+        // supports hold what the balance leaves at their unknowns
+        let fixed = |i: usize| system.fixed[i];
+        let own: Vec<f64> = (0..system.unknowns())
+            .map(|i| match (fixed(i), pushes) {
+                (false, _) => 0.0,
+                (true, true) => {
+                    // held nodes have no push
+                    vectors.inertia[i]
+                        + map.contact * vectors.contact[i]
+                        + vectors.balanced[i]
+                        + vectors.damping[i]
+                        - vectors.load[i]
+                        - link[i]
+                }
+                (true, false) => {
+                    vectors.inertia[i] + vectors.balanced[i] + vectors.damping[i]
+                        - vectors.load[i]
+                        - link[i]
+                }
+            })
+            .collect();
+        let held: Vec<f64> = (0..system.unknowns())
+            .map(|i| if fixed(i) { -contact[i] } else { 0.0 })
+            .collect();
+        let reaction: Vec<f64> = match pushes {
+            true => own.clone(),
+            false => own
+                .iter()
+                .zip(&held)
+                .map(|(own, held)| own + held)
+                .collect(),
+        };
+        let now = [
+            &vectors.load,
+            &contact,
+            &reaction,
+            &vectors.inertia,
+            &vectors.balanced,
+            &vectors.damping,
+            &link,
+        ];
+        let before = &self.state.forces;
+        let mean = |k: usize, now: &[f64]| -> Vec<f64> {
+            let weights = if k == 1 { of_contact } else { weights };
+            match before.get(k).filter(|_| weights[0] != 0.0) {
+                Some(f) => (0..f.len())
+                    .map(|i| weights[0] * f[i] + weights[1] * now[i])
+                    .collect(),
+                None => now.to_vec(),
             }
         };
-        let links = Resultant::of(&system, &new.link_force);
+        let way = |f: &[f64]| -> f64 { (0..f.len()).map(|i| f[i] * (new.u[i] - old.u[i])).sum() };
+        let means = [0, 1, 2, 3, 4, 5, 6].map(|k| mean(k, now[k]));
+        let [load, touch, support, mut inertia, internal, damping] =
+            [0, 1, 2, 3, 4, 5].map(|k| way(&means[k]));
+        if pushes {
+            // the inertia of the push is the force that gives it
+            inertia += touch + way(&held);
+        }
+        let start = &self.state.ledger.balance;
+        // what supports that jump give is no inertia of the step
+        let gained = energies.kinetic - start.kinetic - self.jump.work;
+        let stored = energies.strain - start.strain + self.stored.hardening - start.hardening;
+        let own_energy = identity.inertia * energies.acceleration - own_before;
+        let scheme = inertia - gained - own_energy + internal - stored - self.stored.dissipated;
+        let nodes = system.x.len() as f64;
+        let travel = (0..new.u.len()).map(|i| (new.u[i] - old.u[i]).powi(2));
+        let tolerated = Tolerated {
+            energy: self.left_over * travel.sum::<f64>().sqrt(),
+            momentum: self.left_over * nodes.sqrt() * self.dt,
+        };
+        let places = [&old.u[..], &new.u[..]];
+        let forces = [
+            Resultant::at(&system, &places, &means[0]),
+            Resultant::at(&system, &places, &means[1]),
+            Resultant::at(&system, &places, &means[2]),
+            match pushes {
+                true => Resultant::at(&system, &places, &held),
+                false => Resultant::default(),
+            },
+            Resultant::at(&system, &places, &means[6])
+                .plus(&Resultant::at(&system, &places, &means[5]).reversed()),
+        ];
+        self.next.forces = match weights[0] != 0.0 || map.inertia.x == 0.0 {
+            true => now.iter().map(|f| f.to_vec()).collect(),
+            false => Vec::new(),
+        };
+        if map.inertia.x != 0.0 {
+            let exchange = &mut self.next.exchange;
+            exchange.follow(&self.state.exchange);
+            if let Some(impulses) = self.jump.impulses() {
+                exchange.jump(&system, impulses);
+            }
+            let own = |i: usize| vectors.load[i] + own[i] + link[i] - vectors.damping[i];
+            exchange.add(&system, (0, self.dt, &map.impulse), own);
+            exchange.add(&system, (1, self.dt, &map.contact_impulse), |i| held[i]);
+        }
         self.next.ledger.clone_from(&self.state.ledger);
-        if self.dt != self.state.control.taken {
-            self.resize_energy();
+        if identity.inertia != 0.0 {
+            // what it gains by a new size of the step alone
+            self.next.ledger.resize_to(own_before);
         }
-        self.next.ledger.add(
-            (
-                self.dt,
-                &identity,
-                [&self.map.impulse, &self.map.contact_impulse],
-            ),
-            &energies,
-            [work_loads, work_contact, work_links],
-            &squares,
-            [loads, contact, supports, held, links],
-        );
-    }
-
-    /// Counts what the energy that the scheme balances gains by the new size of the step alone.
-    fn resize_energy(&mut self) {
-        let system = Arc::clone(&self.system);
-        let identity = self.identity.unwrap_or_default();
-        let strain = self.state.ledger.balance.strain;
-        let old = &self.state.motion;
-        let (vectors, forces) = (&mut self.vectors, &mut self.forces);
-        let lagged = lagged(&system, &identity, (old, strain), vectors, forces);
-        let memory = remembered(&system, &identity, &old.memory, vectors, forces);
-        let work = &mut vectors.work;
-        let energies = Energies {
-            lagged,
-            memory,
-            ..energies(&system, old, strain, work, identity.inertia != 0.0)
+        self.next.ledger.kick(&self.jump.impulse);
+        self.next.ledger.go_beyond(&Beyond {
+            work_supports: support + self.jump.work,
+            work_obstacles: obstacles,
+            tolerated,
+            dissipation_material: self.stored.dissipated,
+            dissipation_damping: damping,
+            dissipation_friction: -friction,
+            hardening: self.stored.hardening,
+        });
+        let squares = Squares {
+            stage: scheme,
+            ..Squares::default()
         };
-        self.next.ledger.resize(&identity, &energies);
+        let one = Impulse::weights(0.0, 1.0);
+        let impulses = match plain || map.inertia.x == 0.0 {
+            true => [&one, &one],
+            false => [&map.impulse, &map.contact_impulse],
+        };
+        let dt = if map.inertia.x == 0.0 { 0.0 } else { self.dt };
+        self.next.ledger.add(
+            (dt, &identity, impulses),
+            &energies,
+            [load, touch - friction - obstacles, way(&means[6])],
+            &squares,
+            forces,
+        );
+        if map.inertia.x == 0.0 {
+            self.next.ledger.end_static_step();
+        }
     }
 
-    /// |Δm|²_K of the step, as far as the identity asks for it.
-    fn filtered(&mut self, identity: &EnergyIdentity) -> f64 {
-        if identity.filtered == 0.0 {
+    /// Factor of Nᵀ P in the contact forces that the ledger counts.
+    pub(super) fn contact_factor(&self) -> f64 {
+        match self.vectors.push.is_empty() {
+            true => self.map.contact,
+            false => 1.0,
+        }
+    }
+
+    /// |a|²_M at the start of the step, as far as the identity asks for it.
+    fn acceleration_at_the_start(&mut self, identity: &EnergyIdentity) -> f64 {
+        if identity.inertia == 0.0 {
             return 0.0;
         }
-        let Vectors { known, work, .. } = &mut self.vectors;
-        let [old, new] = [&self.state, &self.next].map(|state| &state.motion.memory);
-        difference(old, new, known);
-        2.0 * self.forces.evaluate(&self.system, known, work)
+        let (a, work) = (&self.state.motion.a, &mut self.vectors.work);
+        self.system.mass.multiply(a, work);
+        carom_algebra::reduce::dot(a, work)
     }
-
-    /// Resultants of the forces of the supports in the step; apart, those against contact forces that act in the
-    /// impulse in their own way.
-    fn reactions(&mut self) -> [Resultant; 2] {
-        let system = &*self.system;
-        let (old, new) = (&self.state.motion, &self.next.motion);
-        let Vectors {
-            half,
-            x,
-            known,
-            work,
-            inertia,
-            contact_acceleration: c,
-            ..
-        } = &mut self.vectors;
-        if self.map.force_fraction.is_none() {
-            self.map.force.whole(old, x, c, known);
-            self.forces.evaluate(system, known, work);
-        }
-        self.map.inertia.whole(old, x, c, known);
-        system.mass.multiply(known, inertia);
-        reactions(system, &self.map, old, new, inertia, work);
-        let exchange = &mut self.next.exchange;
-        exchange.follow(&self.state.exchange);
-        let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
-        exchange.add(system, (0, self.dt, &self.map.impulse), own);
-        let supports = Resultant::of(system, work);
-        if self.map.impulse == self.map.contact_impulse {
-            return [supports, Resultant::default()];
-        }
-        for (i, held) in half.iter_mut().enumerate() {
-            *held = match system.fixed[i] {
-                true => -new.contact_force[i],
-                false => 0.0,
-            };
-        }
-        exchange.add(system, (1, self.dt, &self.map.contact_impulse), |i| half[i]);
-        [supports, Resultant::of(system, half)]
-    }
-
-    /// Weights of the contact forces at the start and of the step in their work: those of the energy identity, or of the
-    /// impulse where there is none.
-    fn work_weights(&self) -> WorkWeights {
-        let Impulse { old, new, .. } = self.map.contact_impulse;
-        let of_impulse = WorkWeights { old, new, lag: 0.0 };
-        self.identity.map_or(of_impulse, |identity| WorkWeights {
-            old: identity.old,
-            new: identity.new,
-            lag: identity.lag,
-        })
-    }
-
-    /// Records of the contacts.
-    pub(super) fn record(&mut self) {
-        let system = Arc::clone(&self.system);
-        self.next.records.follow(&self.state.records);
-        for k in 0..system.contacts.len() {
-            let mut report = contact_report(
-                &system,
-                k,
-                &self.rows,
-                &self.state.interface,
-                &self.next.interface,
-                self.dt,
-            );
-            let forces = &self.next.interface.force[points(&system, k)];
-            report.mixed = self.weak.mixed(k, forces);
-            let weights = self.work_weights();
-            let before = &self.state.interface;
-            let projected = &self.projected;
-            let carried_on = |point: usize| {
-                let changed = before.carried[point] - before.force[point];
-                projected.impulse(point) + self.dt * self.map.contact_impulse.old * changed
-            };
-            report.impulsive = points(&system, k).map(carried_on).sum();
-            let work = contact_work(&system, k, &self.rows, weights, (&self.state, &self.next));
-            let time = self.next.time;
-            let State {
-                motion,
-                records,
-                interface,
-                ..
-            } = &mut self.next;
-            let step = Step {
-                span: [self.state.time, time],
-                dt: self.dt,
-                impulse: self.map.contact_impulse,
-                forces: [&before.force, &interface.force],
-                report: &report,
-                work: work + points(&system, k).map(|p| projected.work(p)).sum::<f64>(),
-                crushed: crush_energy(&system, k, interface),
-                jump: [
-                    total(&system, k, &self.rows, |point| projected.impulse(point)),
-                    total(&system, k, &self.rows, |point| {
-                        interface.carried[point] - interface.force[point]
-                    }),
-                ],
-            };
-            records.add(&system, k, &step, &self.state, &motion.v);
-            self.report.contacts[k] = report;
-        }
-        self.watch.look(&system, self.next.step, &mut self.next);
-        let work = &mut self.vectors.work;
-        system.mass.multiply(&self.next.motion.v, work);
-        let records = &self.next.records.contacts;
-        self.next.exchange.close(&system, work, records);
-    }
-
-    /// Completes the report of the state just accepted.
-    pub(super) fn tell(&mut self) {
-        let state = &self.state;
-        self.report.step = state.step;
-        self.report.time = state.time;
-        self.report.dt = if state.step == 0 { 0.0 } else { self.dt };
-        self.report.balance = state.ledger.balance;
-        self.report.passes = if self.candidates.is_empty() {
-            0
-        } else {
-            self.interface.passes
-        };
-        if state.step == 0 {
-            for (k, report) in self.report.contacts.iter_mut().enumerate() {
-                *report = contact_report(
-                    &self.system,
-                    k,
-                    &self.rows,
-                    &state.interface,
-                    &state.interface,
-                    0.0,
-                );
-            }
-        }
-    }
-}
-
-pub(super) fn energies(
-    system: &System,
-    motion: &Motion,
-    strain: f64,
-    work: &mut [f64],
-    with_acceleration: bool,
-) -> Energies {
-    system.mass.multiply(&motion.v, work);
-    let (kinetic, momentum) = (0.5 * dot(&motion.v, work), Resultant::of(system, work));
-    let mut acceleration = 0.0;
-    if with_acceleration {
-        system.mass.multiply(&motion.a, work);
-        acceleration = dot(&motion.a, work);
-    }
-    Energies {
-        kinetic,
-        strain,
-        acceleration,
-        memory: 0.0,
-        lagged: 0.0,
-        momentum,
-    }
-}
-
-/// U(u - lag v) - U(u), J.
-pub(super) fn lagged(
-    system: &System,
-    identity: &EnergyIdentity,
-    (motion, strain): (&Motion, f64),
-    Vectors { known, work, .. }: &mut Vectors,
-    forces: &mut Forces,
-) -> f64 {
-    if identity.lag == 0.0 {
-        return 0.0;
-    }
-    for i in 0..known.len() {
-        known[i] = motion.u[i] - identity.lag * motion.v[i];
-    }
-    forces.evaluate(system, known, work) - strain
-}
-
-/// |m|²_K of a memory m, J/s².
-pub(super) fn remembered(
-    system: &System,
-    identity: &EnergyIdentity,
-    memory: &[f64],
-    Vectors { work, .. }: &mut Vectors,
-    forces: &mut Forces,
-) -> f64 {
-    match identity.memory == 0.0 {
-        true => 0.0,
-        // U is quadratic
-        false => 2.0 * forces.evaluate(system, memory, work),
-    }
-}
-
-/// What changed from the old to the new motion, as far as the identity asks for it. Leaves Δu in `travel`.
-fn squares(
-    system: &System,
-    identity: &EnergyIdentity,
-    (old, new): (&Motion, &Motion),
-    (travel, change, work): (&mut [f64], &mut [f64], &mut [f64]),
-) -> Squares {
-    let mut squares = Squares::default();
-    difference(&old.u, &new.u, travel);
-    if identity.velocity != 0.0 {
-        difference(&old.v, &new.v, change);
-        system.mass.multiply(change, work);
-        squares.velocity = dot(change, work);
-    }
-    if identity.acceleration != 0.0 || identity.mixed != 0.0 {
-        difference(&old.a, &new.a, change);
-        system.mass.multiply(change, work);
-        squares.acceleration = dot(change, work);
-        squares.mixed = dot(travel, work);
-    }
-    if identity.contact != 0.0 {
-        difference(&old.a, &new.a, change);
-        squares.contact = dot(change, &new.contact_force);
-    }
-    if identity.displacement != 0.0 {
-        // K is linear and symmetric: |Δu|²_K = Δu · Δf
-        squares.displacement = dot(travel, &new.internal_force) - dot(travel, &old.internal_force);
-    }
-    squares
-}
-
-/// new - old.
-fn difference(old: &[f64], new: &[f64], change: &mut [f64]) {
-    for i in 0..change.len() {
-        change[i] = new[i] - old[i];
-    }
-}
-
-pub(crate) fn contact_report(
-    system: &System,
-    contact: usize,
-    rows: &Rows,
-    old: &InterfaceState,
-    new: &InterfaceState,
-    dt: f64,
-) -> ContactReport {
-    let mut report = ContactReport {
-        gap: f64::INFINITY,
-        ..ContactReport::default()
-    };
-    for point in points(system, contact) {
-        let force = new.force[point];
-        report.force += force;
-        for (sum, n) in report.resultant.iter_mut().zip(rows.resultant(point)) {
-            *sum += force * n;
-        }
-        if new.gap[point] < report.gap {
-            (report.gap, report.rate) = (new.gap[point], new.rate[point]);
-        }
-        report.closed += usize::from(force != 0.0);
-        report.status_changes += usize::from((force != 0.0) != (old.force[point] != 0.0));
-        report.persistency_defect += (force * (new.rate[point] + new.opening[point])).abs() * dt;
-    }
-    report.normal = report.resultant;
-    report
-}
-
-/// How contact forces work in the energy balance.
-#[derive(Clone, Copy)]
-struct WorkWeights {
-    /// Weight of the forces at the start.
-    old: f64,
-    /// Weight of the forces of the step.
-    new: f64,
-    /// How far the displacements on which they work lie back along the velocity, s.
-    lag: f64,
-}
-
-/// Work of the forces of one contact on the motion of the step, J. `states`: at its start and end.
-fn contact_work(
-    system: &System,
-    contact: usize,
-    rows: &Rows,
-    weights: WorkWeights,
-    (old, new): (&State, &State),
-) -> f64 {
-    let place = |point: usize, motion: &Motion| {
-        let u = rows.product(point, &motion.u);
-        match weights.lag == 0.0 {
-            true => u,
-            false => u - weights.lag * rows.product(point, &motion.v),
-        }
-    };
-    points(system, contact)
-        .map(|point| {
-            let force = weights.old * old.interface.carried[point]
-                + weights.new * new.interface.force[point];
-            force * (place(point, &new.motion) - place(point, &old.motion))
-        })
-        .sum()
-}
-
-/// Energy that the crush of one contact has taken so far, J: a function of the largest penetrations.
-pub(crate) fn crush_energy(system: &System, contact: usize, interface: &InterfaceState) -> f64 {
-    let (first, contact) = (system.first_point[contact], &system.contacts[contact]);
-    let of_point = |(k, point): (usize, &carom_contact::Point)| {
-        point.share * contact.law.crush_energy(interface.crush[first + k])
-    };
-    contact.points.iter().enumerate().map(of_point).sum()
-}
-
-/// Contact points of a contact.
-fn points(system: &System, contact: usize) -> Range<usize> {
-    system.first_point[contact]..system.first_point[contact + 1]
-}
-
-/// Sum of a normal force or impulse over the points of a contact, and its resultant on the secondary body.
-fn total(
-    system: &System,
-    contact: usize,
-    rows: &Rows,
-    of_point: impl Fn(usize) -> f64,
-) -> (f64, [f64; 3]) {
-    let (mut sum, mut resultant) = (0.0, [0.0; 3]);
-    for point in points(system, contact) {
-        let value = of_point(point);
-        sum += value;
-        for (sum, n) in resultant.iter_mut().zip(rows.resultant(point)) {
-            *sum += value * n;
-        }
-    }
-    (sum, resultant)
 }

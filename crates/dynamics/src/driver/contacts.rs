@@ -1,434 +1,355 @@
-//! The contacts of a step: pairing, candidates, forces.
+//! The contacts of an iteration: where they are paired, and what their laws see.
 
 use std::sync::Arc;
 
-use carom_contact::law::{End, Level, Local, Status};
-use carom_contact::{Contact, Law, Places, Rows, Sliding};
+use carom_contact::law::{Displacement, End, Level, Local, Status};
+use carom_contact::{Contact, Integration, Law, Places, Sliding};
 
+use super::candidates::{instant, least_gap, on_row, part_way};
 use super::{Driver, Vectors};
-use crate::error::Error;
-use crate::interface::{Candidate, Failure, InterfaceProblem};
-use crate::state::Motion;
-use crate::step_map::{Row, StepMap};
+use crate::step_map::Row;
 use crate::system::System;
 
-impl Driver {
-    pub(super) fn pair_initially(&mut self) {
-        let system = Arc::clone(&self.system);
-        let places = Places {
-            unknowns: &system.unknowns,
-            time: 0.0,
-            x: &system.x,
-            u: &self.vectors.work,
-        };
-        let rows = system
-            .contacts
-            .iter()
-            .zip(&mut self.search)
-            .map(|(contact, search)| match contact.sliding {
-                Sliding::Finite => None,
-                Sliding::Small => {
-                    let mut rows = Rows::default();
-                    rows.clear();
-                    contact.pair(&places, search, &mut rows);
-                    Some(rows)
-                }
-            });
-        self.initial_rows = rows.collect();
+impl System {
+    /// Whether a contact of finite sliding is paired where the iterations of a dynamic step are: the geometry of bodies at small strain
+    /// without friction is that in which the step captures it.
+    fn pairs_anew(&self, contact: usize) -> bool {
+        let (secondary, primary) = self.sides[contact];
+        let sides = [Some(secondary), primary];
+        let mut sides = sides.into_iter().flatten();
+        let finite = sides.any(|body| !self.bodies[body].is_linear());
+        let contact = (&self.contacts[contact], self.friction[contact]);
+        let mortar = matches!(contact.0.integration, Integration::Mortar { .. });
+        finite || mortar || contact.0.moves() || contact.1 > 0.0
     }
+}
 
-    /// Pairs all contacts at their captured instant; `now` takes the state as it is.
-    pub(super) fn place(&mut self, now: bool) {
-        let system = Arc::clone(&self.system);
-        let (map, dt, motion) = (&self.map, self.map.moves, &self.state.motion);
-        self.rows.clear();
-        self.captured.clear();
-        let mut capture = f64::NAN;
-        for (k, contact) in system.contacts.iter().enumerate() {
-            let place = match now {
-                true => Row {
-                    u: 1.0,
-                    ..Row::default()
-                },
-                false => Row {
-                    v: map.placed.v + contact.law.get().capture() * dt,
-                    ..map.placed
-                },
-            };
-            if capture != place.v {
-                place.known(motion, &mut self.vectors.known);
-                capture = place.v;
+impl Driver {
+    /// The law of a contact in the attempt under way. In a static stage nothing has a rate: a law in the rate holds in the
+    /// gap there, as the displacement law.
+    pub(super) fn law(&self, contact: &Contact) -> Law {
+        match contact.law.get().level() {
+            Level::Rate if self.map.inertia.x == 0.0 => {
+                Law::Displacement(Displacement { projection: false })
             }
-            let u = &self.vectors.known;
-            match &self.initial_rows[k] {
-                Some(initial) => self.rows.append_moved(initial, u),
-                None => {
-                    let ahead = !now && looks_ahead(map, contact, &contact.law);
-                    if ahead {
-                        let end = &self.vectors.ahead;
-                        part_way(motion, end, &contact.law, &mut self.vectors.work);
-                    }
-                    let u = if ahead { &self.vectors.work } else { u };
-                    let places = Places {
-                        unknowns: &system.unknowns,
-                        time: 0.0,
-                        x: &system.x,
-                        u,
-                    };
-                    let first = self.rows.len();
-                    contact.pair(&places, &mut self.search[k], &mut self.rows);
-                    if ahead {
-                        let Vectors { known, work, .. } = &mut self.vectors;
-                        for (way, to) in work.iter_mut().zip(&*known) {
-                            *way = to - *way;
-                        }
-                        self.rows.move_from(first, work);
-                    }
-                }
-            }
-            self.captured.resize(self.rows.len(), place);
+            _ => contact.law,
         }
     }
 
-    /// Predicts the displacement at the end of the step with the forces of contacts and links of the step before, for contacts
-    /// that are paired ahead.
-    pub(super) fn look_ahead(&mut self) {
-        let system = &*self.system;
-        let ahead = |contact: &Contact| looks_ahead(&self.map, contact, &contact.law);
-        if !system.contacts.iter().any(ahead) {
+    /// The configuration in which a contact is paired: of a law in the gap the one that it constrains, of a law in the rate
+    /// the captured one, which is known; of a scheme between two states their middle. With small sliding gaps are linear in
+    /// the displacement, and are those of a configuration that is known.
+    pub(super) fn paired_at(&self, number: usize) -> Row {
+        let map = &self.map;
+        let contact = &self.system.contacts[number];
+        let law = self.law(contact);
+        let captured = Row {
+            v: map.placed.v + law.get().capture() * map.moves,
+            ..map.placed
+        };
+        let dynamic = map.inertia.x != 0.0;
+        if contact.sliding == Sliding::Small || dynamic && !self.system.pairs_anew(number) {
+            return captured;
+        }
+        if self.between() {
+            let end = &map.displacement;
+            return Row {
+                u: 0.5 + 0.5 * end.u,
+                v: 0.5 * end.v,
+                a: 0.5 * end.a,
+                x: 0.5 * end.x,
+                ..Row::default()
+            };
+        }
+        match law.get().level() {
+            Level::Rate => captured,
+            Level::Gap => map.gap,
+            Level::GapAndRate => map.compliant()[0],
+        }
+    }
+
+    /// Whether internal forces and contacts belong to the way of the step.
+    pub(super) fn between(&self) -> bool {
+        self.map.inertia.x != 0.0 && self.system.scheme.get().is_between()
+    }
+
+    /// Derivative of the paired configuration by the unknown; zero where all of it is known before the step.
+    pub(super) fn turning(&self, contact: usize) -> f64 {
+        self.paired_at(contact).x
+    }
+
+    /// Pairs all contacts at the x of the iteration. `first`: those in known configurations too.
+    pub(super) fn pair(&mut self, first: bool) {
+        let system = Arc::clone(&self.system);
+        let mut contacts = 0..system.contacts.len();
+        if !first && contacts.all(|k| self.turning(k) == 0.0) {
             return;
         }
-        let motion = &self.state.motion;
-        let Vectors {
-            residual,
-            half,
-            x,
-            work,
-            ahead,
-            ..
-        } = &mut self.vectors;
-        for (i, r) in work.iter_mut().enumerate() {
-            let link = motion.link_force.get(i).unwrap_or(&0.0);
-            *r = match system.fixed[i] {
-                true => 0.0,
-                false => residual[i] + self.map.contact * motion.contact_force[i] + link,
-            };
+        self.pairing.clear();
+        for (k, contact) in system.contacts.iter().enumerate() {
+            let row = self.paired_at(k);
+            let ahead = self.looks_ahead(k) && !self.vectors.ahead.is_empty();
+            let motion = &self.state.motion;
+            let Vectors {
+                x,
+                push,
+                place,
+                ahead: end,
+                ..
+            } = &mut self.vectors;
+            match ahead {
+                true => part_way(motion, end, &contact.law, place),
+                false => row.whole(motion, x, push, place),
+            }
+            self.pairing.span = self.span(k);
+            let first = self.pairing.len();
+            self.append(k, self.state.time + self.paired_after(contact));
+            if ahead {
+                self.move_gaps(first, &row);
+            }
         }
-        self.operators.begin(work, half);
-        self.operators.end(half, x);
-        ahead.resize(x.len(), 0.0);
-        self.map.displacement.whole(motion, x, &[], ahead);
+        self.stack();
     }
 
-    /// Points that may carry a force. Some laws say so from the captured gap; of others, those are taken that carried one or
-    /// that twice the present rate would close, and the rest is looked at after the solve.
-    pub(super) fn choose_candidates(&mut self) {
-        let system = &self.system;
-        self.candidates.clear();
-        for point in 0..system.points() {
-            let gap = self.rows.gap(point);
-            let law = system.point(point).0.law.get();
-            let rate = self.rows.product(point, &self.state.motion.v);
-            let least = least_gap(gap, law.capture() * self.map.moves * rate);
-            let chosen = match law.watches(least, system.tolerance) {
-                _ if gap == f64::INFINITY => false,
-                Some(watched) => watched,
-                None => {
-                    self.state.interface.status[point] != Status::Open
-                        || gap + 2.0 * self.dt * rate.min(0.0) <= system.tolerance
+    /// Appends a contact at the configuration in `place`; `time`, s: where obstacles are. With small sliding the points are
+    /// paired at their reference places, once, or with an obstacle that moves where it is now; gaps are then linear in the
+    /// displacement, and rows and tangents do not turn with the bodies.
+    pub(super) fn append(&mut self, number: usize, time: f64) {
+        let system = Arc::clone(&self.system);
+        let contact = &system.contacts[number];
+        let search = &mut self.search[number];
+        let Vectors { place, work, .. } = &mut self.vectors;
+        let at = |u| Places {
+            unknowns: &system.unknowns,
+            time,
+            x: &system.x,
+            u,
+        };
+        if contact.sliding == Sliding::Finite {
+            return contact.pair_fully(&at(place), search, &mut self.pairing);
+        }
+        let initial = &mut self.initial[number];
+        if initial.is_empty() || contact.moves() {
+            initial.clear();
+            initial.span = self.pairing.span;
+            work.fill(0.0);
+            contact.pair_fully(&at(work), search, initial);
+        }
+        self.pairing.append_moved(initial, place);
+    }
+
+    /// How long after the start of the step a contact is paired, s.
+    pub(super) fn paired_after(&self, contact: &Contact) -> f64 {
+        let law = self.law(contact);
+        match law.get().level() {
+            _ if self.between() => 0.5 * self.dt,
+            Level::Rate => law.get().capture() * self.dt,
+            Level::Gap => self.dt,
+            Level::GapAndRate => self.instant() - self.state.time,
+        }
+    }
+
+    /// Gap and rate that the law of a point constrains, at the x of the iteration. `pushed`: with what the contact forces of the
+    /// iteration give to the rate by themselves.
+    pub(super) fn now(&self, point: usize, pushed: bool) -> (f64, f64) {
+        let rows = &self.pairing.rows;
+        let number = self.system.contact_of(point);
+        let contact = &self.system.contacts[number];
+        let motion = &self.state.motion;
+        let xc = [&self.vectors.x[..], &self.vectors.push];
+        let [gap, mut rate] = self.constrained(contact).0;
+        if !pushed {
+            rate.c = 0.0;
+        }
+        let ahead = gap.since(&self.paired_at(number));
+        let obstacle = rows.rate(point);
+        let until = match self.law(contact).get().level() {
+            Level::GapAndRate => self.instant() - self.state.time,
+            Level::Gap | Level::Rate => self.dt,
+        };
+        let gap = rows.gap(point)
+            + on_row(rows, point, &ahead, motion, xc)
+            + obstacle * (until - self.paired_after(contact));
+        (gap, on_row(rows, point, &rate, motion, xc) + obstacle)
+    }
+
+    /// Gap and rate that the law of a contact constrains, and their factors of x over those of the map.
+    pub(super) fn constrained(&self, contact: &Contact) -> ([Row; 2], [f64; 2]) {
+        instant(&self.map, &self.law(contact))
+    }
+
+    /// What a motion of the unknown along the row of a point adds to the gap and the rate that its law constrains.
+    pub(super) fn added(&self, point: usize, step: f64) -> [f64; 2] {
+        let [gap, rate] = self.constrained(self.system.point(point).0).0;
+        [gap.x * step, rate.x * step]
+    }
+
+    /// What the law of a point may know before the forces.
+    pub(super) fn local(&self, point: usize, gap_free: f64) -> Local {
+        let (contact, place) = self.system.point(point);
+        let carrier = &contact.points[place];
+        let rows = &self.pairing.rows;
+        let gap = match self.between() {
+            // S_d looks at the start of the step
+            true => self.state.interface.gap[point],
+            false => rows.gap(point),
+        };
+        let rate = self.rate_at_start(point);
+        Local {
+            area: carrier.area,
+            share: carrier.share,
+            gap,
+            rate,
+            start: self.map.start_in_way() * rate,
+            gap_free,
+            dt: self.moves(),
+            tolerance: self.system.tolerance,
+            crush: self.state.interface.crush[point],
+        }
+    }
+
+    /// Time over which the points move with the rate that a law constrains, s.
+    fn moves(&self) -> f64 {
+        match self.map.moves == 0.0 {
+            true => self.dt,
+            false => self.map.moves,
+        }
+    }
+
+    /// Gap rate at the start of the step, m/s, with the rows of the iteration.
+    pub(super) fn rate_at_start(&self, point: usize) -> f64 {
+        let rows = &self.pairing.rows;
+        rows.product(point, &self.state.motion.v) + rows.rate(point)
+    }
+
+    /// Whether a point takes part, where its law says so before the forces.
+    pub(super) fn told(&self, point: usize) -> Option<bool> {
+        let gap = self.pairing.rows.gap(point);
+        if gap == f64::INFINITY {
+            return Some(false);
+        }
+        let law = self.law(self.system.point(point).0);
+        let gap = match self.between() {
+            true => self.state.interface.gap[point],
+            false => {
+                let way = law.get().capture() * self.moves() * self.rate_at_start(point);
+                least_gap(gap, way)
+            }
+        };
+        law.get().watches(gap, self.system.tolerance)
+    }
+
+    /// Takes the multipliers of the weak forms that belong to the forces as they stand.
+    pub(super) fn take_weak(&mut self) {
+        let forces = self.next.interface.force.iter().copied().enumerate();
+        self.weak.take(&self.system, forces, 1.0);
+    }
+
+    /// Gap and rate of a point with what its weak form adds to them.
+    pub(super) fn weakly(&self, point: usize, (gap, rate): (f64, f64)) -> (f64, f64) {
+        let force = self.next.interface.force[point];
+        match self.weak.shift(&self.system, point, force) {
+            None => (gap, rate),
+            Some((shift, Level::Gap)) => (gap + shift, rate),
+            Some((shift, _)) => (gap, rate + shift),
+        }
+    }
+
+    /// Whether the law of an open point asks for a force at this gap and rate, beyond rounding.
+    pub(super) fn asks(&self, point: usize, gap: f64, rate: f64) -> bool {
+        let end = End {
+            gap_released: gap,
+            gap,
+            rate,
+            force: 0.0,
+        };
+        let law = self.law(self.system.point(point).0);
+        let least = match self.is_affine() {
+            true => 0.0,
+            false => -self.gap_tolerance(),
+        };
+        gap < least
+            && law
+                .get()
+                .status(Status::Open, &end, &self.local(point, gap), 0)
+                != Status::Open
+    }
+
+    /// Gap that counts as none where a step ends, m.
+    pub(super) fn gap_tolerance(&self) -> f64 {
+        100.0 * self.system.tolerance
+    }
+
+    /// The point that disobeys its law most at the x of the iteration, and by how much in tolerances.
+    pub(super) fn worst_point(&self) -> Option<(usize, f64)> {
+        let tolerance = self.gap_tolerance();
+        let forces = self.next.interface.force.iter();
+        let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
+        let mut worst: Option<(usize, f64)> = None;
+        for point in 0..self.system.points() {
+            if self.told(point) == Some(false) {
+                continue;
+            }
+            let (gap, rate) = self.weakly(point, self.now(point, true));
+            let status = self.next.interface.status[point];
+            let force = self.next.interface.force[point];
+            let law = self.law(self.system.point(point).0);
+            let defect = match status {
+                Status::Open if self.told(point).is_none() => match self.asks(point, gap, rate) {
+                    true => -gap / tolerance,
+                    false => 0.0,
+                },
+                _ => {
+                    let local = self.local(point, gap);
+                    let relation = match status {
+                        Status::Open => law.get().relation(Status::Closed, &local),
+                        _ => law.get().relation(status, &local),
+                    };
+                    let left = relation.gap * gap
+                        + relation.rate * rate
+                        + relation.compliance * force
+                        + relation.offset;
+                    let scale = relation.gap.abs() + relation.rate.abs() / self.dt;
+                    // a law that cuts tension off leaves a gap or a rate over where it would pull
+                    match status == Status::Open || law.get().clips() && force == 0.0 {
+                        true => (-left / scale / tolerance).max(0.0),
+                        false => (left / scale / tolerance).abs(),
+                    }
                 }
             };
-            self.next.interface.watched[point] = chosen;
-            if chosen {
-                self.candidates.push(point as u32);
+            let cone = self.cone_defect(point, largest) / self.system.nonlinear.iteration.tolerance;
+            let defect = defect.max(self.slip_defect(point) / tolerance).max(cone);
+            if worst.is_none_or(|(_, most)| defect > most) {
+                worst = Some((point, defect));
             }
         }
+        worst
     }
 
-    pub(super) fn solve_interface(&mut self) -> Result<(), Error> {
-        let system = &*self.system;
-        let motion = &self.state.motion;
-        self.compliance.update(
-            &self.candidates,
-            &self.rows,
-            &system.fixed,
-            &mut self.operators,
-        );
-        self.candidate_data.clear();
-        self.free_gaps.clear();
-        for &point in &self.candidates {
-            let at = point as usize;
-            let (contact, place) = system.point(at);
-            let free = self
-                .compliance
-                .free(point, &self.operators, &self.vectors.half);
-            let [nu, nv, na] =
-                [&motion.u, &motion.v, &motion.a].map(|vector| self.rows.product(at, vector));
-            let nm = match motion.memory.is_empty() {
-                true => 0.0,
-                false => self.rows.product(at, &motion.memory),
-            };
-            let value =
-                |row: &Row| row.u * nu + row.v * nv + row.a * na + row.m * nm + row.x * free;
-            let ([gap, rate], instant) = instant(&self.map, &contact.law);
-            let until = |gap: &Row| self.rows.gap(at) + value(&gap.since(&self.captured[at]));
-            self.free_gaps.push(until(&self.map.displacement));
-            let carrier = &contact.points[place];
-            self.candidate_data.push(Candidate {
-                law: contact.law,
-                local: Local {
-                    area: carrier.area,
-                    share: carrier.share,
-                    gap: self.rows.gap(at),
-                    rate: nv,
-                    start: self.map.start_in_way() * nv,
-                    gap_free: until(&gap),
-                    dt: self.map.moves,
-                    tolerance: system.tolerance,
-                    crush: self.state.interface.crush[at],
-                },
-                rate_free: value(&rate),
-                status: self.state.interface.status[at],
-                faces_itself: contact.faces_itself(),
-                instant,
-            });
-        }
-        let factor = self.map.contact;
-        let impulsive = match &mut self.impulses {
-            Some(stage) if sums_compliances(system, &self.map) => {
-                let own = (self.map.rate.x * factor, &self.compliance.matrix[..]);
-                stage.sum(system, &self.rows, &self.candidates, own, self.map.rate.c)
-            }
-            _ => None,
-        };
-        let (matrix, factors) = match impulsive {
-            Some(matrix) => (matrix, [0.0, 1.0]),
-            None => (
-                &self.compliance.matrix[..],
-                [self.map.gap.x * factor, self.map.rate.x * factor],
-            ),
-        };
-        let compliance = (
-            matrix,
-            &self.compliance.candidates[..],
-            self.compliance.version,
-        );
-        let compliance = self
-            .with_weak
-            .of(&self.weak, system, (compliance, &self.rows), factors);
-        let solved = self
-            .interface
-            .solve(&self.candidate_data, compliance, factors);
-        if let Err(failure) = solved {
-            let matrix = compliance.0.to_vec();
-            self.failed = Some(self.problem(matrix, factors));
-            return Err(self.interface_error(failure, &self.candidates));
-        }
-        if let Some(candidate) = self.interface.circled {
-            let name = self.name(self.candidates[candidate]);
-            tracing::warn!(
-                "step {}: contact statuses cycle at {name}; they now change one at a time",
-                self.state.step + 1
-            );
-        }
-        for (&point, &force) in self.candidates.iter().zip(&self.interface.forces) {
-            if force != 0.0 {
-                self.compliance.add(
-                    point,
-                    factor * force,
-                    &self.operators,
-                    &mut self.vectors.half,
-                );
-            }
-        }
-        self.spread();
-        Ok(())
-    }
-
-    /// Renews the memory of the laws at the points that carry a force at the end of the step.
-    pub(super) fn crush(&mut self) {
-        let (old, new) = (&self.state.interface, &mut self.next.interface);
-        new.crush.clone_from(&old.crush);
-        for &point in &self.candidates {
-            let point = point as usize;
-            if new.status[point] != Status::Open {
-                let law = &self.system.point(point).0.law;
-                new.crush[point] = law.crushed(old.crush[point], new.gap[point]);
-            }
-        }
-    }
-
-    /// Nodal contact forces of the step, and the acceleration that they give by themselves where the scheme uses it.
-    fn spread(&mut self) {
-        let system = &*self.system;
-        let f = &mut self.next.motion.contact_force;
+    /// Nᵀ P of the forces as they stand, into `contact`, and the acceleration that they give by themselves where the scheme
+    /// uses it.
+    pub(super) fn spread(&mut self) {
+        let f = &mut self.vectors.contact;
         f.fill(0.0);
-        for (&point, &force) in self.candidates.iter().zip(&self.interface.forces) {
-            self.rows.add_force(point as usize, force, f);
-        }
-        if self.map.uses_contact_acceleration() {
-            let accelerations = &mut self.vectors.contact_acceleration;
-            for (i, c) in accelerations.iter_mut().enumerate() {
-                *c = match system.fixed[i] {
-                    true => 0.0,
-                    false => f[i] / system.mass.lumped[i],
-                };
+        for (point, &force) in self.next.interface.force.iter().enumerate() {
+            if force != 0.0 {
+                self.pairing.rows.add_force(point, force, f);
             }
+        }
+        self.spread_friction();
+        let (system, vectors) = (&*self.system, &mut self.vectors);
+        for (i, push) in vectors.push.iter_mut().enumerate() {
+            *push = match system.fixed[i] {
+                true => 0.0,
+                false => vectors.contact[i] / system.mass.lumped[i],
+            };
         }
     }
 
     /// Contact, place in it and mesh node of a contact point.
-    fn name(&self, point: u32) -> String {
-        let (contact, place) = self.system.point(point as usize);
+    pub(super) fn name(&self, point: usize) -> String {
+        let (contact, place) = self.system.point(point);
         let node = self.system.mesh_node[contact.points[place].node() as usize];
         format!("contact `{}`, point {place}, node {node}", contact.name)
     }
-
-    /// The interface problem as it stands.
-    fn problem(&self, compliance: Vec<f64>, factors: [f64; 2]) -> InterfaceProblem {
-        InterfaceProblem {
-            step: self.state.step + 1,
-            names: self
-                .candidates
-                .iter()
-                .map(|&point| self.name(point))
-                .collect(),
-            candidates: self.candidate_data.clone(),
-            compliance,
-            factors,
-        }
-    }
-
-    /// The error behind a failure of the interface problem of some points.
-    pub(super) fn interface_error(&self, failure: Failure, candidates: &[u32]) -> Error {
-        let step = self.state.step + 1;
-        match failure {
-            Failure::Singular { points, cause } => Error::Interface {
-                step,
-                points,
-                cause,
-            },
-            Failure::Cycling { passes, candidate } => {
-                let (contact, point) = self.system.point(candidates[candidate] as usize);
-                Error::Statuses {
-                    step,
-                    passes,
-                    contact: contact.name.clone(),
-                    point,
-                }
-            }
-        }
-    }
-
-    /// Adds the points that were no candidates and whose law asks for a force at the end of the step; whether there are any.
-    pub(super) fn add_missed(&mut self) -> bool {
-        let before = self.candidates.len();
-        let motion = &self.state.motion;
-        self.weak
-            .take(&self.system, &self.candidates, &self.interface.forces, 1.0);
-        let xc = [&self.vectors.x[..], &self.vectors.contact_acceleration[..]];
-        for point in 0..self.system.points() {
-            let captured = self.rows.gap(point);
-            let law = self.system.point(point).0.law.get();
-            let told = law.watches(captured, self.system.tolerance).is_some();
-            if told || captured == f64::INFINITY {
-                continue;
-            }
-            if self.candidates[..before]
-                .binary_search(&(point as u32))
-                .is_ok()
-            {
-                continue;
-            }
-            let [gap, rate] = instant(&self.map, &self.system.point(point).0.law).0;
-            let ahead = gap.since(&self.captured[point]);
-            let gap = captured + on_row(&self.rows, point, &ahead, motion, xc);
-            let rate = on_row(&self.rows, point, &rate, motion, xc);
-            let pull = self.weak.pull(&self.system, point);
-            let end = End {
-                gap_released: gap - pull,
-                gap: gap - pull,
-                rate: rate - pull,
-                force: 0.0,
-            };
-            let start = self.rows.product(point, &motion.v);
-            let local = Local {
-                gap: captured,
-                rate: start,
-                start: self.map.start_in_way() * start,
-                gap_free: gap,
-                dt: self.map.moves,
-                tolerance: self.system.tolerance,
-                crush: self.state.interface.crush[point],
-                ..Local::default()
-            };
-            if law.status(Status::Open, &end, &local, 0) != Status::Open {
-                self.candidates.push(point as u32);
-                self.next.interface.watched[point] = true;
-            }
-        }
-        self.candidates.sort_unstable();
-        self.candidates.len() > before
-    }
-}
-
-/// Whether laws in the rate hold for a velocity on which contact forces act through the mass too: the interface problem then
-/// sums the compliances of the step and of the mass.
-pub(super) fn sums_compliances(system: &System, map: &StepMap) -> bool {
-    map.rate.c != 0.0 && system.scheme.get().takes(Level::Rate)
-}
-
-/// Gap and rate that a law constrains, and their factors of x over those of the map.
-pub(crate) fn instant(map: &StepMap, law: &Law) -> ([Row; 2], [f64; 2]) {
-    match law.get().level() {
-        Level::GapAndRate => (map.compliant(), map.compliant_factors()),
-        Level::Gap | Level::Rate => ([map.gap, map.rate], [1.0; 2]),
-    }
-}
-
-/// Whether a contact is paired where the step is predicted to lead, for a law that looks ahead, and not where the present
-/// velocity does. In a step much longer than a wave takes across an element the velocity of the shortest waves times dt/2
-/// leads much further than any node gets, and the turning of the rows would be that of an explicit step of the mass m of the
-/// surface nodes alone, unstable beyond dt² |P ∂²g/∂u²| = 4 m.
-pub(crate) fn looks_ahead(map: &StepMap, contact: &Contact, law: &Law) -> bool {
-    map.force.x != 0.0 && contact.turns() && law.get().capture() > 0.0
-}
-
-/// The gap by which a law tells whether a point is closed (S_d): at the captured instant, `gap`, or at the start, a `way`
-/// (m) before it, whichever is less. A point that is closed and leaves stays with its law, which alone knows whether
-/// the step turns it back.
-pub(crate) fn least_gap(gap: f64, way: f64) -> f64 {
-    gap - way.max(0.0)
-}
-
-/// The part of the way from the start of the step to `end` at which a law takes the geometry.
-pub(crate) fn part_way(motion: &Motion, end: &[f64], law: &Law, out: &mut [f64]) {
-    let part = law.get().capture();
-    for (i, q) in out.iter_mut().enumerate() {
-        *q = (1.0 - part) * motion.u[i] + part * end[i];
-    }
-}
-
-/// N applied to a row of the step, for one point.
-pub(crate) fn on_row(
-    rows: &Rows,
-    point: usize,
-    row: &Row,
-    motion: &Motion,
-    [x, c]: [&[f64]; 2],
-) -> f64 {
-    row.u * rows.product(point, &motion.u)
-        + row.v * rows.product(point, &motion.v)
-        + row.a * rows.product(point, &motion.a)
-        + row.x * rows.product(point, x)
-        + if row.m == 0.0 {
-            0.0
-        } else {
-            row.m * rows.product(point, &motion.memory)
-        }
-        + if row.c == 0.0 {
-            0.0
-        } else {
-            row.c * rows.product(point, c)
-        }
 }

@@ -65,7 +65,7 @@ impl Driver {
             // there already, to the rounding of the cut: the parabola's other root is where the point would leave again
             return 0.0;
         }
-        let slope = self.rows.product(point, &self.state.motion.v);
+        let slope = self.rate_at_start(point);
         let end = self.free_gap(point) - AIM * self.system.tolerance;
         let bend = ((end - gap) / self.dt - slope) / self.dt;
         root(gap, slope, bend)

@@ -6,91 +6,68 @@
 
 use std::sync::Arc;
 
+use carom_algebra::csr::Csr;
+use carom_algebra::pattern::Cliques;
+use carom_bodies::{Body, Placement};
+
 use super::Driver;
-use crate::operator::Operators;
+use crate::error::Error;
+use crate::operator::{Operators, factored, single};
+use crate::scheme::{Scheme, Theta};
 use crate::state::{Motion, State};
 use crate::step_map::StepMap;
-use crate::system::System;
+use crate::system::{System, push_cliques};
+use crate::zones::Origin;
 
 /// One row of C: unknowns of the zone and coefficients, with the sign of the zone's side.
 pub(crate) type LinkRow = Vec<(u32, f64)>;
 
-/// Forces of links on the zone.
-pub(super) struct Linked {
-    /// Residual of the step without them, N.
-    residual: Vec<f64>,
-    /// Cᵀ Λ of the step, N.
-    force: Vec<f64>,
-    /// Whether `residual` is that of the step.
-    fresh: bool,
-}
-
 impl Driver {
-    /// Makes the driver take forces of links, and starts anew with the force of L₀, N.
-    pub(crate) fn begin_linked(&mut self) {
-        if let Some(linked) = &self.linked {
-            self.state.motion.link_force.clone_from(&linked.force);
-        }
-    }
-
-    /// Makes the driver take forces of links from its next start on, which is with this force (N).
+    /// Makes the solver take forces of links from its next start on, which is with this force (N).
     pub(crate) fn link(&mut self, force: &[f64]) {
-        self.linked = Some(Linked {
-            residual: vec![0.0; force.len()],
-            force: force.to_vec(),
-            fresh: false,
-        });
+        self.link_force = force.to_vec();
     }
 
-    /// Makes the driver forget links until its next `link`.
+    /// Makes the solver forget links until its next `link`.
     pub(crate) fn unlink(&mut self) {
-        self.linked = None;
+        self.link_force.clear();
     }
 
     /// Sets Cᵀ Λ of the step, N.
     pub(crate) fn set_link_force(&mut self, rows: &[(u32, LinkRow)], multipliers: &[f64]) {
-        if let Some(linked) = &mut self.linked {
-            linked.force.fill(0.0);
-            for (row, terms) in rows {
-                for &(dof, c) in terms {
-                    linked.force[dof as usize] += c * multipliers[*row as usize];
-                }
+        self.link_force.fill(0.0);
+        for (row, terms) in rows {
+            for &(dof, c) in terms {
+                self.link_force[dof as usize] += c * multipliers[*row as usize];
             }
         }
     }
 
-    /// Marks the residual as that of a new step.
-    pub(super) fn renew_link(&mut self) {
-        if let Some(linked) = &mut self.linked {
-            linked.fresh = false;
+    /// Computes the next state from the state, with the forces of links as they stand.
+    ///
+    /// # Errors
+    /// As [`Driver::step`]; a step of a zone is not halved.
+    pub(crate) fn complete(&mut self) -> Result<(), Error> {
+        self.report.attempts = 1;
+        if self.prepared {
+            self.take_stages()?;
+            self.next
+                .motion
+                .finite(self.state.step + 1, self.state.time)?;
+        } else {
+            self.attempt(self.dt, self.dt)?;
         }
-    }
-
-    /// Adds the forces of links to the residual.
-    pub(super) fn add_link_force(&mut self) {
-        let Some(linked) = &mut self.linked else {
-            return;
-        };
-        let residual = &mut self.vectors.residual;
-        match linked.fresh {
-            // the balance of an earlier attempt has used the vector
-            true => residual.copy_from_slice(&linked.residual),
-            false => linked.residual.copy_from_slice(residual),
-        }
-        linked.fresh = true;
-        for (i, r) in residual.iter_mut().enumerate() {
-            if !self.system.fixed[i] {
-                *r += linked.force[i];
-            }
-        }
-        self.next.motion.link_force.clone_from(&linked.force);
-    }
-
-    /// Work of the force of one row in the step just completed, J: `before` and `now` are the row's Λ of the step before and
-    /// of this one.
-    pub(crate) fn row_work(&self, terms: &LinkRow, before: f64, now: f64) -> f64 {
-        let travel = on(terms, &self.next.motion.u) - on(terms, &self.state.motion.u);
-        (self.map.impulse.old * before + self.map.impulse.new * now) * travel
+        let State {
+            step,
+            time,
+            control,
+            ..
+        } = &self.state;
+        self.next.step = step + 1;
+        self.next.time = control.instant(*step, *time, self.dt);
+        self.next.control = *control;
+        self.next.control.pace = self.pace.fresh;
+        Ok(())
     }
 
     /// Velocity at the end of the step just completed, which is not accepted yet.
@@ -100,12 +77,22 @@ impl Driver {
 
     /// Accepts the step just completed.
     pub(crate) fn take(&mut self) {
-        self.accept(self.state.control);
+        let (step, time) = (self.state.step, self.state.time);
+        let mut control = self.next.control;
+        control.take(None, (step, time, self.dt), self.system.dt);
+        self.accept(control, self.dt);
     }
 
     /// Makes the state that of an earlier instant.
     pub(crate) fn go_back(&mut self, state: &State) {
+        self.prepared = false;
         self.state.clone_from(state);
+    }
+
+    /// Makes `dt` (s) the size of the next steps.
+    pub(crate) fn resize(&mut self, dt: f64) {
+        self.prepared = false;
+        self.size(dt, dt);
     }
 
     /// Weights of L at the start and the end of a step in Λ.
@@ -113,26 +100,109 @@ impl Driver {
         self.system.scheme.link_weights().unwrap_or([0.0, 1.0])
     }
 
-    /// Factors of M and K in the effective matrix, and of its solution in the velocity at the end of a step.
-    pub(crate) fn effective(&self) -> (f64, f64, f64) {
-        (self.map.inertia.x, self.map.force.x, self.map.velocity.x)
+    /// Work of the force of one row in the step just completed, J: `before` and `now` are the row's Λ of the step before and
+    /// of this one.
+    pub(crate) fn row_work(&self, terms: &LinkRow, before: f64, now: f64) -> f64 {
+        let travel = on(terms, &self.next.motion.u) - on(terms, &self.state.motion.u);
+        (self.map.impulse.old * before + self.map.impulse.new * now) * travel
     }
 
-    /// Velocity that multipliers growing linearly from 0 to 1 in `steps` steps leave in the rows, without contact: the
-    /// dense matrix `C V`, row-major over the rows given.
-    pub(crate) fn ramp(&mut self, rows: &[(u32, LinkRow)], steps: u32) -> Vec<f64> {
+    /// Factors of M and K in the effective matrix, and of its solution in the velocity at the end of a step.
+    pub(crate) fn effective(&self) -> (f64, f64, f64) {
+        let map = self.linear_map();
+        (map.inertia.x, map.force.x, map.velocity.x)
+    }
+
+    /// The map of the linearised zone: where forces belong to the way of the step they are those of its middle.
+    fn linear_map(&self) -> StepMap {
+        match self.between() {
+            true => Scheme::Theta(Theta { theta: 0.5 }).get().step_map(self.dt),
+            false => self.map,
+        }
+    }
+
+    /// Loads at the present instant, after a start, N.
+    pub(crate) fn load(&self) -> &[f64] {
+        &self.vectors.load
+    }
+
+    /// Velocity that multipliers growing linearly from 0 to 1 in `steps` steps leave in the rows, without contact: the dense
+    /// matrix `C V`, row-major over the rows given, of the zone linearised at the origin.
+    ///
+    /// # Errors
+    /// An effective matrix that is not positive definite.
+    pub(crate) fn ramp(
+        &mut self,
+        (rows, steps): (&[(u32, LinkRow)], u32),
+        origin: &Origin,
+    ) -> Result<Vec<f64>, Error> {
         let system = Arc::clone(&self.system);
         let weights = self.link_weights();
-        let forces = &mut self.forces;
+        let map = self.linear_map();
+        self.take_matrices()?;
+        if system.bodies.iter().all(Body::is_linear)
+            && !self.effective.iterates()
+            && let Some((operators, _)) = self.effective.both()
+        {
+            let scratch = &mut self.scratch;
+            let mut ramp = Ramp {
+                system: &system,
+                map: &map,
+                operators,
+                forces: &mut |u, f| {
+                    f.fill(0.0);
+                    for (body, scratch) in system.bodies.iter().zip(&mut *scratch) {
+                        body.internal_force(u, scratch, f);
+                    }
+                },
+            };
+            return Ok(ramp.matrix(rows, steps, weights));
+        }
+        let n = system.unknowns();
+        let mut cliques = Cliques::new();
+        for body in &system.bodies {
+            push_cliques(body, &system.unknowns, &(0..n), &mut cliques);
+        }
+        let still = vec![0.0; n];
+        let mut stiffness = Csr::from_cliques(n, &cliques);
+        for (k, body) in system.bodies.iter().enumerate() {
+            let at = Placement {
+                u: &origin.u,
+                v: &still,
+                from: None,
+                dt: self.dt,
+                old: &origin.history[system.nonlinear.histories[k].clone()],
+            };
+            body.add_tangent(&at, [1.0, 0.0], &mut stiffness)?;
+        }
+        let mut operators = self.linear_operators(&map, &stiffness)?;
         let mut ramp = Ramp {
             system: &system,
-            map: &self.map,
-            operators: &mut self.operators,
-            forces: &mut |u, f| {
-                forces.evaluate(&system, u, f);
-            },
+            map: &map,
+            operators: &mut operators,
+            forces: &mut |u, f| stiffness.multiply(u, f),
         };
-        ramp.matrix(rows, steps, weights)
+        Ok(ramp.matrix(rows, steps, weights))
+    }
+
+    /// The factors of the effective matrix with this stiffness.
+    fn linear_operators(&self, map: &StepMap, stiffness: &Csr) -> Result<Operators, Error> {
+        let system = &*self.system;
+        if map.force.x == 0.0 && system.mass.consistent.is_none() {
+            return Operators::new(system, map.inertia.x, 0.0, "effective matrix");
+        }
+        let mut a = stiffness.clone();
+        a.scale(map.force.x);
+        let mut operators = Operators::of(&system.parts, single(system.parts.len()));
+        for group in &mut operators.groups {
+            let part = group.parts[0].clone();
+            system.mass.add_to(map.inertia.x, &part, 0, &mut a);
+            let own = a.restricted(&group.parts);
+            let fixed = &system.fixed[part.clone()];
+            let operator = factored(system, &part, &own, fixed, "effective matrix")?;
+            group.operator = Some(operator);
+        }
+        Ok(operators)
     }
 }
 

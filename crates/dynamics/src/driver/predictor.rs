@@ -29,25 +29,27 @@ impl Predictor {
 
 impl Driver {
     /// Projects the predictor.
-    pub(super) fn predict(&mut self) -> Result<(), Error> {
-        if !self.system.scheme.get().projects_predictor() {
+    pub(super) fn project_predictor(&mut self) -> Result<(), Error> {
+        if !self.system.scheme.get().projects_predictor() || self.is_static() {
             return Ok(());
         }
-        self.place(false);
+        self.vectors.ahead.clear();
+        self.pair(true);
         let dt = self.dt;
         let Self {
             predictor,
-            rows,
+            pairing,
             state,
             ..
         } = self;
-        let motion = &mut state.motion;
+        let (motion, rows) = (&mut state.motion, &pairing.rows);
         predictor.kept.clone_from(&motion.a);
         motion.a.fill(0.0);
         predictor.gaps.clear();
-        predictor.gaps.extend(
-            (0..rows.len()).map(|point| rows.gap(point) + dt * rows.product(point, &motion.v)),
-        );
+        predictor.gaps.extend((0..rows.len()).map(|point| {
+            let rate = rows.product(point, &motion.v) + rows.rate(point);
+            rows.gap(point) + dt * rate
+        }));
         predictor.points.clear();
         predictor.forces.clear();
         while self.add_penetrating() {
@@ -69,7 +71,7 @@ impl Driver {
         let Some(stage) = &self.impulses else {
             return false;
         };
-        let (rows, predictor) = (&self.rows, &mut self.predictor);
+        let (rows, predictor) = (&self.pairing.rows, &mut self.predictor);
         let before = predictor.points.len();
         for point in 0..rows.len() as u32 {
             let at = point as usize;
@@ -108,10 +110,18 @@ impl Driver {
         let dt = self.dt;
         let weak = (&self.weak, 0.5 * dt * dt);
         let points = &predictor.points;
-        let solved = stage.solve(&self.system, weak, &self.rows, points, values, present);
+        let solved = stage.solve(
+            &self.system,
+            weak,
+            &self.pairing.rows,
+            points,
+            values,
+            present,
+        );
         predictor.forces.clone_from(&stage.added);
-        self.weak
-            .take(&self.system, points, &predictor.forces, 2.0 / (dt * dt));
+        let forces = points.iter().zip(&predictor.forces);
+        let forces = forces.map(|(&point, &force)| (point as usize, force));
+        self.weak.take(&self.system, forces, 2.0 / (dt * dt));
         solved.map_err(|failure| self.interface_error(failure, &self.predictor.points))
     }
 
@@ -125,7 +135,7 @@ impl Driver {
         let terms = predictor.points.iter().zip(&predictor.forces);
         let sum: f64 = terms
             .map(|(&point, force)| {
-                let on = |x: &[f64]| self.rows.product(point as usize, x);
+                let on = |x: &[f64]| self.pairing.rows.product(point as usize, x);
                 force * (on(&new.u) - on(&old.u) - dt * on(&old.v) - on(&stage.change))
             })
             .sum();
@@ -136,6 +146,7 @@ impl Driver {
     pub(super) fn forget_predictor(&mut self) {
         if self.predictor.kept.len() == self.state.motion.a.len() {
             self.state.motion.a.copy_from_slice(&self.predictor.kept);
+            self.predictor.kept.clear();
         }
     }
 }

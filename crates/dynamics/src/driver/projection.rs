@@ -14,7 +14,7 @@ use std::sync::Arc;
 use carom_algebra::reduce::dot;
 use carom_contact::law::Status;
 
-use super::balance::energies;
+use super::start::energies;
 use super::{Driver, Vectors};
 use crate::error::Error;
 use crate::ledger::{Jump, reactions};
@@ -61,34 +61,76 @@ impl Projected {
 }
 
 impl Driver {
-    /// Projects the end of the step if points of laws with projection have closed in it. `strain`: its strain energy.
-    pub(super) fn project(&mut self, strain: f64) -> Result<(), Error> {
+    /// Projects the end of the step if points of laws with projection have closed in it.
+    pub(super) fn project(&mut self) -> Result<(), Error> {
         self.projected.clear();
-        if self.impulses.is_none() || !self.projected_points() {
+        if self.impulses.is_none() || self.map.inertia.x == 0.0 || !self.projected_points() {
             return Ok(());
         }
-        let identity = self.identity.unwrap_or_default();
+        let identity = self.identity_of_ledger();
         let mut jump = Jump {
             impulses: self.project_velocity()?,
             ..Jump::default()
         };
-        jump.work = self.projected.work.iter().sum();
+        (jump.work, jump.work_obstacles) = self.works_of_impulses();
         jump.dissipation = -identity.inertia * self.project_acceleration()?;
-        self.enter_jump(jump, strain);
+        self.enter_jump(jump);
         Ok(())
     }
 
-    /// Enters a jump of the motion after the step into the ledger; `strain`: strain energy.
-    pub(super) fn enter_jump(&mut self, mut jump: Jump, strain: f64) {
-        let identity = self.identity.unwrap_or_default();
+    /// Works of the impulses after the step, J: on the motion relative to obstacles, and of the obstacles.
+    pub(super) fn works_of_impulses(&self) -> (f64, f64) {
+        let (projected, rows) = (&self.projected, &self.pairing.rows);
+        let points = projected.points.iter().map(|&point| point as usize);
+        let of_obstacle = |point: usize| -projected.impulse(point) * rows.rate(point);
+        (projected.work.iter().sum(), points.map(of_obstacle).sum())
+    }
+
+    /// Enters a jump of the motion after the step into the ledger.
+    pub(super) fn enter_jump(&mut self, mut jump: Jump) {
         let system = Arc::clone(&self.system);
+        let identity = self.identity_of_ledger();
+        let (nonlinear, factor) = (system.is_nonlinear(), self.contact_factor());
         let (old, new) = (&self.state.motion, &self.next.motion);
-        let Vectors { work, inertia, .. } = &mut self.vectors;
-        let energies = energies(&system, new, strain, work, identity.inertia != 0.0);
+        let Vectors {
+            work,
+            inertia,
+            load,
+            damping,
+            ..
+        } = &mut self.vectors;
+        let u = nonlinear.then_some(&new.u[..]);
+        let of = (self.stored.strain, identity.inertia != 0.0, u);
+        let energies = energies(&system, new, of, work);
         system.mass.multiply(&new.a, inertia);
-        reactions(&system, &self.map, old, new, inertia, work);
-        let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
-        self.next.exchange.renew(&system, own);
+        if nonlinear {
+            for (i, reaction) in work.iter_mut().enumerate() {
+                let balance = inertia[i] + new.internal_force[i] + damping[i] - load[i];
+                let outside = new.link_of(i) + factor * new.contact_force[i];
+                *reaction = if system.fixed[i] {
+                    balance - outside
+                } else {
+                    0.0
+                };
+            }
+            let held = |i: usize| match system.fixed[i] {
+                true => factor * new.contact_force[i],
+                false => 0.0,
+            };
+            let own = |i: usize| work[i] + held(i) + load[i] + new.link_of(i) - damping[i];
+            self.next.exchange.renew(&system, own);
+            if let [_, contact, reaction, of_inertia, ..] = &mut self.next.forces[..] {
+                for (f, p) in contact.iter_mut().zip(&new.contact_force) {
+                    *f = factor * p;
+                }
+                reaction.copy_from_slice(work);
+                of_inertia.copy_from_slice(inertia);
+            }
+        } else {
+            reactions(&system, &self.map, old, new, inertia, work);
+            let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
+            self.next.exchange.renew(&system, own);
+        }
         jump.forces = [
             Resultant::of(&system, &new.contact_force),
             Resultant::of(&system, work),
@@ -115,13 +157,13 @@ impl Driver {
     fn project_velocity(&mut self) -> Result<[Resultant; 2], Error> {
         let weights = self.map.contact_impulse;
         let [old, new] = [&self.state, &self.next].map(|state| &state.interface);
-        let rows = &self.rows;
+        let rows = &self.pairing.rows;
         let projected = &mut self.projected;
         projected.values.clear();
         projected.present.clear();
         for &point in &projected.points {
             let at = point as usize;
-            let rate = rows.product(at, &self.next.motion.v);
+            let rate = rows.product(at, &self.next.motion.v) + rows.rate(at);
             projected.values.push(rate);
             let mean = weights.old * old.carried[at] + weights.new * new.force[at];
             projected.present.push(self.dt * mean);
@@ -141,19 +183,21 @@ impl Driver {
         for (v, change) in motion.v.iter_mut().zip(&stage.change) {
             *v += change;
         }
-        let Vectors { known, work, .. } = &mut self.vectors;
+        let Vectors {
+            place: known, work, ..
+        } = &mut self.vectors;
         known.fill(0.0);
-        let projected = &mut self.projected;
+        let (projected, rows) = (&mut self.projected, &self.pairing.rows);
         for (k, &point) in projected.points.iter().enumerate() {
             let at = point as usize;
             let impulse = stage.added[k];
-            let after = self.rows.product(at, &motion.v);
+            let after = rows.product(at, &motion.v) + rows.rate(at);
             projected.impulse[at] = impulse;
             projected.work[at] = 0.5 * impulse * (projected.values[k] + after);
-            self.rows.add_force(at, impulse, known);
+            rows.add_force(at, impulse, known);
         }
         for point in 0..system.points() {
-            interface.rate[point] = self.rows.product(point, &motion.v);
+            interface.rate[point] = rows.product(point, &motion.v) + rows.rate(point);
         }
         let contact = Resultant::of(&system, known);
         system.mass.multiply(&stage.change, work);
@@ -180,7 +224,7 @@ impl Driver {
             let at = point as usize;
             // points that the projection lets go have no acceleration to lose: their force ends with the step
             projected.values.push(match stage.active[k] {
-                true => self.rows.product(at, &self.next.motion.a),
+                true => self.pairing.rows.product(at, &self.next.motion.a),
                 false => f64::INFINITY,
             });
             projected.present.push(self.next.interface.force[at]);
@@ -190,11 +234,13 @@ impl Driver {
             return Ok(0.0);
         };
         let (motion, interface) = (&mut self.next.motion, &mut self.next.interface);
-        let Vectors { known, .. } = &mut self.vectors;
+        let Vectors { place: known, .. } = &mut self.vectors;
         known.fill(0.0);
         for (k, &point) in self.projected.points.iter().enumerate() {
             interface.carried[point as usize] += stage.added[k];
-            self.rows.add_force(point as usize, stage.added[k], known);
+            self.pairing
+                .rows
+                .add_force(point as usize, stage.added[k], known);
         }
         let before = dot(known, &motion.a);
         for (a, change) in motion.a.iter_mut().zip(&stage.change) {
@@ -219,7 +265,14 @@ impl Driver {
         };
         // laws with projection have no weak form: the ratio of impulse and force enters nothing
         let weak = (&self.weak, 1.0);
-        let solved = stage.solve(&self.system, weak, &self.rows, points, values, present);
+        let solved = stage.solve(
+            &self.system,
+            weak,
+            &self.pairing.rows,
+            points,
+            values,
+            present,
+        );
         solved.map_err(|failure| self.interface_error(failure, &self.projected.points))
     }
 }

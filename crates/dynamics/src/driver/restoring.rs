@@ -17,13 +17,17 @@ pub(super) struct Restoring {
 }
 
 impl Driver {
-    /// Gives the velocity back what the contact took, if the scheme does so. `strain`: strain energy of the end of the step.
-    pub(super) fn restore(&mut self, strain: f64) {
-        if !self.system.scheme.get().restores_contact_work() {
+    /// Gives the velocity back what the contact took, if the scheme does so.
+    pub(super) fn restore(&mut self) {
+        if !self.system.scheme.get().restores_contact_work() || self.map.inertia.x == 0.0 {
             return;
         }
         self.projected.clear();
-        let (rows, projected, works) = (&self.rows, &mut self.projected, &mut self.restoring.works);
+        let (rows, projected, works) = (
+            &self.pairing.rows,
+            &mut self.projected,
+            &mut self.restoring.works,
+        );
         let [old, new] = [&self.state, &self.next];
         works.clear();
         projected.values.clear();
@@ -34,10 +38,12 @@ impl Driver {
                 continue;
             }
             let on = |x: &[f64]| rows.product(at, x);
-            let taken = new.interface.force[at] * (on(&old.motion.u) - on(&new.motion.u));
+            let obstacle = rows.rate(at);
+            let way = on(&new.motion.u) - on(&old.motion.u) + self.dt * obstacle;
+            let taken = -new.interface.force[at] * way;
             if taken > 0.0 {
                 projected.points.push(point);
-                projected.values.push(on(&new.motion.v));
+                projected.values.push(on(&new.motion.v) + obstacle);
                 works.push(taken);
             }
         }
@@ -49,11 +55,14 @@ impl Driver {
         }
         let Projected { points, values, .. } = &self.projected;
         stage.give_work(&self.system, rows, points, values, works);
+        let impulses = self.jump_velocity();
+        let (work, work_obstacles) = self.works_of_impulses();
         let jump = Jump {
-            impulses: self.jump_velocity(),
-            work: self.projected.work.iter().sum(),
+            impulses,
+            work,
+            work_obstacles,
             ..Jump::default()
         };
-        self.enter_jump(jump, strain);
+        self.enter_jump(jump);
     }
 }

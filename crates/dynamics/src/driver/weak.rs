@@ -65,21 +65,25 @@ impl WeakForms {
         })
     }
 
-    fn none(&self) -> bool {
+    /// Whether no contact has a weak form.
+    pub(super) fn none(&self) -> bool {
         self.forms.iter().all(Option::is_none)
     }
 
-    /// Takes the multipliers of these forces, in N once multiplied with `factor`.
-    pub(crate) fn take(&mut self, system: &System, points: &[u32], forces: &[f64], factor: f64) {
+    /// Takes the multipliers of the forces of some points, in N once multiplied with `factor`.
+    pub(crate) fn take(
+        &mut self,
+        system: &System,
+        points: impl Iterator<Item = (usize, f64)> + Clone,
+        factor: f64,
+    ) {
         for (k, form) in self.forms.iter_mut().enumerate() {
             let Some(form) = form else { continue };
             let range = system.first_point[k]..system.first_point[k + 1];
-            let of_contact = points.iter().zip(forces).filter_map(|(&point, force)| {
-                let point = point as usize;
-                range
-                    .contains(&point)
-                    .then(|| (point - range.start, factor * force))
-            });
+            let of_contact = points
+                .clone()
+                .filter(|(point, _)| range.contains(point))
+                .map(|(point, force)| (point - range.start, factor * force));
             form.weak.multiplier(of_contact, &mut form.multiplier);
         }
     }

@@ -9,7 +9,6 @@
 //! for any pair of schemes with weights of the multipliers in time is this project's.
 
 mod condensed;
-mod driver;
 mod model;
 mod moves;
 mod origin;
@@ -19,13 +18,13 @@ mod whole;
 
 use serde::{Deserialize, Serialize};
 
+use crate::driver::Driver;
 use crate::driver::linked::{LinkRow, on};
 use crate::error::Error;
 use crate::ledger::Balance;
 use crate::state::{ContactReport, State};
 
 use condensed::Condensed;
-pub use driver::ZoneDriver;
 pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
 use moves::Moves;
 pub use origin::Origin;
@@ -81,7 +80,7 @@ pub struct ZonesState {
 
 /// The drivers of all zones, and the links between them.
 pub struct Zones {
-    drivers: Vec<ZoneDriver>,
+    drivers: Vec<Driver>,
     /// Inner steps of each zone to the outer step that is taken.
     substeps: Vec<u32>,
     /// The same where contacts may close, and where they cannot.
@@ -128,7 +127,7 @@ pub struct Zones {
 
 impl Zones {
     /// Drivers of the zones, in the order of the model.
-    pub fn drivers(&self) -> &[ZoneDriver] {
+    pub fn drivers(&self) -> &[Driver] {
         &self.drivers
     }
 
@@ -220,7 +219,10 @@ impl Zones {
         if self.choices[0] == self.choices[1] {
             return Ok(());
         }
-        let near = self.drivers.iter().any(|driver| driver.may_touch(self.dt));
+        let near = self.drivers.iter().any(|driver| {
+            let tolerance = driver.system().tolerance;
+            driver.state().may_touch(self.dt, tolerance)
+        });
         let choice = &self.choices[usize::from(!near)];
         if *choice == self.substeps {
             return Ok(());
@@ -231,7 +233,7 @@ impl Zones {
             outer: std::mem::take(&mut self.outer),
         };
         for (driver, m) in self.drivers.iter_mut().zip(&self.substeps) {
-            driver.size(self.dt / f64::from(*m))?;
+            driver.resize(self.dt / f64::from(*m));
         }
         match self
             .kept
@@ -396,7 +398,7 @@ impl Zones {
 
     /// Largest velocity of all zones, at the end of the step or at its start.
     fn speed(&self) -> f64 {
-        let of = |driver: &ZoneDriver| {
+        let of = |driver: &Driver| {
             largest(driver.next_velocity()).max(largest(&driver.state().motion.v))
         };
         self.drivers.iter().map(of).fold(0.0, f64::max)
@@ -531,7 +533,7 @@ fn dot_row(matrix: &[f64], row: usize, x: &[f64]) -> f64 {
 
 /// Adds the work of the links in the step of a zone just completed.
 fn record(
-    driver: &ZoneDriver,
+    driver: &Driver,
     rows: &[(u32, LinkRow)],
     [now, last, _]: &mut [Vec<f64>; 3],
     (links, works): (&[(String, std::ops::Range<usize>)], &mut [f64]),
@@ -544,7 +546,7 @@ fn record(
     last.copy_from_slice(now);
 }
 
-fn sample(zone: usize, driver: &ZoneDriver, samples: &mut Vec<Sample>) {
+fn sample(zone: usize, driver: &Driver, samples: &mut Vec<Sample>) {
     let report = driver.report();
     samples.push(Sample {
         zone,

@@ -5,7 +5,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ZoneDriver, Zones};
+use super::Zones;
+use crate::driver::Driver;
 use crate::error::Error;
 
 /// Passes of a step after which H is made anew.
@@ -22,10 +23,11 @@ pub struct Origin {
 
 impl Origin {
     /// The present state of a zone.
-    pub(super) fn of(driver: &ZoneDriver) -> Origin {
-        match driver {
-            ZoneDriver::Linear(_) => Origin::default(),
-            ZoneDriver::Nonlinear(driver) => Origin {
+    pub(super) fn of(driver: &Driver) -> Origin {
+        let mut bodies = driver.system().bodies.iter();
+        match bodies.all(|body| body.is_linear()) {
+            true => Origin::default(),
+            false => Origin {
                 u: driver.state().motion.u.clone(),
                 history: driver.state().motion.history.clone(),
             },

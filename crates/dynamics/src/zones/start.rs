@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use carom_algebra::dense::DenseCholesky;
 
-use super::ZoneDriver;
 use super::condensed::{Answer, Condensed, DENSE, Joined};
 use super::moves::Moves;
 use super::origin::Origin;
 use super::{LinkKind, Zoned, Zones, ZonesState};
+use crate::driver::Driver;
 use crate::driver::linked::{LinkRow, on};
 use crate::error::Error;
 use crate::operator::Operators;
@@ -39,7 +39,7 @@ impl Zones {
         let links = links.collect();
         let mut drivers = systems
             .iter()
-            .map(ZoneDriver::new)
+            .map(|system| Driver::new(Arc::clone(system)))
             .collect::<Result<Vec<_>, Error>>()?;
         let multipliers = start(&mut drivers, &rows, count)?;
         let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
@@ -242,7 +242,7 @@ fn rows(zoned: &Zoned, systems: &[Arc<System>]) -> Vec<Vec<(u32, LinkRow)>> {
 
 /// Starts the drivers with velocities that satisfy the rows; returns the first multipliers.
 fn start(
-    drivers: &mut [ZoneDriver],
+    drivers: &mut [Driver],
     rows: &[Vec<(u32, LinkRow)>],
     count: usize,
 ) -> Result<Vec<f64>, Error> {
@@ -311,9 +311,9 @@ fn forces(rows: &[(u32, LinkRow)], multipliers: &[f64], unknowns: usize) -> Vec<
 
 fn add(
     rows: &[Vec<(u32, LinkRow)>],
-    drivers: &[ZoneDriver],
+    drivers: &[Driver],
     sums: &mut [f64],
-    vector: impl Fn(&ZoneDriver) -> &Vec<f64>,
+    vector: impl Fn(&Driver) -> &Vec<f64>,
 ) {
     for (rows, driver) in rows.iter().zip(drivers) {
         for (row, terms) in rows {
@@ -349,7 +349,7 @@ impl MassLinks<'_> {
     }
 
     /// The factor of Σ C M⁻¹ Cᵀ.
-    fn factor(&mut self, drivers: &[ZoneDriver], count: usize) -> Result<Condensed, Error> {
+    fn factor(&mut self, drivers: &[Driver], count: usize) -> Result<Condensed, Error> {
         if count > DENSE {
             let zones = drivers.iter().zip(self.rows);
             let answers: Vec<Answer> = zones

@@ -9,7 +9,6 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::ZoneDriver;
 use super::{Zoned, Zones, ZonesState};
 use crate::control::Control;
 use crate::driver::Costs;
@@ -404,6 +403,6 @@ impl Stepper for Whole {
         self.zones
             .drivers
             .iter()
-            .find_map(ZoneDriver::failed_problem)
+            .find_map(|driver| Stepper::failed_problem(driver))
     }
 }

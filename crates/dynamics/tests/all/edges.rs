@@ -7,7 +7,7 @@ use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::Displacement;
 use carom_contact::{Basis, Initial, Integration, Law, Sliding};
 use carom_dynamics::{
-    Amplitude, Model, ModelBody, ModelContact, ModelTarget, Newton, Nonlinear, Preload, Prescribed,
+    Amplitude, Driver, Model, ModelBody, ModelContact, ModelTarget, Nonlinear, Preload, Prescribed,
     Scheme, Support, System, scheme,
 };
 use carom_materials::{Elastic, Law as Material, NeoHooke};
@@ -39,7 +39,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
 
 /// The upper block is pressed down by a tenth of its height in the first half of the steps, and pushed along by a fifth of its
 /// width in the second. `secondary`: the body that carries the multipliers, 0 for the upper one.
-fn sheared(secondary: usize) -> Newton {
+fn sheared(secondary: usize) -> Driver {
     let mut mesh = generate::rectangle("lower", [-0.1, -0.1], [0.2, 0.1], [20, 5], false);
     let upper = generate::rectangle("upper", [-0.05, 0.0], [0.1, 0.1], [8, 4], false);
     mesh.merge("upper", upper).unwrap();
@@ -92,7 +92,7 @@ fn sheared(secondary: usize) -> Newton {
         bodies,
         mesh,
     };
-    Newton::new(System::new(model).unwrap()).unwrap()
+    Driver::new(System::new(model).unwrap()).unwrap()
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::{
-    Amplitude, Error, Load, LoadKind, Model, ModelTarget, Newton, Preload, Scheme, Support, System,
+    Amplitude, Driver, Error, Load, LoadKind, Model, ModelTarget, Preload, Scheme, Support, System,
     scheme,
 };
 use carom_materials::{Elastic, Law as Material, NeoHooke};
@@ -49,8 +49,8 @@ fn traction(model: &Model, group: &str, traction: [f64; 3]) -> Load {
     }
 }
 
-fn pressed(model: Model) -> Result<Newton, Error> {
-    let mut newton = Newton::new(System::new(model).unwrap())?;
+fn pressed(model: Model) -> Result<Driver, Error> {
+    let mut newton = Driver::new(System::new(model).unwrap())?;
     for _ in 0..2 {
         newton.step()?;
     }
@@ -58,7 +58,7 @@ fn pressed(model: Model) -> Result<Newton, Error> {
 }
 
 /// Asserts that the square stands: σ(y) = -ρ g (1 - y) in the middle of each element, and nothing moves sideways.
-fn assert_column(newton: &Newton, bottom: f64) {
+fn assert_column(newton: &Driver, bottom: f64) {
     let u = &newton.state().motion.u;
     for (node, x) in newton.system().x.iter().enumerate() {
         // the exact displacement, whose nodal values linear elements have too

@@ -4,7 +4,7 @@ use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_contact::law::Displacement;
 use carom_contact::{Initial, Integration, Law, Sliding};
 use carom_dynamics::{
-    Amplitude, Error, Model, ModelBody, ModelContact, ModelTarget, Newton, Nonlinear, Preload,
+    Amplitude, Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Nonlinear, Preload,
     Prescribed, Scheme, Support, System, scheme,
 };
 use carom_mesh::{Mesh, Surface, generate};
@@ -32,7 +32,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
 
 /// A block whose lower side has a tip, over one whose upper side has a fold of this depth 1 m away from either end; the top of
 /// the first comes down by `way` in a static step.
-fn pressed(depth: f64, way: f64) -> Newton {
+fn pressed(depth: f64, way: f64) -> Driver {
     let mut mesh = generate::rectangle("b", [-1.0, -1.0], [2.0, 1.0], [2, 1], false);
     let upper = generate::rectangle("a", [BESIDE - 0.5, 0.0], [1.0; 2], [2, 1], false);
     mesh.merge("a", upper).unwrap();
@@ -88,7 +88,7 @@ fn pressed(depth: f64, way: f64) -> Newton {
         bodies,
         mesh,
     };
-    Newton::new(System::new(model).unwrap()).unwrap()
+    Driver::new(System::new(model).unwrap()).unwrap()
 }
 
 #[test]

@@ -4,7 +4,7 @@ use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{Basis, Integration, Law, Motion, Obstacle, Plane, Sliding, Translation, Turn};
 use carom_dynamics::{
-    Amplitude, Model, ModelBody, ModelContact, ModelTarget, Newton, Nonlinear, Preload, Prescribed,
+    Amplitude, Driver, Model, ModelBody, ModelContact, ModelTarget, Nonlinear, Preload, Prescribed,
     Scheme, System, scheme,
 };
 use carom_materials::{Elastic, Law as Material, NeoHooke, StVenantKirchhoff};
@@ -48,7 +48,7 @@ const PRESSED: u64 = 2;
 const TURNED: u64 = 9;
 
 /// Two blocks pressed together by a tenth and then turned as one by a right angle, one second to a step.
-fn turned(integration: Integration, young: [f64; 2]) -> Newton {
+fn turned(integration: Integration, young: [f64; 2]) -> Driver {
     let mut mesh = generate::rectangle("a", [0.25, 1.0], [1.0, 0.5], [3, 2], false);
     let low = generate::rectangle("b", [0.0; 2], [1.5, 1.0], [4, 2], false);
     mesh.merge("b", low).unwrap();
@@ -103,7 +103,7 @@ fn turned(integration: Integration, young: [f64; 2]) -> Newton {
             1.0,
         )
     };
-    Newton::new(System::new(model).unwrap()).unwrap()
+    Driver::new(System::new(model).unwrap()).unwrap()
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn bodies_that_stick_do_not_slip_where_they_turn_as_one() {
 }
 
 /// A block that stands away from the axis of a plane that spins about its normal.
-fn spun(scheme: Scheme, law: Law, dt: f64) -> Newton {
+fn spun(scheme: Scheme, law: Law, dt: f64) -> Driver {
     let mesh = generate::box_("a", [1.0, 0.0, 0.0], [0.4, 0.4, 0.1], [1; 3], false);
     // at finite strain: it must turn without stress
     let initial = Elastic { young: 1e4, ..SOFT };
@@ -166,7 +166,7 @@ fn spun(scheme: Scheme, law: Law, dt: f64) -> Newton {
         contacts: vec![contact],
         ..Model::new(vec![block], mesh, scheme, dt)
     };
-    let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
+    let mut newton = Driver::new(System::new(model).unwrap()).unwrap();
     let system = newton.system();
     let mut v = vec![0.0; system.unknowns()];
     for (node, x) in system.x.iter().enumerate() {
@@ -252,7 +252,7 @@ fn a_block_pressed_on_a_rough_plane_sticks_inside_and_slips_at_its_edges_alike()
             1.0,
         )
     };
-    let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
+    let mut newton = Driver::new(System::new(model).unwrap()).unwrap();
     for _ in 0..3 {
         newton.step().unwrap();
     }
@@ -306,7 +306,7 @@ fn the_time_of_the_problems_with_friction_is_counted() {
 
 /// A block on a plane, its top pressed down and drawn sideways from nothing, in equal static steps; small strain, so that
 /// everything grows with the stage in proportion.
-fn drawn(steps: u64) -> Newton {
+fn drawn(steps: u64) -> Driver {
     let mesh = generate::rectangle("a", [0.0; 2], [1.0, 0.5], [4, 2], false);
     let kinematics = Kinematics::PlaneStrain { thickness: 1.0 };
     let block = body(&mesh, "a", kinematics, Material::Elastic(SOFT));
@@ -333,7 +333,7 @@ fn drawn(steps: u64) -> Newton {
             1.0,
         )
     };
-    let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
+    let mut newton = Driver::new(System::new(model).unwrap()).unwrap();
     for _ in 0..steps {
         newton.step().unwrap();
     }

@@ -5,7 +5,7 @@ use carom_contact::Law;
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_dynamics::scheme::{Newmark, Theta};
 use carom_dynamics::{
-    Driver, Impact, Model, ModelBody, ModelContact, ModelTarget, Newton, Scheme, Support, System,
+    Driver, Impact, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface, generate};
@@ -228,7 +228,7 @@ fn an_oblique_impact_with_friction_has_the_approach_and_restitution_of_the_norma
     model.gravity = [0.0; 3];
     model.bodies[0].velocity = [0.3, -0.2, 0.0];
     model.contacts[0].friction = 0.3;
-    let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
+    let mut newton = Driver::new(System::new(model).unwrap()).unwrap();
     for _ in 0..60 {
         newton.step().unwrap();
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Displacement;
-use carom_contact::{Initial, Law, Motion, Obstacle, Plane, Sliding, Target, Translation};
+use carom_contact::{Initial, Law, Motion, Obstacle, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -84,16 +84,4 @@ fn penetration_at_the_start_is_kept_refused_offset_or_removed() {
     let (low, force) = after_a_step(system);
     // what is left of the gap is rounding: of the size 1.4e-16 m
     assert!((low - 0.01).abs() < 1e-17 && force < 1e-3, "{low} {force}");
-}
-
-#[test]
-fn moving_obstacles_are_refused_by_the_linear_driver() {
-    let motion = Motion {
-        translation: Some(Translation::Velocity([0.0, 1.0, 0.0])),
-        turn: None,
-    };
-    let system = sunk(Initial::Offset, motion).unwrap();
-    assert!(matches!(&system.contacts[0].target, Target::Rigid(_)) && system.contacts[0].moves());
-    let refused = Driver::new(system);
-    assert!(matches!(refused, Err(Error::MovingObstacle { contact }) if contact == "ground"));
 }

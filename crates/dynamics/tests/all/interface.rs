@@ -57,9 +57,9 @@ fn a_problem_with_the_same_contact_twice_is_saved_reloaded_and_solved_once_it_is
         })
     ));
     assert_eq!(driver.state(), &before, "the last good state stands");
-    let saved = serde_json::to_string(driver.failed_problem().unwrap()).unwrap();
+    let saved = serde_json::to_string(driver.failed_interface().unwrap()).unwrap();
     let mut problem: InterfaceProblem = serde_json::from_str(&saved).unwrap();
-    assert_eq!(&problem, driver.failed_problem().unwrap());
+    assert_eq!(&problem, driver.failed_interface().unwrap());
     assert!(problem.names[1].contains("same") && problem.names[1].contains("node 0"));
     assert!(problem.solve().is_err());
     // a little compliance of their own makes the two contacts share the force

@@ -3,7 +3,7 @@
 use carom_bodies::Kinematics;
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_dynamics::{
-    Amplitude, Damping, Error, Load, LoadKind, Model, Newton, Prescribed, Scheme, Support, System,
+    Amplitude, Damping, Driver, Error, Load, LoadKind, Model, Prescribed, Scheme, Support, System,
     scheme,
 };
 use carom_materials::{Elastic, J2Plasticity, Law as Material, NeoHooke};
@@ -24,8 +24,8 @@ fn theta(theta: f64) -> Scheme {
     Scheme::Theta(scheme::Theta { theta })
 }
 
-fn newton(model: Model) -> Newton {
-    Newton::new(System::new(model).unwrap()).unwrap()
+fn newton(model: Model) -> Driver {
+    Driver::new(System::new(model).unwrap()).unwrap()
 }
 
 /// A square without contact and gravity, at rest.
@@ -106,7 +106,7 @@ fn a_plastic_cycle_has_the_work_of_its_closed_form_under_any_theta() {
 }
 
 /// A square in uniaxial strain that is led from turn to turn of its logarithmic strain.
-fn cycle(value: f64, metal: J2Plasticity, turns: [f64; 3], steps: usize) -> Newton {
+fn cycle(value: f64, metal: J2Plasticity, turns: [f64; 3], steps: usize) -> Driver {
     let mut model = alone(theta(value), Material::J2Plasticity(metal), 1);
     let nodes = |group: &str| model.mesh.group_nodes(&model.mesh.groups[group]);
     let (top, bottom) = (nodes("a.top"), nodes("a.bottom"));
@@ -129,7 +129,7 @@ fn cycle(value: f64, metal: J2Plasticity, turns: [f64; 3], steps: usize) -> Newt
 }
 
 /// One bar, one end held: a mass of ρ A L/2 on a spring of E A/L, whose motion is e^(-ξωt) (cos ω_d t + ξω/ω_d sin ω_d t).
-fn damped_bar(scheme: Scheme, damping: Damping, steps: usize) -> (f64, Newton) {
+fn damped_bar(scheme: Scheme, damping: Damping, steps: usize) -> (f64, Driver) {
     let mesh = generate::line("a", [0.0; 3], [1.0, 0.0, 0.0], 1, 1);
     let mut model = alone(scheme, SOFT.into(), 1);
     let body = &mut model.bodies[0];
@@ -226,7 +226,7 @@ fn work_of_pressure(kinematics: Kinematics, steps: usize) -> (f64, f64) {
         .flat_map(|x| [0.4 * x[1], 0.5 * x[1] + 0.3 * x[0]])
         .collect::<Vec<_>>();
     newton.restart(&vec![0.0; v.len()], &v).unwrap();
-    let volume = |newton: &Newton| -> f64 {
+    let volume = |newton: &Driver| -> f64 {
         let motion = &newton.state().motion;
         let stresses = newton.system().bodies[0].stresses(&motion.u, &motion.history);
         stresses.iter().map(|(volume, _)| volume).sum()
@@ -260,7 +260,7 @@ fn pressure_that_follows_does_p_dv() {
 }
 
 /// A block that is squeezed between its speed and a wall, a step just below its first critical one.
-fn squeezed(halvings: u32) -> (Result<(), Error>, u32, Newton) {
+fn squeezed(halvings: u32) -> (Result<(), Error>, u32, Driver) {
     let central = Scheme::CentralDifference(scheme::CentralDifference);
     let soft = Material::NeoHooke(NeoHooke {
         initial: Elastic {

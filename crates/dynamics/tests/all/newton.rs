@@ -4,7 +4,7 @@ use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::{
-    Driver, Model, ModelBody, ModelContact, ModelTarget, Newton, Scheme, Stepper, System, scheme,
+    Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Stepper, System, scheme,
 };
 use carom_materials::{Elastic, Law as Material};
 use carom_mesh::{Surface, generate};
@@ -87,7 +87,7 @@ fn a_linear_system_takes_the_steps_of_the_linear_driver() {
     for (scheme, law) in pairs {
         let system = System::new(square(scheme, law, SOFT.into(), 3)).unwrap();
         let mut linear = Driver::new(system.clone()).unwrap();
-        let mut newton = Newton::new(system).unwrap();
+        let mut newton = Driver::new(system).unwrap();
         let mut largest = 0.0_f64;
         for _ in 0..40 {
             linear.step().unwrap();
@@ -124,8 +124,8 @@ fn a_linear_system_takes_the_steps_of_the_linear_driver() {
     }
 }
 
-fn newton(model: Model) -> Newton {
-    Newton::new(System::new(model).unwrap()).unwrap()
+fn newton(model: Model) -> Driver {
+    Driver::new(System::new(model).unwrap()).unwrap()
 }
 
 fn neo_hooke() -> Material {
@@ -133,7 +133,7 @@ fn neo_hooke() -> Material {
 }
 
 /// Without contact and gravity, thrown and turning.
-fn thrown(scheme: Scheme, material: Material) -> Newton {
+fn thrown(scheme: Scheme, material: Material) -> Driver {
     let mut model = square(scheme, VELOCITY, material, 3);
     model.contacts.clear();
     model.gravity = [0.0; 3];
@@ -241,8 +241,8 @@ fn the_weak_form_takes_the_steps_of_the_linear_driver_and_closes_at_finite_strai
             System::new(model).unwrap()
         };
         let mut linear = Driver::new(model(SOFT.into())).unwrap();
-        let mut newton = Newton::new(model(SOFT.into())).unwrap();
-        let mut finite = Newton::new(model(neo_hooke())).unwrap();
+        let mut newton = Driver::new(model(SOFT.into())).unwrap();
+        let mut finite = Driver::new(model(neo_hooke())).unwrap();
         let (mut largest, mut difference, mut touches) = (0.0_f64, 0.0_f64, false);
         for _ in 0..40 {
             linear.step().unwrap();
@@ -326,13 +326,13 @@ fn a_run_that_is_cut_goes_on_with_the_same_bits() {
         model.bodies[0].velocity = [0.3, -0.2, 0.0];
         System::new(model).unwrap()
     };
-    let mut whole = Newton::new(system()).unwrap();
+    let mut whole = Driver::new(system()).unwrap();
     for _ in 0..15 {
         whole.step().unwrap();
     }
     let bytes = whole.state().to_bytes().unwrap();
     let saved = carom_dynamics::State::from_bytes(whole.system(), &bytes).unwrap();
-    let mut cut = Newton::resume(system(), saved).unwrap();
+    let mut cut = Driver::resume(system(), saved).unwrap();
     for _ in 0..15 {
         whole.step().unwrap();
         cut.step().unwrap();
@@ -389,7 +389,7 @@ fn an_impact_of_rubber_needs_no_smaller_steps() {
     let mut model = rubber();
     // Some steps need nearly the thirty iterations of the default, as their chatter has it: that is not looked at here.
     model.nonlinear.iteration.passes = 60;
-    let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
+    let mut newton = Driver::new(System::new(model).unwrap()).unwrap();
     for _ in 0..100 {
         newton.step().unwrap();
     }

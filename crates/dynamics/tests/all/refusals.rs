@@ -4,7 +4,7 @@ use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Displacement;
 use carom_contact::{Initial, Law, Sliding};
 use carom_dynamics::{
-    Error, Model, ModelBody, ModelContact, ModelTarget, Newton, Preload, Scheme, Support, System,
+    Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Preload, Scheme, Support, System,
     scheme,
 };
 use carom_materials::{Elastic, Law as Material, NeoHooke};
@@ -178,7 +178,7 @@ fn started(mut model: Model, holds: &[(&str, [bool; 3])]) -> String {
         });
     }
     model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });
-    match Newton::new(System::new(model).unwrap()) {
+    match Driver::new(System::new(model).unwrap()) {
         Err(Error::FreeMotion { body, motion }) => format!("{body}: {motion}"),
         Err(other) => panic!("{other}"),
         Ok(_) => "held".to_string(),

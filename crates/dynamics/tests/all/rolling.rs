@@ -4,7 +4,7 @@
 //! friction its place along a plane is not held at all.
 
 use carom_contact::Sliding;
-use carom_dynamics::{Error, ModelBody, ModelTarget, Newton, Preload, System};
+use carom_dynamics::{Driver, Error, ModelBody, ModelTarget, Preload, System};
 use carom_dynamics::{Model, Support};
 use carom_materials::{Elastic, Law as Material, NeoHooke};
 use carom_mesh::{Mesh, Surface, generate};
@@ -101,8 +101,8 @@ fn on_a_block(edges: usize, friction: f64) -> Model {
 }
 
 /// Takes the steps of the stage; iterations and factorisations of all.
-fn pressed(model: Model) -> Result<(Newton, usize, usize), Error> {
-    let mut newton = Newton::new(System::new(model).unwrap())?;
+fn pressed(model: Model) -> Result<(Driver, usize, usize), Error> {
+    let mut newton = Driver::new(System::new(model).unwrap())?;
     let mut iterations = 0;
     for _ in 0..STEPS {
         newton.step()?;
@@ -114,7 +114,7 @@ fn pressed(model: Model) -> Result<(Newton, usize, usize), Error> {
 }
 
 /// Asserts that contact carries the disc: force = weight, below its centre of mass.
-fn assert_carried(newton: &Newton) {
+fn assert_carried(newton: &Driver) {
     let (system, state) = (newton.system(), newton.state());
     let masses = &system.body_masses[0];
     let place = |node: u32| {
@@ -191,7 +191,7 @@ fn a_disc_slides_along_facets_to_its_rest() {
     for (edges, steps) in [(32, 1), (32, STEPS), (48, STEPS)] {
         let mut model = on_a_block(edges, 0.0);
         model.nonlinear.preload = Some(Preload { end: 1.0, steps });
-        let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
+        let mut newton = Driver::new(System::new(model).unwrap()).unwrap();
         for _ in 0..steps {
             newton.step().unwrap();
         }

@@ -5,8 +5,7 @@ use carom_contact::{
     Basis, Integration, Law, Motion, Obstacle, Plane, Side, Sliding, Sphere, Translation,
 };
 use carom_dynamics::{
-    Amplitude, Driver, Model, ModelTarget, Newton, Nonlinear, Preload, Prescribed, Scheme, System,
-    scheme,
+    Amplitude, Driver, Model, ModelTarget, Nonlinear, Preload, Prescribed, Scheme, System, scheme,
 };
 
 use crate::newton::{SOFT, square};
@@ -56,8 +55,8 @@ fn a_linear_system_takes_the_steps_of_the_linear_driver() {
             System::new(model).unwrap()
         };
         let mut linear = Driver::new(model(Sliding::Small)).unwrap();
-        let mut newton = Newton::new(model(Sliding::Small)).unwrap();
-        let mut finite = Newton::new(model(Sliding::Finite)).unwrap();
+        let mut newton = Driver::new(model(Sliding::Small)).unwrap();
+        let mut finite = Driver::new(model(Sliding::Finite)).unwrap();
         let mut largest = 0.0_f64;
         for _ in 0..40 {
             linear.step().unwrap();
@@ -111,7 +110,7 @@ fn pressed(sliding: Sliding, way: f64) -> [f64; 2] {
         preload: Some(Preload { end: 4.0, steps: 4 }),
         ..Nonlinear::default()
     };
-    let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
+    let mut newton = Driver::new(System::new(model).unwrap()).unwrap();
     for _ in 0..4 {
         newton.step().unwrap();
     }
@@ -152,7 +151,7 @@ fn on_a_plane_that_moves_small_and_finite_sliding_are_one() {
             motion,
             ..plane.into()
         });
-        let mut newton = Newton::new(System::new(model).unwrap()).unwrap();
+        let mut newton = Driver::new(System::new(model).unwrap()).unwrap();
         for _ in 0..20 {
             newton.step().unwrap();
         }

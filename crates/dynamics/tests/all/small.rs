@@ -4,8 +4,8 @@ use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Law, Plane, Side, Sliding, Sphere};
 use carom_dynamics::{
-    Driver, Model, ModelBody, ModelContact, ModelTarget, Newton, Scheme, SmallSliding, Stepper,
-    System, scheme,
+    Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, SmallSliding, Stepper, System,
+    scheme,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface, generate};
@@ -154,7 +154,7 @@ fn thrown(x: f64, velocity: [f64; 3], sliding: Sliding) -> Model {
 fn ran(model: Model, steps: usize) -> (SmallSliding, f64) {
     let system = System::new(model).unwrap();
     let mut driver: Box<dyn Stepper> = match system.is_nonlinear() {
-        true => Box::new(Newton::new(system).unwrap()),
+        true => Box::new(Driver::new(system).unwrap()),
         false => Box::new(Driver::new(system).unwrap()),
     };
     for _ in 0..steps {

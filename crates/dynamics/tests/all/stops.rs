@@ -6,8 +6,7 @@ use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Adhesion, Crush, Curve, Damped, Penalty, Stop};
 use carom_contact::{Law, Plane};
 use carom_dynamics::{
-    Driver, Model, ModelBody, ModelContact, ModelTarget, Newton, Scheme, Stepper, Support, System,
-    scheme,
+    Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Stepper, Support, System, scheme,
 };
 use carom_materials::{Elastic, Law as Material};
 use carom_mesh::{Surface, generate};
@@ -91,7 +90,7 @@ fn model(scheme: Scheme, law: Law, part: f64) -> Model {
 fn rebound(scheme: Scheme, law: Law, part: f64) -> f64 {
     let system = System::new(model(scheme, law, part)).unwrap();
     let mut run: Box<dyn Stepper> = match scheme.get().is_between() {
-        true => Box::new(Newton::new(system).unwrap()),
+        true => Box::new(Driver::new(system).unwrap()),
         false => Box::new(Driver::new(system).unwrap()),
     };
     let end = CLEARANCE + 1.5 * PI * (MASS / STIFFNESS).sqrt();

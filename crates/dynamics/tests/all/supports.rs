@@ -1,7 +1,7 @@
 //! Supports that move: what they give to the momentum and to the energy.
 
 use carom_bodies::{BodySpec, Kinematics, MassKind};
-use carom_dynamics::{Amplitude, Model, ModelBody, Newton, Prescribed, Scheme, System, scheme};
+use carom_dynamics::{Amplitude, Driver, Model, ModelBody, Prescribed, Scheme, System, scheme};
 use carom_materials::{Elastic, Law as Material, NeoHooke};
 use carom_mesh::generate;
 
@@ -15,7 +15,7 @@ const SPEED: f64 = 0.3;
 
 /// A unit square, 0.5 thick, whose nodes in `held` go with [`SPEED`] to the right from a start at rest or at the speed
 /// given, and from t = 2 on stand still.
-fn carried(scheme: Scheme, material: Material, mass: MassKind, held: &str, speed: f64) -> Newton {
+fn carried(scheme: Scheme, material: Material, mass: MassKind, held: &str, speed: f64) -> Driver {
     let mesh = generate::rectangle("a", [0.0, 0.3], [1.0; 2], [3, 3], false);
     let cells = mesh.groups["a"].elements.clone();
     let nodes = match held {
@@ -44,7 +44,7 @@ fn carried(scheme: Scheme, material: Material, mass: MassKind, held: &str, speed
         nodes,
         displacement: [Some(along), Some(across), None],
     }];
-    Newton::new(System::new(model).unwrap()).unwrap()
+    Driver::new(System::new(model).unwrap()).unwrap()
 }
 
 fn schemes() -> Vec<Scheme> {

@@ -2,7 +2,7 @@
 
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Law, Side, Sphere};
-use carom_dynamics::{Driver, Model, ModelTarget, Newton, Scheme, Stepper, System, scheme};
+use carom_dynamics::{Driver, Model, ModelTarget, Scheme, Stepper, System, scheme};
 
 use crate::newton::{SOFT, square};
 
@@ -37,7 +37,7 @@ fn a_contact_that_curves_gains_no_energy_in_steps_of_many_elements() {
     for (dt, capture) in cases.into_iter().flatten() {
         let system = System::new(in_trough(dt, capture)).unwrap();
         let mut linear = Driver::new(system.clone()).unwrap();
-        let mut newton = Newton::new(system).unwrap();
+        let mut newton = Driver::new(system).unwrap();
         for _ in 0..20 {
             linear.step().unwrap();
             newton.step().unwrap();

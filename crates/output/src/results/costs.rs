@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_dynamics::{Costs, Stepper, System, Whole, ZoneDriver};
+use carom_dynamics::{Costs, Driver, Stepper, System, Whole};
 
 use crate::results::{Ending, Results};
 use crate::summary::{Counts, Link, Newton, Zone, Zones};
@@ -70,7 +70,7 @@ impl Zones {
     pub fn of(run: &Whole) -> Zones {
         let zones = run.zones();
         let names = run.names();
-        let one = |(k, driver): (usize, &ZoneDriver)| {
+        let one = |(k, driver): (usize, &Driver)| {
             let (system, costs) = (driver.system(), driver.costs());
             let ledger = &driver.state().ledger;
             let scheme = system.scheme.get();

@@ -9,7 +9,7 @@ use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Displacement;
 use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::{EnergyMomentum, Newmark};
-use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Newton, Scheme, System, march};
+use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System, march};
 use carom_materials::{Elastic, J2Plasticity, Law as Material, NeoHooke};
 use carom_mesh::{Surface, generate};
 use carom_output::{Ending, Grade, Results, Settings, Summary};
@@ -82,8 +82,8 @@ fn turning(system: Arc<System>, rate: f64) -> Arc<System> {
     Arc::new(system)
 }
 
-fn run(system: &Arc<System>, settings: Settings, end: f64) -> (Reports, Newton, Summary) {
-    let mut newton = Newton::new(Arc::clone(system)).unwrap();
+fn run(system: &Arc<System>, settings: Settings, end: f64) -> (Reports, Driver, Summary) {
+    let mut newton = Driver::new(Arc::clone(system)).unwrap();
     let mut results = Results::create(settings, Arc::clone(system)).unwrap();
     let mut reports = Reports::default();
     march(&mut newton, end, &mut [&mut reports, &mut results], &|| {

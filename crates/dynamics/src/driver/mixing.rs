@@ -18,7 +18,7 @@ use carom_algebra::dense::DenseCholesky;
 use carom_algebra::reduce::{dot, norm_squared};
 use carom_contact::law::Status;
 
-use super::Newton;
+use super::Driver;
 
 /// Iterations that are mixed.
 const DEPTH: usize = 4;
@@ -120,7 +120,7 @@ impl Mixing {
     }
 }
 
-impl Newton {
+impl Driver {
     /// Mixes the iteration that has been computed with those before it.
     pub(super) fn mix(&mut self) {
         let largest = match self.floats() {

@@ -1,6 +1,6 @@
 //! Contact forces before an iteration: one that goes a part of its way takes that part of the change of the forces.
 
-use super::Newton;
+use super::Driver;
 
 /// Contact forces of all points.
 #[derive(Default)]
@@ -9,7 +9,7 @@ pub(super) struct Carried {
     friction: Vec<[f64; 2]>,
 }
 
-impl Newton {
+impl Driver {
     /// Keeps the forces before an iteration.
     pub(super) fn keep_forces(&mut self) {
         let interface = &self.next.interface;

@@ -1,6 +1,6 @@
 //! Explicit steps at finite strain: elements that shorten take the critical step down as they deform.
 
-use super::Newton;
+use super::Driver;
 use crate::error::Error;
 
 /// Part of the critical step that is taken, for what elements change until they are looked at again.
@@ -9,26 +9,34 @@ const PART: f64 = 0.9;
 /// Change of the lengths in an element, relative, after which its frequencies are looked at again: that costs several steps.
 const CHANGE: f64 = 0.1;
 
-impl Newton {
-    /// How many times a step of `dt` (s) is halved for its parts to be below the critical step. That is looked at anew
-    /// where elements have changed; what was found is kept in the state.
+impl Driver {
+    /// Looks at the critical step of an explicit scheme anew, before a step of `dt` (s), where elements have changed; what was
+    /// found is kept in the state.
     ///
     /// # Errors
-    /// A critical step below the smallest part, an element without tangent.
-    pub(super) fn stable_level(&mut self, dt: f64) -> Result<u32, Error> {
+    /// An element without tangent.
+    pub(super) fn renew_stable(&mut self, dt: f64) -> Result<(), Error> {
         let system = &*self.system;
         let explicit = system.scheme.get().step_map(dt).force.x == 0.0;
         if !explicit || self.is_static() || system.bodies.iter().all(|body| body.is_linear()) {
-            return Ok(0);
+            return Ok(());
         }
         let change = self.state.control.changed + dt * self.largest_rate();
         self.state.control.changed = change;
         if self.state.step == 0 || change > CHANGE {
             let critical = self.system.critical_step_at(&self.state.motion)?;
-            self.state.control.dt = PART * critical;
+            self.state.control.stable = PART * critical;
             self.state.control.changed = 0.0;
         }
-        let stable = self.state.control.dt;
+        Ok(())
+    }
+
+    /// How many times a step of `dt` (s) is halved for its parts to be below the critical step.
+    ///
+    /// # Errors
+    /// A critical step below the smallest part.
+    pub(super) fn stable_level(&self, dt: f64) -> Result<u32, Error> {
+        let stable = self.state.control.stable;
         let halvings = self.system.nonlinear.iteration.halvings;
         let mut levels = 0..=halvings;
         let level = levels.find(|&level| dt <= stable * (1u64 << level) as f64);

@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use super::Newton;
+use super::Driver;
 use crate::error::Error;
 use crate::operator::Operators;
 use crate::resultant::Resultant;
@@ -34,11 +34,11 @@ pub(super) struct Jump {
     jumps: bool,
 }
 
-impl Newton {
-    /// Runs an attempt of this size (s) from the velocity after the jump; the state keeps the one before it.
+impl Driver {
+    /// Runs an attempt from the velocity after the jump; the state keeps the one before it.
     pub(super) fn attempt_after_jump(
         &mut self,
-        attempt: impl FnOnce(&mut Newton) -> Result<(), Error>,
+        attempt: impl FnOnce(&mut Driver) -> Result<(), Error>,
     ) -> Result<(), Error> {
         if !self.jump()? {
             return attempt(self);

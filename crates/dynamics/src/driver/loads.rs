@@ -2,25 +2,25 @@
 
 use carom_algebra::csr::Csr;
 
-use super::Newton;
+use super::Driver;
 use crate::nonlinear::{Amplitude, NumberedForce};
 use crate::step_map::{Row, StepMap};
 use crate::system::System;
 
 /// The velocity that forces depend on: at the instant of the internal forces, or of an explicit step the one that is known
-/// before the forces.
+/// before the forces; without what contact forces give by themselves.
 pub(super) fn damping_rate(map: &StepMap) -> Row {
-    let velocity = &map.velocity;
-    if map.force.x == 0.0 {
-        return Row {
-            x: 0.0,
-            ..*velocity
-        };
+    let velocity = Row {
+        c: 0.0,
+        ..map.velocity
+    };
+    match map.force.x == 0.0 {
+        true => Row { x: 0.0, ..velocity },
+        false => Row::MOVING.towards(&velocity, map.force_fraction.unwrap_or(1.0)),
     }
-    Row::MOVING.towards(velocity, map.force_fraction.unwrap_or(1.0))
 }
 
-impl Newton {
+impl Driver {
     /// The instant at which the balance of the step holds, s.
     pub(super) fn instant(&self) -> f64 {
         self.state.time + self.map.force_fraction.unwrap_or(1.0) * self.dt
@@ -53,8 +53,11 @@ impl Newton {
     pub(super) fn evaluate_damping(&mut self) {
         let system = &*self.system;
         let vectors = &mut self.vectors;
+        if system.nonlinear.damping.is_empty() {
+            return;
+        }
         vectors.damping.fill(0.0);
-        if system.nonlinear.damping.is_empty() || self.map.inertia.x == 0.0 {
+        if self.map.inertia.x == 0.0 {
             return;
         }
         vectors.work.copy_from_slice(&vectors.rate);

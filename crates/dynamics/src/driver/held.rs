@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use carom_contact::Places;
 
-use super::Newton;
+use super::Driver;
 use crate::error::Error;
 
 /// Error of the gap of a point that stays with a face, over the face's diagonal, beyond which the step fails.
 const STRAYED: f64 = 0.01;
 
-impl Newton {
+impl Driver {
     /// Tells of the points that the iterations have made stay with a face.
     ///
     /// # Errors
@@ -19,8 +19,13 @@ impl Newton {
         let system = Arc::clone(&self.system);
         for (k, contact) in system.contacts.iter().enumerate() {
             let mut u = std::mem::take(&mut self.vectors.place);
-            let row = self.paired_at(contact);
-            row.whole(&self.state.motion, &self.vectors.x, &[], &mut u);
+            let row = self.paired_at(k);
+            row.whole(
+                &self.state.motion,
+                &self.vectors.x,
+                &self.vectors.push,
+                &mut u,
+            );
             let places = Places {
                 unknowns: &system.unknowns,
                 time: self.state.time + self.paired_after(contact),

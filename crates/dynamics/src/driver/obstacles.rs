@@ -3,7 +3,7 @@
 use carom_contact::Target;
 use serde::{Deserialize, Serialize};
 
-use super::Newton;
+use super::Driver;
 
 /// Force of a moving obstacle at the end of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -14,7 +14,7 @@ pub(crate) struct Pushed {
     turn: f64,
 }
 
-impl Newton {
+impl Driver {
     /// Force of an obstacle that moves, and the power of its turn, in the step that was taken: of the normal and of the
     /// friction forces f of its points f · ẋ with the velocity ẋ of its particle there, less what the translation has of it.
     /// The rate of the rows is the negative of ẋ along them.
@@ -72,7 +72,7 @@ impl Newton {
             Some(weights[0] * work(&pushed[0]) + weights[1] * work(&pushed[1]))
         };
         let works = (0..self.system.contacts.len()).filter_map(of);
-        self.map.contact * works.sum::<f64>()
+        self.contact_factor() * works.sum::<f64>()
     }
 }
 

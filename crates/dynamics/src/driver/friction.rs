@@ -7,12 +7,11 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_contact::Contact;
 use carom_contact::law::{Level, Status};
 
-use super::Newton;
+use super::Driver;
+use super::candidates::{on_row, sums_compliances};
 use crate::coulomb::{FrictionFailure, FrictionProblem, Posed, Slip, Tangential};
-use crate::driver::on_row;
 use crate::error::Error;
 use crate::state::ContactReport;
 use crate::step_map::Row;
@@ -28,7 +27,7 @@ impl System {
     }
 }
 
-impl Newton {
+impl Driver {
     /// Whether a candidate has friction.
     pub(super) fn rubs(&self) -> bool {
         let mu = |&point: &u32| self.system.friction[self.system.contact_of(point as usize)];
@@ -75,8 +74,8 @@ impl Newton {
     }
 
     /// The times, from that at which the places of a contact are taken, over which its sliding is looked at, s.
-    pub(super) fn span(&self, contact: &Contact) -> [f64; 2] {
-        let after = self.paired_after(contact);
+    pub(super) fn span(&self, contact: usize) -> [f64; 2] {
+        let after = self.paired_after(&self.system.contacts[contact]);
         match self.slides_by_rate() {
             true => [self.dt - after; 2],
             false => [-after, self.dt - after],
@@ -98,19 +97,23 @@ impl Newton {
     /// Sliding quantity of a point along one tangent at the x of the iteration.
     fn slid(&self, point: usize, tangent: usize, (row, time): (&Row, f64)) -> f64 {
         let rows = &self.pairing.tangents[tangent];
-        let xc = [&self.vectors.x[..], &[]];
+        let xc = [&self.vectors.x[..], &self.vectors.push];
         on_row(rows, point, row, &self.state.motion, xc) + time * rows.rate(point)
     }
 
-    /// What friction adds to each candidate. `free`: the motion of the iteration without contact forces.
-    fn tangential(&self, free: &[f64]) -> Vec<Tangential> {
-        let (row, time) = self.sliding();
+    /// What friction adds to each candidate.
+    fn tangential(&self) -> Vec<Tangential> {
+        let (mut row, time) = self.sliding();
+        // what the forces of the iteration give by themselves is in the matrix
+        row.c = 0.0;
         let tangents = self.system.tangents();
+        let width = 1 + tangents as u32;
         let of = |&point: &u32| {
             let at = point as usize;
             let mut q = [0.0; 2];
             for (k, q) in q.iter_mut().enumerate().take(tangents) {
-                let step = row.x * self.pairing.tangents[k].product(at, free);
+                let number = point * width + 1 + k as u32;
+                let step = row.x * self.free_along(number, &self.stacked);
                 *q = self.slid(at, k, (&row, time)) + step;
             }
             Tangential {
@@ -124,9 +127,8 @@ impl Newton {
     }
 
     /// The interface problem of the candidates with friction.
-    pub(super) fn solve_with_friction(&mut self, free: &[f64]) -> Result<(), Error> {
+    pub(super) fn solve_with_friction(&mut self) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
-        let friction = self.tangential(free);
         let tangents = system.tangents();
         let width = 1 + tangents as u32;
         let rows = |&point: &u32| point * width..(point + 1) * width;
@@ -138,11 +140,31 @@ impl Newton {
         };
         let begin = Instant::now();
         compliance.update(&stacked, &self.stacked, &system.fixed, operators);
+        let of_point = |&point: &u32| {
+            let free = self.free_along(point * width, &self.stacked);
+            self.candidate(point as usize, free)
+        };
+        self.candidate_data = self.candidates.iter().map(of_point).collect();
+        let friction = self.tangential();
+        let Some((operators, compliance)) = self.effective.both() else {
+            return Ok(());
+        };
+        let impulsive = match &mut self.impulses {
+            Some(stage) if sums_compliances(&system, &self.map) => {
+                let own = (self.map.rate.x * factor, &compliance.matrix[..]);
+                stage.sum(&system, &self.stacked, &stacked, own, self.map.rate.c)
+            }
+            _ => None,
+        };
+        let (matrix, s) = match impulsive {
+            Some(matrix) => (matrix, [0.0, 1.0, 1.0]),
+            None => (&compliance.matrix[..], s),
+        };
         let posed = Posed {
             candidates: &self.candidate_data,
             friction: &friction,
             tangents,
-            d: &compliance.matrix,
+            d: matrix,
             s,
             tolerance: system.nonlinear.iteration.tolerance,
         };
@@ -170,7 +192,6 @@ impl Newton {
                 compliance.add(row, factor * force, operators, &mut self.vectors.half);
             }
         }
-        self.end_iteration();
         Ok(())
     }
 
@@ -262,7 +283,7 @@ impl Newton {
                 }
             }
         }
-        self.map.contact * work
+        self.contact_factor() * work
     }
 
     /// Writes the friction of a contact into its report, and adds it to the resultant.

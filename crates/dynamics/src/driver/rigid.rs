@@ -9,13 +9,13 @@ use std::sync::Arc;
 use carom_algebra::unknowns::Kind;
 use carom_contact::Rows;
 
-use super::Newton;
+use super::Driver;
 use crate::system::System;
 
 /// What of a unit vector counts as independent of others.
 pub(super) const INDEPENDENT: f64 = 1e-6;
 
-impl Newton {
+impl Driver {
     /// Begins with the rigid motion of each part that is nearest to its velocity. The motion of no acceleration may turn elements
     /// inside out where velocities alternate from step to step, as a trapezoidal rule leaves them in stiff modes: the
     /// displacements of these modes stay what they are.

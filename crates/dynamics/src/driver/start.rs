@@ -4,25 +4,24 @@ use std::sync::Arc;
 
 use carom_algebra::reduce::dot;
 
-use super::{Newton, Which};
+use super::{Driver, Which};
 use crate::control::Control;
 use crate::error::Error;
 use crate::exchange::Exchange;
-use crate::ledger::{Energies, Ledger};
+use crate::ledger::{Energies, Ledger, reactions};
 use crate::operator::Operators;
 use crate::records::Records;
 use crate::resultant::Resultant;
-use crate::scheme::EnergyIdentity;
 use crate::state::empty_state;
 use crate::system::System;
 
-impl Newton {
+impl Driver {
     /// Begins anew from another initial motion: displacement in m and velocity in m/s, one entry per unknown. Held
     /// unknowns are where their supports are, whatever is given; the velocity of those that move as prescribed is the one
     /// before the support takes hold of them, in the first step. With a static stage velocities are those of its end.
     ///
     /// # Errors
-    /// As [`Newton::new`].
+    /// As [`Driver::new`].
     pub fn restart(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
         self.state = empty_state(&system);
@@ -46,7 +45,8 @@ impl Newton {
     /// Completes the initial state.
     fn start(&mut self) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
-        self.size(system.dt);
+        self.size(system.dt, system.dt);
+        self.prepared = false;
         self.next.clone_from(&self.state);
         self.begin()?;
         self.state.control = Control::start(system.dt);
@@ -75,6 +75,10 @@ impl Newton {
             .internal_force
             .clone_from(&self.vectors.internal);
         self.evaluate_loads(self.state.time);
+        if self.map.has_memory() {
+            let motion = &mut self.state.motion;
+            motion.memory.clone_from(&motion.v);
+        }
         if system.scheme.get().keeps_acceleration() && !self.is_static() {
             let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
             let (vectors, motion) = (&mut self.vectors, &mut self.state.motion);
@@ -86,12 +90,51 @@ impl Newton {
             mass.begin(&vectors.residual, &mut vectors.half);
             mass.end(&mut vectors.half, &mut motion.a);
         }
+        match system.is_nonlinear() {
+            true => self.start_works(stored.strain, stored.hardening),
+            false => self.start_identity(stored.strain),
+        }
+        Ok(())
+    }
+
+    /// The ledger at the start, of linear forces.
+    fn start_identity(&mut self, strain: f64) {
+        let system = Arc::clone(&self.system);
+        let energies = self.energies_at_the_start(strain);
+        let motion = &self.state.motion;
+        let super::Vectors {
+            inertia,
+            work,
+            place,
+            ..
+        } = &mut self.vectors;
+        system.mass.multiply(&motion.a, inertia);
+        work.copy_from_slice(&motion.internal_force);
+        reactions(&system, &self.map, motion, motion, inertia, work);
+        let supports = Resultant::of(&system, work);
+        for (i, force) in work.iter_mut().enumerate() {
+            *force += system.load[i] + motion.link_of(i);
+        }
+        system.mass.multiply(&motion.v, place);
+        let none = vec![0.0; work.len()];
+        self.state.exchange = Exchange::start(&system, place, [work, &none]);
+        let loads = Resultant::of(&system, &system.load);
+        let link = Resultant::of(&system, &self.state.motion.link_force);
+        let none = Resultant::default();
+        let forces = [loads, none, supports, none, link];
+        let identity = self.identity.unwrap_or_default();
+        self.state.ledger = Ledger::start(&energies, &identity, forces);
+    }
+
+    /// The ledger at the start, where forces are not all linear.
+    fn start_works(&mut self, strain: f64, hardening: f64) {
+        let system = Arc::clone(&self.system);
         self.forces_at_the_start();
         self.start_exchange();
         let motion = &self.state.motion;
-        let identity = self.identity();
-        let work = &mut self.vectors.work;
-        let energies = energies(&system, motion, stored.strain, &identity, work);
+        let identity = self.identity_of_ledger();
+        let of = (strain, identity.inertia != 0.0, Some(&motion.u[..]));
+        let energies = energies(&system, motion, of, &mut self.vectors.work);
         let at = |k: usize| match self.state.forces.get(k) {
             Some(f) => Resultant::at(&system, &[&motion.u], f),
             None => Resultant::default(),
@@ -104,8 +147,7 @@ impl Newton {
             at(6).plus(&at(5).reversed()),
         ];
         self.state.ledger = Ledger::start(&energies, &identity, forces);
-        self.state.ledger.store(stored.hardening);
-        Ok(())
+        self.state.ledger.store(hardening);
     }
 
     /// Forces that a step with a balance at both of its ends begins with: none where a static stage begins out of balance.
@@ -196,27 +238,26 @@ impl Newton {
         for contact in 0..self.system.contacts.len() {
             self.append(contact, self.state.time);
         }
+        self.candidates.clear();
     }
 }
 
-/// Energies and momentum of a motion; angular momentum about the origin, in the present configuration.
+/// Energies and momentum of a motion with this strain energy (J): |a|²_M where it is asked for, angular momentum about the origin
+/// of the nodes at these displacements, or in the reference configuration.
 pub(super) fn energies(
     system: &System,
     motion: &crate::state::Motion,
-    strain: f64,
-    identity: &EnergyIdentity,
+    (strain, with_acceleration, u): (f64, bool, Option<&[f64]>),
     work: &mut [f64],
 ) -> Energies {
     system.mass.multiply(&motion.v, work);
-    let kinetic: f64 = motion
-        .v
-        .iter()
-        .zip(work.iter())
-        .map(|(v, p)| 0.5 * v * p)
-        .sum();
-    let momentum = Resultant::at(system, &[&motion.u], work);
+    let kinetic = 0.5 * dot(&motion.v, work);
+    let momentum = match u {
+        Some(u) => Resultant::at(system, &[u], work),
+        None => Resultant::of(system, work),
+    };
     let mut acceleration = 0.0;
-    if identity.inertia != 0.0 {
+    if with_acceleration {
         system.mass.multiply(&motion.a, work);
         acceleration = dot(&motion.a, work);
     }

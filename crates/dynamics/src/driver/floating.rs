@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 use carom_contact::Target;
 
-use super::Newton;
+use super::Driver;
 use super::rigid::{INDEPENDENT, Rigid, Span, norm};
 use crate::coulomb::Slip;
 use crate::error::Error;
@@ -160,7 +160,7 @@ fn body_of(system: &System, part: &Range<usize>) -> String {
     system.bodies[body].name().to_string()
 }
 
-impl Newton {
+impl Driver {
     /// Whether parts float in the attempt under way.
     pub(super) fn floats(&self) -> bool {
         self.map.inertia.x == 0.0 && !self.floating.parts.is_empty()
@@ -282,7 +282,9 @@ impl Newton {
     fn places(&self) -> Vec<f64> {
         let mut places = vec![0.0; self.vectors.x.len()];
         let (motion, x) = (&self.state.motion, &self.vectors.x);
-        self.map.displacement.whole(motion, x, &[], &mut places);
+        self.map
+            .displacement
+            .whole(motion, x, &self.vectors.push, &mut places);
         places
     }
 
@@ -349,9 +351,12 @@ impl Newton {
         let system = Arc::clone(&self.system);
         let mut places = vec![0.0; self.vectors.x.len()];
         let motion = &self.state.motion;
-        self.map
-            .displacement
-            .whole(motion, &self.vectors.before, &[], &mut places);
+        self.map.displacement.whole(
+            motion,
+            &self.vectors.before,
+            &self.vectors.push,
+            &mut places,
+        );
         let rigid = Rigid::new(&system, &self.floating.parts, Some(&places));
         let mut c = rigid.nearest(&self.vectors.dx);
         c.iter_mut().for_each(|c| *c *= share);
@@ -399,7 +404,7 @@ impl Newton {
             let row = rigid.row(&self.pairing.rows, point);
             let rate: f64 = row.iter().zip(c).map(|(n, c)| n * c).sum();
             if rate < -INDEPENDENT * norm(&row) * norm(c) {
-                let until = self.now(point).0.max(0.0) / -rate;
+                let until = self.now(point, true).0.max(0.0) / -rate;
                 way = Some(way.map_or(until, |way| way.min(until)));
             }
         }

@@ -1,0 +1,245 @@
+//! The balance of a step whose forces are all linear: each term has its own formula, what the scheme takes that of its exact
+//! identity ([`EnergyIdentity`]).
+
+use std::sync::Arc;
+
+use carom_algebra::reduce::dot;
+
+use super::Driver;
+use super::start::energies;
+use crate::ledger::{Energies, Squares, reactions};
+use crate::resultant::Resultant;
+use crate::scheme::EnergyIdentity;
+use crate::state::Motion;
+use crate::step_map::Impulse;
+
+/// How contact forces work in the energy balance.
+#[derive(Clone, Copy)]
+pub(super) struct WorkWeights {
+    /// Weight of the forces at the start.
+    pub(super) old: f64,
+    /// Weight of the forces of the step.
+    pub(super) new: f64,
+    /// How far the displacements on which they work lie back along the velocity, s.
+    pub(super) lag: f64,
+}
+
+/// One of the two states around the step.
+#[derive(Clone, Copy)]
+enum End {
+    Start,
+    Finish,
+}
+
+impl Driver {
+    /// Weights of the contact forces at the start and of the step in their work: those of the energy identity, or of the
+    /// impulse where there is none.
+    pub(super) fn work_weights(&self) -> WorkWeights {
+        let Impulse { old, new, .. } = self.map.contact_impulse;
+        let of_impulse = WorkWeights { old, new, lag: 0.0 };
+        self.identity.map_or(of_impulse, |identity| WorkWeights {
+            old: identity.old,
+            new: identity.new,
+            lag: identity.lag,
+        })
+    }
+
+    fn motion_at(&self, end: End) -> &Motion {
+        match end {
+            End::Start => &self.state.motion,
+            End::Finish => &self.next.motion,
+        }
+    }
+
+    /// Energies of a motion with this strain energy (J), those that the scheme balances beside included.
+    fn energies_at(&mut self, end: End, strain: f64) -> Energies {
+        let system = Arc::clone(&self.system);
+        let identity = self.identity.unwrap_or_default();
+        let mut place = std::mem::take(&mut self.vectors.place);
+        let mut lagged = 0.0;
+        if identity.lag != 0.0 {
+            let motion = self.motion_at(end);
+            for (i, place) in place.iter_mut().enumerate() {
+                *place = motion.u[i] - identity.lag * motion.v[i];
+            }
+            self.vectors.place = place;
+            lagged = self.linear_forces() - strain;
+            place = std::mem::take(&mut self.vectors.place);
+        }
+        let mut memory = 0.0;
+        if identity.memory != 0.0 {
+            place.copy_from_slice(&self.motion_at(end).memory);
+            self.vectors.place = place;
+            // U is quadratic
+            memory = 2.0 * self.linear_forces();
+            place = std::mem::take(&mut self.vectors.place);
+        }
+        self.vectors.place = place;
+        let motion = match end {
+            End::Start => &self.state.motion,
+            End::Finish => &self.next.motion,
+        };
+        let work = &mut self.vectors.work;
+        let with_acceleration = identity.inertia != 0.0;
+        Energies {
+            memory,
+            lagged,
+            ..energies(&system, motion, (strain, with_acceleration, None), work)
+        }
+    }
+
+    /// Energies of the state, with what the scheme of the step balances.
+    pub(super) fn energies_at_the_start(&mut self, strain: f64) -> Energies {
+        self.energies_at(End::Start, strain)
+    }
+
+    /// Energy and momentum of the step.
+    pub(super) fn balance_by_identity(&mut self) {
+        let system = Arc::clone(&self.system);
+        let identity = self.identity.unwrap_or_default();
+        let energies = self.energies_at(End::Finish, self.stored.strain);
+        let filtered = self.filtered(&identity);
+        let [supports, held] = self.reactions();
+        let stage = self.predictor_loss();
+        let weights = self.work_weights();
+        let (old, new) = (&self.state.motion, &self.next.motion);
+        let contact = Resultant::of(&system, &new.contact_force);
+        let loads = Resultant::of(&system, &system.load);
+        let links = Resultant::of(&system, &new.link_force);
+        let super::Vectors {
+            before: travel,
+            place,
+            work,
+            ..
+        } = &mut self.vectors;
+        let squares = Squares {
+            stage,
+            filtered,
+            ..squares(&system, &identity, (old, new), (travel, place, work))
+        };
+        if identity.lag != 0.0 {
+            for i in 0..travel.len() {
+                travel[i] -= identity.lag * (new.v[i] - old.v[i]);
+            }
+        }
+        let work_contact = weights.old * dot(travel, &old.contact_force)
+            + weights.new * dot(travel, &new.contact_force);
+        let work_loads = dot(travel, &system.load);
+        let work_links = match new.link_force.is_empty() {
+            true => 0.0,
+            false => {
+                let weights = &self.map.impulse;
+                weights.old * dot(travel, &old.link_force)
+                    + weights.new * dot(travel, &new.link_force)
+            }
+        };
+        self.next.ledger.clone_from(&self.state.ledger);
+        self.resize_energy();
+        self.next.ledger.add(
+            (
+                self.dt,
+                &identity,
+                [&self.map.impulse, &self.map.contact_impulse],
+            ),
+            &energies,
+            [work_loads, work_contact, work_links],
+            &squares,
+            [loads, contact, supports, held, links],
+        );
+    }
+
+    /// Counts what the energy that the scheme balances gains by the new size of the step alone.
+    fn resize_energy(&mut self) {
+        if self.dt == self.state.control.taken {
+            return;
+        }
+        let identity = self.identity.unwrap_or_default();
+        let energies = self.energies_at_the_start(self.state.ledger.balance.strain);
+        self.next.ledger.resize(&identity, &energies);
+    }
+
+    /// |Δm|²_K of the step, as far as the identity asks for it.
+    fn filtered(&mut self, identity: &EnergyIdentity) -> f64 {
+        if identity.filtered == 0.0 {
+            return 0.0;
+        }
+        let [old, new] = [&self.state, &self.next].map(|state| &state.motion.memory);
+        difference(old, new, &mut self.vectors.place);
+        2.0 * self.linear_forces()
+    }
+
+    /// Resultants of the forces of the supports in the step; apart, those against contact forces that act in the
+    /// impulse in their own way.
+    fn reactions(&mut self) -> [Resultant; 2] {
+        let system = Arc::clone(&self.system);
+        if self.map.force_fraction.is_none() {
+            let super::Vectors { x, push, place, .. } = &mut self.vectors;
+            self.map.force.whole(&self.state.motion, x, push, place);
+            self.linear_forces();
+        }
+        let (old, new) = (&self.state.motion, &self.next.motion);
+        let super::Vectors {
+            half,
+            work,
+            inertia,
+            ..
+        } = &mut self.vectors;
+        reactions(&system, &self.map, old, new, inertia, work);
+        let exchange = &mut self.next.exchange;
+        exchange.follow(&self.state.exchange);
+        let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
+        exchange.add(&system, (0, self.dt, &self.map.impulse), own);
+        let supports = Resultant::of(&system, work);
+        if self.map.impulse == self.map.contact_impulse {
+            return [supports, Resultant::default()];
+        }
+        for (i, held) in half.iter_mut().enumerate() {
+            *held = match system.fixed[i] {
+                true => -new.contact_force[i],
+                false => 0.0,
+            };
+        }
+        exchange.add(&system, (1, self.dt, &self.map.contact_impulse), |i| {
+            half[i]
+        });
+        [supports, Resultant::of(&system, half)]
+    }
+}
+
+/// What changed from the old to the new motion, as far as the identity asks for it. Leaves Δu in `travel`.
+fn squares(
+    system: &crate::System,
+    identity: &EnergyIdentity,
+    (old, new): (&Motion, &Motion),
+    (travel, change, work): (&mut [f64], &mut [f64], &mut [f64]),
+) -> Squares {
+    let mut squares = Squares::default();
+    difference(&old.u, &new.u, travel);
+    if identity.velocity != 0.0 {
+        difference(&old.v, &new.v, change);
+        system.mass.multiply(change, work);
+        squares.velocity = dot(change, work);
+    }
+    if identity.acceleration != 0.0 || identity.mixed != 0.0 {
+        difference(&old.a, &new.a, change);
+        system.mass.multiply(change, work);
+        squares.acceleration = dot(change, work);
+        squares.mixed = dot(travel, work);
+    }
+    if identity.contact != 0.0 {
+        difference(&old.a, &new.a, change);
+        squares.contact = dot(change, &new.contact_force);
+    }
+    if identity.displacement != 0.0 {
+        // K is linear and symmetric: |Δu|²_K = Δu · Δf
+        squares.displacement = dot(travel, &new.internal_force) - dot(travel, &old.internal_force);
+    }
+    squares
+}
+
+/// new - old.
+fn difference(old: &[f64], new: &[f64], change: &mut [f64]) {
+    for i in 0..change.len() {
+        change[i] = new[i] - old[i];
+    }
+}

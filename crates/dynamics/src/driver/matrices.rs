@@ -1,0 +1,97 @@
+//! When the matrices of a step are made.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::Driver;
+use super::effective::{At, Turning, key};
+use super::floating::{GROWTH as HEAVIER, LARGEST};
+use crate::error::Error;
+
+impl Driver {
+    /// Takes the matrices of the attempt: those of linear parts are ready with it.
+    pub(super) fn take_matrices(&mut self) -> Result<(), Error> {
+        if self.effective.stands(key(&self.map)) {
+            return Ok(());
+        }
+        let begin = Instant::now();
+        let system = Arc::clone(&self.system);
+        let iterated = (0..system.parts.len()).map(|part| self.is_iterated(part));
+        let iterated = iterated.collect();
+        let between = self.between();
+        let taken = self.effective.take(&system, &self.map, iterated, between);
+        self.phases.factorisation += begin.elapsed();
+        taken
+    }
+
+    /// Whether the matrix of a part changes within a step.
+    fn is_iterated(&self, part: usize) -> bool {
+        let system = &*self.system;
+        if self.map.force.x == 0.0 {
+            return false;
+        }
+        let mut bodies = (0..system.bodies.len()).filter(|&k| system.part_of_body[k] == part);
+        let floats = self.floats() && self.floating.parts.contains(&system.parts[part]);
+        let changes = |k: usize| !system.bodies[k].is_linear() || system.nonlinear.has_follower(k);
+        floats || bodies.any(changes)
+    }
+
+    /// Makes the effective matrix at x. Where it is not positive definite with the turning contact forces, it is made
+    /// without them, then in the configuration at the start of the step, or with more of the proximal term: the iterations take
+    /// longer, and the answer is the same. A first guess that compresses what is nearly incompressible has pressures of many
+    /// times the shear modulus, whose stiffness is negative across them; the step itself has nothing of them.
+    pub(super) fn renew(&mut self) -> Result<(), Error> {
+        if !self.effective.iterates() {
+            return Ok(());
+        }
+        let begin = Instant::now();
+        let system = Arc::clone(&self.system);
+        let motion = &self.state.motion;
+        self.map.force.whole(
+            motion,
+            &self.vectors.x,
+            &self.vectors.push,
+            &mut self.vectors.place,
+        );
+        let floats: &[_] = match self.floats() {
+            true => &self.floating.parts,
+            false => &[],
+        };
+        let mut at = At {
+            map: &self.map,
+            dt: match self.between() {
+                true => self.dt,
+                false => self.map.force_fraction.unwrap_or(1.0) * self.dt,
+            },
+            time: self.instant(),
+            u: &self.vectors.place,
+            v: &self.vectors.rate,
+            from: self.between().then_some(&motion.u[..]),
+            history: &motion.history,
+            proximal: (floats, self.floating.weight),
+        };
+        let forces = self.next.interface.force.iter().enumerate();
+        let turned = forces.map(|(point, force)| force * self.turning(system.contact_of(point)));
+        let mut turning = Turning {
+            forces: turned.collect(),
+            pairing: &self.pairing,
+            factor: self.map.contact,
+        };
+        let mut made = self.effective.renew(&system, &at, &turning);
+        if made.is_err() && turning.forces.iter().any(|force| *force != 0.0) {
+            turning.forces.fill(0.0);
+            made = self.effective.renew(&system, &at, &turning);
+        }
+        if made.is_err() && self.map.inertia.x != 0.0 {
+            at.u = &motion.u;
+            made = self.effective.renew(&system, &at, &turning);
+        }
+        while made.is_err() && !floats.is_empty() && at.proximal.1 < LARGEST {
+            at.proximal.1 *= HEAVIER;
+            made = self.effective.renew(&system, &at, &turning);
+        }
+        self.floating.weight = at.proximal.1;
+        self.phases.factorisation += begin.elapsed();
+        made
+    }
+}

@@ -1,0 +1,198 @@
+//! The records and the report of a step.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use carom_contact::Rows;
+
+use super::Driver;
+use crate::records::Step;
+use crate::state::{ContactReport, InterfaceState, State};
+use crate::step_map::Impulse;
+use crate::system::System;
+
+impl Driver {
+    /// Records of the contacts.
+    pub(super) fn record(&mut self) {
+        let system = Arc::clone(&self.system);
+        self.next.records.follow(&self.state.records);
+        self.next.time = self.state.time + self.dt;
+        // without inertia forces give no impulse, and closing is no impact
+        let (impulse, dt) = match self.map.inertia.x == 0.0 {
+            true => (Impulse::weights(0.0, 1.0), 0.0),
+            false => (self.map.contact_impulse, self.dt),
+        };
+        for k in 0..system.contacts.len() {
+            let rows = &self.pairing.rows;
+            let (old, new) = (&self.state.interface, &self.next.interface);
+            let mut report = contact_report(&system, k, rows, old, new, self.dt);
+            report.mixed = self.weak.mixed(k, &new.force[points(&system, k)]);
+            self.report_friction(k, &mut report);
+            let work = self.contact_work(k);
+            let pushed = self.pushed(k);
+            let (old, rows, projected) =
+                (&self.state.interface, &self.pairing.rows, &self.projected);
+            let carried_on = |point: usize| {
+                let changed = old.carried[point] - old.force[point];
+                projected.impulse(point) + dt * impulse.old * changed
+            };
+            report.impulsive = points(&system, k).map(carried_on).sum();
+            let span = [self.state.time, self.next.time];
+            let State {
+                motion,
+                records,
+                interface,
+                ..
+            } = &mut self.next;
+            let changed = |point: usize| interface.carried[point] - interface.force[point];
+            let step = Step {
+                span,
+                dt,
+                impulse,
+                forces: [&old.force, &interface.force],
+                report: &report,
+                work: work + points(&system, k).map(|p| projected.work(p)).sum::<f64>(),
+                crushed: crush_energy(&system, k, interface),
+                jump: [
+                    total(&system, k, rows, |point| projected.impulse(point)),
+                    total(&system, k, rows, changed),
+                ],
+            };
+            records.add(&system, k, &step, &self.state, &motion.v);
+            records.contacts[k].pushed = pushed;
+            self.report.contacts[k] = report;
+        }
+        self.watch
+            .look(&system, self.state.step + 1, &mut self.next);
+        if self.map.inertia.x != 0.0 {
+            let work = &mut self.vectors.work;
+            system.mass.multiply(&self.next.motion.v, work);
+            let records = &self.next.records.contacts;
+            self.next.exchange.close(&system, work, records);
+        }
+    }
+
+    /// Work of the normal forces of one contact on the motion of the step, J.
+    fn contact_work(&self, contact: usize) -> f64 {
+        let rows = &self.pairing.rows;
+        let weights = self.weights_of_work();
+        let (old, new) = (&self.state, &self.next);
+        let of_point = |point: usize| {
+            let force = weights.old * old.interface.carried[point]
+                + weights.new * new.interface.force[point];
+            if force == 0.0 {
+                return 0.0;
+            }
+            let place = |state: &State| {
+                let u = rows.product(point, &state.motion.u);
+                match weights.lag == 0.0 {
+                    true => u,
+                    false => u - weights.lag * rows.product(point, &state.motion.v),
+                }
+            };
+            force * (place(new) - place(old) + self.dt * rows.rate(point))
+        };
+        points(&self.system, contact).map(of_point).sum()
+    }
+
+    fn weights_of_work(&self) -> super::identity::WorkWeights {
+        match (self.system.is_nonlinear(), self.map.inertia.x == 0.0) {
+            (false, _) => self.work_weights(),
+            (true, is_static) => {
+                let impulse = match is_static {
+                    true => Impulse::weights(0.0, 1.0),
+                    false => self.map.contact_impulse,
+                };
+                super::identity::WorkWeights {
+                    old: impulse.old,
+                    new: impulse.new,
+                    lag: 0.0,
+                }
+            }
+        }
+    }
+
+    /// Completes the report of the state just accepted. `dt`: the whole step, s.
+    pub(super) fn tell(&mut self, dt: f64) {
+        let state = &self.state;
+        self.report.step = state.step;
+        self.report.time = state.time;
+        self.report.dt = dt;
+        self.report.balance = state.ledger.balance;
+        self.report.passes = match self.system.is_nonlinear() {
+            true => self.residuals.len(),
+            false if self.candidates.is_empty() => 0,
+            false => self.interface.passes,
+        };
+        if state.step == 0 {
+            for (k, report) in self.report.contacts.iter_mut().enumerate() {
+                let (rows, interface) = (&self.pairing.rows, &state.interface);
+                *report = contact_report(&self.system, k, rows, interface, interface, 0.0);
+            }
+        }
+    }
+}
+
+fn contact_report(
+    system: &System,
+    contact: usize,
+    rows: &Rows,
+    old: &InterfaceState,
+    new: &InterfaceState,
+    dt: f64,
+) -> ContactReport {
+    let mut report = ContactReport {
+        gap: f64::INFINITY,
+        ..ContactReport::default()
+    };
+    for point in points(system, contact) {
+        let force = new.force[point];
+        report.force += force;
+        for (sum, n) in report.resultant.iter_mut().zip(rows.resultant(point)) {
+            *sum += force * n;
+        }
+        if new.gap[point] < report.gap {
+            (report.gap, report.rate) = (new.gap[point], new.rate[point]);
+        }
+        report.closed += usize::from(force != 0.0);
+        report.status_changes += usize::from((force != 0.0) != (old.force[point] != 0.0));
+        report.persistency_defect += (force * (new.rate[point] + new.opening[point])).abs() * dt;
+    }
+    report.normal = report.resultant;
+    report
+}
+
+/// Energy that the crush of one contact has taken so far, J: a function of the largest penetrations.
+fn crush_energy(system: &System, contact: usize, interface: &InterfaceState) -> f64 {
+    let (first, contact) = (system.first_point[contact], &system.contacts[contact]);
+    let of_point = |(k, point): (usize, &carom_contact::Point)| {
+        point.share * contact.law.crush_energy(interface.crush[first + k])
+    };
+    contact.points.iter().enumerate().map(of_point).sum()
+}
+
+/// Contact points of a contact.
+fn points(system: &System, contact: usize) -> Range<usize> {
+    system.first_point[contact]..system.first_point[contact + 1]
+}
+
+/// Sum of a normal force or impulse over the points of a contact, and its resultant on the secondary body.
+fn total(
+    system: &System,
+    contact: usize,
+    rows: &Rows,
+    of_point: impl Fn(usize) -> f64,
+) -> (f64, [f64; 3]) {
+    let (mut sum, mut resultant) = (0.0, [0.0; 3]);
+    for point in points(system, contact) {
+        let value = of_point(point);
+        if value == 0.0 {
+            continue;
+        }
+        sum += value;
+        for (sum, n) in resultant.iter_mut().zip(rows.resultant(point)) {
+            *sum += value * n;
+        }
+    }
+    (sum, resultant)
+}

@@ -1,0 +1,216 @@
+//! The residual of an iteration, and how far it is from nothing.
+
+use carom_algebra::unknowns::Kind;
+use carom_bodies::Body;
+use carom_mesh::ElementId;
+
+use super::loads::damping_rate;
+use super::{Driver, Which};
+use crate::error::Error;
+
+/// Where an iteration stands.
+pub(super) struct Standing {
+    /// Imbalance of the forces, relative.
+    pub(super) imbalance: f64,
+    /// Largest defect of a contact law, in tolerances.
+    pub(super) defect: f64,
+    /// What of the imbalance may be rounding, relative.
+    pub(super) rounding: f64,
+    /// Largest of the forces that balance, N.
+    pub(super) scale: f64,
+}
+
+impl Driver {
+    /// Loads, inertia, internal and damping forces at x. `first`: those that x does not change too.
+    pub(super) fn evaluate(&mut self, first: bool) -> Result<(), Error> {
+        let map = self.map;
+        match first && self.is_affine() && self.system.nonlinear.follows.is_empty() {
+            // the first guess has no inertia
+            true => self.vectors.inertia.fill(0.0),
+            false => self.evaluate_inertia(),
+        }
+        if first || map.force.x != 0.0 {
+            self.evaluate_rate();
+            self.evaluate_damping();
+            let vectors = &mut self.vectors;
+            map.force.whole(
+                &self.state.motion,
+                &vectors.x,
+                &vectors.push,
+                &mut vectors.place,
+            );
+            let dt = match self.between() {
+                true => self.dt,
+                false => map.force_fraction.unwrap_or(1.0) * self.dt,
+            };
+            self.stored = self.internal((Which::Place, self.between()), dt)?;
+            self.evaluate_loads(self.instant());
+        }
+        let vectors = &mut self.vectors;
+        for i in 0..vectors.residual.len() {
+            vectors.residual[i] = match self.system.fixed[i] {
+                true => 0.0,
+                false => {
+                    vectors.load[i] - vectors.inertia[i] - vectors.internal[i] - vectors.damping[i]
+                }
+            };
+        }
+        if !self.link_force.is_empty() {
+            let vectors = &mut self.vectors;
+            vectors.unlinked.clone_from(&vectors.residual);
+            self.add_link_force();
+        }
+        Ok(())
+    }
+
+    /// Velocity at the instant of the internal forces, where forces depend on it.
+    pub(super) fn evaluate_rate(&mut self) {
+        let system = &*self.system;
+        let linear = system.bodies.iter().all(Body::is_linear);
+        if linear && system.nonlinear.damping.is_empty() {
+            return;
+        }
+        let (rate, vectors) = (damping_rate(&self.map), &mut self.vectors);
+        let (x, push) = (&vectors.x, &vectors.push);
+        rate.whole(&self.state.motion, x, push, &mut vectors.rate);
+    }
+
+    /// Inertia forces at x, N.
+    pub(super) fn evaluate_inertia(&mut self) {
+        let vectors = &mut self.vectors;
+        let (x, push, place) = (&vectors.x, &vectors.push, &mut vectors.place);
+        self.map.inertia.whole(&self.state.motion, x, push, place);
+        self.system.mass.multiply(place, &mut vectors.inertia);
+    }
+
+    /// The residual with the forces of links as they stand.
+    pub(super) fn add_link_force(&mut self) {
+        let vectors = &mut self.vectors;
+        let forces = self.link_force.iter().zip(&vectors.unlinked);
+        for (i, (link, unlinked)) in forces.enumerate() {
+            vectors.residual[i] = match self.system.fixed[i] {
+                true => 0.0,
+                false => unlinked + link,
+            };
+        }
+    }
+
+    /// How far forces and contacts are from what they must be. Forces are compared with the largest of those that balance,
+    /// and with the momentum per step.
+    pub(super) fn standing(&mut self) -> Standing {
+        self.spread();
+        let factor = self.map.contact;
+        let vectors = &self.vectors;
+        let mut imbalance = 0.0;
+        for (i, (r, c)) in vectors.residual.iter().zip(&vectors.contact).enumerate() {
+            if !self.system.fixed[i] {
+                imbalance += (r + factor * c).powi(2);
+            }
+        }
+        let scale = self.scale_of_forces();
+        let [imbalance, rounding] = [imbalance.sqrt(), self.rounding()].map(|force| force / scale);
+        self.left_over = scale * f64::max(self.system.nonlinear.iteration.tolerance, rounding);
+        Standing {
+            imbalance,
+            rounding,
+            defect: self.worst_point().map_or(0.0, |(_, defect)| defect),
+            scale,
+        }
+    }
+
+    /// Largest norm of the forces that balance, N.
+    pub(super) fn scale_of_forces(&self) -> f64 {
+        let vectors = &self.vectors;
+        let norm = |f: &[f64]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let contact = self.map.contact.abs() * norm(&vectors.contact);
+        let forces = [
+            &vectors.load,
+            &self.link_force,
+            &vectors.internal,
+            &vectors.inertia,
+        ];
+        let scale = forces.iter().fold(contact, |most, f| most.max(norm(f)));
+        let momentum = match self.map.inertia.x == 0.0 {
+            true => 0.0,
+            false => self.momentum_scale(),
+        };
+        scale.max(momentum).max(f64::MIN_POSITIVE)
+    }
+
+    /// |M v|/dt of the motion at the start of the step, N.
+    fn momentum_scale(&self) -> f64 {
+        let masses = self.system.body_masses.iter().flatten();
+        let unknowns = &self.system.unknowns;
+        let squares = masses.map(|&(node, m)| {
+            let v = &self.state.motion.v[unknowns.translations_of(node)];
+            m * m * v.iter().map(|v| v * v).sum::<f64>()
+        });
+        squares.sum::<f64>().sqrt() / self.dt
+    }
+
+    /// Norm of what rounding of the positions leaves in the internal forces, N. Displacements cannot be told apart within
+    /// ε |u|, which changes the force of each unknown by about ε K_ii |u|, at random. Places count from
+    /// [`System::origin`](crate::System).
+    pub(super) fn rounding(&self) -> f64 {
+        let (system, u) = (&self.system, &self.state.motion.u);
+        let sizes = (0..system.unknowns()).map(|unknown| match system.unknowns.kind(unknown) {
+            Kind::Translation(axis) => {
+                let x = &system.x[system.unknowns.node(unknown) as usize];
+                (x[axis] - system.origin[axis]).abs() + u[unknown].abs()
+            }
+            Kind::Rotation(_) => u[unknown].abs(),
+        });
+        2.0 * f64::EPSILON
+            * self
+                .effective
+                .stiffness_norm(&self.system, &self.map, sizes)
+    }
+
+    pub(super) fn no_equilibrium(&self, passes: usize) -> Error {
+        let system = &*self.system;
+        let vectors = &self.vectors;
+        let imbalance = |i: usize| match system.fixed[i] {
+            true => 0.0,
+            false => (vectors.residual[i] + self.map.contact * vectors.contact[i]).abs(),
+        };
+        let larger = |best: usize, i: usize| match imbalance(i) > imbalance(best) {
+            true => i,
+            false => best,
+        };
+        let worst = (0..system.unknowns()).fold(0, larger);
+        let node = system.unknowns.node(worst) as usize;
+        let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(n, _)| *n as usize == node);
+        let body = system.body_masses.iter().position(owns).unwrap_or(0);
+        let contact = match self.worst_point() {
+            Some((point, defect)) if defect > 1.0 => {
+                format!("; its law is missed most by {}", self.name(point))
+            }
+            _ => String::new(),
+        };
+        let last = self.residuals.len().saturating_sub(8);
+        let history = self.residuals[last..].iter().map(|r| format!("{r:.1e}"));
+        Error::Equilibrium {
+            step: self.state.step + 1,
+            time: self.state.time,
+            dt: self.dt,
+            passes,
+            node: system.mesh_node[node],
+            body: system.bodies[body].name().into(),
+            cell: first_cell(&system.bodies[body], node as u32),
+            contact: contact.into(),
+            history: history.collect::<Vec<_>>().join(", ").into(),
+        }
+    }
+}
+
+/// The first cell of a body that has this node (system number).
+fn first_cell(body: &Body, node: u32) -> ElementId {
+    let (mut place, mut first) = (0, None);
+    body.each_element(&mut |nodes| {
+        if nodes.contains(&node) {
+            first.get_or_insert(place);
+        }
+        place += 1;
+    });
+    body.cells()[first.unwrap_or(0)]
+}

@@ -1,0 +1,337 @@
+//! The iterations of one attempt at a step.
+//!
+//! Where all is linear in the unknown, one iteration is all: free motion, interface problem, correction.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use carom_contact::Search;
+
+use super::Driver;
+use super::residual::Standing;
+use crate::error::Error;
+
+/// Residual before and after an iteration beyond which the motion of the iteration is halved.
+const GROWTH: f64 = 4.0;
+
+/// Halvings of the motion of one iteration.
+const SHORTENINGS: u32 = 5;
+
+/// Imbalance over that one iteration ago up to which the iteration was a gain.
+const GAIN: f64 = 0.5;
+
+/// Iterations that a fresh factor is counted to need.
+const FRESH: f64 = 2.0;
+
+/// Cost of a new tangent beside its factorisation, in iterations with the old one.
+const TANGENT: f64 = 3.0;
+
+/// Largest number of iterations of a step in which parts move on along motions that nothing holds, over that of others.
+const MOVES: usize = 10;
+
+/// Imbalance over what may be rounding from which on iterations are mixed: below, their changes are noise.
+const NOISY: f64 = 10.0;
+
+/// How fast the iterations go.
+#[derive(Default)]
+pub(super) struct Pace {
+    /// Iterations of this attempt with the factor at hand.
+    pub(super) age: usize,
+    /// The iteration in which it was made.
+    pub(super) made: usize,
+    /// Contraction with a factor made within the iterations of a step, between two states; zero while unknown.
+    pub(super) fresh: f64,
+}
+
+impl Driver {
+    /// Finds x and the contact forces of the step.
+    ///
+    /// # Errors
+    /// No equilibrium, an element or a matrix that fails.
+    pub(super) fn solve(&mut self) -> Result<(), Error> {
+        let solved = self.iterate(false);
+        match solved {
+            // elements inside out: once more from another guess
+            Err(Error::Body(_)) if self.map.inertia.x != 0.0 && !self.is_affine() => {
+                self.iterate(true)
+            }
+            other => other,
+        }
+    }
+
+    /// The iterations from the motion of no acceleration, or from the rigid one.
+    fn iterate(&mut self, rigidly: bool) -> Result<(), Error> {
+        self.begin_iterations(rigidly)?;
+        if self.is_affine() {
+            return self.solve_at_once();
+        }
+        let passes = self.system.nonlinear.iteration.passes;
+        let (mut limit, most) = (passes, MOVES * passes);
+        let mut standing = self.standing();
+        let mut pass = 0;
+        while pass < limit {
+            let jumps = self.jumps();
+            let before = self.residuals.last().copied();
+            self.residuals.push(standing.imbalance);
+            if pass > 0 && !jumps && self.is_solved(&standing, before) {
+                return self.check_held(pass);
+            }
+            if self.floats() && !jumps && self.approach(standing.scale)? {
+                self.mixing.clear();
+                standing = self.standing();
+            }
+            if self.wants_factor(pass) {
+                self.renew()?;
+                (self.pace.age, self.pace.made) = (0, pass);
+            }
+            self.pace.age += 1;
+            self.keep_forces();
+            self.solve_interface()?;
+            // a motion that contacts hardly hold is far above the noise of the forces
+            if !jumps && (self.floats() || standing.imbalance > NOISY * standing.rounding) {
+                self.mix();
+            }
+            if self.floats() && !jumps && self.restrain() {
+                // the part has moved on: iterations begin anew
+                limit = most.min(pass + passes);
+            }
+            standing = self.go(&standing, jumps)?;
+            pass += 1;
+        }
+        let before = self.residuals.last().copied();
+        if self.is_solved(&standing, before) {
+            return self.check_held(limit);
+        }
+        Err(self.unbalanced(limit, standing.imbalance * standing.scale))
+    }
+
+    /// First guess, residual and pairing of the attempt.
+    fn begin_iterations(&mut self, rigidly: bool) -> Result<(), Error> {
+        self.residuals.clear();
+        (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
+        self.floating.begin();
+        self.mixing.clear();
+        self.take_matrices()?;
+        self.predict();
+        if rigidly {
+            self.predict_rigidly();
+        }
+        let interface = &mut self.next.interface;
+        interface.follow(&self.state.interface);
+        self.guess_slips();
+        self.take_weak();
+        if self.prepared {
+            self.add_link_force();
+            return Ok(());
+        }
+        self.evaluate(true)?;
+        self.vectors.ahead.clear();
+        self.search.iter_mut().for_each(Search::begin_step);
+        self.pair(true);
+        if (0..self.system.contacts.len()).any(|k| self.looks_ahead(k)) {
+            self.look_ahead()?;
+            self.pair(true);
+        }
+        Ok(())
+    }
+
+    /// Makes ready what the forces of links do not change, of a step that is linear in the unknown.
+    ///
+    /// # Errors
+    /// As [`Driver::step`].
+    pub(crate) fn prepare(&mut self) -> Result<(), Error> {
+        (self.failed, self.failed_friction) = (None, None);
+        self.prepared = false;
+        self.begin_stage()?;
+        let scheme = self.system.scheme.get();
+        if !self.system.nonlinear.follows.is_empty() || scheme.projects_predictor() {
+            return Ok(());
+        }
+        let (begin, before) = (Instant::now(), self.phases);
+        self.take_matrices()?;
+        if self.is_affine() {
+            self.begin_iterations(false)?;
+            self.prepared = true;
+        }
+        self.count_contact(begin, before);
+        Ok(())
+    }
+
+    /// The one iteration of a step that is linear in the unknown.
+    fn solve_at_once(&mut self) -> Result<(), Error> {
+        self.residuals.push(0.0);
+        self.solve_interface()?;
+        let vectors = &mut self.vectors;
+        for (x, dx) in vectors.x.iter_mut().zip(&vectors.dx) {
+            *x += dx;
+        }
+        self.spread();
+        self.left_over = match self.system.is_nonlinear() {
+            true => self.system.nonlinear.iteration.tolerance * self.scale_of_forces(),
+            false => 0.0,
+        };
+        Ok(())
+    }
+
+    /// Whether supports jump in the iteration.
+    pub(super) fn jumps(&self) -> bool {
+        self.vectors.jump.iter().any(|jump| *jump != 0.0)
+    }
+
+    /// Whether iterations may end. `before`: the imbalance one iteration ago. Within what rounding leaves they end where they
+    /// gain no more, not where they get there: what is left would be of one sign step after step, and add up. Not so under the
+    /// forces of links, whose passes need answers that are smooth in them.
+    fn is_solved(&self, standing: &Standing, before: Option<f64>) -> bool {
+        let Standing {
+            imbalance,
+            rounding,
+            defect,
+            ..
+        } = *standing;
+        let gains = before.is_none_or(|before| imbalance < GAIN * before);
+        let gains = gains && self.link_force.is_empty();
+        let tolerance = self.system.nonlinear.iteration.tolerance;
+        (imbalance <= tolerance || imbalance <= rounding && !gains) && defect <= 1.0
+    }
+
+    /// Whether all is linear in the unknown, so that one iteration is all.
+    pub(super) fn is_affine(&self) -> bool {
+        let mut contacts = 0..self.system.contacts.len();
+        !self.effective.iterates() && contacts.all(|k| self.turning(k) == 0.0)
+    }
+
+    /// Begins with the motion of no acceleration, or with the one before it; motions that are prescribed come as a jump in
+    /// the first iteration, so that the inside of the body goes along.
+    fn predict(&mut self) {
+        let system = Arc::clone(&self.system);
+        let (map, motion) = (&self.map, &self.state.motion);
+        let vectors = &mut self.vectors;
+        let inertia = &map.inertia;
+        if inertia.x == 0.0 {
+            vectors.x.fill(0.0);
+        } else {
+            inertia.known(motion, &mut vectors.x);
+            for x in vectors.x.iter_mut() {
+                *x *= -1.0 / inertia.x;
+            }
+        }
+        vectors.jump.fill(0.0);
+        let end = &map.displacement;
+        if end.x == 0.0 {
+            return;
+        }
+        end.known(motion, &mut vectors.place);
+        vectors.work.fill(0.0);
+        system
+            .nonlinear
+            .prescribe(self.state.time + self.dt, &mut vectors.work);
+        for i in (0..system.unknowns()).filter(|&i| system.fixed[i]) {
+            vectors.x[i] = (motion.u[i] - vectors.place[i]) / end.x;
+            vectors.jump[i] = (vectors.work[i] - motion.u[i]) / end.x;
+        }
+    }
+
+    /// Whether this iteration needs a new factor.
+    fn wants_factor(&mut self, pass: usize) -> bool {
+        if !self.effective.iterates() {
+            return false;
+        }
+        let (Some(&now), Some(price)) = (self.residuals.last(), self.effective.price()) else {
+            return true;
+        };
+        let Some(ratio) = self.contraction() else {
+            return self.pace.age == 0;
+        };
+        let least = if self.between() { 1.0 } else { 0.5 };
+        if ratio.is_nan() || ratio >= least {
+            return true;
+        }
+        let left = (self.system.nonlinear.iteration.tolerance / now).ln();
+        let needed = left / ratio.ln();
+        if self.between() && self.pace.age == 2 && self.pace.made > 0 {
+            self.pace.fresh = ratio;
+        }
+        let fresh = match self.pace.fresh > 0.0 {
+            true => (left / self.pace.fresh.ln()).max(FRESH),
+            false => FRESH,
+        };
+        let keeps = needed <= fresh + TANGENT + price;
+        tracing::debug!(
+            "step {}, iteration {pass}: residual {now:e}, {} times the one before; the factor is {}: \
+             {needed:.1} iterations with it against {fresh:.1} with a new one that costs {:.1}",
+            self.state.step + 1,
+            ratio,
+            if keeps { "kept" } else { "renewed" },
+            TANGENT + price,
+        );
+        !keeps
+    }
+
+    /// Factor by which an iteration with the factor at hand shrinks the residual, if that is known. The matrix of forces
+    /// between two states is the symmetric part of their derivative, with which residuals fall by turns fast and slowly:
+    /// two iterations are looked at.
+    fn contraction(&self) -> Option<f64> {
+        match (&self.residuals[..], self.pace.age) {
+            (_, 0) => None,
+            ([.., before, now], 1) if !self.between() => Some(now / before),
+            (_, 1) => None,
+            ([.., before, _, now], _) if self.between() => Some((now / before).sqrt()),
+            ([.., before, now], _) => Some(now / before),
+            _ => None,
+        }
+    }
+
+    /// Goes the way of the iteration, or as much of it as does not make things much worse.
+    fn go(&mut self, before: &Standing, jumps: bool) -> Result<Standing, Error> {
+        self.vectors.before.copy_from_slice(&self.vectors.x);
+        let mut share = 1.0;
+        let mut last = None;
+        for shortening in 0..=SHORTENINGS {
+            let vectors = &mut self.vectors;
+            for (i, x) in vectors.x.iter_mut().enumerate() {
+                *x = vectors.before[i] + share * vectors.dx[i];
+            }
+            if self.floats() {
+                self.turn(share);
+            }
+            match self.evaluate(false) {
+                Ok(()) => {
+                    self.pair(false);
+                    let standing = self.standing();
+                    let grows = standing.imbalance > GROWTH * before.imbalance.max(1e-6);
+                    if jumps || !grows || self.is_affine() {
+                        last = Some(Ok(standing));
+                        break;
+                    }
+                    last = Some(Ok(standing));
+                }
+                Err(error) => last = Some(Err(error)),
+            }
+            if shortening < SHORTENINGS {
+                share *= 0.5;
+                self.halve_forces();
+            }
+        }
+        let mut rest = 0.0;
+        if jumps && share < 1.0 {
+            rest = 1.0 - share;
+        }
+        for jump in self.vectors.jump.iter_mut() {
+            *jump *= rest;
+        }
+        match last {
+            Some(Ok(standing)) => {
+                // a part that rolls far in one iteration deforms until the next: what is known of the way it rolls is as
+                // good as before
+                if share < 1.0 {
+                    self.mixing.clear();
+                } else if standing.imbalance > before.imbalance && !self.floats() {
+                    self.mixing.keep_last();
+                }
+                Ok(standing)
+            }
+            Some(outcome) => outcome,
+            None => Err(self.no_equilibrium(0)),
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! A step as the caller sees it: attempts until one is taken or none is left.
+//!
+//! An adaptive step is cut where a contact closes, and halved where energy grows or no solution is found. A step of fixed
+//! size that finds no solution is taken in halves of halves.
+
+use super::Driver;
+use crate::control::{Closing, Control, Event};
+use crate::error::Error;
+use crate::state::State;
+
+/// Attempts at one step after which a closing cuts it no more.
+const CUTS: u32 = 10;
+
+impl Driver {
+    /// Takes one step. With an adaptive step, attempts in which a contact closes, energy grows, or no solution is found are
+    /// dropped, and a smaller one is tried. Another step is taken whole, or in halves of halves where it finds no equilibrium, and
+    /// of an explicit scheme where elements have become too small for it.
+    ///
+    /// # Errors
+    /// A contact problem without solution, no equilibrium, a motion that is not finite, or energy that grows, with steps that are fixed
+    /// or the smallest. The state is then the one before the step.
+    pub fn step(&mut self) -> Result<(), Error> {
+        self.report.attempts = 0;
+        self.report.samples.clear();
+        match self.system.adaptive.is_some() && !self.is_static() {
+            true => self.adapted_step(),
+            false => self.step_in_parts(),
+        }
+    }
+
+    fn adapted_step(&mut self) -> Result<(), Error> {
+        let system = std::sync::Arc::clone(&self.system);
+        let Some(rules) = &system.adaptive else {
+            return Ok(());
+        };
+        self.renew_stable(self.state.control.dt)?;
+        let mut control = self.state.control;
+        let mut dt = self.unplanned.take().unwrap_or(control.dt);
+        let mut forced = self.is_forced();
+        loop {
+            let stable = self.stable_level(dt)?;
+            if stable > 0 {
+                dt /= (1u64 << stable) as f64;
+            }
+            self.report.attempts += 1;
+            let outcome = self.attempt(dt, control.next(rules, system.dt));
+            match self.judge(outcome, control.dt) {
+                Ok(None) if std::mem::take(&mut forced) => {}
+                Ok(None) => {
+                    let (step, time) = (self.state.step, self.state.time);
+                    self.next.step = step + 1;
+                    self.next.time = self.state.control.instant(step, time, self.dt);
+                    control.take(Some(rules), (step, time, self.dt), system.dt);
+                    self.accept(control, self.dt);
+                    return Ok(());
+                }
+                Ok(Some((event, size))) => {
+                    tracing::debug!(
+                        "step {}: attempt with {dt:e} s rejected ({event:?})",
+                        self.state.step + 1
+                    );
+                    let smaller = control.drop(rules, event, size);
+                    dt = smaller.ok_or_else(|| self.exhausted(event))?;
+                }
+                Err((event, error)) => {
+                    dt = control.drop(rules, event, dt).ok_or(error)?;
+                }
+            }
+        }
+    }
+
+    fn step_in_parts(&mut self) -> Result<(), Error> {
+        let (taken, first) = (self.state.step, self.state.time);
+        let size = self.size_of_step();
+        let end = self.end_of_step(size);
+        self.renew_stable(end - first)?;
+        let whole = self.stable_level(end - first)?;
+        let mut control = self.state.control;
+        let (mut done, mut level) = (0u64, whole);
+        // a cause that an attempt has named says more than the end of the last one
+        let mut unheld: Option<Error> = None;
+        // kept only by a step that goes in parts
+        let mut start: Option<State> = None;
+        let most = self.most_halvings();
+        let parts = 1u64 << most;
+        let mut forced = self.is_forced();
+        while done < parts {
+            let part = parts >> level;
+            let to = first + (end - first) * ((done + part) as f64 / parts as f64);
+            self.report.attempts += 1;
+            let dt = size * (part as f64 / parts as f64);
+            match self.attempt(dt, dt) {
+                Ok(()) if std::mem::take(&mut forced) => {}
+                Ok(()) => {
+                    done += part;
+                    if part < parts && !self.is_static() {
+                        self.report.add_part(to, self.dt);
+                    }
+                    if done < parts {
+                        start.get_or_insert_with(|| self.state.clone());
+                        std::mem::swap(&mut self.state, &mut self.next);
+                        self.state.time = to;
+                        // parts of a step are of the same stage
+                        (self.state.step, self.state.control) = (taken, control);
+                    }
+                    while level > whole
+                        && done.is_multiple_of(2 * part)
+                        && done.is_multiple_of(parts >> (level - 1))
+                    {
+                        level -= 1;
+                    }
+                }
+                Err(error) if level < most => {
+                    tracing::debug!("step {}: {error}; halved", taken + 1);
+                    if matches!(error, Error::Unheld { .. }) {
+                        unheld.get_or_insert(error);
+                    }
+                    control.failed += 1;
+                    level += 1;
+                }
+                Err(error) => {
+                    if let Some(start) = start {
+                        self.state = start;
+                    }
+                    return Err(unheld.unwrap_or(error));
+                }
+            }
+        }
+        control.take(None, (taken, first, size), self.system.dt);
+        self.next.step = taken + 1;
+        self.next.time = end;
+        control.pace = self.pace.fresh;
+        self.report.join_parts();
+        self.accept(control, size);
+        Ok(())
+    }
+
+    /// Times that a step of fixed size may be halved: none where all of it is linear, whose failures have other causes.
+    fn most_halvings(&self) -> u32 {
+        match self.system.is_nonlinear() {
+            true => self.system.nonlinear.iteration.halvings,
+            false => 0,
+        }
+    }
+
+    /// Makes the attempt, a step of `size` (s), the state.
+    pub(super) fn accept(&mut self, control: Control, size: f64) {
+        self.next.control = control;
+        self.prepared = false;
+        std::mem::swap(&mut self.state, &mut self.next);
+        self.tell(size);
+    }
+
+    /// The instant at which the next step of this size (s) ends, s: instants of equal steps are products, not sums.
+    fn end_of_step(&self, size: f64) -> f64 {
+        let step = self.state.step;
+        match self.system.nonlinear.preload {
+            Some(preload) if step < preload.steps => {
+                preload.end * ((step + 1) as f64 / preload.steps as f64)
+            }
+            _ => self.state.control.instant(step, self.state.time, size),
+        }
+    }
+
+    /// Size of the next step, s: the same bits for equal steps, so that a constant matrix is.
+    fn size_of_step(&mut self) -> f64 {
+        match self.system.nonlinear.preload {
+            Some(preload) if self.is_static() => preload.end / preload.steps as f64,
+            _ => self.unplanned.take().unwrap_or(self.system.dt),
+        }
+    }
+
+    /// Whether the step from the present state is static.
+    pub(super) fn is_static(&self) -> bool {
+        let preload = self.system.nonlinear.preload;
+        preload.is_some_and(|preload| self.state.step < preload.steps)
+    }
+
+    /// Sets the size that the next step is tried with, s, for tests: what an event after the last step would do.
+    pub fn force_size(&mut self, dt: f64) {
+        self.unplanned = Some(dt);
+    }
+
+    /// Tries every `every`-th step once more after dropping its first attempt, which must change no bit of the results: for
+    /// tests.
+    pub fn force_rejections(&mut self, every: u64) {
+        self.forced = Some(every);
+    }
+
+    fn is_forced(&self) -> bool {
+        let next = self.state.step + 1;
+        self.forced.is_some_and(|every| next.is_multiple_of(every))
+    }
+
+    /// What speaks against an attempt, and the size to go on from. `planned`: the size of the steps after it, s.
+    fn judge(
+        &self,
+        outcome: Result<(), Error>,
+        planned: f64,
+    ) -> Result<Option<(Event, f64)>, (Event, Error)> {
+        outcome.map_err(|error| (Event::Failure, error))?;
+        let Some(rules) = &self.system.adaptive else {
+            return Ok(None);
+        };
+        if rules.closing == Closing::Cut
+            && self.report.attempts <= CUTS
+            && let Some(dt) = self.landing(rules, planned)
+        {
+            return Ok(Some((Event::Closing, dt)));
+        }
+        let grows = rules.growth.is_some_and(|growth| self.grows(growth));
+        Ok(grows.then_some((Event::Growth, self.dt)))
+    }
+
+    /// Whether the energy that the scheme balances, less the work from outside, exceeds its value at the start of the run by more
+    /// than this fraction of the largest energy.
+    fn grows(&self, growth: f64) -> bool {
+        let ledger = &self.next.ledger;
+        ledger.free_energy() > growth * ledger.largest_energy
+    }
+
+    /// The error of a step that was dropped at the smallest size.
+    fn exhausted(&self, event: Event) -> Error {
+        debug_assert_eq!(event, Event::Growth);
+        Error::EnergyGrowth {
+            step: self.state.step + 1,
+            time: self.state.time,
+            dt: self.dt,
+        }
+    }
+}
