@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use crate::units::with_article;
+use carom_quantities::units::with_article;
 
 /// The schema with its `$ref`, if it is one, replaced by what it refers to.
 pub(crate) fn resolve<'a>(root: &'a Value, schema: &'a Value) -> &'a Value {

@@ -1,5 +1,6 @@
 //! What is wrong with a case: one [`Problem`] for each cause, all of them collected before anything is refused.
 
+use carom_quantities::nearest;
 use std::fmt;
 
 use crate::offenders::Offenders;
@@ -98,43 +99,5 @@ impl fmt::Display for Problem {
         } else {
             write!(f, "{}: {}", self.path, self.message)
         }
-    }
-}
-
-/// The name nearest to `found`, when it is near enough to be what was meant: at most one third of its letters differ (one of two or three).
-pub(crate) fn nearest<'a>(
-    found: &str,
-    names: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
-    let lower = found.to_lowercase();
-    names
-        .into_iter()
-        .map(|name| {
-            (
-                strsim::damerau_levenshtein(&lower, &name.to_lowercase()),
-                name,
-            )
-        })
-        .filter(|&(edits, name)| {
-            let letters = found.chars().count().max(name.chars().count());
-            edits <= (letters / 3).max(1) && edits < name.chars().count()
-        })
-        .min_by_key(|&(edits, name)| (edits, name != found, name))
-        .map(|(_, name)| name)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_nearest_name_is_given_only_when_it_may_be_meant() {
-        let names = ["density", "elastic", "young"];
-        assert_eq!(nearest("densty", names), Some("density"));
-        assert_eq!(nearest("Density", names), Some("density"));
-        assert_eq!(nearest("yuong", names), Some("young"));
-        assert_eq!(nearest("colour", names), None);
-        assert_eq!(nearest("x", ["y"]), None);
-        assert_eq!(nearest("anything", []), None);
     }
 }

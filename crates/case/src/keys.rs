@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use crate::describe::{accepted, elements, entries, resolve, texts};
-use crate::error::{Place, Problem, nearest};
+use carom_quantities::nearest;
+
+use crate::error::{Place, Problem};
 use crate::tree::{Item, join};
 
 /// The keys of a table as written, beside the schema of the table.

@@ -5,7 +5,6 @@
 //! [`Locator`].
 
 pub mod schema;
-pub mod units;
 
 mod build;
 mod compare;

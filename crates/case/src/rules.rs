@@ -1,11 +1,13 @@
 //! Rules between several values of a case, which the schema cannot say; still without a look at any mesh.
 
+use carom_laws::{Capture, GivenLaw, Reading};
+use carom_quantities::units::with_article;
+
 use crate::error::Problem;
 use crate::schema::{
-    Adaptive, Capture, Case, Contact, Count, Integration, IntegrationWith, LargestStep, Law, Line,
-    Obstacle, Part, Sign, Step, StepRule,
+    Adaptive, Case, Contact, Count, Integration, IntegrationWith, LargestStep, Line, Obstacle,
+    Part, Step, StepRule,
 };
-use crate::units::with_article;
 
 /// Most nodes of a generated part or a refined mesh: beyond it a case is a slip of the pen.
 pub(crate) const MOST_NODES: f64 = 1e8;
@@ -162,13 +164,9 @@ fn check_r(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
         return;
     };
     let used = match &contact.law {
-        Law::Displacement(_) => Some("r"),
-        Law::Velocity(_) => Some("r-v"),
-        Law::Damped(_)
-        | Law::Compliance(_)
-        | Law::Restitution(_)
-        | Law::Penalty(_)
-        | Law::Stop(_) => None,
+        GivenLaw::Displacement(_) => Some("r"),
+        GivenLaw::Velocity(_) => Some("r-v"),
+        _ => None,
     };
     let named = [("r", given.r.is_some()), ("r-v", given.r_v.is_some())];
     let given: Vec<&str> = named
@@ -188,15 +186,15 @@ fn check_r(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
 }
 
 /// Captures that a law cannot have.
-fn check_capture(path: &str, law: &Law, problems: &mut Vec<Problem>) {
+fn check_capture(path: &str, law: &GivenLaw, problems: &mut Vec<Problem>) {
     let (path, capture, message, accepted) = match law {
-        Law::Restitution(law) => (
+        GivenLaw::Restitution(law) => (
             format!("{path}.law.restitution.capture"),
             law.capture.filter(|capture| *capture == Capture::GapTarget),
             "the gap as target takes the rebound away",
             &["now", "half", "full", "free"][..],
         ),
-        Law::Velocity(law) if law.sign == Sign::AsPrinted => (
+        GivenLaw::Velocity(law) if law.reading == Reading::AsPrinted => (
             format!("{path}.law.velocity.capture"),
             law.capture
                 .filter(|capture| matches!(capture, Capture::Free | Capture::GapTarget)),

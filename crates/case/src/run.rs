@@ -10,6 +10,7 @@ use carom_output::{Ending, Fields, Probe, Reference, Results, Settings, Summary,
 use thiserror::Error as ThisError;
 
 use crate::build::Built;
+use crate::describe::entries;
 use crate::input::Input;
 use crate::schema::{Case, Field, Motion, Scheme};
 
@@ -186,31 +187,14 @@ pub(crate) fn reference(built: &Built) -> Option<Reference> {
     })
 }
 
+/// Name and parameters of a scheme, as the case file has them.
 fn scheme(scheme: &Scheme) -> String {
-    match scheme {
-        Scheme::Newmark(newmark) => format!(
-            "newmark, beta = {}, gamma = {}",
-            newmark.beta, newmark.gamma
-        ),
-        Scheme::Theta(theta) => format!("theta, theta = {}", theta.theta),
-        Scheme::CentralDifference(_) => "central-difference".to_string(),
-        Scheme::GeneralisedAlpha(scheme) => {
-            format!("generalised-alpha, rho-inf = {}", scheme.rho_inf)
-        }
-        Scheme::Hht(scheme) => format!("hht, alpha = {}", scheme.alpha),
-        Scheme::TchamwaWielgosz(scheme) => format!("tchamwa-wielgosz, phi = {}", scheme.phi),
-        Scheme::PaoliSchatzman(scheme) if scheme.restitution == 0.0 => {
-            "paoli-schatzman".to_string()
-        }
-        Scheme::PaoliSchatzman(scheme) => {
-            format!("paoli-schatzman, restitution = {}", scheme.restitution)
-        }
-        Scheme::LaursenChawla(_) => "laursen-chawla".to_string(),
-        Scheme::LaursenLove(_) => "laursen-love".to_string(),
-        Scheme::Krenk(scheme) => format!("krenk, rho-inf = {}", scheme.rho_inf),
-        Scheme::NonsmoothAlpha(scheme) => format!("nonsmooth-alpha, rho-inf = {}", scheme.rho_inf),
-        Scheme::ContactStabilised(_) => "contact-stabilised".to_string(),
-        Scheme::EnergyMomentum(_) => "energy-momentum".to_string(),
-        Scheme::Kane(kane) => format!("kane, beta = {}, gamma = {}", kane.beta, kane.gamma),
+    let mut text = scheme.get().name().to_owned();
+    let value = serde_json::to_value(scheme).unwrap_or_default();
+    for (key, value) in entries(&value, scheme.get().name()) {
+        // a number without the ending `.0` of JSON
+        let value = value.as_f64().map_or(value.to_string(), |x| x.to_string());
+        text += &format!(", {key} = {value}");
     }
+    text
 }

@@ -13,7 +13,7 @@ use crate::input::Input;
 use crate::keys::{Keys, of};
 use crate::schema::is_name;
 use crate::tree::{Item, Node, join};
-use crate::units::{Dimension, UnitError, length_of_unit, parse_quantity};
+use carom_quantities::units::{Dimension, UnitError, length_of_unit, parse_quantity};
 
 /// Longest value that a message shows whole.
 const SHOWN: usize = 60;

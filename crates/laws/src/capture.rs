@@ -1,5 +1,6 @@
 //! When a law in the rate takes a point for closed (S_d), and which rate it asks for there.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{End, Local, Status};
@@ -10,20 +11,34 @@ use crate::{End, Local, Status};
 /// With v₀ the approach rate, a point that closes in a step penetrates by at most the bound given, in the limit of
 /// small steps (viability). The geometry is taken in the configuration that is tested, for the free motion in g_k; with an
 /// implicit step and rows that turn, in the one to which the step is predicted to lead up to the instant that is tested.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(description = "The gap that decides whether a point is closed in a step.")]
 pub enum Capture {
     /// g_k, the newest known configuration. Penetration up to (2 - θ) v₀ dt.
+    #[default]
+    #[schemars(description = "The gap at the beginning of the step.")]
     Now,
     /// g_k + dt/2 ġ_k. Penetration up to (3/2 - θ) v₀ dt.
+    #[schemars(
+        description = "The smaller of the gap at the beginning of the step and the gap predicted for its middle."
+    )]
     Half,
     /// g_k + dt ġ_k: may start contact a step too early, and then lets go of a point at rest. Penetration up to v₀ dt.
+    #[schemars(
+        description = "The smaller of the gap at the beginning of the step and the gap predicted for its end from the gap rate."
+    )]
     Full,
     /// The end of the step without any contact force: may start contact a step too early. Penetration up to (1 - θ) v₀ dt.
+    #[schemars(description = "The gap at the end of the step without any contact force.")]
     Free,
     /// None is tested: in any point the gap itself is the target, ġ₊ + g_k/dt >= 0 instead of ġ₊ >= 0. Penetration up
     /// to (1 - θ) v₀ dt, and what has penetrated is pushed out.
     ///
     /// Source: Stewart and Trinkle, International Journal for Numerical Methods in Engineering 39 (1996).
+    #[schemars(
+        description = "None. At all points the gap rate at the end of the step is at least -g / dt, with g at its start, so that penetrating points are pushed out (Stewart and Trinkle). Not for the restitution law."
+    )]
     GapTarget,
 }
 

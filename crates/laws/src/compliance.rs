@@ -1,8 +1,10 @@
 //! The compliance in velocity: a one-sided damper on closed points.
 
+use carom_quantities::SurfaceDamping;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{Capture, ContactLaw, End, Level, Local, Relation, Status};
+use crate::{Capture, ContactLaw, CurveError, Defaults, End, Level, Local, Relation, Status};
 
 /// Compliance in velocity: on closed points, `p = C_n max(0, -ġ₊)` for the rate at the END of the step; the velocity
 /// law is its limit for C_n → ∞. One-sided, since a damper that also pulls glues. Where the gap opens at the start of the step,
@@ -19,6 +21,34 @@ pub struct Compliance {
     pub damping: f64,
     /// Which configuration is tested for closure.
     pub capture: Capture,
+}
+
+/// The law as the case file gives it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "A compliance in velocity.", extend("oneOf" = [{ "required": ["damping"] }, { "required": ["damping-factor"] }]))]
+pub struct GivenCompliance {
+    /// Damping per area C.
+    pub damping: Option<SurfaceDamping>,
+    /// C relative to the impedance per area of the softer side, in place of `damping`.
+    #[schemars(extend("minimum" = 0.0))]
+    pub damping_factor: Option<f64>,
+    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, otherwise `now`.
+    pub capture: Option<Capture>,
+}
+
+impl GivenCompliance {
+    /// The law with its defaults.
+    ///
+    /// # Errors
+    /// None.
+    pub fn law(&self, defaults: &Defaults) -> Result<Compliance, CurveError> {
+        let from_factor = self.damping_factor.unwrap_or(0.0) * defaults.softer.impedance;
+        Ok(Compliance {
+            damping: self.damping.map_or(from_factor, |damping| damping.0),
+            capture: self.capture.unwrap_or(defaults.capture),
+        })
+    }
 }
 
 impl ContactLaw for Compliance {
@@ -55,6 +85,10 @@ impl ContactLaw for Compliance {
     fn status(&self, now: Status, end: &End, local: &Local, _reversals: u32) -> Status {
         let excess = self.capture.excess(local);
         self.capture.status(now, end, local, excess)
+    }
+
+    fn is_function(&self) -> bool {
+        true
     }
 
     fn clips(&self) -> bool {

@@ -23,6 +23,18 @@ pub enum CurveError {
         /// How many there are.
         points: usize,
     },
+    /// A piece along which a permanent crush would give back more than it took.
+    #[error(
+        "the curve rises by {stiffness:e} N/m to point {point}; with a permanent crush at most by the {first:e} N/m of its beginning"
+    )]
+    TooSteep {
+        /// The point at its end, from 1.
+        point: usize,
+        /// Its stiffness, N/m.
+        stiffness: f64,
+        /// That of the first piece, N/m.
+        first: f64,
+    },
     /// A point that is not above the one before it in penetration and in force, the first above (0, 0).
     #[error(
         "point {point} of the curve, {found:?} m and N, is not above {before:?}: penetration and force must increase"
@@ -92,6 +104,15 @@ impl Curve {
         (1..self.pieces)
             .find(steeper)
             .map(|piece| usize::from(piece) + 1)
+    }
+
+    /// That the piece which ends at this point, from 1, is steeper than the first.
+    pub(crate) fn too_steep(&self, point: usize) -> CurveError {
+        CurveError::TooSteep {
+            point,
+            stiffness: self.stiffness(point as u16 - 1),
+            first: self.stiffness(0),
+        }
     }
 
     /// How many pieces there are.

@@ -1,15 +1,24 @@
 //! The damped law: a compliant static part and a viscous one on closed points.
 
+use carom_quantities::{SurfaceDamping, SurfaceStiffness};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{ContactLaw, End, Level, Local, Relation, Status};
+use crate::{ContactLaw, CurveError, Defaults, End, Level, Local, Relation, Status};
 
 /// What becomes of tension in the damper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(description = "What becomes of a tensile pressure.")]
 pub enum Adhesion {
     /// The total pressure is cut off at zero.
+    #[default]
+    #[schemars(description = "It is set to zero.")]
     Clip,
     /// The damper may pull, as the equation is printed.
+    #[schemars(
+        description = "It remains, as in the printed law, and is a negative force in the histories."
+    )]
     AsPrinted,
 }
 
@@ -20,14 +29,60 @@ pub enum Adhesion {
 /// the law's force positive, the point takes the corner g₊ = 0.
 ///
 /// Source: Ben Dhia, Zammali, Voldoire, Lamarche (2003), equation (6), with a compliance instead of its multiplier.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "A spring with a damper, both given.")]
 pub struct Damped {
     /// k_p in Pa/m.
+    #[serde(deserialize_with = "SurfaceStiffness::si")]
+    #[schemars(with = "SurfaceStiffness", description = "Stiffness per area k.")]
     pub stiffness: f64,
     /// C_n in Pa s/m.
+    #[serde(default, deserialize_with = "SurfaceDamping::si")]
+    #[schemars(with = "SurfaceDamping", description = "Damping per area C.")]
     pub damping: f64,
-    /// Whether tension is cut off.
+    /// Treatment of a tensile pressure of the damper.
+    #[serde(default)]
     pub adhesion: Adhesion,
+}
+
+/// The damped law as the case file gives it: k_p = E/h and C_n = c sqrt(k_p h / E) ρc of the softer side, unless it says
+/// otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(
+    description = "A compliant law with a damper.",
+    extend("not" = { "required": ["damping", "damping-factor"] })
+)]
+pub struct GivenDamped {
+    /// Stiffness per area k. Default: Young's modulus of the softer side divided by its element size.
+    pub stiffness: Option<SurfaceStiffness>,
+    /// Damping per area C. Default: from `damping-factor`.
+    pub damping: Option<SurfaceDamping>,
+    /// C relative to the impedance per area of the softer side times sqrt(k h / E). Default: 0.5.
+    #[schemars(extend("minimum" = 0.0))]
+    pub damping_factor: Option<f64>,
+    /// Treatment of a tensile pressure of the damper.
+    #[serde(default)]
+    pub adhesion: Adhesion,
+}
+
+impl GivenDamped {
+    /// The law with its defaults.
+    ///
+    /// # Errors
+    /// None.
+    pub fn law(&self, defaults: &Defaults) -> Result<Damped, CurveError> {
+        let side = &defaults.softer;
+        let stiffness = self.stiffness.map_or(side.young / side.size, |k| k.0);
+        let factor = self.damping_factor.unwrap_or(0.5);
+        let from_factor = factor * (stiffness * side.size / side.young).sqrt() * side.impedance;
+        Ok(Damped {
+            stiffness,
+            damping: self.damping.map_or(from_factor, |damping| damping.0),
+            adhesion: self.adhesion,
+        })
+    }
 }
 
 impl ContactLaw for Damped {

@@ -121,6 +121,28 @@ pub trait ContactLaw {
     /// The status that the end state asks for. `reversals`: how often the status of this point has turned within the
     /// step so far.
     fn status(&self, now: Status, end: &End, local: &Local, reversals: u32) -> Status;
+    /// Whether velocity and acceleration are projected when points of this law close.
+    fn projects(&self) -> bool {
+        false
+    }
+    /// Whether it is complementarity of the force and one quantity, for which there is a weak form with a multiplier.
+    fn has_weak_form(&self) -> bool {
+        false
+    }
+    /// Whether it gives the force of each point as a continuous function of one quantity there, so that points may be as
+    /// many as one likes. A damper beside a spring is none: its force jumps where the gap closes.
+    fn is_function(&self) -> bool {
+        false
+    }
+    /// The largest penetration of a point that has carried a force, in m, after a step that ended with the gap `gap` in
+    /// m; `before`: the one before the step. Only laws with memory change it.
+    fn crushed(&self, before: f64, _gap: f64) -> f64 {
+        before
+    }
+    /// Energy that a contact all of whose points have this largest penetration (m) does not give back, J.
+    fn crush_energy(&self, _crush: f64) -> f64 {
+        0.0
+    }
     /// Whether tensile forces are cut off once the statuses stand.
     fn clips(&self) -> bool;
 }

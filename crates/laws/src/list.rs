@@ -1,92 +1,92 @@
-//! The list of contact laws.
+//! The choice of a contact law.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{Compliance, ContactLaw, Damped, Displacement, Penalty, Restitution, Stop, Velocity};
+use crate::{ContactLaw, CurveError, Defaults};
 
-/// A contact law, as chosen in the case file.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "laws are plain values that are copied; only the curve of a stop is large"
-)]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Law {
-    /// Hybrid displacement, sign field S_g.
-    Displacement(Displacement),
-    /// Damped, sign field S_g.
-    Damped(Damped),
-    /// Velocity, sign fields S_d and S_v.
-    Velocity(Velocity),
-    /// Compliance in velocity, sign fields S_d and S_v.
-    Compliance(Compliance),
-    /// Newton's restitution, sign fields S_d and S_v.
-    Restitution(Restitution),
-    /// Penalty, sign field S_g.
-    Penalty(Penalty),
-    /// Stop with a force-penetration curve, sign field S_g.
-    Stop(Stop),
+macro_rules! declare {
+    ($($(#[$doc:meta])* $law:ident $given:ident,)*) => {
+        /// A contact law, complete.
+        #[expect(
+            clippy::large_enum_variant,
+            reason = "laws are plain values that are copied; only the curve of a stop is large"
+        )]
+        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum Law {
+            $($(#[$doc])* $law(crate::$law),)*
+        }
+
+        /// A contact law, as chosen in the case file: what it leaves out comes from its surroundings.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(rename_all = "kebab-case")]
+        #[schemars(
+            rename = "Law",
+            description = "A contact law. Gap g is positive when open, pressure p positive in compression, gap rate positive when opening."
+        )]
+        pub enum GivenLaw {
+            $($(#[$doc])* $law(crate::$given),)*
+        }
+
+        impl Law {
+            /// The law behind the choice.
+            pub fn get(&self) -> &dyn ContactLaw {
+                match self {
+                    $(Law::$law(law) => law,)*
+                }
+            }
+        }
+
+        impl GivenLaw {
+            /// The law with its defaults.
+            ///
+            /// # Errors
+            /// A curve that does not increase, or that is too steep.
+            pub fn law(&self, defaults: &Defaults) -> Result<Law, CurveError> {
+                match self {
+                    $(GivenLaw::$law(given) => given.law(defaults).map(Law::$law),)*
+                }
+            }
+        }
+    };
 }
 
+laws!(declare);
+
 impl Law {
-    /// Whether velocity and acceleration are projected when points of this law close.
+    /// [`ContactLaw::projects`].
     pub fn projects(&self) -> bool {
-        matches!(self, Law::Displacement(Displacement { projection: true }))
+        self.get().projects()
     }
 
-    /// The largest penetration of a point that has carried a force, in m, after a step that ended with the gap `gap` in
-    /// m; `before`: the one before the step. Only laws with memory change it.
+    /// [`ContactLaw::crushed`].
     pub fn crushed(&self, before: f64, gap: f64) -> f64 {
-        match self {
-            Law::Stop(stop) => stop.crushed(before, gap),
-            _ => before,
-        }
+        self.get().crushed(before, gap)
     }
 
-    /// Energy that a contact all of whose points have this largest penetration (m) does not give back, J.
+    /// [`ContactLaw::crush_energy`].
     pub fn crush_energy(&self, crush: f64) -> f64 {
-        match self {
-            Law::Stop(stop) => stop.crush_energy(crush),
-            _ => 0.0,
-        }
+        self.get().crush_energy(crush)
     }
 
-    /// Whether it is complementarity of the force and one quantity, for which there is a weak form with a multiplier.
+    /// [`ContactLaw::has_weak_form`].
     pub fn has_weak_form(&self) -> bool {
-        matches!(
-            self,
-            Law::Displacement(Displacement { projection: false }) | Law::Velocity(_)
-        )
+        self.get().has_weak_form()
     }
 
-    /// Whether it gives the force of each point as a continuous function of one quantity there, so that points may be as
-    /// many as one likes. A damper beside a spring is none: its force jumps where the gap closes.
+    /// [`ContactLaw::is_function`].
     pub fn is_function(&self) -> bool {
-        match self {
-            Law::Compliance(_) => true,
-            Law::Penalty(Penalty(law)) => law.damping == 0.0,
-            Law::Stop(law) => law.damping == 0.0,
-            Law::Displacement(_) | Law::Velocity(_) | Law::Restitution(_) | Law::Damped(_) => false,
-        }
-    }
-
-    /// The law behind the choice.
-    pub fn get(&self) -> &dyn ContactLaw {
-        match self {
-            Law::Displacement(law) => law,
-            Law::Damped(law) => law,
-            Law::Velocity(law) => law,
-            Law::Compliance(law) => law,
-            Law::Restitution(law) => law,
-            Law::Penalty(law) => law,
-            Law::Stop(law) => law,
-        }
+        self.get().is_function()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Adhesion, Capture, End, Local, Reading, Relation, Status};
+    use crate::{
+        Adhesion, Capture, Damped, Displacement, End, Local, Reading, Relation, Status, Velocity,
+    };
 
     const LOCAL: Local = Local {
         area: 0.5,

@@ -1,8 +1,9 @@
 //! Newton's restitution: the velocity law with a rebound.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{Capture, ContactLaw, End, Level, Local, Relation, Status};
+use crate::{Capture, ContactLaw, CurveError, Defaults, End, Level, Local, Relation, Status};
 
 /// Newton's restitution in Moreau's form: on closed points, `0 <= ġ₊ + e ġ_k ⟂ P >= 0` with ġ₊ at the END of the step
 /// and ġ_k at its start, where they approach; where they part there, and for e = 0, it is the velocity law.
@@ -23,6 +24,31 @@ pub struct Restitution {
 impl Restitution {
     fn excess(&self, local: &Local) -> f64 {
         self.coefficient * local.rate.min(0.0) + self.capture.excess(local)
+    }
+}
+
+/// The law as the case file gives it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "Newton's restitution.")]
+pub struct GivenRestitution {
+    /// Coefficient e: 0 is the velocity law, 1 the elastic rebound of rigid bodies.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub coefficient: f64,
+    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, otherwise `now`.
+    pub capture: Option<Capture>,
+}
+
+impl GivenRestitution {
+    /// The law with its defaults.
+    ///
+    /// # Errors
+    /// None.
+    pub fn law(&self, defaults: &Defaults) -> Result<Restitution, CurveError> {
+        Ok(Restitution {
+            coefficient: self.coefficient,
+            capture: self.capture.unwrap_or(defaults.capture),
+        })
     }
 }
 

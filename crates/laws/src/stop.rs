@@ -1,17 +1,28 @@
 //! The stop of engineering structures: a clearance, a curve of force over penetration, a dashpot.
 
+use carom_quantities::{Clearance, Damping, Force, Length};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::damped::pressing;
-use crate::{Adhesion, ContactLaw, Curve, End, Level, Local, MOST_CURVE_POINTS, Relation, Status};
+use crate::{
+    Adhesion, ContactLaw, Curve, CurveError, Defaults, End, Level, Local, MOST_CURVE_POINTS,
+    Relation, Status,
+};
 
 /// What becomes of the crush of a stop when it is unloaded.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(description = "What becomes of the crush of a stop.")]
 pub enum Crush {
     /// All of it is given back: unloading follows the curve.
     #[default]
+    #[schemars(description = "Unloading follows the curve; all energy is recovered.")]
     Recovered,
     /// It stays but for the elastic part: unloading follows a line of the initial stiffness.
+    #[schemars(
+        description = "The crush is permanent: unloading and reloading follow a line of the initial stiffness from the point of largest penetration; beyond that point the force follows the curve again. No piece of the curve may be steeper than the first."
+    )]
     Permanent,
 }
 
@@ -46,23 +57,6 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// The largest penetration after a step that ended with the gap `gap` in m, m.
-    pub(crate) fn crushed(&self, before: f64, gap: f64) -> f64 {
-        match self.crush {
-            Crush::Recovered => before,
-            Crush::Permanent => before.max(-(gap + self.clearance)),
-        }
-    }
-
-    /// Energy that the whole contact does not give back after the largest penetration `crush` in m, J.
-    pub(crate) fn crush_energy(&self, crush: f64) -> f64 {
-        if self.crush == Crush::Recovered || self.curve.piece(crush) == 0 {
-            return 0.0;
-        }
-        let force = self.curve.force(crush);
-        self.curve.energy(crush) - 0.5 * force * force / self.curve.stiffness(0)
-    }
-
     /// δ_p in m: where the force begins.
     fn permanent(&self, crush: f64) -> f64 {
         match self.curve.piece(crush) {
@@ -90,6 +84,63 @@ impl Stop {
                 wanted.clamp(below, piece + 1)
             }
             _ => wanted,
+        }
+    }
+}
+
+/// A point of the curve of a stop.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct CurvePoint {
+    /// Penetration, beyond the clearance.
+    pub penetration: Length,
+    /// Force of the whole contact.
+    pub force: Force,
+}
+
+/// The law as the case file gives it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(
+    description = "A stop, for the contact as a whole: its points share the force by their areas."
+)]
+pub struct GivenStop {
+    /// Clearance that is not in the mesh: the stop acts where the gap is below minus this value. Default: 0.
+    pub clearance: Option<Clearance>,
+    /// Points of force over penetration, both increasing. The curve begins at (0, 0), which is not written; it is
+    /// linear between the points and continues beyond the last one. One point gives a spring.
+    #[schemars(extend("minItems" = 1, "maxItems" = MOST_CURVE_POINTS))]
+    pub curve: Vec<CurvePoint>,
+    /// Unloading of the stop.
+    #[serde(default)]
+    pub crush: Crush,
+    /// Dashpot. Default: 0.
+    pub damping: Option<Damping>,
+    /// Treatment of a tensile force of the dashpot.
+    #[serde(default)]
+    pub adhesion: Adhesion,
+}
+
+impl GivenStop {
+    /// The law with its defaults.
+    ///
+    /// # Errors
+    /// A curve that does not increase, or that is too steep.
+    pub fn law(&self, _defaults: &Defaults) -> Result<Stop, CurveError> {
+        let points = self
+            .curve
+            .iter()
+            .map(|point| [point.penetration.0, point.force.0]);
+        let curve = Curve::new(&points.collect::<Vec<_>>())?;
+        match (self.crush, curve.first_steeper()) {
+            (Crush::Permanent, Some(point)) => Err(curve.too_steep(point)),
+            _ => Ok(Stop {
+                clearance: self.clearance.map_or(0.0, |clearance| clearance.0),
+                curve,
+                crush: self.crush,
+                damping: self.damping.map_or(0.0, |damping| damping.0),
+                adhesion: self.adhesion,
+            }),
         }
     }
 }
@@ -159,6 +210,25 @@ impl ContactLaw for Stop {
             Status::Closed => piece(),
             other => other,
         }
+    }
+
+    fn is_function(&self) -> bool {
+        self.damping == 0.0
+    }
+
+    fn crushed(&self, before: f64, gap: f64) -> f64 {
+        match self.crush {
+            Crush::Recovered => before,
+            Crush::Permanent => before.max(-(gap + self.clearance)),
+        }
+    }
+
+    fn crush_energy(&self, crush: f64) -> f64 {
+        if self.crush == Crush::Recovered || self.curve.piece(crush) == 0 {
+            return 0.0;
+        }
+        let force = self.curve.force(crush);
+        self.curve.energy(crush) - 0.5 * force * force / self.curve.stiffness(0)
     }
 
     fn clips(&self) -> bool {

@@ -1,16 +1,27 @@
 //! The velocity law: complementarity of force and gap rate on closed points.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{Capture, ContactLaw, End, Level, Local, Relation, Status};
+use crate::{Capture, ContactLaw, CurveError, Defaults, End, Level, Local, Relation, Status};
 
 /// How the closed field (7.d) of the paper is read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(
+    description = "Which gaps switch the velocity condition on.",
+    rename = "Sign"
+)]
 pub enum Reading {
     /// S_d = 1 where the gap is closed: the meaning.
+    #[default]
+    #[schemars(description = "Closed gaps.")]
     Closed,
     /// S_d = 1 where the gap is open or just touching, as the equation is printed. Bodies then pass through each
     /// other: a negative control for the laboratory, not for use. Only for captures that test a known configuration.
+    #[schemars(
+        description = "Open gaps, as in the printed equation (7.d): bodies pass through each other. For comparison only."
+    )]
     AsPrinted,
 }
 
@@ -27,6 +38,31 @@ pub struct Velocity {
     pub capture: Capture,
     /// How closure is read.
     pub reading: Reading,
+}
+
+/// The law as the case file gives it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "Impenetrability in velocity.")]
+pub struct GivenVelocity {
+    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, otherwise `now`.
+    pub capture: Option<Capture>,
+    /// Gaps at which the condition applies.
+    #[serde(default, rename = "sign")]
+    pub reading: Reading,
+}
+
+impl GivenVelocity {
+    /// The law with its defaults.
+    ///
+    /// # Errors
+    /// None.
+    pub fn law(&self, defaults: &Defaults) -> Result<Velocity, CurveError> {
+        Ok(Velocity {
+            capture: self.capture.unwrap_or(defaults.capture),
+            reading: self.reading,
+        })
+    }
 }
 
 impl ContactLaw for Velocity {
@@ -63,6 +99,10 @@ impl ContactLaw for Velocity {
     fn status(&self, now: Status, end: &End, local: &Local, _reversals: u32) -> Status {
         let excess = self.capture.excess(local);
         self.capture.status(now, end, local, excess)
+    }
+
+    fn has_weak_form(&self) -> bool {
+        true
     }
 
     fn clips(&self) -> bool {

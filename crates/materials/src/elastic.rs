@@ -1,8 +1,12 @@
 //! Isotropic linear elasticity at small strain.
 
 use carom_algebra::tensor::Mat3;
+use carom_quantities::{Density, Modulus};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::range::{OutOfRange, require};
+use crate::{Material, Parameters};
 
 /// How the directions outside the plane (or beside the axis) of a model behave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,22 +20,33 @@ pub enum Plane {
 }
 
 /// Isotropic linear elastic material, σ = λ tr(ε) I + 2 μ ε.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(description = "Moduli of isotropic elasticity; for laws at finite strain those of the undeformed material.", extend("additionalProperties" = false))]
 pub struct Elastic {
-    /// Mass density in kg/m³, positive.
+    /// Mass density, kg/m³. The case file has it beside the law, not in it.
+    #[serde(deserialize_with = "Density::si")]
+    #[schemars(skip)]
     pub density: f64,
-    /// Young's modulus E in Pa, positive.
+    /// Young's modulus E, Pa.
+    #[serde(deserialize_with = "Modulus::si")]
+    #[schemars(with = "Modulus", description = "Young's modulus.")]
     pub young: f64,
-    /// Poisson's ratio ν, in ]-1, 0.5[.
+    /// Poisson's ratio. It does not matter for bars, whose sides are free.
+    #[schemars(extend("exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
     pub poisson: f64,
 }
 
-impl Elastic {
-    /// Names a parameter outside its range.
-    ///
-    /// # Errors
-    /// The first such parameter.
-    pub fn check(&self) -> Result<(), OutOfRange> {
+impl Parameters for Elastic {
+    fn finite(&self) -> Option<&dyn Material> {
+        None
+    }
+
+    fn undeformed(&self) -> Elastic {
+        *self
+    }
+
+    fn check(&self) -> Result<(), OutOfRange> {
         let nu = self.poisson;
         require("density", self.density, self.density > 0.0, "positive")?;
         require("young", self.young, self.young > 0.0, "positive")?;
@@ -42,7 +57,9 @@ impl Elastic {
             "greater than -1 and less than 0.5",
         )
     }
+}
 
+impl Elastic {
     /// Shear modulus μ = E / (2 (1 + ν)), in Pa.
     pub fn shear_modulus(&self) -> f64 {
         self.young / (2.0 * (1.0 + self.poisson))

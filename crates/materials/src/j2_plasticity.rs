@@ -1,11 +1,14 @@
 //! Metal plasticity at finite strain.
 
 use carom_algebra::tensor::Mat3;
+use carom_quantities::{Modulus, Stress};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::lagrange::{cofactor, pack, positive, unpack};
 use crate::range::{OutOfRange, require};
 use crate::spectral::spectral;
-use crate::{Conserving, Elastic, Failure, Material, Plane, Response, Tangent, Want};
+use crate::{Conserving, Elastic, Failure, Material, Parameters, Plane, Response, Tangent, Want};
 
 /// J2 (von Mises) plasticity with linear isotropic hardening, in logarithmic strain.
 ///
@@ -19,14 +22,58 @@ use crate::{Conserving, Elastic, Failure, Material, Plane, Response, Tangent, Wa
 /// Stored: ψ; in hardening H ε_p²/2; dissipated in a step σ_y Δε_p. The history is C_p⁻¹ - I (11, 22, 33, 12, 23, 13) and ε_p.
 /// The method is that of Simo (1992), Comput. Methods Appl. Mech. Eng. 99, 61, and of de Souza Neto, Perić and Owen (2008),
 /// Computational Methods for Plasticity, chapters 7 and 14; the formulas here are derived from it, not taken over.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(description = "Von Mises plasticity.", extend("additionalProperties" = false))]
 pub struct J2Plasticity {
     /// The law at small elastic strain, with the density.
+    #[serde(flatten)]
     pub initial: Elastic,
-    /// Yield stress σ_y in Pa, positive.
+    /// Yield stress σ_y of the virgin material, Pa.
+    #[serde(deserialize_with = "Modulus::si")]
+    #[schemars(with = "Modulus", description = "Yield stress of the virgin material.")]
     pub yield_stress: f64,
-    /// Hardening modulus H in Pa, not negative: slope of the yield stress over the plastic strain.
+    /// Hardening modulus H in Pa: slope of the yield stress over the plastic strain.
+    #[serde(deserialize_with = "Stress::si")]
+    #[schemars(
+        with = "Stress",
+        description = "Yield stress gained per unit of plastic strain."
+    )]
     pub hardening: f64,
+}
+
+impl Parameters for J2Plasticity {
+    fn finite(&self) -> Option<&dyn Material> {
+        Some(self)
+    }
+
+    fn undeformed(&self) -> Elastic {
+        self.initial
+    }
+
+    fn check(&self) -> Result<(), OutOfRange> {
+        self.initial.check()?;
+        require(
+            "yield-stress",
+            self.yield_stress,
+            self.yield_stress > 0.0,
+            "positive",
+        )?;
+        require(
+            "hardening",
+            self.hardening,
+            self.hardening >= 0.0,
+            "zero or positive",
+        )
+    }
+
+    fn dissipates(&self) -> bool {
+        true
+    }
+
+    fn plastic_strain(&self, history: &[f64]) -> Option<f64> {
+        Some(J2Plasticity::plastic_strain(history))
+    }
 }
 
 /// The state at the end of a step, in the principal axes of the trial b_e.
@@ -50,26 +97,6 @@ struct Return {
 }
 
 impl J2Plasticity {
-    /// Names a parameter outside its range.
-    ///
-    /// # Errors
-    /// The first such parameter.
-    pub fn check(&self) -> Result<(), OutOfRange> {
-        self.initial.check()?;
-        require(
-            "yield-stress",
-            self.yield_stress,
-            self.yield_stress > 0.0,
-            "positive",
-        )?;
-        require(
-            "hardening",
-            self.hardening,
-            self.hardening >= 0.0,
-            "zero or positive",
-        )
-    }
-
     /// ε_p of the history of a point.
     pub fn plastic_strain(history: &[f64]) -> f64 {
         history[6]

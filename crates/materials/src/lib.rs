@@ -1,4 +1,28 @@
 //! Constitutive laws at one point: numbers in, numbers out. A law sees a strain, never a shape function.
+//!
+//! Adding a material: one file, and its lines here.
+
+/// The list of materials: each with what the case file says of it, and its key there.
+macro_rules! materials {
+    ($declare:ident) => {
+        $declare! {
+            /// Linear isotropic elasticity, small strain.
+            Elastic "elastic",
+            /// St Venant-Kirchhoff elasticity: linear between second Piola-Kirchhoff stress and Green-Lagrange strain. Large rotations,
+            /// moderate strains; it softens in compression.
+            StVenantKirchhoff "st-venant-kirchhoff",
+            /// Compressible neo-Hookean elasticity.
+            NeoHooke "neo-hooke",
+            /// Compressible Mooney-Rivlin elasticity.
+            MooneyRivlin "mooney-rivlin",
+            /// Von Mises plasticity in logarithmic strain, with linear isotropic hardening.
+            J2Plasticity "j2",
+            /// Linear viscoelasticity: a spring beside branches of spring and dashpot in shear. Moderate strains. The moduli are
+            /// the instantaneous ones, before relaxation.
+            Maxwell "maxwell",
+        }
+    };
+}
 
 mod elastic;
 mod hyperelastic;
@@ -9,6 +33,7 @@ mod material;
 mod maxwell;
 mod mooney_rivlin;
 mod neo_hooke;
+mod parameters;
 mod range;
 mod spectral;
 mod st_venant_kirchhoff;
@@ -20,5 +45,6 @@ pub use material::{Conserving, Failure, Material, Response, Tangent, Want};
 pub use maxwell::{Branch, MAX_BRANCHES, Maxwell};
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hooke::NeoHooke;
+pub use parameters::Parameters;
 pub use range::OutOfRange;
 pub use st_venant_kirchhoff::StVenantKirchhoff;

@@ -1,26 +1,36 @@
-//! The list of materials.
+//! The choice of a material.
 
-use crate::{
-    Elastic, J2Plasticity, Material, Maxwell, MooneyRivlin, NeoHooke, OutOfRange, Plane,
-    StVenantKirchhoff,
-};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-/// A material, as chosen in the case file.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Law {
-    /// Linear elasticity at small strain: no law at finite strain.
-    Elastic(Elastic),
-    /// St Venant-Kirchhoff elasticity.
-    StVenantKirchhoff(StVenantKirchhoff),
-    /// Compressible neo-Hookean elasticity.
-    NeoHooke(NeoHooke),
-    /// Compressible Mooney-Rivlin elasticity.
-    MooneyRivlin(MooneyRivlin),
-    /// J2 plasticity with linear isotropic hardening.
-    J2Plasticity(J2Plasticity),
-    /// Generalised Maxwell viscoelasticity.
-    Maxwell(Maxwell),
+use crate::{Elastic, Material, OutOfRange, Parameters, Plane};
+
+macro_rules! declare {
+    ($($(#[$doc:meta])* $law:ident $key:literal,)*) => {
+        /// A material, as chosen in the case file.
+        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        pub enum Law {
+            $($(#[$doc])* #[serde(rename = $key)] $law(crate::$law),)*
+        }
+
+        impl Law {
+            /// Key in the case file.
+            pub fn key(&self) -> &'static str {
+                match self {
+                    $(Law::$law(_) => $key,)*
+                }
+            }
+
+            fn parameters(&self) -> &dyn Parameters {
+                match self {
+                    $(Law::$law(law) => law,)*
+                }
+            }
+        }
+    };
 }
+
+materials!(declare);
 
 impl From<Elastic> for Law {
     fn from(elastic: Elastic) -> Law {
@@ -31,26 +41,12 @@ impl From<Elastic> for Law {
 impl Law {
     /// The law at finite strain behind the choice; none for small strain.
     pub fn finite(&self) -> Option<&dyn Material> {
-        match self {
-            Law::Elastic(_) => None,
-            Law::StVenantKirchhoff(law) => Some(law),
-            Law::NeoHooke(law) => Some(law),
-            Law::MooneyRivlin(law) => Some(law),
-            Law::J2Plasticity(law) => Some(law),
-            Law::Maxwell(law) => Some(law),
-        }
+        self.parameters().finite()
     }
 
     /// Linear elasticity of the undeformed material.
     pub fn initial(&self) -> Elastic {
-        match self {
-            Law::Elastic(elastic) => *elastic,
-            Law::StVenantKirchhoff(law) => law.initial,
-            Law::NeoHooke(law) => law.initial,
-            Law::MooneyRivlin(law) => Material::initial(law),
-            Law::J2Plasticity(law) => law.initial,
-            Law::Maxwell(law) => law.initial,
-        }
+        self.parameters().undeformed()
     }
 
     /// Names a parameter outside its range.
@@ -58,22 +54,17 @@ impl Law {
     /// # Errors
     /// The first such parameter.
     pub fn check(&self) -> Result<(), OutOfRange> {
-        match self {
-            Law::Elastic(elastic) => elastic.check(),
-            Law::StVenantKirchhoff(law) => law.initial.check(),
-            Law::NeoHooke(law) => law.initial.check(),
-            Law::MooneyRivlin(law) => law.check(),
-            Law::J2Plasticity(law) => law.check(),
-            Law::Maxwell(law) => law.check(),
-        }
+        self.parameters().check()
+    }
+
+    /// Whether it dissipates: its stress is then not the derivative of a stored energy alone.
+    pub fn dissipates(&self) -> bool {
+        self.parameters().dissipates()
     }
 
     /// Equivalent plastic strain in the history of a point, without unit; none of a law without plasticity.
     pub fn plastic_strain(&self, history: &[f64]) -> Option<f64> {
-        match self {
-            Law::J2Plasticity(_) => Some(J2Plasticity::plastic_strain(history)),
-            _ => None,
-        }
+        self.parameters().plastic_strain(history)
     }
 
     /// Mass density in kg/m³.

@@ -1,20 +1,32 @@
 //! Linear viscoelasticity at finite strain.
 
 use carom_algebra::tensor::Mat3;
+use carom_quantities::Duration;
+use schemars::JsonSchema;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::lagrange::{Moduli, add_geometric, green_lagrange, pack, positive, unpack};
 use crate::range::{OutOfRange, require};
-use crate::{Conserving, Elastic, Failure, Material, Plane, Response, Want};
+use crate::{Conserving, Elastic, Failure, Material, Parameters, Plane, Response, Want};
 
 /// Most branches of a [`Maxwell`] material.
 pub const MAX_BRANCHES: usize = 4;
 
 /// A spring and a dashpot in series.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(description = "A spring and a dashpot in series.", extend("additionalProperties" = false))]
 pub struct Branch {
-    /// Part of the instantaneous shear modulus that relaxes in this branch, in ]0, 1[.
+    /// Fraction of the instantaneous shear modulus that relaxes in this branch.
+    #[schemars(
+        description = "Fraction of the shear modulus that relaxes in this branch.",
+        extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0)
+    )]
     pub ratio: f64,
-    /// Relaxation time in s, positive.
+    /// Relaxation time, s.
+    #[serde(deserialize_with = "Duration::si")]
+    #[schemars(with = "Duration", description = "Relaxation time.")]
     pub time: f64,
 }
 
@@ -29,12 +41,62 @@ pub struct Branch {
 /// that grows evenly over it, and its dissipation is the exact integral. At once, and at last, this is St Venant-Kirchhoff
 /// elasticity, with its limit to moderate strains. The history is e and all x_i (11, 22, 33, 12, 23, 13).
 /// Simo and Hughes (1998), Computational Inelasticity, chapter 10.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(description = "Linear viscoelasticity.", extend("additionalProperties" = false))]
 pub struct Maxwell {
     /// Instantaneous law at small strain, with the density.
+    #[serde(flatten)]
     pub initial: Elastic,
-    /// The branches; their ratios sum to less than one.
+    /// Branches; the sum of their ratios is less than 1.
+    #[serde(serialize_with = "listed", deserialize_with = "list")]
+    #[schemars(with = "Vec<Branch>", extend("minItems" = 1, "maxItems" = MAX_BRANCHES))]
     pub branches: [Option<Branch>; MAX_BRANCHES],
+}
+
+impl Parameters for Maxwell {
+    fn finite(&self) -> Option<&dyn Material> {
+        Some(self)
+    }
+
+    fn undeformed(&self) -> Elastic {
+        self.initial
+    }
+
+    fn check(&self) -> Result<(), OutOfRange> {
+        self.initial.check()?;
+        for branch in self.branches.iter().flatten() {
+            require("ratio", branch.ratio, branch.ratio > 0.0, "positive")?;
+            require("time", branch.time, branch.time > 0.0, "positive")?;
+        }
+        let sum = 1.0 - self.lasting();
+        require("sum of the ratios", sum, sum < 1.0, "less than 1")
+    }
+
+    fn dissipates(&self) -> bool {
+        true
+    }
+}
+
+/// Writes the branches as a list.
+fn listed<S: Serializer>(
+    branches: &[Option<Branch>; MAX_BRANCHES],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(branches.iter().flatten())
+}
+
+/// Reads a list of branches.
+fn list<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<[Option<Branch>; MAX_BRANCHES], D::Error> {
+    let given = Vec::<Branch>::deserialize(deserializer)?;
+    if given.len() > MAX_BRANCHES {
+        return Err(D::Error::custom(format!(
+            "more than {MAX_BRANCHES} branches"
+        )));
+    }
+    Ok(std::array::from_fn(|branch| given.get(branch).copied()))
 }
 
 /// A branch over a step of h = dt/τ: x_1 = decay x_0 + gain (e_1 - e_0), and the integral of x:x over the time in units of τ,
@@ -75,20 +137,6 @@ impl Relaxation {
 }
 
 impl Maxwell {
-    /// Names a parameter outside its range.
-    ///
-    /// # Errors
-    /// The first such parameter.
-    pub fn check(&self) -> Result<(), OutOfRange> {
-        self.initial.check()?;
-        for branch in self.branches.iter().flatten() {
-            require("ratio", branch.ratio, branch.ratio > 0.0, "positive")?;
-            require("time", branch.time, branch.time > 0.0, "positive")?;
-        }
-        let sum = 1.0 - self.lasting();
-        require("sum of the ratios", sum, sum < 1.0, "less than 1")
-    }
-
     /// 1 - Σ g_i.
     fn lasting(&self) -> f64 {
         let ratios = self.branches.iter().flatten().map(|branch| branch.ratio);

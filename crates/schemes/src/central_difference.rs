@@ -1,5 +1,6 @@
 //! Central differences with lumped mass.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::{Impulse, Row, StepMap};
@@ -15,8 +16,10 @@ use crate::{EnergyIdentity, TimeScheme};
 /// Stable for dt < 2/ω. Energy identity as Newmark's with β = 0, γ = ½: the scheme conserves E - dt²/8 |a|²_M.
 ///
 /// Source: Fekak, Brun, Gravouil, Depale, Computational Mechanics 60 (2017), the CD-Lagrange scheme.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CentralDifference;
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "Central difference.")]
+pub struct CentralDifference {}
 
 impl TimeScheme for CentralDifference {
     fn name(&self) -> &'static str {
@@ -83,5 +86,9 @@ impl TimeScheme for CentralDifference {
 
     fn critical(&self) -> Option<f64> {
         Some(2.0)
+    }
+
+    fn link_weights(&self) -> Option<[f64; 2]> {
+        Some([0.0, 1.0])
     }
 }

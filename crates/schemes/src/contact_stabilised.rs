@@ -1,6 +1,7 @@
 //! The contact-stabilised Newmark scheme.
 
 use carom_laws::Level;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::{Impulse, Row, StepMap};
@@ -22,8 +23,10 @@ use crate::{EnergyIdentity, TimeScheme};
 ///
 /// Source: Deuflhard, Krause, Ertel, International Journal for Numerical Methods in Engineering 73 (2008) 1274, whose text
 /// was not at hand: the stages are those of the later literature on the scheme, and the identity is derived here.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ContactStabilised;
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The contact-stabilised Newmark scheme.")]
+pub struct ContactStabilised {}
 
 impl TimeScheme for ContactStabilised {
     fn name(&self) -> &'static str {

@@ -1,5 +1,6 @@
 //! Energy and momentum conserved, for large transformations.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::{Row, StepMap};
@@ -19,8 +20,10 @@ use crate::{EnergyIdentity, Theta, TimeScheme};
 /// Source: Simo, Tarnow, Zeitschrift für angewandte Mathematik und Physik 43 (1992) 757; Gonzalez, Computer Methods in
 /// Applied Mechanics and Engineering 190 (2000) 1763; contact after Laursen, Chawla, International Journal for Numerical
 /// Methods in Engineering 40 (1997) 863. Their texts were not at hand.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EnergyMomentum;
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The energy-momentum scheme.")]
+pub struct EnergyMomentum {}
 
 const MID_POINT: Theta = Theta { theta: 0.5 };
 
@@ -61,5 +64,9 @@ impl TimeScheme for EnergyMomentum {
 
     fn is_between(&self) -> bool {
         true
+    }
+
+    fn link_weights(&self) -> Option<[f64; 2]> {
+        Some([0.5, 0.5])
     }
 }

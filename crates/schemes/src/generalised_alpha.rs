@@ -1,5 +1,6 @@
 //! The generalised-alpha scheme.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::{Impulse, Row, StepMap};
@@ -23,10 +24,19 @@ use crate::{EnergyIdentity, TimeScheme};
 /// Source: Chung, Hulbert, Journal of Applied Mechanics 60 (1993) 371; the energy of such schemes is the subject of
 /// Krenk (2006) and of Acary, INRIA report 8602 (2014). Of the papers only the abstracts were at hand; the identity is
 /// derived here.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The generalised-alpha scheme.")]
 pub struct GeneralisedAlpha {
-    /// ρ∞ in [0, 1].
+    /// Spectral radius at infinite frequency: 1 damps nothing, 0 most.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
     pub rho_inf: f64,
+}
+
+impl Default for GeneralisedAlpha {
+    fn default() -> GeneralisedAlpha {
+        GeneralisedAlpha { rho_inf: 0.8 }
+    }
 }
 
 impl TimeScheme for GeneralisedAlpha {

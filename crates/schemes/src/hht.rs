@@ -1,5 +1,6 @@
 //! The scheme of Hilber, Hughes and Taylor.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::generalised_alpha::Averaged;
@@ -17,10 +18,20 @@ use crate::{EnergyIdentity, TimeScheme};
 ///
 /// Source: Hilber, Hughes, Taylor, Earthquake Engineering and Structural Dynamics 5 (1977) 283; the paper's text was not
 /// at hand.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The scheme of Hilber, Hughes and Taylor.")]
 pub struct Hht {
-    /// α in [-⅓, 0].
+    /// Internal forces are evaluated at (1 + alpha) u+ - alpha u: 0 damps nothing, -1/3 most. Some authors define alpha
+    /// with the opposite sign.
+    #[schemars(extend("minimum" = -1.0 / 3.0, "maximum" = 0.0))]
     pub alpha: f64,
+}
+
+impl Default for Hht {
+    fn default() -> Hht {
+        Hht { alpha: -0.1 }
+    }
 }
 
 impl Hht {

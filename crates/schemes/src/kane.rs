@@ -1,6 +1,7 @@
 //! The scheme of Kane, Repetto, Ortiz and Marsden.
 
 use carom_laws::Level;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::{Impulse, Row, StepMap};
@@ -21,12 +22,25 @@ use crate::{EnergyIdentity, Newmark, TimeScheme};
 ///
 /// Source: Kane, Repetto, Ortiz, Marsden, Computer Methods in Applied Mechanics and Engineering 180 (1999) 1, whose text
 /// was not at hand; the identity is derived here.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The scheme of Kane, Repetto, Ortiz and Marsden.")]
 pub struct Kane {
-    /// β, positive.
+    /// Weight of the end acceleration in the displacement, as in Newmark's scheme.
+    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))]
     pub beta: f64,
-    /// γ, at least ½ for stability.
+    /// Weight of the end acceleration in the velocity, as in Newmark's scheme.
+    #[schemars(extend("minimum" = 0.5, "maximum" = 1.0))]
     pub gamma: f64,
+}
+
+impl Default for Kane {
+    fn default() -> Kane {
+        Kane {
+            beta: 0.25,
+            gamma: 0.5,
+        }
+    }
 }
 
 impl TimeScheme for Kane {

@@ -1,5 +1,6 @@
 //! A scheme in extended state space after Krenk.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::{Impulse, Row, StepMap};
@@ -25,10 +26,19 @@ use crate::{EnergyIdentity, TimeScheme};
 /// Source: Krenk, International Journal for Numerical Methods in Engineering 73 (2008) 1767, whose text was not at hand:
 /// extended state space, first-order filters and balance are its ideas; equations, parameters and identity are derived
 /// here, so that its own parameters may differ. Contact, with the force of the step in the balance, is ours.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The scheme in extended state space after Krenk.")]
 pub struct Krenk {
-    /// ρ∞ in [0, 1].
+    /// Spectral radius at infinite frequency: 1 damps nothing, 0 most.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
     pub rho_inf: f64,
+}
+
+impl Default for Krenk {
+    fn default() -> Krenk {
+        Krenk { rho_inf: 0.8 }
+    }
 }
 
 impl Krenk {

@@ -1,5 +1,6 @@
 //! The energy-conserving contact of Laursen and Chawla.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::{Row, StepMap};
@@ -19,8 +20,10 @@ use crate::{EnergyIdentity, Theta, TimeScheme};
 ///
 /// Source: Laursen, Chawla, International Journal for Numerical Methods in Engineering 40 (1997) 863, whose text was not
 /// at hand; for small displacements, where their discrete gap rate is (g₊ - g)/dt.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LaursenChawla;
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The scheme of Laursen and Chawla.")]
+pub struct LaursenChawla {}
 
 const MID_POINT: Theta = Theta { theta: 0.5 };
 

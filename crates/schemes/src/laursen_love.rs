@@ -1,6 +1,7 @@
 //! The energy-conserving scheme with admissible displacements of Laursen and Love.
 
 use carom_laws::Level;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::StepMap;
@@ -25,8 +26,10 @@ use crate::{EnergyIdentity, Theta, TimeScheme};
 /// Source: Laursen, Love, International Journal for Numerical Methods in Engineering 53 (2002) 245, whose text was
 /// not at hand. Later literature says of it: admissible displacements, and an update of the velocity after the step that
 /// makes conservation exact in each point. The equations of the update, its uniqueness and the identity are derived here.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LaursenLove;
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The scheme of Laursen and Love.")]
+pub struct LaursenLove {}
 
 const MID_POINT: Theta = Theta { theta: 0.5 };
 

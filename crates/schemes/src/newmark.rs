@@ -1,5 +1,6 @@
 //! Newmark's family.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::{Impulse, Row, StepMap};
@@ -17,12 +18,25 @@ use crate::{EnergyIdentity, TimeScheme};
 /// Energy identity with b = β - γ/2: `Δ(E + b dt²/2 |a|²_M) = Δu · ((1 - γ) F_k + γ F_{k+1}) - (γ - ½)(|Δu|²_K + b dt² |Δa|²_M)`.
 ///
 /// Source: Newmark (1959); Ben Dhia et al. (2003), equation (5), whose (α, β) are our (β, γ).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "Newmark's scheme.")]
 pub struct Newmark {
-    /// β, positive.
+    /// Weight of the end acceleration in the displacement.
+    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))]
     pub beta: f64,
-    /// γ, at least ½ for stability.
+    /// Weight of the end acceleration in the velocity. Stable at any step for gamma >= 1/2 and 2 beta >= gamma.
+    #[schemars(extend("minimum" = 0.5, "maximum" = 1.0))]
     pub gamma: f64,
+}
+
+impl Default for Newmark {
+    fn default() -> Newmark {
+        Newmark {
+            beta: 0.25,
+            gamma: 0.5,
+        }
+    }
 }
 
 impl TimeScheme for Newmark {
@@ -88,5 +102,22 @@ impl TimeScheme for Newmark {
 
     fn critical(&self) -> Option<f64> {
         None
+    }
+
+    fn link_weights(&self) -> Option<[f64; 2]> {
+        Some([0.0, 1.0])
+    }
+
+    fn usual() -> Vec<Newmark> {
+        vec![
+            Newmark {
+                beta: 0.25,
+                gamma: 0.5,
+            },
+            Newmark {
+                beta: 0.49,
+                gamma: 0.9,
+            },
+        ]
     }
 }

@@ -1,6 +1,7 @@
 //! The nonsmooth generalised-alpha scheme.
 
 use carom_laws::Level;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::generalised_alpha::Averaged;
@@ -33,10 +34,19 @@ use crate::{EnergyIdentity, TimeScheme};
 /// Source: Chen, Acary, Virlez, Brüls, International Journal for Numerical Methods in Engineering 96 (2013) 487, whose
 /// text was not at hand: the formulas are those of the later literature on the scheme (Acary, INRIA report 8602, 2014), and
 /// the form with y and the identity are derived here.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The nonsmooth generalised-alpha scheme.")]
 pub struct NonsmoothAlpha {
-    /// ρ∞ in [0, 1].
+    /// Spectral radius at infinite frequency of the smooth motion: 1 damps nothing, 0 most.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
     pub rho_inf: f64,
+}
+
+impl Default for NonsmoothAlpha {
+    fn default() -> NonsmoothAlpha {
+        NonsmoothAlpha { rho_inf: 0.8 }
+    }
 }
 
 impl TimeScheme for NonsmoothAlpha {

@@ -1,6 +1,7 @@
 //! The two-step scheme of Paoli and Schatzman.
 
 use carom_laws::Level;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::{Impulse, Row, StepMap};
@@ -24,10 +25,20 @@ use crate::{EnergyIdentity, TimeScheme};
 ///
 /// Source: Paoli, Schatzman, SIAM Journal on Numerical Analysis 40 (2002) 702, whose text was not at hand; internal
 /// forces as weighted by the project's table of bars.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The scheme of Paoli and Schatzman.")]
 pub struct PaoliSchatzman {
-    /// e in [0, 1].
+    /// Restitution e of bodies that are rigid during a step; the displacement law applies to (u+ + e u-)/(1 + e). A
+    /// value above 0 requires the displacement law.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
     pub restitution: f64,
+}
+
+impl Default for PaoliSchatzman {
+    fn default() -> PaoliSchatzman {
+        PaoliSchatzman { restitution: 0.0 }
+    }
 }
 
 impl TimeScheme for PaoliSchatzman {
@@ -97,5 +108,12 @@ impl TimeScheme for PaoliSchatzman {
 
     fn takes(&self, level: Level) -> bool {
         level == Level::Gap || self.restitution == 0.0
+    }
+
+    fn usual() -> Vec<PaoliSchatzman> {
+        vec![
+            PaoliSchatzman { restitution: 0.0 },
+            PaoliSchatzman { restitution: 0.5 },
+        ]
     }
 }

@@ -81,6 +81,18 @@ pub trait TimeScheme {
     fn is_between(&self) -> bool {
         false
     }
+    /// Weights of the multipliers of links at the start and the end of a step in the force that the momentum balance sees;
+    /// `None` of schemes that no link takes.
+    fn link_weights(&self) -> Option<[f64; 2]> {
+        None
+    }
+    /// Parameters with which the batteries run over the scheme.
+    fn usual() -> Vec<Self>
+    where
+        Self: Sized + Default,
+    {
+        vec![Self::default()]
+    }
     /// Whether a contact law that constrains this quantity can hold.
     fn takes(&self, level: Level) -> bool {
         !(self.is_explicit() && level == Level::Gap)

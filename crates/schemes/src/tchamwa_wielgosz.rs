@@ -1,5 +1,6 @@
 //! The explicit scheme of Tchamwa and Wielgosz.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::{Impulse, Row, StepMap};
@@ -21,10 +22,20 @@ use crate::{EnergyIdentity, TimeScheme};
 ///
 /// Source: Tchamwa, Conway, Wielgosz, ASME Recent Advances in Solids and Structures (1999); the paper's text was not at
 /// hand, damping, limits and identity are derived here.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The scheme of Tchamwa and Wielgosz.")]
 pub struct TchamwaWielgosz {
-    /// φ, at least 1.
+    /// Factor of dt² a in the displacement: 1 damps nothing; the damping ratio is (phi - 1) omega dt / 2, and the critical
+    /// step 2 / (omega sqrt(2 phi - 1)).
+    #[schemars(extend("minimum" = 1.0, "maximum" = 2.0))]
     pub phi: f64,
+}
+
+impl Default for TchamwaWielgosz {
+    fn default() -> TchamwaWielgosz {
+        TchamwaWielgosz { phi: 1.033 }
+    }
 }
 
 impl TimeScheme for TchamwaWielgosz {

@@ -1,5 +1,6 @@
 //! The theta scheme in velocities.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::step_map::{Impulse, Row, StepMap};
@@ -17,10 +18,19 @@ use crate::{EnergyIdentity, TimeScheme};
 /// `Δu = dt (v̄ + ½α Δv)`, is this one with θ = (1 + α)/2.
 ///
 /// Source: Ben Dhia et al. (2003), equation (7) and Remark 2; Moreau (1988), Jean (1999).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(description = "The theta scheme.")]
 pub struct Theta {
-    /// θ in [½, 1].
+    /// Weight of the end of the step: 1/2 conserves energy, 1 damps most.
+    #[schemars(extend("minimum" = 0.5, "maximum" = 1.0))]
     pub theta: f64,
+}
+
+impl Default for Theta {
+    fn default() -> Theta {
+        Theta { theta: 0.5 }
+    }
 }
 
 impl TimeScheme for Theta {
@@ -87,5 +97,13 @@ impl TimeScheme for Theta {
 
     fn critical(&self) -> Option<f64> {
         None
+    }
+
+    fn link_weights(&self) -> Option<[f64; 2]> {
+        Some([1.0 - self.theta, self.theta])
+    }
+
+    fn usual() -> Vec<Theta> {
+        vec![Theta { theta: 0.5 }, Theta { theta: 0.75 }]
     }
 }

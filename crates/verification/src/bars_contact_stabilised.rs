@@ -20,7 +20,7 @@ use crate::build::DISPLACEMENT;
 use crate::check::{Check, Row};
 use crate::figures::run;
 
-const SCHEME: Scheme = Scheme::ContactStabilised(ContactStabilised);
+const SCHEME: Scheme = Scheme::ContactStabilised(ContactStabilised {});
 
 const GROWTH: &str = "growth of the energy in a step / E0";
 

@@ -65,7 +65,7 @@ fn table(rows: &mut Vec<Row>) -> Result<(), Error> {
 
 fn mean_rate(rows: &mut Vec<Row>) -> Result<(), Error> {
     for (name, law) in [("now", NOW), ("half", HALF)] {
-        let (_, figures) = run(&case(Scheme::LaursenChawla(LaursenChawla), law))?;
+        let (_, figures) = run(&case(Scheme::LaursenChawla(LaursenChawla {}), law))?;
         let name = format!("Laursen-Chawla, {name}");
         rows.extend(figures.balances(&name));
         let row = |what: &str| format!("{name}: {what}");

@@ -24,7 +24,7 @@ use crate::build::{DISPLACEMENT, HALF, NOW, theta};
 use crate::check::{Check, Row};
 use crate::figures::{History, run};
 
-const LOVE: Scheme = Scheme::LaursenLove(LaursenLove);
+const LOVE: Scheme = Scheme::LaursenLove(LaursenLove {});
 
 fn nonsmooth(rho_inf: f64) -> Scheme {
     Scheme::NonsmoothAlpha(NonsmoothAlpha { rho_inf })

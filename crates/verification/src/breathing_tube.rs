@@ -70,7 +70,7 @@ impl Tube {
             supports: Vec::new(),
             gravity: [0.0; 3],
             contacts: Vec::new(),
-            scheme: Scheme::EnergyMomentum(EnergyMomentum),
+            scheme: Scheme::EnergyMomentum(EnergyMomentum {}),
             dt: self.dt,
             adaptive: None,
             nonlinear: Nonlinear::default(),

@@ -25,7 +25,7 @@ pub(crate) fn newmark(beta: f64, gamma: f64) -> Scheme {
 pub(crate) const PAPER_SETS: [[f64; 2]; 3] = [[0.25, 0.5], [0.5, 0.5], [0.49, 0.9]];
 
 /// Central differences.
-pub(crate) const CENTRAL: Scheme = Scheme::CentralDifference(CentralDifference);
+pub(crate) const CENTRAL: Scheme = Scheme::CentralDifference(CentralDifference {});
 
 /// The displacement law.
 pub(crate) const DISPLACEMENT: Law = Law::Displacement(Displacement { projection: false });

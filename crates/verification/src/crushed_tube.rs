@@ -65,7 +65,7 @@ fn newton(mesh: &str, facing_itself: bool) -> Result<Driver, Error> {
         bodies: vec![tube],
         supports: Vec::new(),
         gravity: [0.0; 3],
-        scheme: Scheme::EnergyMomentum(EnergyMomentum),
+        scheme: Scheme::EnergyMomentum(EnergyMomentum {}),
         dt: STEP,
         adaptive: None,
         nonlinear: Nonlinear::default(),

@@ -24,7 +24,7 @@ use crate::Error;
 use crate::build::{glued, newmark, plane_motion, theta};
 use crate::check::{Check, Row, Size};
 
-const BETWEEN: Scheme = Scheme::EnergyMomentum(EnergyMomentum);
+const BETWEEN: Scheme = Scheme::EnergyMomentum(EnergyMomentum {});
 
 const MATERIAL: Elastic = Elastic {
     density: 1.0,

@@ -194,7 +194,7 @@ pub(crate) const CHECK: Check = Check {
             },
             Spheres {
                 name: "neo-Hooke, energy-momentum, mortar",
-                scheme: Scheme::EnergyMomentum(EnergyMomentum),
+                scheme: Scheme::EnergyMomentum(EnergyMomentum {}),
                 material: Material::NeoHooke(NeoHooke { initial: MATERIAL }),
                 found: None,
                 ..dual

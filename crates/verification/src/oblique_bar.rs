@@ -232,7 +232,7 @@ pub(crate) const CHECK: Check = Check {
         for (name, scheme, law, keeps) in [
             (
                 "energy-momentum, velocity law",
-                Scheme::EnergyMomentum(EnergyMomentum),
+                Scheme::EnergyMomentum(EnergyMomentum {}),
                 NOW,
                 true,
             ),

@@ -172,7 +172,7 @@ fn runs() -> [(&'static str, &'static str, Scheme, Law); 6] {
 }
 
 fn energy_momentum(mesh: &'static str, steps: usize) -> Result<Collided, Error> {
-    collide(mesh, steps, Scheme::EnergyMomentum(EnergyMomentum), NOW)
+    collide(mesh, steps, Scheme::EnergyMomentum(EnergyMomentum {}), NOW)
 }
 
 /// Facts of the run that keeps everything.

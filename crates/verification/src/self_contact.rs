@@ -31,7 +31,7 @@ use crate::kept::Kept;
 const MORTAR: Integration = Integration::Mortar {
     basis: Basis::Standard,
 };
-const CONSERVING: Scheme = Scheme::EnergyMomentum(EnergyMomentum);
+const CONSERVING: Scheme = Scheme::EnergyMomentum(EnergyMomentum {});
 /// Velocity of the ends, m/s.
 const SPEED: f64 = 0.2;
 /// Steps compared after the prongs meet.

@@ -131,7 +131,7 @@ fn schemes(size: Size) -> Vec<Scheme> {
     };
     let thetas = thetas.iter().map(|value| theta(*value));
     thetas
-        .chain([Scheme::EnergyMomentum(EnergyMomentum)])
+        .chain([Scheme::EnergyMomentum(EnergyMomentum {})])
         .collect()
 }
 

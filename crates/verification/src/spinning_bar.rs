@@ -75,7 +75,7 @@ fn spin(scheme: Scheme, revolutions: usize) -> Result<Kept, Error> {
 
 /// Iterations a step of the energy-momentum scheme in two revolutions, to the default tolerance.
 fn iterations() -> Result<f64, Error> {
-    let scheme = Scheme::EnergyMomentum(EnergyMomentum);
+    let scheme = Scheme::EnergyMomentum(EnergyMomentum {});
     let mut newton = newton(scheme, Iteration::default().tolerance)?;
     let mut count = 0;
     for _ in 0..2 * STEPS {
@@ -97,7 +97,7 @@ pub(crate) const CHECK: Check = Check {
         let mut rows = Vec::new();
         let row = |name: &str, what: &str| format!("{name}: largest change of {what}, relative");
         let name = format!("energy-momentum, {revolutions} revolutions");
-        let kept = spin(Scheme::EnergyMomentum(EnergyMomentum), revolutions)?;
+        let kept = spin(Scheme::EnergyMomentum(EnergyMomentum {}), revolutions)?;
         rows.push(Row::at_most(row(&name, "momentum"), kept.linear, 1e-10));
         rows.push(Row::at_most(
             row(&name, "angular momentum"),

@@ -45,7 +45,7 @@ pub(crate) const CHECK: Check = Check {
             },
             depth: 5.0,
         };
-        let model = tori.model(Scheme::EnergyMomentum(EnergyMomentum), NOW, 0.05)?;
+        let model = tori.model(Scheme::EnergyMomentum(EnergyMomentum {}), NOW, 0.05)?;
         let mut newton = Driver::new(System::new(model)?)?;
         let mut kept = Kept::new(newton.system(), newton.state());
         let energy = newton.state().ledger.initial.energy();

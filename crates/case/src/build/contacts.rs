@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use carom_bodies::{Kinematics, Solid};
 use carom_contact::law::Level;
-use carom_contact::law::{Reading, Restitution, Velocity};
+use carom_contact::law::{Reading, Restitution, Side, Velocity};
 use carom_contact::{Initial, Integration, Law, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{ElementId, Mesh, Surface};
 
-use super::laws::{Side, sides};
+use super::laws::sides;
 use super::{Builder, advice};
 use crate::error::Problem;
 use crate::facts::{approach, approach_from};

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use carom_mesh::{Mesh, generate, read, refine};
+use carom_quantities::units;
 
 use super::{Builder, dimensions};
 use crate::error::Problem;
 use crate::input::Input;
 use crate::rules::MOST_NODES;
 use crate::schema::{Count, Part};
-use crate::units;
 
 impl Builder<'_> {
     /// The mesh in metres.

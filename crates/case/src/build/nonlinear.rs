@@ -5,10 +5,8 @@ use std::sync::Arc;
 use carom_dynamics::{
     Damping, Driver, Iteration, Load, ModelBody, Nonlinear, Preload, Prescribed, System,
 };
-use carom_materials::Law;
 
 use super::Builder;
-use super::time::scheme;
 use crate::error::Problem;
 
 impl Builder<'_> {
@@ -68,22 +66,14 @@ impl Builder<'_> {
         }
         for (number, body) in bodies.iter().enumerate() {
             let zone = self.plan.zone_of(number);
-            let given = zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
-            let scheme = scheme(&given);
+            let scheme = zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
             if !scheme.get().is_between() {
                 continue;
             }
-            let stores_all = match body.spec.material {
-                Law::Elastic(_)
-                | Law::StVenantKirchhoff(_)
-                | Law::NeoHooke(_)
-                | Law::MooneyRivlin(_) => true,
-                Law::J2Plasticity(_) | Law::Maxwell(_) => false,
-            };
             let path = format!("body.{}", body.spec.name);
             let message = "the scheme conserves energy by a stress between the two ends of a step";
             let name = scheme.get().name();
-            if !stores_all {
+            if body.spec.material.dissipates() {
                 let problem = Problem::new(format!("{path}.material"), message);
                 self.problems.push(
                     problem

@@ -2,17 +2,13 @@
 
 use std::sync::Arc;
 
-use carom_contact::law::Level;
-use carom_dynamics::scheme::{
-    CentralDifference, ContactStabilised, EnergyMomentum, GeneralisedAlpha, Hht, Kane, Krenk,
-    LaursenChawla, LaursenLove, Newmark, NonsmoothAlpha, PaoliSchatzman, TchamwaWielgosz, Theta,
-};
+use carom_contact::law::{Defaults, Level};
 use carom_dynamics::{Adaptive, Closing, Error, ModelBody, Scheme, System, step_count};
 use carom_mesh::Mesh;
 
 use super::Builder;
 use crate::error::Problem;
-use crate::schema::{self, LargestStep, Law, Mass, MeshStep, Step, StepRule};
+use crate::schema::{self, LargestStep, Mass, MeshStep, Step, StepRule};
 
 /// Most steps of a run: beyond it a case is a slip of the pen.
 const MOST_STEPS: u64 = 1_000_000_000;
@@ -32,15 +28,15 @@ impl Builder<'_> {
     /// The scheme of the bodies that take the outer step; of the first such zone, if there are several.
     pub(super) fn outer_scheme(&self) -> Scheme {
         let outer = self.plan.zones.iter().find(|zone| zone.substeps == 1);
-        scheme(&outer.map_or(self.case.time.scheme(), |zone| zone.scheme))
+        outer.map_or(self.case.time.scheme(), |zone| zone.scheme)
     }
 
     /// Refuses a critical step of implicit schemes, and masses that a scheme cannot take.
     pub(super) fn schemes(&mut self) {
         let zones = self.plan.zones.iter().filter(|zone| zone.substeps == 1);
-        let mut outer: Vec<Scheme> = zones.map(|zone| scheme(&zone.scheme)).collect();
+        let mut outer: Vec<Scheme> = zones.map(|zone| zone.scheme).collect();
         if self.plan.zones.is_empty() {
-            outer.push(scheme(&self.case.time.scheme()));
+            outer.push(self.case.time.scheme());
         }
         if let (path, Size::Critical(_)) = self.size()
             && let Some(scheme) = outer.first().map(Scheme::get)
@@ -55,8 +51,7 @@ impl Builder<'_> {
         }
         for (number, (name, body)) in self.case.body.iter().enumerate() {
             let zone = self.plan.zone_of(number);
-            let given = zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
-            let scheme = scheme(&given);
+            let scheme = zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
             if scheme.get().needs_lumped_mass() && body.mass == Mass::Consistent {
                 let message = "the scheme divides by the mass: it must be diagonal";
                 let problem = Problem::new(format!("body.{name}.mass"), message);
@@ -70,11 +65,15 @@ impl Builder<'_> {
     }
 
     /// Refuses laws that the scheme of their contact cannot take, one problem a reason.
-    pub(super) fn laws(&mut self, scheme_of: impl Fn(&str) -> schema::Scheme) {
+    pub(super) fn laws(&mut self, scheme_of: impl Fn(&str) -> Scheme) {
         for (name, contact) in self.case.contact.iter() {
-            let scheme = scheme(&scheme_of(name));
+            let scheme = scheme_of(name);
             let scheme = scheme.get();
-            let level = level(&contact.law);
+            // what is wrong with a curve is told where the law is built
+            let Ok(law) = contact.law.law(&Defaults::default()) else {
+                continue;
+            };
+            let level = law.get().level();
             if scheme.takes(level) {
                 continue;
             }
@@ -208,51 +207,6 @@ impl Builder<'_> {
                 None
             }
         }
-    }
-}
-
-/// The scheme that the case names.
-pub(super) fn scheme(given: &schema::Scheme) -> Scheme {
-    match *given {
-        schema::Scheme::Newmark(newmark) => Scheme::Newmark(Newmark {
-            beta: newmark.beta,
-            gamma: newmark.gamma,
-        }),
-        schema::Scheme::Theta(theta) => Scheme::Theta(Theta { theta: theta.theta }),
-        schema::Scheme::CentralDifference(_) => Scheme::CentralDifference(CentralDifference),
-        schema::Scheme::GeneralisedAlpha(alpha) => Scheme::GeneralisedAlpha(GeneralisedAlpha {
-            rho_inf: alpha.rho_inf,
-        }),
-        schema::Scheme::Hht(hht) => Scheme::Hht(Hht { alpha: hht.alpha }),
-        schema::Scheme::TchamwaWielgosz(scheme) => {
-            Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: scheme.phi })
-        }
-        schema::Scheme::PaoliSchatzman(scheme) => Scheme::PaoliSchatzman(PaoliSchatzman {
-            restitution: scheme.restitution,
-        }),
-        schema::Scheme::LaursenChawla(_) => Scheme::LaursenChawla(LaursenChawla),
-        schema::Scheme::LaursenLove(_) => Scheme::LaursenLove(LaursenLove),
-        schema::Scheme::Krenk(krenk) => Scheme::Krenk(Krenk {
-            rho_inf: krenk.rho_inf,
-        }),
-        schema::Scheme::NonsmoothAlpha(alpha) => Scheme::NonsmoothAlpha(NonsmoothAlpha {
-            rho_inf: alpha.rho_inf,
-        }),
-        schema::Scheme::ContactStabilised(_) => Scheme::ContactStabilised(ContactStabilised),
-        schema::Scheme::EnergyMomentum(_) => Scheme::EnergyMomentum(EnergyMomentum),
-        schema::Scheme::Kane(kane) => Scheme::Kane(Kane {
-            beta: kane.beta,
-            gamma: kane.gamma,
-        }),
-    }
-}
-
-/// What a law constrains.
-fn level(law: &Law) -> Level {
-    match law {
-        Law::Displacement(_) => Level::Gap,
-        Law::Damped(_) | Law::Penalty(_) | Law::Stop(_) => Level::GapAndRate,
-        Law::Velocity(_) | Law::Compliance(_) | Law::Restitution(_) => Level::Rate,
     }
 }
 

@@ -6,7 +6,6 @@ use carom_dynamics::{LinkKind, ModelContact, ModelTarget, ModelZone};
 use carom_mesh::ElementId;
 
 use super::Builder;
-use super::time::scheme;
 use crate::error::Problem;
 use crate::schema::{self, InnerSteps, Link, Step, StepRule, Substeps};
 
@@ -49,7 +48,7 @@ impl Plan {
         let zone = |zone: &Zone| ModelZone {
             name: zone.name.clone(),
             bodies: zone.bodies.clone(),
-            scheme: scheme(&zone.scheme),
+            scheme: zone.scheme,
             substeps: zone.substeps,
             far: Some(zone.far).filter(|far| *far != zone.substeps),
         };
@@ -262,8 +261,8 @@ impl Builder<'_> {
             .zip(&linked)
             .filter(|(_, linked)| **linked);
         for (zone, _) in zones {
-            let own = scheme(&zone.scheme);
-            if own.link_weights().is_none() {
+            let own = zone.scheme;
+            if own.get().link_weights().is_none() {
                 let message = format!(
                     "the zone `{}` is joined, and no link takes its scheme",
                     zone.name

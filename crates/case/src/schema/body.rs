@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::quantity::{Area, Coordinate, Delay, Length, Rate, Vector, Velocity};
+use carom_quantities::{Area, Coordinate, Delay, Length, Rate, Vector, Velocity};
 
 /// A body: cells of the mesh, with a material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

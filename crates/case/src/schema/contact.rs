@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::obstacle::Obstacle;
-use super::quantity::{Clearance, Damping, Force, Length, SurfaceDamping, SurfaceStiffness};
+use carom_laws::GivenLaw;
+use carom_quantities::{Length, SurfaceDamping, SurfaceStiffness};
 
 /// Contact between two surfaces, between a surface and a rigid obstacle, or of a surface with itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,7 +27,7 @@ pub struct Contact {
     #[schemars(extend("const" = true))]
     pub itself: Option<bool>,
     /// Contact law.
-    pub law: Law,
+    pub law: GivenLaw,
     /// Whether the pairing of the two surfaces follows their motion. Default: `finite` in nonlinear cases (finite
     /// strain, plasticity, friction, moving obstacles or supports, loads as functions of time, damping, static stages,
     /// mortar), otherwise `small`.
@@ -80,189 +81,6 @@ pub enum Nodes {
     /// Their mass is redistributed to the other nodes of their bodies. This preserves mass and centre of mass, and if
     /// possible the moments of inertia. For the displacement law with implicit schemes and lumped mass.
     Massless,
-}
-
-/// A contact law. Gap g is positive when open, pressure p positive in compression, gap rate positive when opening.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Law {
-    /// Exact non-penetration: 0 <= g, 0 <= p, p g = 0 at the end of each step.
-    Displacement(DisplacementLaw),
-    /// A spring with a damper: p = k max(0, -g), minus C times the gap rate while the gap is closed.
-    Damped(DampedLaw),
-    /// Exact impenetrability in velocity: where the gap is closed, 0 <= gap rate, 0 <= p, and p times the gap rate = 0 at the end of
-    /// each step.
-    Velocity(VelocityLaw),
-    /// A one-sided damper: where the gap is closed, p = C max(0, -gap rate) at the end of each step. It absorbs energy:
-    /// 1 % of that of the striker if C is 100 times the impedance per area of two equal bars, or 400 times that of a
-    /// bar on a rigid obstacle.
-    Compliance(ComplianceLaw),
-    /// Newton's restitution: where the gap is closed, the gap rate at the end of each step is at least -e times that at
-    /// its start, and equal to it where there is a pressure. For bodies that are rigid at the time scale of the step.
-    Restitution(RestitutionLaw),
-    /// A given stiffness: p = k max(0, -g), minus C times the gap rate while the gap is closed.
-    Penalty(PenaltyLaw),
-    /// A stop of engineering structures, for the contact as a whole: a clearance, a curve of force over penetration, a
-    /// dashpot.
-    Stop(StopLaw),
-}
-
-/// Exact non-penetration.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct DisplacementLaw {
-    /// Whether velocity and acceleration of closed points are projected at the end of a step in which points close.
-    /// This removes the oscillation of the force under Newmark's scheme; other schemes refuse it.
-    #[serde(default)]
-    pub projection: bool,
-}
-
-/// A compliant law with a damper.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(extend("not" = { "required": ["damping", "damping-factor"] }))]
-pub struct DampedLaw {
-    /// Stiffness per area k. Default: Young's modulus of the softer side divided by its element size.
-    pub stiffness: Option<SurfaceStiffness>,
-    /// Damping per area C. Default: from `damping-factor`.
-    pub damping: Option<SurfaceDamping>,
-    /// C relative to the impedance per area of the softer side times sqrt(k h / E). Default: 0.5.
-    #[schemars(extend("minimum" = 0.0))]
-    pub damping_factor: Option<f64>,
-    /// Treatment of a tensile pressure of the damper.
-    #[serde(default)]
-    pub adhesion: Adhesion,
-}
-
-/// What becomes of a tensile pressure.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Adhesion {
-    /// It is set to zero.
-    #[default]
-    Clip,
-    /// It remains, as in the printed law, and is a negative force in the histories.
-    AsPrinted,
-}
-
-/// Impenetrability in velocity.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct VelocityLaw {
-    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, otherwise `now`.
-    pub capture: Option<Capture>,
-    /// Gaps at which the condition applies.
-    #[serde(default)]
-    pub sign: Sign,
-}
-
-/// A compliance in velocity.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(extend("oneOf" = [{ "required": ["damping"] }, { "required": ["damping-factor"] }]))]
-pub struct ComplianceLaw {
-    /// Damping per area C.
-    pub damping: Option<SurfaceDamping>,
-    /// C relative to the impedance per area of the softer side, in place of `damping`.
-    #[schemars(extend("minimum" = 0.0))]
-    pub damping_factor: Option<f64>,
-    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, otherwise `now`.
-    pub capture: Option<Capture>,
-}
-
-/// Newton's restitution.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct RestitutionLaw {
-    /// Coefficient e: 0 is the velocity law, 1 the elastic rebound of rigid bodies.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
-    pub coefficient: f64,
-    /// The gap that decides whether a point is closed. Default: `half` for theta = 1/2, otherwise `now`.
-    pub capture: Option<Capture>,
-}
-
-/// A penalty law.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct PenaltyLaw {
-    /// Stiffness per area k.
-    pub stiffness: SurfaceStiffness,
-    /// Damping per area C. Default: 0.
-    pub damping: Option<SurfaceDamping>,
-    /// Treatment of a tensile pressure of the damper.
-    #[serde(default)]
-    pub adhesion: Adhesion,
-}
-
-/// A stop, for the contact as a whole: its points share the force by their areas.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct StopLaw {
-    /// Clearance that is not in the mesh: the stop acts where the gap is below minus this value. Default: 0.
-    pub clearance: Option<Clearance>,
-    /// Points of force over penetration, both increasing. The curve begins at (0, 0), which is not written; it is
-    /// linear between the points and continues beyond the last one. One point gives a spring.
-    #[schemars(extend("minItems" = 1, "maxItems" = 16))]
-    pub curve: Vec<CurvePoint>,
-    /// Unloading of the stop.
-    #[serde(default)]
-    pub crush: Crush,
-    /// Dashpot. Default: 0.
-    pub damping: Option<Damping>,
-    /// Treatment of a tensile force of the dashpot.
-    #[serde(default)]
-    pub adhesion: Adhesion,
-}
-
-/// What becomes of the crush of a stop.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Crush {
-    /// Unloading follows the curve; all energy is recovered.
-    #[default]
-    Recovered,
-    /// The crush is permanent: unloading and reloading follow a line of the initial stiffness from the point of largest
-    /// penetration; beyond that point the force follows the curve again. No piece of the curve may be steeper than the
-    /// first.
-    Permanent,
-}
-
-/// A point of the curve of a stop.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct CurvePoint {
-    /// Penetration, beyond the clearance.
-    pub penetration: Length,
-    /// Force of the whole contact.
-    pub force: Force,
-}
-
-/// The gap that decides whether a point is closed in a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Capture {
-    /// The gap at the beginning of the step.
-    Now,
-    /// The smaller of the gap at the beginning of the step and the gap predicted for its middle.
-    Half,
-    /// The smaller of the gap at the beginning of the step and the gap predicted for its end from the gap rate.
-    Full,
-    /// The gap at the end of the step without any contact force.
-    Free,
-    /// None. At all points the gap rate at the end of the step is at least -g / dt, with g at its start, so that
-    /// penetrating points are pushed out (Stewart and Trinkle). Not for the restitution law.
-    GapTarget,
-}
-
-/// Which gaps switch the velocity condition on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Sign {
-    /// Closed gaps.
-    #[default]
-    Closed,
-    /// Open gaps, as in the printed equation (7.d): bodies pass through each other. For comparison only.
-    AsPrinted,
 }
 
 /// Whether the pairing follows the motion.

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::quantity::{Acceleration, Delay, SignedStress, Vector};
+use carom_quantities::{Acceleration, Delay, SignedStress, Vector};
 
 /// A load: gravity on every body, or a pressure or traction on a surface. In a static stage gravity and loads without
 /// an amplitude grow linearly from zero to their value.

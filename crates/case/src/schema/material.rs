@@ -1,99 +1,74 @@
 //! `[material]`: density and law.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
-use super::quantity::{Density, Duration, Modulus, Stress};
+use carom_materials::Law;
+use carom_quantities::Density;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Map, Value};
 
-/// A material: one law. Only `elastic` is for small strain; the others are for large displacements, rotations and strains, in plane
-/// strain, axisymmetric and solid bodies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(extend("oneOf" = [
-    { "required": ["elastic"] },
-    { "required": ["st-venant-kirchhoff"] },
-    { "required": ["neo-hooke"] },
-    { "required": ["mooney-rivlin"] },
-    { "required": ["j2"] },
-    { "required": ["maxwell"] },
-]))]
-pub struct Material {
-    /// Mass density.
-    pub density: Density,
-    /// Linear isotropic elasticity, small strain.
-    pub elastic: Option<Elastic>,
-    /// St Venant-Kirchhoff elasticity: linear between second Piola-Kirchhoff stress and Green-Lagrange strain. Large rotations,
-    /// moderate strains; it softens in compression.
-    pub st_venant_kirchhoff: Option<Elastic>,
-    /// Compressible neo-Hookean elasticity.
-    pub neo_hooke: Option<Elastic>,
-    /// Compressible Mooney-Rivlin elasticity.
-    pub mooney_rivlin: Option<MooneyRivlin>,
-    /// Von Mises plasticity in logarithmic strain, with linear isotropic hardening.
-    pub j2: Option<J2>,
-    /// Linear viscoelasticity: a spring beside branches of spring and dashpot in shear. Moderate strains.
-    pub maxwell: Option<Maxwell>,
+/// Key that stands beside the law, and that the law's own parameters include.
+const DENSITY: &str = "density";
+
+/// A material: one law. In the file its density stands beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material(pub Law);
+
+impl<'de> Deserialize<'de> for Material {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Material, D::Error> {
+        let mut table = Map::deserialize(deserializer)?;
+        if let Some(density) = table.remove(DENSITY) {
+            for law in table.values_mut().filter_map(Value::as_object_mut) {
+                law.insert(DENSITY.to_owned(), density.clone());
+            }
+        }
+        let law = Law::deserialize(Value::Object(table)).map_err(D::Error::custom)?;
+        Ok(Material(law))
+    }
 }
 
-/// Moduli of isotropic elasticity; for laws at finite strain those of the undeformed material.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Elastic {
-    /// Young's modulus.
-    pub young: Modulus,
-    /// Poisson's ratio. It does not matter for bars, whose sides are free.
-    #[schemars(extend("exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
-    pub poisson: f64,
+impl Serialize for Material {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut table = serde_json::to_value(self.0).map_err(serde::ser::Error::custom)?;
+        if let Some(Value::Object(law)) = table.get_mut(self.0.key()) {
+            law.remove(DENSITY);
+        }
+        table[DENSITY] = self.0.density().into();
+        table.serialize(serializer)
+    }
 }
 
-/// Mooney-Rivlin elasticity: shear modulus 2 (c10 + c01).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct MooneyRivlin {
-    /// Factor of the first invariant.
-    pub c10: Modulus,
-    /// Factor of the second invariant.
-    pub c01: Stress,
-    /// Bulk modulus of the undeformed material, at least (4 c10 + 16 c01)/3.
-    pub bulk: Modulus,
-}
+/// The choice of a law, its keys beside that of the density.
+impl JsonSchema for Material {
+    fn schema_name() -> Cow<'static, str> {
+        "Material".into()
+    }
 
-/// Von Mises plasticity.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct J2 {
-    /// Young's modulus.
-    pub young: Modulus,
-    /// Poisson's ratio.
-    #[schemars(extend("exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
-    pub poisson: f64,
-    /// Yield stress of the virgin material.
-    pub yield_stress: Modulus,
-    /// Yield stress gained per unit of plastic strain.
-    pub hardening: Stress,
-}
-
-/// Linear viscoelasticity.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Maxwell {
-    /// Instantaneous Young's modulus, before relaxation.
-    pub young: Modulus,
-    /// Instantaneous Poisson's ratio.
-    #[schemars(extend("exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
-    pub poisson: f64,
-    /// Branches; the sum of their ratios is less than 1.
-    #[schemars(extend("minItems" = 1, "maxItems" = 4))]
-    pub branches: Vec<Branch>,
-}
-
-/// A spring and a dashpot in series.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Branch {
-    /// Fraction of the shear modulus that relaxes in this branch.
-    #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0))]
-    pub ratio: f64,
-    /// Relaxation time.
-    pub time: Duration,
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let choice = Law::json_schema(generator);
+        let mut density = generator.subschema_for::<Density>();
+        density.insert("description".to_owned(), "Mass density.".into());
+        let mut properties = Map::from_iter([(DENSITY.to_owned(), density.into())]);
+        let mut keys = Vec::new();
+        let branches = choice.get("oneOf").and_then(Value::as_array);
+        for branch in branches.into_iter().flatten() {
+            let laws = branch["properties"].as_object().into_iter().flatten();
+            for (key, law) in laws {
+                let mut law = law.clone();
+                law["description"] = branch["description"].clone();
+                properties.insert(key.clone(), law);
+                keys.push(json_schema!({ "required": [key] }));
+            }
+        }
+        json_schema!({
+            "description": "A material: one law. Only `elastic` is for small strain; the others are for large displacements, rotations and strains, in plane strain, axisymmetric and solid bodies.",
+            "type": "object",
+            "properties": properties,
+            "required": [DENSITY],
+            "oneOf": keys,
+            "additionalProperties": false,
+        })
+    }
 }

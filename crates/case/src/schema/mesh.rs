@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Named;
-use super::quantity::{Coordinate, Length, Vector};
+use carom_quantities::{Coordinate, Length, Vector};
 
 /// The mesh: a file, generated parts, or both. Their groups keep their names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

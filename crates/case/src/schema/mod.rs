@@ -12,7 +12,6 @@ mod mesh;
 mod named;
 mod obstacle;
 mod output;
-mod quantity;
 mod time;
 mod zone;
 
@@ -25,13 +24,19 @@ pub use body::{
     FormulationName, FormulationWith, Initial, Mass, Movement, MovementPoint, PlaneSection,
     Reduced, Section, Support,
 };
+pub use carom_laws::GivenLaw;
+pub use carom_quantities::{
+    Acceleration, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density, Duration,
+    Force, Length, Modulus, Rate, SignedStress, Stress, SurfaceDamping, SurfaceStiffness, Vector,
+    Velocity,
+};
+pub use carom_schemes::Scheme;
 pub use contact::{
-    Adhesion, Basis, Capture, ComplianceLaw, Contact, Crush, CurvePoint, DampedLaw,
-    DisplacementLaw, Friction, Integration, IntegrationName, IntegrationWith, Law, Mortar, Nodes,
-    PenaltyLaw, Penetration, RestitutionLaw, Sign, Sliding, StopLaw, VelocityLaw,
+    Basis, Contact, Friction, Integration, IntegrationName, IntegrationWith, Mortar, Nodes,
+    Penetration, Sliding,
 };
 pub use load::{AmplitudePoint, Load};
-pub use material::{Branch, Elastic, J2, Material, Maxwell, MooneyRivlin};
+pub use material::Material;
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
 pub use named::Named;
 pub use obstacle::{
@@ -39,16 +44,8 @@ pub use obstacle::{
     Turn,
 };
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};
-pub use quantity::{
-    Acceleration, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density, Duration,
-    Force, Length, Modulus, Rate, SignedStress, Stress, SurfaceDamping, SurfaceStiffness, Vector,
-    Velocity,
-};
 pub use time::{
-    Adaptive, CentralDifference, Closing, ContactStabilised, EnergyMomentum, GeneralisedAlpha, Hht,
-    Kane, Krenk, LargestStep, LaursenChawla, LaursenLove, MeshStep, Newmark, Newton,
-    NonsmoothAlpha, PaoliSchatzman, Scheme, StaticStage, Step, StepRule, TchamwaWielgosz, Theta,
-    Time,
+    Adaptive, Closing, LargestStep, MeshStep, Newton, StaticStage, Step, StepRule, Time,
 };
 pub use zone::{
     Arlequin, Bracket, BracketLength, BracketName, BracketWith, H1Bracket, InnerSteps, Interface,

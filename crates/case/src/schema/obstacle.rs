@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::quantity::{AngularVelocity, Coordinate, Delay, Length, Vector, Velocity};
+use carom_quantities::{AngularVelocity, Coordinate, Delay, Length, Vector, Velocity};
 
 /// A rigid obstacle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::quantity::Duration;
+use carom_quantities::Duration;
 
 /// A history of the mean motion of a group, at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::quantity::Duration;
+use carom_quantities::Duration;
+use carom_schemes::{Scheme, Theta};
 
 /// Duration, step and time scheme.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -40,7 +41,7 @@ impl Time {
 
     /// The time scheme; of a case that is all static one that is never asked.
     pub fn scheme(&self) -> Scheme {
-        self.scheme.unwrap_or(Scheme::Theta(Theta { theta: 0.5 }))
+        self.scheme.unwrap_or(Scheme::Theta(Theta::default()))
     }
 
     /// Whether the case ends with its static stage.
@@ -165,172 +166,6 @@ pub enum Closing {
     Pass,
 }
 
-/// A time scheme. Any contact law may be named with it; a pair that makes no sense is refused with the reason.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scheme {
-    /// Newmark's scheme in displacement.
-    Newmark(Newmark),
-    /// The theta scheme in velocity (Moreau, Jean).
-    Theta(Theta),
-    /// Central difference, explicit; lumped mass.
-    CentralDifference(CentralDifference),
-    /// The generalised-alpha scheme in displacement (Chung, Hulbert).
-    GeneralisedAlpha(GeneralisedAlpha),
-    /// The scheme of Hilber, Hughes and Taylor in displacement.
-    Hht(Hht),
-    /// The dissipative scheme of Tchamwa and Wielgosz, explicit; lumped mass.
-    TchamwaWielgosz(TchamwaWielgosz),
-    /// The two-step scheme of Paoli and Schatzman, with restitution; made for the displacement law.
-    PaoliSchatzman(PaoliSchatzman),
-    /// The mid-point rule with contact on the mean rate (Laursen, Chawla): exact energy, useless force; made for the
-    /// velocity law.
-    LaursenChawla(LaursenChawla),
-    /// The mid-point rule with the displacement law and a velocity update that returns the work of the contact
-    /// (Laursen, Love): exact energy, no penetration, useless force; displacement law only.
-    LaursenLove(LaursenLove),
-    /// The generalised-alpha scheme for the smooth motion, with separate contact impulses (Chen, Acary, Virlez, Brüls);
-    /// lumped mass, laws in the rate only: velocity, compliance, restitution.
-    NonsmoothAlpha(NonsmoothAlpha),
-    /// A scheme in extended state space, with damping through filtered increments of displacement and velocity (after
-    /// Krenk).
-    Krenk(Krenk),
-    /// Newmark's scheme with implicit contact forces (Kane, Repetto, Ortiz, Marsden); lumped mass, displacement law only.
-    Kane(Kane),
-    /// The trapezoid with a predictor that is projected on the admissible displacements (contact-stabilised Newmark: Deuflhard,
-    /// Krause, Ertel); displacement law only. Its energy never grows.
-    ContactStabilised(ContactStabilised),
-    /// The mid-point rule with an algorithmic stress whose work is the change of the stored energy (Simo, Tarnow; Gonzalez): energy
-    /// and momenta to round-off in large transformations, for hyperelastic materials; made for the velocity law.
-    EnergyMomentum(EnergyMomentum),
-}
-
-/// Newmark's scheme.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Newmark {
-    /// Weight of the end acceleration in the displacement.
-    #[serde(default = "quarter")]
-    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))]
-    pub beta: f64,
-    /// Weight of the end acceleration in the velocity. Stable at any step for gamma >= 1/2 and 2 beta >= gamma.
-    #[serde(default = "half")]
-    #[schemars(extend("minimum" = 0.5, "maximum" = 1.0))]
-    pub gamma: f64,
-}
-
-/// The theta scheme.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Theta {
-    /// Weight of the end of the step: 1/2 conserves energy, 1 damps most.
-    #[serde(default = "half")]
-    #[schemars(extend("minimum" = 0.5, "maximum" = 1.0))]
-    pub theta: f64,
-}
-
-/// Central difference: nothing to give.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct CentralDifference {}
-
-/// The generalised-alpha scheme.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct GeneralisedAlpha {
-    /// Spectral radius at infinite frequency: 1 damps nothing, 0 most.
-    #[serde(default = "four_fifths")]
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
-    pub rho_inf: f64,
-}
-
-/// The scheme of Hilber, Hughes and Taylor.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Hht {
-    /// Internal forces are evaluated at (1 + alpha) u+ - alpha u: 0 damps nothing, -1/3 most. Some authors define alpha
-    /// with the opposite sign.
-    #[serde(default = "minus_tenth")]
-    #[schemars(extend("minimum" = -1.0 / 3.0, "maximum" = 0.0))]
-    pub alpha: f64,
-}
-
-/// The scheme of Tchamwa and Wielgosz.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct TchamwaWielgosz {
-    /// Factor of dt² a in the displacement: 1 damps nothing; the damping ratio is (phi - 1) omega dt / 2, and the critical
-    /// step 2 / (omega sqrt(2 phi - 1)).
-    #[serde(default = "usual_phi")]
-    #[schemars(extend("minimum" = 1.0, "maximum" = 2.0))]
-    pub phi: f64,
-}
-
-/// The scheme of Paoli and Schatzman.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct PaoliSchatzman {
-    /// Restitution e of bodies that are rigid during a step; the displacement law applies to (u+ + e u-)/(1 + e). A
-    /// value above 0 requires the displacement law.
-    #[serde(default)]
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
-    pub restitution: f64,
-}
-
-/// The scheme of Laursen and Chawla: nothing to give.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct LaursenChawla {}
-
-/// The scheme of Laursen and Love: nothing to give.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct LaursenLove {}
-
-/// The nonsmooth generalised-alpha scheme.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct NonsmoothAlpha {
-    /// Spectral radius at infinite frequency of the smooth motion: 1 damps nothing, 0 most.
-    #[serde(default = "four_fifths")]
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
-    pub rho_inf: f64,
-}
-
-/// The scheme in extended state space after Krenk.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Krenk {
-    /// Spectral radius at infinite frequency: 1 damps nothing, 0 most.
-    #[serde(default = "four_fifths")]
-    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
-    pub rho_inf: f64,
-}
-
-/// The scheme of Kane, Repetto, Ortiz and Marsden.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Kane {
-    /// Weight of the end acceleration in the displacement, as in Newmark's scheme.
-    #[serde(default = "quarter")]
-    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))]
-    pub beta: f64,
-    /// Weight of the end acceleration in the velocity, as in Newmark's scheme.
-    #[serde(default = "half")]
-    #[schemars(extend("minimum" = 0.5, "maximum" = 1.0))]
-    pub gamma: f64,
-}
-
-/// The contact-stabilised Newmark scheme: nothing to give.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct ContactStabilised {}
-
-/// The energy-momentum scheme: nothing to give.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct EnergyMomentum {}
-
 fn tolerance() -> f64 {
     1e-10
 }
@@ -349,24 +184,4 @@ fn hundredth() -> f64 {
 
 fn ten() -> u32 {
     10
-}
-
-fn quarter() -> f64 {
-    0.25
-}
-
-fn half() -> f64 {
-    0.5
-}
-
-fn four_fifths() -> f64 {
-    0.8
-}
-
-fn minus_tenth() -> f64 {
-    -0.1
-}
-
-fn usual_phi() -> f64 {
-    1.033
 }

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Named;
-use super::quantity::{Coordinate, Length, Vector};
-use super::time::Scheme;
+use carom_quantities::{Coordinate, Length, Vector};
+use carom_schemes::Scheme;
 
 /// A zone: bodies with their own scheme and step. If a case has zones, every body is in one of them. The two sides of a
 /// contact are in the same zone.

@@ -230,7 +230,7 @@ mod tests {
     #[test]
     fn a_mean_rate_that_aims_at_the_gap_is_a_law_in_the_gap() {
         let found = lead_of(
-            Scheme::LaursenChawla(LaursenChawla),
+            Scheme::LaursenChawla(LaursenChawla {}),
             &velocity(Capture::GapTarget),
         );
         assert!((found - 0.5).abs() < 1e-15);
@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn a_law_in_the_rate_finds_the_point_between_its_window_and_the_surface() {
         let theta = Scheme::Theta(Theta { theta: 0.5 });
-        let leapfrog = Scheme::CentralDifference(CentralDifference);
+        let leapfrog = Scheme::CentralDifference(CentralDifference {});
         let lifting = Scheme::TchamwaWielgosz(TchamwaWielgosz { phi: 1.25 });
         let expected = [
             (Capture::Now, [-0.25, 0.5, 0.375]),

@@ -97,7 +97,11 @@ impl Driver {
 
     /// Weights of L at the start and the end of a step in Λ.
     pub(crate) fn link_weights(&self) -> [f64; 2] {
-        self.system.scheme.link_weights().unwrap_or([0.0, 1.0])
+        self.system
+            .scheme
+            .get()
+            .link_weights()
+            .unwrap_or([0.0, 1.0])
     }
 
     /// Work of the force of one row in the step just completed, J: `before` and `now` are the row's Λ of the step before and

@@ -201,7 +201,7 @@ impl Zoned {
             if zone.substeps > 1 && *many.get_or_insert(zone.substeps) != zone.substeps {
                 return refuse("one, or as many as the other zones with more than one");
             }
-            if linked(&k) && zone.scheme.link_weights().is_none() {
+            if linked(&k) && zone.scheme.get().link_weights().is_none() {
                 return Err(Error::LinkScheme {
                     zone: zone.name.clone(),
                     scheme: zone.scheme.get().name(),

@@ -72,7 +72,11 @@ fn a_step_in_contact_allocates_nothing() {
             Law::Displacement(Displacement::default()),
             node,
         ),
-        (Scheme::CentralDifference(CentralDifference), velocity, node),
+        (
+            Scheme::CentralDifference(CentralDifference {}),
+            velocity,
+            node,
+        ),
     ];
     for (scheme, law, integration) in runs {
         let mut driver = resting_cube(scheme, law, integration);

@@ -261,7 +261,7 @@ fn pressure_that_follows_does_p_dv() {
 
 /// A block that is squeezed between its speed and a wall, a step just below its first critical one.
 fn squeezed(halvings: u32) -> (Result<(), Error>, u32, Driver) {
-    let central = Scheme::CentralDifference(scheme::CentralDifference);
+    let central = Scheme::CentralDifference(scheme::CentralDifference {});
     let soft = Material::NeoHooke(NeoHooke {
         initial: Elastic {
             poisson: 0.0,

@@ -184,7 +184,7 @@ impl Problem {
             gamma: 0.5,
         });
         let outside = match self.beta {
-            0.0 => Scheme::CentralDifference(CentralDifference),
+            0.0 => Scheme::CentralDifference(CentralDifference {}),
             _ => newmark,
         };
         let zone = |name: &str, body, scheme, substeps| ModelZone {

@@ -126,7 +126,7 @@ fn wavy(dim: usize, scheme: Scheme, friction: f64) -> Model {
 #[test]
 fn contacts_report_the_force_that_bodies_get_where_normals_differ_over_a_face() {
     let theta = Scheme::Theta(scheme::Theta { theta: 0.5 });
-    let keeping = Scheme::EnergyMomentum(scheme::EnergyMomentum);
+    let keeping = Scheme::EnergyMomentum(scheme::EnergyMomentum {});
     for (dim, scheme, friction) in [(2, theta, 0.3), (3, theta, 0.0), (2, keeping, 0.0)] {
         let system = System::new(wavy(dim, scheme, friction)).unwrap();
         let mut runs: Vec<Box<dyn Stepper>> = vec![Box::new(Driver::new(system.clone()).unwrap())];

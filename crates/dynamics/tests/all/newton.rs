@@ -78,9 +78,9 @@ fn a_linear_system_takes_the_steps_of_the_linear_driver() {
             Scheme::GeneralisedAlpha(scheme::GeneralisedAlpha { rho_inf: 0.8 }),
             DISPLACEMENT,
         ),
-        (Scheme::LaursenChawla(scheme::LaursenChawla), VELOCITY),
+        (Scheme::LaursenChawla(scheme::LaursenChawla {}), VELOCITY),
         (
-            Scheme::CentralDifference(scheme::CentralDifference),
+            Scheme::CentralDifference(scheme::CentralDifference {}),
             VELOCITY,
         ),
     ];
@@ -153,7 +153,7 @@ fn thrown(scheme: Scheme, material: Material) -> Driver {
 
 #[test]
 fn energy_and_momentum_are_kept_by_the_scheme_of_that_name() {
-    let energy_momentum = Scheme::EnergyMomentum(scheme::EnergyMomentum);
+    let energy_momentum = Scheme::EnergyMomentum(scheme::EnergyMomentum {});
     let stvk = Material::StVenantKirchhoff(carom_materials::StVenantKirchhoff { initial: SOFT });
     for material in [neo_hooke(), stvk] {
         let mut newton = thrown(energy_momentum, material);
@@ -185,9 +185,9 @@ fn a_nonlinear_step_costs_few_iterations_and_the_ledger_closes() {
             DISPLACEMENT,
         ),
         (Scheme::Theta(scheme::Theta { theta: 0.6 }), VELOCITY),
-        (Scheme::EnergyMomentum(scheme::EnergyMomentum), VELOCITY),
+        (Scheme::EnergyMomentum(scheme::EnergyMomentum {}), VELOCITY),
         (
-            Scheme::CentralDifference(scheme::CentralDifference),
+            Scheme::CentralDifference(scheme::CentralDifference {}),
             VELOCITY,
         ),
     ] {
@@ -321,7 +321,7 @@ fn dynamics_begin_at_the_equilibrium_of_the_static_stage_with_the_velocities_giv
 #[test]
 fn a_run_that_is_cut_goes_on_with_the_same_bits() {
     let system = || {
-        let scheme = Scheme::EnergyMomentum(scheme::EnergyMomentum);
+        let scheme = Scheme::EnergyMomentum(scheme::EnergyMomentum {});
         let mut model = square(scheme, VELOCITY, neo_hooke(), 3);
         model.bodies[0].velocity = [0.3, -0.2, 0.0];
         System::new(model).unwrap()
@@ -378,7 +378,7 @@ fn rubber() -> Model {
                 ..ModelBody::new(spec)
             }],
             mesh,
-            Scheme::EnergyMomentum(scheme::EnergyMomentum),
+            Scheme::EnergyMomentum(scheme::EnergyMomentum {}),
             2e-5,
         )
     }

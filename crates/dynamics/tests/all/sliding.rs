@@ -42,7 +42,7 @@ fn a_linear_system_takes_the_steps_of_the_linear_driver() {
         (theta(0.5), VELOCITY, Integration::Node),
         (theta(0.75), DISPLACEMENT, mortar),
         (
-            Scheme::CentralDifference(scheme::CentralDifference),
+            Scheme::CentralDifference(scheme::CentralDifference {}),
             VELOCITY,
             Integration::Node,
         ),

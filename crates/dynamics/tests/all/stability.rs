@@ -41,7 +41,7 @@ fn bars(law: Law, dt: f64) -> Result<Driver, carom_dynamics::Error> {
         ..Model::new(
             bodies.clone(),
             mesh.clone(),
-            Scheme::CentralDifference(CentralDifference),
+            Scheme::CentralDifference(CentralDifference {}),
             dt,
         )
     };

@@ -112,9 +112,9 @@ fn an_elastic_stop_gives_back_all_but_a_term_of_second_order() {
         Scheme::Theta(scheme::Theta { theta: 0.5 }),
         Scheme::GeneralisedAlpha(scheme::GeneralisedAlpha { rho_inf: 1.0 }),
         Scheme::Hht(scheme::Hht { alpha: 0.0 }),
-        Scheme::LaursenChawla(scheme::LaursenChawla),
+        Scheme::LaursenChawla(scheme::LaursenChawla {}),
         Scheme::Krenk(scheme::Krenk { rho_inf: 1.0 }),
-        Scheme::EnergyMomentum(scheme::EnergyMomentum),
+        Scheme::EnergyMomentum(scheme::EnergyMomentum {}),
     ];
     for scheme in conserving {
         for law in laws() {

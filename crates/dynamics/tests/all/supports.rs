@@ -49,7 +49,7 @@ fn carried(scheme: Scheme, material: Material, mass: MassKind, held: &str, speed
 
 fn schemes() -> Vec<Scheme> {
     let mut all = Scheme::registered();
-    all.push(Scheme::EnergyMomentum(scheme::EnergyMomentum));
+    all.push(Scheme::EnergyMomentum(scheme::EnergyMomentum {}));
     all
 }
 
@@ -146,7 +146,7 @@ fn the_angular_momentum_of_a_large_motion_is_the_impulse_of_a_support_that_jumps
     for mass in [MassKind::Lumped, MassKind::Consistent] {
         let schemes = [
             Scheme::Theta(scheme::Theta { theta: 0.5 }),
-            Scheme::EnergyMomentum(scheme::EnergyMomentum),
+            Scheme::EnergyMomentum(scheme::EnergyMomentum {}),
         ];
         for scheme in schemes {
             let name = scheme.get().name();

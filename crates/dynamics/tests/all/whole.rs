@@ -63,7 +63,12 @@ pub fn bar() -> Zoned {
     Zoned {
         zones: vec![
             zone("tip", 1, Scheme::Theta(Theta { theta: 0.5 }), INNER),
-            zone("rest", 0, Scheme::CentralDifference(CentralDifference), 1),
+            zone(
+                "rest",
+                0,
+                Scheme::CentralDifference(CentralDifference {}),
+                1,
+            ),
         ],
         links: vec![ModelLink {
             name: "joint".into(),
@@ -76,7 +81,7 @@ pub fn bar() -> Zoned {
             ..Model::new(
                 bodies,
                 mesh,
-                Scheme::CentralDifference(CentralDifference),
+                Scheme::CentralDifference(CentralDifference {}),
                 0.5 * 0.02 / (steel.young / steel.density).sqrt(),
             )
         },

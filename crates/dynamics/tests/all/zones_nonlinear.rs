@@ -17,8 +17,8 @@ const TRAPEZOID: Scheme = Scheme::Newmark(Newmark {
     beta: 0.25,
     gamma: 0.5,
 });
-const BETWEEN: Scheme = Scheme::EnergyMomentum(EnergyMomentum);
-const EXPLICIT: Scheme = Scheme::CentralDifference(CentralDifference);
+const BETWEEN: Scheme = Scheme::EnergyMomentum(EnergyMomentum {});
+const EXPLICIT: Scheme = Scheme::CentralDifference(CentralDifference {});
 const NEO_HOOKE: Law = Law::NeoHooke(NeoHooke { initial: SOFT });
 
 fn body(name: &str, cells: Vec<ElementId>, material: Law) -> ModelBody {

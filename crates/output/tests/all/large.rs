@@ -32,7 +32,7 @@ fn block(dim: usize, material: Material, velocity: [f64; 3], floor: bool) -> Arc
             beta: 0.25,
             gamma: 0.5,
         }),
-        _ => Scheme::EnergyMomentum(EnergyMomentum),
+        _ => Scheme::EnergyMomentum(EnergyMomentum {}),
     };
     let mesh = match dim {
         2 => generate::rectangle("a", [0.0, 0.02], [1.0, 1.0], [3; 2], false),

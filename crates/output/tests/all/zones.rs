@@ -93,7 +93,7 @@ fn two_bars() -> Zoned {
         substeps,
         far: None,
     };
-    let rest = Scheme::CentralDifference(CentralDifference);
+    let rest = Scheme::CentralDifference(CentralDifference {});
     Zoned {
         zones: vec![
             zone(

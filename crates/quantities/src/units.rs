@@ -113,7 +113,7 @@ pub enum UnitError {
 }
 
 /// `an area`, `a length`.
-pub(crate) fn with_article(noun: &str) -> String {
+pub fn with_article(noun: &str) -> String {
     let article = if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
         "an"
     } else {
@@ -337,7 +337,7 @@ fn nearest_symbol(symbol: &str) -> Option<String> {
         .iter()
         .map(|entry| entry.0)
         .chain(USUAL.iter().copied());
-    crate::error::nearest(symbol, names).map(str::to_owned)
+    crate::nearest(symbol, names).map(str::to_owned)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
-//! Quantities of the case file: one type for each dimension and range, so that a field says its unit by its type.
+//! Quantities: one type for each dimension and range, so that a field says its unit by its type.
 //!
 //! In the file each is a number in SI units or a text with a unit (`"254 mm"`). Reading checks the dimension; the range stands in the
-//! schema and is checked by `validate`.
+//! schema: whoever reads a file checks it.
 
 use std::borrow::Cow;
 
@@ -42,6 +42,24 @@ macro_rules! quantity {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 let written = Written::deserialize(deserializer)?;
                 written.si($dimension).map($name).map_err(serde::de::Error::custom)
+            }
+        }
+
+        impl $name {
+            /// Reads the SI value alone: `deserialize_with` of a field of type `f64`.
+            ///
+            /// # Errors
+            /// What is no such quantity.
+            pub fn si<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+                Ok($name::deserialize(deserializer)?.0)
+            }
+
+            /// The same of a field that may be left out.
+            ///
+            /// # Errors
+            /// What is no such quantity.
+            pub fn some_si<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+                Ok(Option::<$name>::deserialize(deserializer)?.map(|quantity| quantity.0))
             }
         }
 

@@ -1,0 +1,24 @@
+//! What the parameters of any material answer.
+
+use crate::{Elastic, Material, OutOfRange};
+
+/// The parameters of a material, as the case file gives them.
+pub trait Parameters {
+    /// The law at finite strain; none for small strain.
+    fn finite(&self) -> Option<&dyn Material>;
+    /// Linear elasticity of the undeformed material.
+    fn undeformed(&self) -> Elastic;
+    /// Names a parameter outside its range.
+    ///
+    /// # Errors
+    /// The first such parameter.
+    fn check(&self) -> Result<(), OutOfRange>;
+    /// Whether it dissipates: its stress is then not the derivative of a stored energy alone.
+    fn dissipates(&self) -> bool {
+        false
+    }
+    /// Equivalent plastic strain in the history of a point, without unit; none of a law without plasticity.
+    fn plastic_strain(&self, _history: &[f64]) -> Option<f64> {
+        None
+    }
+}
