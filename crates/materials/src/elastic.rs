@@ -6,7 +6,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::range::{OutOfRange, require};
-use crate::{Material, Parameters};
 
 /// How the directions outside the plane (or beside the axis) of a model behave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,16 +36,12 @@ pub struct Elastic {
     pub poisson: f64,
 }
 
-impl Parameters for Elastic {
-    fn finite(&self) -> Option<&dyn Material> {
-        None
-    }
-
-    fn undeformed(&self) -> Elastic {
-        *self
-    }
-
-    fn check(&self) -> Result<(), OutOfRange> {
+impl Elastic {
+    /// Names a parameter outside its range.
+    ///
+    /// # Errors
+    /// The first such parameter.
+    pub fn check(&self) -> Result<(), OutOfRange> {
         let nu = self.poisson;
         require("density", self.density, self.density > 0.0, "positive")?;
         require("young", self.young, self.young > 0.0, "positive")?;
@@ -57,9 +52,7 @@ impl Parameters for Elastic {
             "greater than -1 and less than 0.5",
         )
     }
-}
 
-impl Elastic {
     /// Shear modulus μ = E / (2 (1 + ν)), in Pa.
     pub fn shear_modulus(&self) -> f64 {
         self.young / (2.0 * (1.0 + self.poisson))

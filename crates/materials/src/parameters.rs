@@ -22,3 +22,18 @@ pub trait Parameters {
         None
     }
 }
+
+/// Small strain: no law at finite strain.
+impl Parameters for Elastic {
+    fn finite(&self) -> Option<&dyn Material> {
+        None
+    }
+
+    fn undeformed(&self) -> Elastic {
+        *self
+    }
+
+    fn check(&self) -> Result<(), OutOfRange> {
+        Elastic::check(self)
+    }
+}
