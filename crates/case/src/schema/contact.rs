@@ -29,8 +29,8 @@ pub struct Contact {
     /// Contact law.
     pub law: GivenLaw,
     /// Whether the pairing of the two surfaces follows their motion. Default: `finite` in nonlinear cases (finite
-    /// strain, plasticity, friction, moving obstacles or supports, loads as functions of time, damping, static stages,
-    /// mortar), otherwise `small`.
+    /// strain, energy-momentum, friction, mortar, moving obstacles or supports, pressures, tractions, damping, static
+    /// stages), otherwise `small`.
     pub sliding: Option<Sliding>,
     /// Where the contact condition is imposed. Default: `node` on linear faces, `mortar` where faces are quadratic,
     /// because forces at the nodes of quadratic faces do not represent the pressure.
@@ -89,7 +89,7 @@ pub enum Nodes {
 pub enum Sliding {
     /// Points keep the face and the normal of the initial configuration.
     Small,
-    /// The closest faces are determined again in each step, or in each iteration of a nonlinear step.
+    /// The closest faces are determined again in each step, or in each iteration where the law needs it.
     Finite,
 }
 

@@ -22,7 +22,7 @@ pub struct Time {
     /// Time scheme of the dynamics; required unless the whole case is static or every zone has its own. With zones: the scheme
     /// of every zone without its own.
     pub scheme: Option<Scheme>,
-    /// Solution of nonlinear steps.
+    /// Solution of steps that need iterations.
     #[serde(default)]
     pub newton: Newton,
 }
@@ -61,7 +61,7 @@ pub struct StaticStage {
     pub steps: u32,
 }
 
-/// Solution of the equations of a nonlinear step.
+/// Solution of the equations of a step that needs iterations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Newton {
@@ -122,8 +122,8 @@ pub struct Adaptive {
     /// Response to a point in flight that will close.
     #[serde(default)]
     pub closing: Closing,
-    /// A step is halved if the energy that the scheme balances then exceeds its initial value plus the work of the
-    /// loads by more than this fraction of the largest energy.
+    /// A step is halved if the energy that the scheme balances then exceeds its initial value plus the work of
+    /// loads, supports and moving obstacles by more than this fraction of the largest energy.
     #[serde(default = "hundredth")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub energy_growth: f64,
