@@ -22,7 +22,7 @@ pub struct Adaptive {
     pub smallest: f64,
     /// What a closing contact does.
     pub closing: Closing,
-    /// A step after which the energy that the scheme balances, less the work of the loads, exceeds its value at the start by more
+    /// A step after which the energy that the scheme balances, less the work from outside, exceeds its value at the start by more
     /// than this fraction of the largest energy so far is tried again with half the size.
     pub growth: Option<f64>,
     /// Steps without event after which the size doubles. A point that has carried no force for so many steps of the largest size is

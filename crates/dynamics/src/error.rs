@@ -282,7 +282,7 @@ pub enum Error {
     /// A function of time that is none.
     #[error("a function of time needs points with increasing times and finite numbers")]
     Amplitude,
-    /// Something that the nonlinear solver, which the model needs, does not take.
+    /// Something that a model with loads in time, friction, finite strain or a static stage does not accept.
     #[error("{what}: {why}")]
     Nonlinear {
         /// What is refused.

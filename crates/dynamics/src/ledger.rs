@@ -1,8 +1,9 @@
 //! The balance of energy and momentum.
 //!
-//! In a linear run each term comes from its own formula, the dissipation of the scheme from its exact identity
-//! ([`EnergyIdentity`](crate::EnergyIdentity)). In a nonlinear run the dissipation of the scheme is a difference: the works of
-//! inertia and internal forces minus the changes of the energies. The residual is what is left, and tests check it.
+//! Two statements are kept apart. The residual is the work of the forces that the steps leave unbalanced; tests check it. The
+//! dissipation of the scheme has its own formula: in a linear run the exact identity of the scheme
+//! ([`EnergyIdentity`](crate::EnergyIdentity)), in a nonlinear one the works of inertia and internal forces minus the changes of
+//! the energies. See `docs/src/theory/balances.md`.
 
 use serde::{Deserialize, Serialize};
 

@@ -27,7 +27,7 @@ pub struct Model {
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
     pub adaptive: Option<Adaptive>,
-    /// Loads and motions in time, damping, a static stage, and how nonlinear steps are solved.
+    /// Loads and motions in time, damping, a static stage, and how the iterations of a step are solved.
     pub nonlinear: Nonlinear,
 }
 

@@ -1,5 +1,4 @@
-//! What only the nonlinear solver takes: loads and motions in time, damping, a static stage before the dynamics, and
-//! how its equations are solved.
+//! Loads and motions in time, damping, a static stage before the dynamics, and how the equations of a step are solved.
 
 use std::ops::Range;
 
@@ -135,7 +134,7 @@ impl Default for Iteration {
     }
 }
 
-/// What of a model that needs the nonlinear solver is refused.
+/// What is refused in a model whose forces are not all linear.
 #[derive(Clone, Debug, PartialEq, Eq, ThisError)]
 pub enum Refused {
     /// Where the law of a contact, by its name, holds.
@@ -157,7 +156,7 @@ pub enum Refused {
     },
 }
 
-/// What only the nonlinear solver takes.
+/// Loads and motions in time, damping, a static stage, and the rules of the iterations.
 #[derive(Clone, Debug, Default)]
 pub struct Nonlinear {
     /// Loads.
@@ -173,7 +172,7 @@ pub struct Nonlinear {
 }
 
 impl Nonlinear {
-    /// Whether anything is here that the linear solver does not know.
+    /// Whether the energy of the steps is balanced by works because of anything in here.
     pub(crate) fn asks(&self) -> bool {
         !self.loads.is_empty()
             || !self.motions.is_empty()
@@ -218,7 +217,7 @@ pub(crate) struct NumberedNonlinear {
     pub(crate) iteration: Iteration,
     /// Place of the history of each body in that of the system.
     pub(crate) histories: Vec<Range<usize>>,
-    /// Whether the linear driver cannot take the system.
+    /// Whether the energy of the steps is balanced by works.
     pub(crate) needed: bool,
 }
 
@@ -358,8 +357,9 @@ fn numbered_force(
 }
 
 impl Model {
-    /// Whether its steps are not linear, so that it has loads in time, damping, a static stage, friction, bodies at finite strain or obstacles that move: the energy of its
-    /// steps is then balanced by works, and not by the identity of the scheme.
+    /// Whether it has a pressure or traction, a motion in time, damping, a static stage, friction, mortar, a body at finite
+    /// strain, an obstacle that moves, or a scheme with forces between two states: the energy of its steps is then balanced
+    /// by works, not by the identity of the scheme, and a step of fixed size that fails is taken in halves.
     pub fn is_nonlinear(&self) -> bool {
         let finite = |body: &ModelBody| body.spec.material.finite().is_some();
         self.nonlinear.asks()
@@ -370,13 +370,11 @@ impl Model {
 }
 
 impl System {
-    /// Whether the model has loads in time, damping, a static stage, friction, bodies at finite strain or obstacles that move: the energy of its
-    /// steps is then balanced by works, and not by the identity of the scheme.
+    /// As [`Model::is_nonlinear`].
     pub fn is_nonlinear(&self) -> bool {
         self.nonlinear.needed
     }
 
-    /// Histories of all materials where nothing has happened.
     /// The part of the histories of all bodies ([`Motion::history`](crate::Motion::history)) that is a body's; empty of a law
     /// without.
     pub fn history<'a>(&self, body: usize, histories: &'a [f64]) -> &'a [f64] {
@@ -384,6 +382,7 @@ impl System {
         range.and_then(|range| histories.get(range)).unwrap_or(&[])
     }
 
+    /// Histories of all materials where nothing has happened.
     pub(crate) fn start_histories(&self) -> Vec<f64> {
         let ranges = &self.nonlinear.histories;
         let mut histories = vec![0.0; ranges.last().map_or(0, |range| range.end)];
@@ -393,7 +392,7 @@ impl System {
         histories
     }
 
-    /// Refuses what the nonlinear solver does not take, of a model that needs it.
+    /// Refuses what a model whose forces are not all linear does not accept.
     pub(crate) fn check_nonlinear(&self) -> Result<(), Error> {
         if !self.nonlinear.needed {
             return Ok(());

@@ -21,7 +21,7 @@ pub struct State {
     pub motion: Motion,
     /// Contact forces and statuses.
     pub interface: InterfaceState,
-    /// Nodal forces of the last step as the nonlinear solver balances them, N: loads, contacts, supports, inertia, internal,
+    /// Nodal forces of the last step as its balance by works takes them, N: loads, contacts, supports, inertia, internal,
     /// damping, links; empty where the next step does not need them.
     pub forces: Vec<Vec<f64>>,
     /// Step control.

@@ -70,7 +70,7 @@ pub struct System {
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
     pub adaptive: Option<Adaptive>,
-    /// What only the nonlinear solver takes.
+    /// Loads and motions in time, damping, the static stage, and the rules of the iterations.
     pub(crate) nonlinear: NumberedNonlinear,
     /// Coefficient of friction by contact.
     pub friction: Vec<f64>,

@@ -220,8 +220,9 @@ pub struct Friction {
     pub peak_force: f64,
 }
 
-/// Balance of energy, J. In a linear run each term has its own formula, and only the residual is a difference. In a nonlinear
-/// run the dissipation of the scheme is a difference too: works of inertia and internal forces minus changes of the energies.
+/// Balance of energy, J. The residual says how accurately the equations are solved, the dissipation of the scheme what the
+/// scheme makes or takes: by its exact identity in a linear run, in a nonlinear one by the works of inertia and internal
+/// forces minus the changes of the energies.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     /// Kinetic energy at the start.

@@ -22,7 +22,7 @@ macro_rules! declare {
                 }
             }
 
-            /// Those that the linear driver takes, with usual parameters: what the batteries run over.
+            /// All but those with forces between two states, with usual parameters: what the batteries run over.
             pub fn registered() -> Vec<Scheme> {
                 let mut all = Vec::new();
                 $(all.extend(crate::$scheme::usual().into_iter().map(Scheme::$scheme));)*

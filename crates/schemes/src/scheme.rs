@@ -77,7 +77,7 @@ pub trait TimeScheme {
         false
     }
     /// Whether internal forces belong to the way from the start to the end of the step (a discrete gradient), and contacts
-    /// to its middle. Only the nonlinear solver knows them.
+    /// to its middle.
     fn is_between(&self) -> bool {
         false
     }

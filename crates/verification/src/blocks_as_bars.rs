@@ -7,7 +7,7 @@
 //! displacement law it feeds differences between the columns, and rounding grows to 1e-8 of the pressure in 100 steps.
 //!
 //! Closed solution: every column moves as the one-dimensional bar with the same elements, since nothing moves across; the
-//! pressure is uniform. The bar at small strain is of bar2 elements in the linear driver; that of St Venant-Kirchhoff is one
+//! pressure is uniform. The bar at small strain is of bar2 elements; that of St Venant-Kirchhoff is one
 //! column of the same elements on matching meshes, with one contact point per node. Mortar integration transfers uniform
 //! pressure exactly: the contact forces agree step by step to 1e-9 of the largest, rounding with the steps in which it may
 //! grow. The bar is a run of Carom too, a second formulation. Collocation at nodes does not transfer it; its error is shown.

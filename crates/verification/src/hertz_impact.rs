@@ -4,7 +4,7 @@
 //! quadrilaterals (cases/hertz/spheres-whole.msh), 8 elements over the largest contact radius, lumped mass, 200 steps over
 //! the time in contact (quick 100). Closed solution: Hertz, T = 2.868 (m*²/(R E*² v))^(1/5) = 0.883 ms with R, E*, m* of
 //! the pair, F = 4255 N; 8.2 times as long as a wave takes through a sphere and back, and a/R = 0.039. Under the velocity
-//! law with closure as it stands, by nodes and by mortar, in the linear driver; under the displacement law and the trapezoid
+//! law with closure as it stands, by nodes and by mortar; under the displacement law and the trapezoid
 //! with Newton's method; neo-Hookean under the energy-momentum scheme. At 0.1 m/s (a/R = 0.020, 11.3 transits) once more.
 //!
 //! Tolerance: 3 % of the time, as the issue has it (1.4 % less than Hertz at any step: spheres that are not half-spaces are

@@ -1,4 +1,4 @@
-//! Bodies as a nonlinear solver sees them: forces and tangents at a displacement, history, energies.
+//! Bodies as an iterated step sees them: forces and tangents at a displacement, history, energies.
 //!
 //! A body whose law is one of finite strain is total Lagrangian: F = I + ∂u/∂X at the integration points of the reference
 //! configuration, f = ∫ P(F) ∂N/∂X dV. A body at small strain answers through the same functions with f = K u.

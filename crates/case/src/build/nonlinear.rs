@@ -1,4 +1,4 @@
-//! What only the nonlinear solver takes, and where it may not stand.
+//! Loads and motions in time, damping, a static stage, the rules of the iterations, and where they are refused.
 
 use std::sync::Arc;
 

@@ -56,7 +56,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The problem behind what the nonlinear solver refuses.
+    /// The problem behind what a model whose forces are not all linear does not accept.
     fn refused_nonlinear(&self, what: &Refused, why: &str) -> Problem {
         let path = match what {
             Refused::StaticStage => "time.static".to_string(),

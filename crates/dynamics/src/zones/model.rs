@@ -144,7 +144,7 @@ impl Zoned {
         }
     }
 
-    /// What the nonlinear solver of one zone takes: the loads on its bodies, their damping, the motions of its nodes.
+    /// What belongs to one zone: the loads on its bodies, their damping, the motions of its nodes.
     fn nonlinear(&self, zone: &ModelZone) -> Nonlinear {
         let whole = &self.model.nonlinear;
         let bodies = || {

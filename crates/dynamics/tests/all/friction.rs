@@ -1,4 +1,4 @@
-//! Friction in the nonlinear solver: stick, objectivity, symmetry.
+//! Friction: stick, objectivity, symmetry.
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};

@@ -1,4 +1,4 @@
-//! The nonlinear solver against what is known of its steps.
+//! Iterated steps against what is known of them.
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};

@@ -1,4 +1,4 @@
-//! Small sliding in the nonlinear solver: points paired once.
+//! Small sliding: points paired once.
 
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{

@@ -53,7 +53,7 @@ fn schemes() -> Vec<Scheme> {
     all
 }
 
-/// Every scheme that the nonlinear solver takes, with lumped and with consistent mass.
+/// Every scheme, with lumped and with consistent mass.
 fn each(check: &dyn Fn(&str, Scheme, MassKind)) {
     let mut seen = 0;
     for scheme in schemes() {
