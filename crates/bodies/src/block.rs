@@ -19,17 +19,12 @@ use crate::weights::{CellWeights, ChunkWeights, ElementWeights, Unweighted, WIDE
 
 /// Elements per chunk, whatever the number of threads: about 30 microseconds of work.
 fn chunk_length(kind: Kind) -> usize {
-    match kind {
-        Kind::Point1 | Kind::Bar2 | Kind::Bar3 => 4096,
-        Kind::Tri3 | Kind::Quad4 | Kind::Tet4 => 1024,
-        Kind::Hex8
-        | Kind::Wedge6
-        | Kind::Pyramid5
-        | Kind::Tri6
-        | Kind::Quad8
-        | Kind::Quad9
-        | Kind::Tet10 => 256,
-        Kind::Hex20 | Kind::Hex27 | Kind::Wedge15 => 32,
+    let element = kind.table();
+    match (element.dim, element.nodes) {
+        (0 | 1, _) => 4096,
+        (_, ..=4) => 1024,
+        (_, ..=10) => 256,
+        _ => 32,
     }
 }
 
@@ -47,27 +42,26 @@ pub(crate) struct Matrices<'a> {
     pub(crate) lumped: &'a [f64],
 }
 
-/// Calls the method for the number of nodes of a kind; points have no elements, and quadratic bars none here.
+/// Calls the method for the number of nodes of a kind.
 macro_rules! by_nodes {
-    ($kind:expr => $block:ident.$method:ident($($argument:expr),*)) => {
+    ($kind:expr => $block:ident.$method:ident $arguments:tt) => {
+        carom_elements::kinds!(call_by_nodes ($kind) $block $method $arguments)
+    };
+}
+
+/// [`by_nodes`], with the list of kinds behind it.
+macro_rules! call_by_nodes {
+    (
+        [($kind:expr) $block:ident $method:ident $arguments:tt]
+        $($(#[$doc:meta])* $name:ident $module:ident $nodes:literal,)*
+    ) => {
         match $kind {
-            Kind::Point1 | Kind::Bar3 => {}
-            Kind::Bar2 => $block.$method::<2>($($argument),*),
-            Kind::Tri3 => $block.$method::<3>($($argument),*),
-            Kind::Quad4 | Kind::Tet4 => $block.$method::<4>($($argument),*),
-            Kind::Pyramid5 => $block.$method::<5>($($argument),*),
-            Kind::Tri6 | Kind::Wedge6 => $block.$method::<6>($($argument),*),
-            Kind::Hex8 | Kind::Quad8 => $block.$method::<8>($($argument),*),
-            Kind::Quad9 => $block.$method::<9>($($argument),*),
-            Kind::Tet10 => $block.$method::<10>($($argument),*),
-            Kind::Wedge15 => $block.$method::<15>($($argument),*),
-            Kind::Hex20 => $block.$method::<20>($($argument),*),
-            Kind::Hex27 => $block.$method::<27>($($argument),*),
+            $(carom_elements::Kind::$name => $block.$method::<$nodes> $arguments,)*
         }
     };
 }
 
-pub(crate) use by_nodes;
+pub(crate) use {by_nodes, call_by_nodes};
 
 /// What is called for each element.
 pub(crate) type Visit<'a> = dyn FnMut(&Matrices) + 'a;
@@ -377,19 +371,11 @@ impl Sweep<'_> {
         };
         let points = &self.block.stiffness_points;
         match self.block.kind {
-            Kind::Point1 | Kind::Bar2 | Kind::Bar3 => 0.0,
             Kind::Tri3 => self.batches::<S, W, 3, 2>(&Cell::new(law, points, &force::TRI3), w),
             Kind::Quad4 => self.batches::<S, W, 4, 2>(&Cell::new(law, points, &force::QUAD4), w),
             Kind::Tet4 => self.batches::<S, W, 4, 3>(&Cell::new(law, points, &force::TET4), w),
             Kind::Hex8 => self.batches::<S, W, 8, 3>(&Cell::new(law, points, &force::HEX8), w),
-            Kind::Pyramid5 => self.singly::<5>(law),
-            Kind::Tri6 | Kind::Wedge6 => self.singly::<6>(law),
-            Kind::Quad8 => self.singly::<8>(law),
-            Kind::Quad9 => self.singly::<9>(law),
-            Kind::Tet10 => self.singly::<10>(law),
-            Kind::Wedge15 => self.singly::<15>(law),
-            Kind::Hex20 => self.singly::<20>(law),
-            Kind::Hex27 => self.singly::<27>(law),
+            kind => by_nodes!(kind => self.singly(law)),
         }
     }
 

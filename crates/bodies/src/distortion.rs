@@ -13,12 +13,12 @@
 //! A sweep then costs less than one of the internal forces.
 
 use carom_algebra::tensor::Mat3;
-use carom_elements::Kind;
+
 use rayon::prelude::*;
 
 use crate::Solid;
 use crate::bar::Bar;
-use crate::block::{Block, Chunk, Physics, by_nodes};
+use crate::block::{Block, Chunk, Physics, by_nodes, call_by_nodes};
 use crate::continuum::{Law, Point};
 
 /// The largest value of something over the elements of a body.

@@ -59,6 +59,7 @@ fn volume(element: &Element, x: &[[f64; 3]]) -> f64 {
 fn the_table_is_consistent() {
     for (kind, element) in Kind::ALL.into_iter().zip(tables()) {
         assert_eq!(element.kind, kind);
+        assert_eq!(element.nodes, kind.listed_nodes());
         assert_eq!(element.reference.len(), element.nodes);
         assert!(element.nodes <= MAX_NODES);
         assert_eq!(Kind::from_gmsh(element.gmsh), Some(kind));

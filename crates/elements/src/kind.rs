@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 macro_rules! declare {
-    ($($(#[$doc:meta])* $kind:ident $module:ident,)*) => {
+    ([] $($(#[$doc:meta])* $kind:ident $module:ident $nodes:literal,)*) => {
         /// The kind of an element: the key of its row of data.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
         #[serde(rename_all = "lowercase")]

@@ -3,8 +3,16 @@
 use crate::{Element, Kind};
 
 macro_rules! rows {
-    ($($(#[$doc:meta])* $kind:ident $module:ident,)*) => {
+    ([] $($(#[$doc:meta])* $kind:ident $module:ident $nodes:literal,)*) => {
         impl Kind {
+            /// The number of nodes in the list, which macros see before any row of data.
+            #[cfg(test)]
+            pub(crate) fn listed_nodes(self) -> usize {
+                match self {
+                    $(Kind::$kind => $nodes,)*
+                }
+            }
+
             /// The row of data of this kind.
             pub fn table(self) -> &'static Element {
                 match self {

@@ -38,7 +38,7 @@ pub(crate) fn on_patch(
     point: &[f64; 3],
 ) -> ([f64; 3], [f64; 3]) {
     let distance = Distance { element, x, point };
-    let is_triangle = element.kind == Kind::Tri6;
+    let is_triangle = element.linear == Kind::Tri3;
     let directions = match is_triangle {
         true => &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, -1.0, 0.0]][..],
         false => &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]][..],

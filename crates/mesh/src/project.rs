@@ -46,21 +46,14 @@ pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Project
         *local = difference(x, point);
     }
     let (local, origin) = (&local[..element.nodes], &[0.0; 3]);
-    let (xi, free) = match face.kind {
-        Kind::Point1 => ([0.0; 3], [0.0; 3]),
-        Kind::Bar2 => on_segment(positions, point),
-        Kind::Tri3 => on_triangle(positions, point),
-        Kind::Quad4 => on_patch(local),
-        Kind::Bar3 => curved::on_curve(element, local, origin),
-        Kind::Tri6 | Kind::Quad8 | Kind::Quad9 => curved::on_patch(element, local, origin),
-        Kind::Tet4
-        | Kind::Tet10
-        | Kind::Hex8
-        | Kind::Hex20
-        | Kind::Hex27
-        | Kind::Wedge6
-        | Kind::Wedge15
-        | Kind::Pyramid5 => unreachable!("a face has two dimensions at most"),
+    let (xi, free) = match (element.dim, element.is_quadratic()) {
+        (0, _) => ([0.0; 3], [0.0; 3]),
+        (1, false) => on_segment(positions, point),
+        (1, true) => curved::on_curve(element, local, origin),
+        (2, false) if element.nodes == 3 => on_triangle(positions, point),
+        (2, false) => on_patch(local),
+        (2, true) => curved::on_patch(element, local, origin),
+        _ => unreachable!("a face has two dimensions at most"),
     };
     let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);
     (element.shape)(&xi, &mut n[..element.nodes]);
