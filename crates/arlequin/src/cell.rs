@@ -61,7 +61,7 @@ impl Cell {
 
     /// Total degree of the shape functions in the position, if the map is affine.
     pub fn degree(&self) -> usize {
-        degree(self.kind)
+        self.kind.table().degree
     }
 
     fn affine_map(&self) -> Option<([f64; 3], [[f64; 3]; 3])> {
@@ -269,18 +269,6 @@ impl Cell {
             }
         }
         parts
-    }
-}
-
-/// Total degree of the shape functions of a kind under an affine map; the pyramid's are rational.
-pub(crate) fn degree(kind: Kind) -> usize {
-    match kind {
-        Kind::Point1 => 0,
-        Kind::Bar2 | Kind::Tri3 | Kind::Tet4 => 1,
-        Kind::Quad4 | Kind::Bar3 | Kind::Tri6 | Kind::Tet10 | Kind::Wedge6 => 2,
-        Kind::Hex8 | Kind::Quad8 | Kind::Wedge15 | Kind::Pyramid5 => 3,
-        Kind::Quad9 | Kind::Hex20 => 4,
-        Kind::Hex27 => 6,
     }
 }
 

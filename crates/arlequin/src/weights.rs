@@ -163,7 +163,7 @@ impl Overlap<'_> {
         let largest = [Model::Inner, Model::Outer]
             .iter()
             .flat_map(|&m| self.cells(m))
-            .map(|&id| crate::cell::degree(self.mesh().kind(id)))
+            .map(|&id| self.mesh().kind(id).table().degree)
             .fold(1, usize::max);
         let profile = match self.is_strip() {
             true => weighting.degree(),

@@ -8,6 +8,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Bar2,
     dim: 1,
     nodes: 2,
+    degree: 1,
     reference: &[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
     // The outward axis runs from node 1 to node 0 at the first face, from node 0 to node 1 at the second.
     faces: &[face(&[0]), face(&[1])],

@@ -10,6 +10,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Bar2,
     dim: 1,
     nodes: 3,
+    degree: 2,
     reference: &NODES,
     faces: &[face(&[0]), face(&[1])],
     gmsh: 8,

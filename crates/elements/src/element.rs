@@ -21,6 +21,8 @@ pub struct Element {
     pub dim: usize,
     /// Number of nodes.
     pub nodes: usize,
+    /// Total degree of the shape functions under an affine map; of rational ones the least that integrates them well.
+    pub degree: usize,
     /// Node coordinates in the reference cell, in node order.
     pub reference: &'static [[f64; 3]],
     /// Faces of the cell (dimension one less), each ordered so that its normal points out of the cell.

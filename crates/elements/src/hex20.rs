@@ -10,6 +10,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Hex8,
     dim: 3,
     nodes: 20,
+    degree: 4,
     reference: hex27::NODES.split_at(20).0,
     faces: &[
         face(&[0, 3, 2, 1, 11, 10, 9, 8]),

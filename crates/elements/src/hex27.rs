@@ -11,6 +11,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Hex8,
     dim: 3,
     nodes: 27,
+    degree: 6,
     reference: &NODES,
     faces: &[
         face(&[0, 3, 2, 1, 11, 10, 9, 8, 24]),

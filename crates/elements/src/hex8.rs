@@ -8,6 +8,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Hex8,
     dim: 3,
     nodes: 8,
+    degree: 3,
     reference: &NODES,
     faces: &[
         face(&[0, 3, 2, 1]),

@@ -8,6 +8,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Point1,
     dim: 0,
     nodes: 1,
+    degree: 0,
     reference: &[[0.0; 3]],
     faces: &[],
     gmsh: 15,

@@ -14,6 +14,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Pyramid5,
     dim: 3,
     nodes: 5,
+    degree: 3,
     reference: &NODES,
     faces: &[
         face(Kind::Quad4, &[0, 3, 2, 1]),

@@ -8,6 +8,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Quad4,
     dim: 2,
     nodes: 4,
+    degree: 2,
     reference: &NODES,
     faces: &[face(&[0, 1]), face(&[1, 2]), face(&[2, 3]), face(&[3, 0])],
     gmsh: 3,

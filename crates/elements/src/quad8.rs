@@ -9,6 +9,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Quad4,
     dim: 2,
     nodes: 8,
+    degree: 3,
     reference: quad9::NODES.split_at(8).0,
     faces: &quad9::FACES,
     gmsh: 16,

@@ -10,6 +10,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Quad4,
     dim: 2,
     nodes: 9,
+    degree: 4,
     reference: &NODES,
     faces: &FACES,
     gmsh: 10,

@@ -10,6 +10,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Tet4,
     dim: 3,
     nodes: 10,
+    degree: 2,
     reference: &[
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],

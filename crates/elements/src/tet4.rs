@@ -8,6 +8,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Tet4,
     dim: 3,
     nodes: 4,
+    degree: 1,
     reference: &[
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],

@@ -8,6 +8,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Tri3,
     dim: 2,
     nodes: 3,
+    degree: 1,
     reference: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
     faces: &[face(&[0, 1]), face(&[1, 2]), face(&[2, 0])],
     gmsh: 2,

@@ -10,6 +10,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Wedge6,
     dim: 3,
     nodes: 15,
+    degree: 3,
     reference: &[
         [0.0, 0.0, -1.0],
         [1.0, 0.0, -1.0],

@@ -9,6 +9,7 @@ pub static ELEMENT: Element = Element {
     linear: Kind::Wedge6,
     dim: 3,
     nodes: 6,
+    degree: 2,
     reference: &[
         [0.0, 0.0, -1.0],
         [1.0, 0.0, -1.0],
