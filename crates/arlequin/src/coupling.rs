@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use carom_elements::MAX_NODES;
 
-use crate::cell::{Cell, degree};
+use crate::cell::Cell;
 use crate::error::{Error, Model};
 use crate::overlap::Overlap;
 use crate::polytope::dot;
@@ -171,7 +171,7 @@ impl Overlap<'_> {
             Integration::CommonRefinement => {
                 let models = [Model::Inner, Model::Outer];
                 let ids = models.iter().flat_map(|&m| self.cells(m));
-                let degrees = ids.map(|&id| degree(self.mesh().kind(id)));
+                let degrees = ids.map(|&id| self.mesh().kind(id).table().degree);
                 let rules = Rules::new(self.mesh().dim, 2 * degrees.fold(1, usize::max), 2);
                 let mut points = Vec::new();
                 for piece in self.refinement.pieces.iter().filter(|p| p.measure > 0.0) {
