@@ -577,33 +577,3 @@ fn a_degenerate_face_has_no_measure_and_no_normal() {
     let dn = gradient(Kind::Tri3.table(), &[0.0; 3]);
     assert_eq!(map::measure(&x, &dn, 2), (0.0, [0.0; 3]));
 }
-
-/// The difference of order d + 1 along a line vanishes for a polynomial of degree d, that of order d does not.
-#[test]
-fn the_degree_is_that_of_the_shape_functions() {
-    let direction = [0.31, 0.47, -0.23];
-    for element in tables().filter(|element| element.kind != Kind::Pyramid5) {
-        let difference = |order: usize, a: usize| {
-            let mut values: Vec<f64> = (0..=order)
-                .map(|k| {
-                    let xi = [0, 1, 2].map(|i| match i < element.dim {
-                        true => 0.1 + k as f64 * direction[i],
-                        false => 0.0,
-                    });
-                    shape(element, &xi)[a]
-                })
-                .collect();
-            while values.len() > 1 {
-                values = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-            }
-            values[0].abs()
-        };
-        let largest = |order| {
-            (0..element.nodes)
-                .map(|a| difference(order, a))
-                .fold(0.0, f64::max)
-        };
-        assert!(largest(element.degree) > 1e-4, "{}", element.name);
-        assert!(largest(element.degree + 1) < 1e-11, "{}", element.name);
-    }
-}
