@@ -13,22 +13,14 @@ use source::Source;
 use crate::files;
 
 /// Folders in which circles are known, and why they still stand. A folder without one must leave the list.
-const KNOWN: [(&str, &str); 4] = [
-    (
-        "crates/bodies/src/",
-        "bodies become an enum with one file for each kind",
-    ),
-    (
-        "crates/case/src/build/",
-        "the tables of new bodies come first",
-    ),
+const KNOWN: [(&str, &str); 2] = [
     (
         "crates/contact/src/",
-        "places ask the map of unknowns first",
+        "the search keeps a pairing, which searches; places, obstacles and stencils stand in the files that use them",
     ),
     (
         "crates/dynamics/src/",
-        "one stepper takes the place of the two",
+        "system, state and records import each other, and so do the driver and its stages: both become crates",
     ),
 ];
 

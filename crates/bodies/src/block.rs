@@ -4,7 +4,6 @@
 //! number of threads.
 
 use carom_algebra::tensor::Mat3;
-use carom_algebra::unknowns::Unknowns;
 use carom_elements::{Kind, MAX_NODES};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -14,6 +13,7 @@ use crate::continuum::{self, Law, Points};
 use crate::finite::Elements;
 use crate::force::{self, Cell, Kernel};
 use crate::lanes::Lanes;
+use crate::nodes::Nodes;
 use crate::single;
 use crate::weights::{CellWeights, ChunkWeights, ElementWeights, Unweighted, WIDEST, Weight};
 
@@ -95,16 +95,6 @@ pub(crate) struct Chunk {
     /// Nodes of each element, as places in `nodes`.
     pub(crate) connectivity: Vec<u32>,
     weights: Option<ChunkWeights>,
-}
-
-/// What elements are made on.
-pub(crate) struct Nodes<'a> {
-    /// System numbers of the nodes of each element, flat.
-    pub(crate) elements: &'a [u32],
-    /// Coordinates by system number, m.
-    pub(crate) x: &'a [[f64; 3]],
-    /// Unknowns of the nodes of the system.
-    pub(crate) unknowns: &'a Unknowns,
 }
 
 /// Buffers of the internal-force sweep: one list of nodal forces and one energy per chunk.

@@ -13,6 +13,7 @@ mod finite;
 mod force;
 mod kinematics;
 mod lanes;
+mod nodes;
 mod single;
 mod size;
 mod solid;

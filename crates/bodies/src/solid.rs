@@ -12,9 +12,10 @@ use carom_mesh::{ElementId, Mesh};
 
 use crate::Error;
 use crate::bar::Bar;
-use crate::block::{Block, Nodes, Physics, Scratch, Visit};
+use crate::block::{Block, Physics, Scratch, Visit};
 use crate::continuum;
 use crate::finite::{Cells, Finite, Formulation, Shape};
+use crate::nodes::Nodes;
 use crate::together::Together;
 use crate::weights::CellWeights;
 use crate::{Kinematics, size, stability};

@@ -5,7 +5,7 @@ use carom_elements::{Kind, MAX_NODES, map};
 use super::Formulation;
 use super::hourglass::Hourglass;
 use crate::Kinematics;
-use crate::block::Nodes;
+use crate::nodes::Nodes;
 use crate::weights::CellWeights;
 
 /// Unknowns of the largest element.

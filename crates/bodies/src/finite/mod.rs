@@ -14,60 +14,21 @@ mod between;
 mod cells;
 mod dilatation;
 mod element;
+mod formulation;
 mod gradient;
 mod hourglass;
 mod linear;
+mod placement;
 mod pressure;
 mod sweep;
 
 pub(crate) use cells::{Cells, Shape};
 use element::Fault;
+pub use formulation::Formulation;
+pub use placement::{Placement, Stored};
 pub use pressure::FollowerPressure;
 use sweep::Failed;
 pub(crate) use sweep::{Elements, Finite};
-
-/// How the elements of a body integrate the internal work.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Formulation {
-    /// All points of the stiffness rule.
-    #[default]
-    Full,
-    /// Mean dilatation, against volumetric locking: the volume ratio of an element is that of the whole element.
-    BBar,
-    /// One point, and a stiffness against the hourglass modes that it does not see: 4-node quadrilaterals and 8-node
-    /// hexahedra.
-    Reduced {
-        /// Factor of the hourglass stiffness, without unit; 0.05 to 0.1 as a rule.
-        hourglass: f64,
-    },
-}
-
-/// Where internal forces are taken.
-#[derive(Clone, Copy, Debug)]
-pub struct Placement<'a> {
-    /// Displacement, system vector, m.
-    pub u: &'a [f64],
-    /// Velocity at the same instant, system vector, m/s.
-    pub v: &'a [f64],
-    /// Displacement at the start of the step, for the algorithmic stress between the two, whose work over the step is the
-    /// change of the stored energy; none for the stress at `u`.
-    pub from: Option<&'a [f64]>,
-    /// Time since the history `old`, s.
-    pub dt: f64,
-    /// History of this body at the start of the step, [`Solid::history_len`] numbers.
-    pub old: &'a [f64],
-}
-
-/// Energies of a body, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Stored {
-    /// Stored by elastic strain, at `u`.
-    pub strain: f64,
-    /// Stored by hardening, at `u`.
-    pub hardening: f64,
-    /// Dissipated since the old history.
-    pub dissipated: f64,
-}
 
 impl Solid {
     /// Whether forces are linear in the displacement: small strain.

@@ -11,7 +11,7 @@ use carom_dynamics::{ModelBody, ModelContact, ModelLink, ModelTarget, Support};
 use carom_mesh::{ElementId, Mesh};
 
 use super::Builder;
-use super::ties::Held;
+use super::held::Held;
 use super::unfit::doubt;
 use crate::error::Problem;
 use crate::schema::{self, BracketLength, BracketWith, OverlapRegion, OverlapShape, ProfileWith};

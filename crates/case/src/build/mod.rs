@@ -3,7 +3,9 @@
 mod advice;
 mod arlequin;
 mod bodies;
+mod builder;
 mod contacts;
+mod held;
 mod laws;
 mod loads;
 mod materials;
@@ -12,6 +14,7 @@ mod nonlinear;
 mod obstacles;
 mod penetration;
 mod pieces;
+mod plan;
 mod probes;
 mod reference;
 mod refused;
@@ -25,16 +28,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use carom_dynamics::{LinkKind, Model, System, Zoned};
-use carom_mesh::{Group, Mesh};
 
 use crate::error::Problem;
 use crate::input::Input;
 use crate::locate::Locator;
-use crate::schema::{Case, Motion, Vector};
+use crate::schema::{Case, Motion};
 
 pub use arlequin::BuiltOverlap;
+use builder::{Builder, dimensions, plural};
+use plan::Plan;
 pub use reference::ExactReference;
-use zones::Plan;
 
 /// What a case amounts to.
 #[derive(Debug)]
@@ -93,19 +96,6 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
         Some(built) if builder.problems.is_empty() => Ok(built),
         _ => Err(locator.locate_all(builder.problems)),
     }
-}
-
-/// Collects problems while it builds.
-struct Builder<'a> {
-    case: &'a Case,
-    problems: Vec<Problem>,
-    warnings: Vec<String>,
-    /// Name of each contact with the damped law, and twice the rate of its spring against the elements behind it, 1/s.
-    springs: Vec<(String, f64)>,
-    /// The zones of the case.
-    plan: Plan,
-    /// Path of the case file.
-    file: PathBuf,
 }
 
 impl Builder<'_> {
@@ -207,58 +197,5 @@ impl Builder<'_> {
             reference,
             warnings: std::mem::take(&mut self.warnings),
         })
-    }
-
-    /// The group called `name`, or a problem at `path`.
-    fn group<'m>(&mut self, mesh: &'m Mesh, path: &str, name: &str) -> Option<&'m Group> {
-        match mesh.groups.get(name) {
-            None => {
-                let problem = Problem::new(path, "no group of this name in the mesh");
-                self.problems
-                    .push(problem.unknown(name, mesh.groups.keys().map(String::as_str)));
-                None
-            }
-            Some(group) if group.elements.is_empty() => {
-                let problem = Problem::new(path, "this group of the mesh is empty").found(name);
-                self.problems
-                    .push(problem.accepted(["a group with elements"]));
-                None
-            }
-            Some(group) => Some(group),
-        }
-    }
-
-    /// The components of a vector, or a problem where it has more than the mesh.
-    fn vector<Q: Copy + Into<f64>>(
-        &mut self,
-        mesh: &Mesh,
-        path: &str,
-        vector: &Vector<Q>,
-    ) -> [f64; 3] {
-        let components = vector.si();
-        if components[mesh.dim..].iter().any(|c| *c != 0.0) {
-            let message = format!(
-                "a component beyond the {} of the mesh",
-                dimensions(mesh.dim)
-            );
-            let problem = Problem::new(path, message).found(format!("{components:?}"));
-            self.problems.push(problem.accepted([format!(
-                "{}, or zeros after it",
-                plural(mesh.dim, "component")
-            )]));
-        }
-        components
-    }
-}
-
-fn dimensions(dim: usize) -> String {
-    plural(dim, "dimension")
-}
-
-fn plural(count: usize, noun: &str) -> String {
-    if count == 1 {
-        format!("1 {noun}")
-    } else {
-        format!("{count} {noun}s")
     }
 }

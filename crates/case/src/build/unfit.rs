@@ -5,7 +5,7 @@ use carom_dynamics::ModelBody;
 use carom_mesh::{ElementId, Mesh};
 
 use super::Builder;
-use super::ties::Held;
+use super::held::Held;
 use crate::error::Problem;
 use crate::offenders::Offenders;
 

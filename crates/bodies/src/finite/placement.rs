@@ -1,0 +1,28 @@
+//! Where internal forces are taken, and the energies there.
+
+/// Where internal forces are taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement<'a> {
+    /// Displacement, system vector, m.
+    pub u: &'a [f64],
+    /// Velocity at the same instant, system vector, m/s.
+    pub v: &'a [f64],
+    /// Displacement at the start of the step, for the algorithmic stress between the two, whose work over the step is the
+    /// change of the stored energy; none for the stress at `u`.
+    pub from: Option<&'a [f64]>,
+    /// Time since the history `old`, s.
+    pub dt: f64,
+    /// History of this body at the start of the step, [`Solid::history_len`](crate::Solid::history_len) numbers.
+    pub old: &'a [f64],
+}
+
+/// Energies of a body, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stored {
+    /// Stored by elastic strain, at `u`.
+    pub strain: f64,
+    /// Stored by hardening, at `u`.
+    pub hardening: f64,
+    /// Dissipated since the old history.
+    pub dissipated: f64,
+}

@@ -1,0 +1,82 @@
+//! What the parts of the building share.
+
+use std::path::PathBuf;
+
+use carom_mesh::{Group, Mesh};
+
+use super::plan::Plan;
+use crate::error::Problem;
+use crate::schema::{Case, Vector};
+
+/// Collects problems while it builds.
+pub(super) struct Builder<'a> {
+    pub(super) case: &'a Case,
+    pub(super) problems: Vec<Problem>,
+    pub(super) warnings: Vec<String>,
+    /// Name of each contact with the damped law, and twice the rate of its spring against the elements behind it, 1/s.
+    pub(super) springs: Vec<(String, f64)>,
+    /// The zones of the case.
+    pub(super) plan: Plan,
+    /// Path of the case file.
+    pub(super) file: PathBuf,
+}
+
+impl Builder<'_> {
+    /// The group called `name`, or a problem at `path`.
+    pub(super) fn group<'m>(
+        &mut self,
+        mesh: &'m Mesh,
+        path: &str,
+        name: &str,
+    ) -> Option<&'m Group> {
+        match mesh.groups.get(name) {
+            None => {
+                let problem = Problem::new(path, "no group of this name in the mesh");
+                self.problems
+                    .push(problem.unknown(name, mesh.groups.keys().map(String::as_str)));
+                None
+            }
+            Some(group) if group.elements.is_empty() => {
+                let problem = Problem::new(path, "this group of the mesh is empty").found(name);
+                self.problems
+                    .push(problem.accepted(["a group with elements"]));
+                None
+            }
+            Some(group) => Some(group),
+        }
+    }
+
+    /// The components of a vector, or a problem where it has more than the mesh.
+    pub(super) fn vector<Q: Copy + Into<f64>>(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        vector: &Vector<Q>,
+    ) -> [f64; 3] {
+        let components = vector.si();
+        if components[mesh.dim..].iter().any(|c| *c != 0.0) {
+            let message = format!(
+                "a component beyond the {} of the mesh",
+                dimensions(mesh.dim)
+            );
+            let problem = Problem::new(path, message).found(format!("{components:?}"));
+            self.problems.push(problem.accepted([format!(
+                "{}, or zeros after it",
+                plural(mesh.dim, "component")
+            )]));
+        }
+        components
+    }
+}
+
+pub(super) fn dimensions(dim: usize) -> String {
+    plural(dim, "dimension")
+}
+
+pub(super) fn plural(count: usize, noun: &str) -> String {
+    if count == 1 {
+        format!("1 {noun}")
+    } else {
+        format!("{count} {noun}s")
+    }
+}
