@@ -458,6 +458,8 @@ mod tests {
     use carom_materials::Elastic;
     use pulp::Scalar;
 
+    use carom_algebra::unknowns::Unknowns;
+
     use super::*;
     use crate::Kinematics;
 

@@ -400,9 +400,6 @@ impl Stepper for Whole {
     }
 
     fn failed_problem(&self) -> Option<FailedProblem<'_>> {
-        self.zones
-            .drivers
-            .iter()
-            .find_map(|driver| Stepper::failed_problem(driver))
+        self.zones.drivers.iter().find_map(Stepper::failed_problem)
     }
 }
