@@ -8,6 +8,7 @@ use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
 use crate::block::Scratch;
+use crate::discrete::{Discrete, DiscreteSpec};
 use crate::distortion::Distortion;
 use crate::solid::{BodySpec, Solid};
 use crate::{Error, Placement, Stored};
@@ -17,6 +18,8 @@ use crate::{Error, Placement, Stored};
 pub enum Body {
     /// A solid or a bar.
     Solid(Solid),
+    /// Point masses, springs or dashpots.
+    Discrete(Discrete),
 }
 
 impl Body {
@@ -33,10 +36,50 @@ impl Body {
         Solid::new(mesh, spec, number, unknowns).map(Body::Solid)
     }
 
+    /// Builds discrete elements on the cells of a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of
+    /// the system.
+    ///
+    /// # Errors
+    /// As [`Discrete::new`].
+    pub fn discrete(
+        mesh: &Mesh,
+        spec: DiscreteSpec,
+        number: &[u32],
+        unknowns: &Unknowns,
+    ) -> Result<Body, Error> {
+        Discrete::new(mesh, spec, number, unknowns).map(Body::Discrete)
+    }
+
     /// The solid or bar that it is, if it is one.
     pub fn as_solid(&self) -> Option<&Solid> {
         match self {
             Body::Solid(solid) => Some(solid),
+            Body::Discrete(_) => None,
+        }
+    }
+
+    /// The discrete elements that it is, if it is some.
+    pub fn as_discrete(&self) -> Option<&Discrete> {
+        match self {
+            Body::Solid(_) => None,
+            Body::Discrete(discrete) => Some(discrete),
+        }
+    }
+
+    /// Whether its forces on the system have no resultant and no moment. Those of springs and dashpots may have both: on the
+    /// ground, and across their nodes.
+    pub fn balances_itself(&self) -> bool {
+        match self {
+            Body::Solid(_) => true,
+            Body::Discrete(discrete) => !discrete.has_stiffness(),
+        }
+    }
+
+    /// Whether it has dashpots ([`Body::add_damping_force`]).
+    pub fn has_damping(&self) -> bool {
+        match self {
+            Body::Solid(_) => false,
+            Body::Discrete(discrete) => discrete.has_damping(),
         }
     }
 
@@ -44,6 +87,7 @@ impl Body {
     pub fn name(&self) -> &str {
         match self {
             Body::Solid(solid) => solid.name(),
+            Body::Discrete(discrete) => discrete.name(),
         }
     }
 
@@ -51,6 +95,7 @@ impl Body {
     pub fn cells(&self) -> &[ElementId] {
         match self {
             Body::Solid(solid) => solid.cells(),
+            Body::Discrete(discrete) => discrete.cells(),
         }
     }
 
@@ -58,6 +103,7 @@ impl Body {
     pub fn is_linear(&self) -> bool {
         match self {
             Body::Solid(solid) => solid.is_linear(),
+            Body::Discrete(discrete) => discrete.is_linear(),
         }
     }
 
@@ -65,6 +111,7 @@ impl Body {
     pub fn passage(&self) -> f64 {
         match self {
             Body::Solid(solid) => solid.smallest_size() / solid.wave_speed(),
+            Body::Discrete(_) => 0.0,
         }
     }
 
@@ -72,6 +119,7 @@ impl Body {
     pub fn history_len(&self) -> usize {
         match self {
             Body::Solid(solid) => solid.history_len(),
+            Body::Discrete(_) => 0,
         }
     }
 
@@ -79,6 +127,7 @@ impl Body {
     pub fn start_history(&self, out: &mut [f64]) {
         match self {
             Body::Solid(solid) => solid.start_history(out),
+            Body::Discrete(_) => {}
         }
     }
 
@@ -90,6 +139,7 @@ impl Body {
     pub fn internal_force(&self, u: &[f64], scratch: &mut Scratch, f: &mut [f64]) -> f64 {
         match self {
             Body::Solid(solid) => solid.internal_force(u, scratch, f),
+            Body::Discrete(discrete) => discrete.internal_force(u, f),
         }
     }
 
@@ -110,6 +160,7 @@ impl Body {
     ) -> Result<Stored, Error> {
         match self {
             Body::Solid(solid) => solid.force(at, new, scratch, f),
+            Body::Discrete(discrete) => Ok(discrete.add_spring_force(at, f)),
         }
     }
 
@@ -122,12 +173,25 @@ impl Body {
     pub fn add_tangent(
         &self,
         at: &Placement,
-        [by_u, _by_v]: [f64; 2],
+        [by_u, by_v]: [f64; 2],
         matrix: &mut Csr,
     ) -> Result<(), Error> {
         match self {
             // its forces do not depend on the velocity
             Body::Solid(solid) => solid.add_tangent(at, by_u, matrix),
+            Body::Discrete(discrete) => {
+                discrete.add_tangent(at, [by_u, by_v], matrix);
+                Ok(())
+            }
+        }
+    }
+
+    /// Adds the forces of dashpots (N) at the velocity `v` (m/s) to the system vector `f`. They are no part of
+    /// [`Body::force`], since all their work is dissipated; their derivative is a part of [`Body::add_tangent`].
+    pub fn add_damping_force(&self, v: &[f64], f: &mut [f64]) {
+        match self {
+            Body::Solid(_) => {}
+            Body::Discrete(discrete) => discrete.add_damping_force(v, f),
         }
     }
 
@@ -135,20 +199,17 @@ impl Body {
     pub fn add_lumped_mass(&self, mass: &mut [f64]) {
         match self {
             Body::Solid(solid) => solid.add_lumped_mass(mass),
+            Body::Discrete(discrete) => discrete.add_lumped_mass(mass),
         }
     }
 
-    /// Adds `stiffness_factor` K + `mass_factor` M (consistent) to the rows of one connected part, K that of the undeformed
-    /// body. `part`: system numbers of the unknowns that `matrix` holds; elements outside are left out.
-    pub fn assemble(
-        &self,
-        stiffness_factor: f64,
-        mass_factor: f64,
-        part: &Range<usize>,
-        matrix: &mut Csr,
-    ) {
+    /// Adds `factors[0]` K + `factors[1]` C + `factors[2]` M (consistent) to the rows of one connected part: stiffness of the
+    /// undeformed body, damping of dashpots at rest, mass. `part`: system numbers of the unknowns that `matrix` holds; elements
+    /// outside are left out.
+    pub fn assemble(&self, factors: [f64; 3], part: &Range<usize>, matrix: &mut Csr) {
         match self {
-            Body::Solid(solid) => solid.assemble(stiffness_factor, mass_factor, part, matrix),
+            Body::Solid(solid) => solid.assemble(factors[0], factors[2], part, matrix),
+            Body::Discrete(discrete) => discrete.assemble(factors, part, matrix),
         }
     }
 
@@ -156,6 +217,7 @@ impl Body {
     pub fn each_element(&self, visit: &mut dyn FnMut(&[u32])) {
         match self {
             Body::Solid(solid) => solid.each_element(visit),
+            Body::Discrete(discrete) => discrete.each_element(visit),
         }
     }
 
@@ -163,6 +225,8 @@ impl Body {
     pub fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
         match self {
             Body::Solid(solid) => solid.stresses(u, history),
+            // neither volume nor stress
+            Body::Discrete(discrete) => vec![(0.0, Mat3::zeros()); discrete.cells().len()],
         }
     }
 
@@ -171,13 +235,16 @@ impl Body {
     pub fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
         match self {
             Body::Solid(solid) => solid.plastic_strains(history),
+            Body::Discrete(_) => None,
         }
     }
 
-    /// Upper bound of the angular frequencies (rad/s) with its lumped mass; see [`Solid::frequency_bound`].
+    /// Upper bound of the angular frequencies (rad/s) with its lumped mass; see [`Solid::frequency_bound`]. Zero of a body
+    /// without a mass of its own: [`Body::add_row_sums`].
     pub fn frequency_bound(&self) -> f64 {
         match self {
             Body::Solid(solid) => solid.frequency_bound(),
+            Body::Discrete(_) => 0.0,
         }
     }
 
@@ -188,6 +255,25 @@ impl Body {
     pub fn frequency_bound_at(&self, at: &Placement) -> Result<f64, Error> {
         match self {
             Body::Solid(solid) => solid.frequency_bound_at(at),
+            Body::Discrete(_) => Ok(0.0),
+        }
+    }
+
+    /// Visits the rows n of springs, as unknowns and coefficients of the elongation: motions that they hold.
+    pub fn each_spring(&self, visit: &mut dyn FnMut(&[(usize, f64)])) {
+        match self {
+            Body::Solid(_) => {}
+            Body::Discrete(discrete) => discrete.each_spring(visit),
+        }
+    }
+
+    /// Adds the sums of the magnitudes in the rows of the stiffness (N/m) and of the damping matrix (N s/m) that stand on the
+    /// masses of other bodies, at most, to system vectors: over the mass of the unknown they bound the eigenvalues
+    /// (Gershgorin).
+    pub fn add_row_sums(&self, stiffness: &mut [f64], damping: &mut [f64]) {
+        match self {
+            Body::Solid(_) => {}
+            Body::Discrete(discrete) => discrete.add_row_sums(stiffness, damping),
         }
     }
 
@@ -195,6 +281,7 @@ impl Body {
     pub fn distortion(&self, u: &[f64], point: usize, before: &Distortion) -> Option<Distortion> {
         match self {
             Body::Solid(solid) => solid.distortion(u, point, before),
+            Body::Discrete(_) => None,
         }
     }
 }

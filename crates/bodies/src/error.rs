@@ -13,6 +13,16 @@ pub enum Error {
         /// Name of the body.
         body: String,
     },
+    /// Cells that are no discrete elements of the kind asked for.
+    #[error(
+        "body '{body}': {found} elements among its discrete elements: masses are points, springs and dashpots points or lines of two nodes, all alike"
+    )]
+    NotDiscrete {
+        /// Name of the body.
+        body: String,
+        /// Name of the element kind found.
+        found: &'static str,
+    },
     /// Elements of another dimension than the kinematics asks for.
     #[error(
         "body '{body}': {found} elements cannot be {kinematics}, which takes elements of dimension {dim}"
@@ -136,6 +146,7 @@ impl Error {
     pub fn body(&self) -> &str {
         match self {
             Error::Empty { body }
+            | Error::NotDiscrete { body, .. }
             | Error::WrongElement { body, .. }
             | Error::QuadraticBar { body, .. }
             | Error::NegativeRadius { body, .. }

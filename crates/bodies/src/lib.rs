@@ -7,6 +7,7 @@ mod bar;
 mod block;
 mod body;
 mod continuum;
+mod discrete;
 mod distortion;
 mod error;
 mod finite;
@@ -23,6 +24,7 @@ mod weights;
 
 pub use block::Scratch;
 pub use body::Body;
+pub use discrete::{Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, Link};
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};

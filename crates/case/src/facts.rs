@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_bodies::Body;
+use carom_bodies::{Body, Discrete, DiscreteKind, Link};
 use carom_contact::{Contact, Integration, Places, Rows, Search, Sliding, Target};
 use carom_dynamics::{LinkKind, ModelLink, ModelZone, System, Zoned, step_count};
 
@@ -42,6 +42,7 @@ pub fn facts(built: &Built) -> Vec<Fact> {
     )];
     for (k, body) in system.bodies.iter().enumerate() {
         let Some(body) = body.as_solid() else {
+            facts.extend(body.as_discrete().map(discrete_fact));
             continue;
         };
         let (speed, size) = (body.wave_speed(), extent(system, k));
@@ -100,6 +101,31 @@ pub fn facts(built: &Built) -> Vec<Fact> {
     facts
 }
 
+/// A line for discrete elements: how many, and what they are.
+fn discrete_fact(discrete: &Discrete) -> Fact {
+    let count = discrete.cells().len();
+    let linked = |link: &Link, [what, unit]: [&str; 2]| {
+        let way = match link.axis {
+            Some([x, y, z]) => format!("along ({x:.4}, {y:.4}, {z:.4})"),
+            None => "in all directions".to_owned(),
+        };
+        match link.curve.is_line() {
+            true => format!("{what} {:.6e} {unit}, {way}", link.curve.slope(0.0)),
+            false => format!("a curve of {} points, {way}", link.curve.points().len()),
+        }
+    };
+    let (kind, text) = match discrete.kind() {
+        DiscreteKind::Mass(mass) => ("mass", format!("{mass:.6} kg")),
+        DiscreteKind::Spring(link) => ("spring", linked(link, ["stiffness", "N/m"])),
+        DiscreteKind::Dashpot(link) => ("dashpot", linked(link, ["damping", "N s/m"])),
+    };
+    let places = match count {
+        1 => String::new(),
+        count => format!("{count} times "),
+    };
+    fact(format!("{kind} {}", discrete.name()), places + &text)
+}
+
 /// Step over the least time in which a wave crosses an element.
 fn courant(system: &System) -> String {
     let crossing = system
@@ -108,7 +134,10 @@ fn courant(system: &System) -> String {
         .map(Body::passage)
         .filter(|passage| *passage > 0.0)
         .fold(f64::INFINITY, f64::min);
-    format!("Courant number {:.3}", system.dt / crossing)
+    match crossing.is_finite() {
+        true => format!("Courant number {:.3}", system.dt / crossing),
+        false => "no waves".to_owned(),
+    }
 }
 
 /// A line for each zone: bodies, scheme, steps.

@@ -3,7 +3,7 @@
 use crate::{Contact, Pairing, Places, Search};
 
 /// What is done about points that penetrate at the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Initial {
     /// Nothing: the law pushes them out.
     #[default]
@@ -17,6 +17,8 @@ pub enum Initial {
     Offset,
     /// Their nodes are moved onto the other surface before bodies are built: the mesh changes, no stress arises.
     Remove,
+    /// All gaps are this one (m) in the reference position, wherever the surfaces are: a clearance that the mesh does not show.
+    Gap(f64),
 }
 
 /// A point that penetrates.
@@ -52,6 +54,22 @@ impl Contact {
     /// by that much.
     pub fn offset_touching(&mut self, places: &Places, slack: f64) {
         self.offset_all(self.below(places, slack, false));
+    }
+
+    /// Makes the gap of all points that face something `gap` (m) at these places.
+    pub fn offset_to(&mut self, places: &Places, gap: f64) {
+        let mut pairing = Pairing::default();
+        pairing.clear();
+        self.pair_fully(places, &mut Search::default(), &mut pairing);
+        let rows = &pairing.rows;
+        let facing = (0..rows.len()).filter(|&point| rows.gap(point).is_finite());
+        let found = facing.map(|point| Penetration {
+            point,
+            node: self.points[point].node(),
+            depth: gap - rows.gap(point),
+            normal: rows.normal(point),
+        });
+        self.offset_all(found.collect());
     }
 
     fn offset_all(&mut self, found: Vec<Penetration>) {

@@ -34,11 +34,13 @@ impl System {
     }
 }
 
+/// The body of a cell, in the order of the system.
 fn owner(model: &Model, cell: ElementId) -> Option<usize> {
-    model
-        .bodies
-        .iter()
-        .position(|body| body.spec.cells.contains(&cell))
+    let solids = model.bodies.iter().map(|body| &body.spec.cells);
+    let discrete = model.discrete.iter().map(|body| &body.spec.cells);
+    solids
+        .chain(discrete)
+        .position(|cells| cells.contains(&cell))
 }
 
 /// Bodies of a contact: the secondary's, and the primary's unless it is rigid.
@@ -68,7 +70,9 @@ pub(crate) fn numbered(
         .faces
         .first()
         .and_then(|face| owner(model, face.parent));
-    let kinematics = kinematics.map(|body| model.bodies[body].spec.kinematics);
+    // of a point mass a force stands for itself
+    let solid = kinematics.and_then(|body| model.bodies.get(body));
+    let kinematics = solid.map(|body| body.spec.kinematics);
     let factor = |x: &[f64; 3]| kinematics.map_or(1.0, |k| k.surface_factor(x));
     let faces = |surface: &Surface| -> Vec<Face> {
         let faces = surface.faces.iter();

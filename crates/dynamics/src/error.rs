@@ -153,6 +153,22 @@ pub enum Error {
         /// Name of the contact.
         contact: String,
     },
+    /// A spring or a dashpot at a node that has no mass.
+    #[error(
+        "`{element}` ends at node {node} of the mesh, which has no mass; give it a point mass, or end it at a node of a body"
+    )]
+    NoMass {
+        /// Name of the spring or dashpot.
+        element: String,
+        /// Node of the mesh, from 0.
+        node: u32,
+    },
+    /// Discrete elements in a model with zones.
+    #[error("`{element}`: point masses, springs and dashpots are not available in zones")]
+    DiscreteInZones {
+        /// Name of the element.
+        element: String,
+    },
     /// Contact nodes that cannot be without mass.
     #[error("body '{body}' cannot have contact nodes without mass: {cause}")]
     Massless {

@@ -21,7 +21,7 @@ impl Model {
     /// # Errors
     /// [`Error::Penetration`] if some are left after ten passes.
     pub(crate) fn remove_penetrations(&mut self) -> Result<(), Error> {
-        let slack = slack(self.mesh.size());
+        let slack = slack(self.length());
         for pass in 0..PASSES {
             let mut free = true;
             for contact in &self.contacts {
@@ -68,6 +68,17 @@ impl Model {
                     for (unknown, given) in unknowns.of(node).zip(body.displacement) {
                         u[unknown] = given;
                     }
+                }
+            }
+        }
+        for some in &self.discrete {
+            let Some(displacement) = some.displacement else {
+                continue;
+            };
+            let cells = some.spec.cells.iter();
+            for &node in cells.flat_map(|&cell| self.mesh.element_nodes(cell)) {
+                for (unknown, given) in unknowns.of(node).zip(displacement) {
+                    u[unknown] = given;
                 }
             }
         }
@@ -127,6 +138,14 @@ pub(crate) fn settle(
                 contact.offset_touching(places, slack);
             }
             Initial::Offset => contact.offset_penetrations(places, slack),
+            Initial::Gap(gap) => {
+                let at_rest = vec![0.0; places.u.len()];
+                let reference = Places {
+                    u: &at_rest,
+                    ..*places
+                };
+                contact.offset_to(&reference, gap);
+            }
         }
     }
     Ok(())

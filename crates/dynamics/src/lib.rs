@@ -42,7 +42,7 @@ pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Tolerated};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, march, step_count};
 pub use mass::Mass;
-pub use model::{Model, ModelBody, ModelContact, ModelTarget, Support};
+pub use model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelTarget, Support};
 pub use nonlinear::{
     Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed, Refused,
 };

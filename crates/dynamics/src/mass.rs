@@ -37,8 +37,9 @@ impl Mass {
         let mut lumped = vec![0.0; n];
         let mut cliques = Cliques::new();
         let mut consistent = Vec::new();
-        for (body, spec) in bodies.iter().zip(specs) {
-            match spec.mass {
+        for (k, body) in bodies.iter().enumerate() {
+            // point masses are on the diagonal
+            match specs.get(k).map_or(MassKind::Lumped, |spec| spec.mass) {
                 MassKind::Lumped => body.add_lumped_mass(&mut lumped),
                 MassKind::Consistent => {
                     push_cliques(body, unknowns, &(0..n), &mut cliques);
@@ -54,7 +55,7 @@ impl Mass {
         }
         let mut matrix = Csr::from_cliques(n, &cliques);
         for body in consistent {
-            body.assemble(0.0, 1.0, &(0..n), &mut matrix);
+            body.assemble([0.0, 0.0, 1.0], &(0..n), &mut matrix);
         }
         Mass {
             lumped,

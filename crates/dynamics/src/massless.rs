@@ -39,7 +39,12 @@ pub(crate) fn redistribute(
         if !masses.iter().any(|&(node, _)| bare[node as usize]) {
             continue;
         }
-        let spec = &model.bodies[k];
+        let Some(spec) = model.bodies.get(k) else {
+            return Err(Error::Massless {
+                body: bodies[k].name().to_owned(),
+                cause: "a point mass has no other nodes that could take it",
+            });
+        };
         let refused = |cause| Error::Massless {
             body: spec.spec.name.clone(),
             cause,

@@ -1,7 +1,7 @@
 //! Everything from which a system is built.
 
 use carom_algebra::unknowns::Kind;
-use carom_bodies::{BodySpec, MassKind};
+use carom_bodies::{BodySpec, DiscreteSpec, MassKind};
 use carom_contact::{Initial, Integration, Law, Obstacle, Sliding};
 use carom_mesh::{Mesh, Surface};
 
@@ -15,6 +15,8 @@ pub struct Model {
     pub mesh: Mesh,
     /// Bodies.
     pub bodies: Vec<ModelBody>,
+    /// Point masses, springs and dashpots. In the system they are bodies as well, after the others.
+    pub discrete: Vec<ModelDiscrete>,
     /// Supports.
     pub supports: Vec<Support>,
     /// Acceleration of gravity, m/s².
@@ -37,6 +39,7 @@ impl Model {
         Model {
             mesh,
             bodies,
+            discrete: Vec::new(),
             supports: Vec::new(),
             gravity: [0.0; 3],
             contacts: Vec::new(),
@@ -45,6 +48,29 @@ impl Model {
             adaptive: None,
             nonlinear: Nonlinear::default(),
         }
+    }
+}
+
+impl Model {
+    /// The length that absolute tolerances are fractions of, m: the size of the mesh. Of a mesh without extent, such as a single
+    /// point mass, the largest of initial displacements and gaps, and of the ways of the first step; 1 where all are zero.
+    pub fn length(&self) -> f64 {
+        let size = self.mesh.size();
+        if size > 0.0 {
+            return size;
+        }
+        let norm = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let gaps = self.contacts.iter().map(|contact| match contact.initial {
+            Initial::Gap(gap) => gap.abs(),
+            _ => 0.0,
+        });
+        let discrete = self.discrete.iter().flat_map(|some| {
+            let velocity = some.velocity.map_or(0.0, |v| self.dt * norm(&v));
+            [some.displacement.map_or(0.0, |u| norm(&u)), velocity]
+        });
+        let falls = self.dt * self.dt * norm(&self.gravity);
+        let largest = gaps.chain(discrete).fold(falls, f64::max);
+        if largest > 0.0 { largest } else { 1.0 }
     }
 }
 
@@ -69,6 +95,28 @@ impl ModelBody {
             mass: MassKind::Lumped,
             velocity: [0.0; 3],
             displacement: [0.0; 3],
+        }
+    }
+}
+
+/// Discrete elements of one kind, and the initial state of their nodes where it is not that of a body.
+#[derive(Clone, Debug)]
+pub struct ModelDiscrete {
+    /// Cells and kind.
+    pub spec: DiscreteSpec,
+    /// Initial velocity of the nodes of masses, m/s.
+    pub velocity: Option<[f64; 3]>,
+    /// Initial displacement of the nodes of masses, m.
+    pub displacement: Option<[f64; 3]>,
+}
+
+impl ModelDiscrete {
+    /// Elements at rest, or with the state of the bodies of their nodes.
+    pub fn new(spec: DiscreteSpec) -> ModelDiscrete {
+        ModelDiscrete {
+            spec,
+            velocity: None,
+            displacement: None,
         }
     }
 }

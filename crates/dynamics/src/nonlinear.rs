@@ -364,6 +364,7 @@ impl Model {
         let finite = |body: &ModelBody| body.spec.material.finite().is_some();
         self.nonlinear.asks()
             || self.bodies.iter().any(finite)
+            || self.discrete.iter().any(|some| !some.spec.is_linear())
             || self.scheme.get().is_between()
             || self.contacts.iter().any(needs_newton)
     }
@@ -373,6 +374,11 @@ impl System {
     /// As [`Model::is_nonlinear`].
     pub fn is_nonlinear(&self) -> bool {
         self.nonlinear.needed
+    }
+
+    /// Whether any force is one of damping: of dashpots or of Rayleigh's damping.
+    pub(crate) fn has_damping(&self) -> bool {
+        self.has_dashpots || !self.nonlinear.damping.is_empty()
     }
 
     /// The part of the histories of all bodies ([`Motion::history`](crate::Motion::history)) that is a body's; empty of a law

@@ -365,7 +365,7 @@ pub(crate) fn of_part(
         let diagonal: Vec<f64> = lumped.map(|m| mass_factor * m).collect();
         return Ok(Operator::diagonal(&diagonal, &held));
     }
-    let a = assembled(system, part, mass_factor, stiffness_factors);
+    let a = assembled(system, part, [mass_factor, 0.0], stiffness_factors);
     factored(system, part, &a, &held, matrix)
 }
 
@@ -385,11 +385,11 @@ pub(crate) fn factored(
     })
 }
 
-/// `mass_factor` M + `stiffness_factors` K of one part, with a factor for each body.
+/// `mass` M + `damping` C + `stiffness_factors` K of one part, C that of dashpots, with a factor of K for each body.
 pub(crate) fn assembled(
     system: &System,
     part: &Range<usize>,
-    mass_factor: f64,
+    [mass, damping]: [f64; 2],
     stiffness_factors: &dyn Fn(usize) -> f64,
 ) -> Csr {
     let mut cliques = Cliques::new();
@@ -398,8 +398,8 @@ pub(crate) fn assembled(
     }
     let mut a = Csr::from_cliques(part.len(), &cliques);
     for (k, body) in system.bodies.iter().enumerate() {
-        body.assemble(stiffness_factors(k), 0.0, part, &mut a);
+        body.assemble([stiffness_factors(k), damping, 0.0], part, &mut a);
     }
-    system.mass.add_to(mass_factor, part, part.start, &mut a);
+    system.mass.add_to(mass, part, part.start, &mut a);
     a
 }

@@ -47,21 +47,43 @@ impl System {
 
     /// `bodies`: bound of the frequencies of the bodies, rad/s.
     fn critical_with(&self, bodies: f64) -> f64 {
+        let (springs, dashpots) = self.discrete_bounds();
         let contacts = self
             .contacts
             .iter()
             .map(|contact| self.contact_bound(contact))
             .sum::<f64>();
-        let squared = bodies * bodies + contacts;
+        let squared = bodies * bodies + contacts + springs;
         let damping = self.nonlinear.damping.iter();
         let rates = damping.map(|damping| damping.mass + damping.stiffness * bodies * bodies);
-        let rate = rates.fold(0.0, f64::max);
+        let rate = rates.fold(0.0, f64::max) + dashpots;
         let undamped = self.scheme.get().critical().unwrap_or(2.0);
         let stiffness = 4.0 * squared / (undamped * undamped);
         match rate > 0.0 {
             true => 4.0 / (rate + (rate * rate + 4.0 * stiffness).sqrt()),
             false => undamped / squared.sqrt(),
         }
+    }
+
+    /// Bounds of the eigenvalues of the stiffness of all springs (1/s²) and of the damping matrix of all dashpots (1/s)
+    /// against the lumped mass: the largest sums of magnitudes in their rows, over the mass (Gershgorin).
+    fn discrete_bounds(&self) -> (f64, f64) {
+        let discrete = self.bodies.iter().filter(|b| b.as_discrete().is_some());
+        let [mut springs, mut dashpots] = [0, 1].map(|_| vec![0.0; self.unknowns()]);
+        let mut some = false;
+        for body in discrete {
+            body.add_row_sums(&mut springs, &mut dashpots);
+            some = true;
+        }
+        if !some {
+            return (0.0, 0.0);
+        }
+        let largest = |sums: &[f64]| {
+            let free = (0..sums.len()).filter(|&i| !self.fixed[i] && sums[i] > 0.0);
+            free.map(|i| sums[i] / self.mass.lumped[i])
+                .fold(0.0, f64::max)
+        };
+        (largest(&springs), largest(&dashpots))
     }
 
     /// Bound of the eigenvalues of the stiffness of a contact against the lumped mass, 1/s².

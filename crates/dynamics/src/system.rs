@@ -14,7 +14,7 @@ use crate::contacts::{numbered, renumbered, sides};
 use crate::initial::settle;
 use crate::mass::Mass;
 use crate::massless::redistribute;
-use crate::model::{Model, ModelBody, ModelContact};
+use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete};
 use crate::nonlinear::NumberedNonlinear;
 use crate::{Adaptive, Error, Scheme};
 
@@ -44,6 +44,10 @@ pub struct System {
     pub(crate) part_of_body: Vec<usize>,
     /// Bodies.
     pub bodies: Vec<Body>,
+    /// Whether there are springs: their forces may have a resultant.
+    pub(crate) has_springs: bool,
+    /// Whether there are dashpots.
+    pub(crate) has_dashpots: bool,
     /// Lumped masses of the nodes of each body (system number, kg), for mean velocities.
     pub body_masses: Vec<Vec<(u32, f64)>>,
     /// Mass matrix.
@@ -62,7 +66,7 @@ pub struct System {
     pub sides: Vec<(usize, Option<usize>)>,
     /// First contact point of each contact in the arrays over all points, and one end more.
     pub first_point: Vec<usize>,
-    /// Gap below which a point counts as closed, m: 1e-12 of the size of the mesh.
+    /// Gap below which a point counts as closed, m: 1e-12 of the length of the model ([`Model::length`]).
     pub tolerance: f64,
     /// Time scheme.
     pub scheme: Scheme,
@@ -127,10 +131,12 @@ impl System {
             .collect();
         let unknowns = Unknowns::translations(dim, x.len());
         let body = |body: &ModelBody| Body::new(&model.mesh, body.spec.clone(), &number, &unknowns);
-        let bodies = model
-            .bodies
-            .iter()
-            .map(body)
+        let discrete = |some: &ModelDiscrete| {
+            Body::discrete(&model.mesh, some.spec.clone(), &number, &unknowns)
+        };
+        let solids = model.bodies.iter().map(body);
+        let bodies = solids
+            .chain(model.discrete.iter().map(discrete))
             .collect::<Result<Vec<_>, _>>()?;
         let mut fixed = vec![false; unknowns.len()];
         for support in &model.supports {
@@ -146,6 +152,7 @@ impl System {
             .iter()
             .map(|body| node_masses(body, &unknowns))
             .collect();
+        check_masses(&bodies, &body_masses, &mesh_node)?;
         let masses = (&mut mass, &mut body_masses[..]);
         let massless = redistribute(&model, &bodies, &number, (&x, &unknowns), masses)?;
         let mut load = vec![0.0; unknowns.len()];
@@ -173,12 +180,7 @@ impl System {
             x: &x,
             u: &initial_displacement,
         };
-        settle(
-            &mut contacts,
-            ways,
-            &places,
-            (&mesh_node, model.mesh.size()),
-        )?;
+        settle(&mut contacts, ways, &places, (&mesh_node, model.length()))?;
         let mut first_point = vec![0];
         for contact in &contacts {
             first_point.push(first_point[first_point.len() - 1] + contact.points.len());
@@ -201,14 +203,17 @@ impl System {
             .into_iter()
             .map(|part| unknowns.of_range(part))
             .collect();
-        let part_of_body = body_masses.iter().map(|masses| {
-            let first = masses.first().map_or(0, |(node, _)| unknowns.first(*node));
-            part_of(&parts, first)
+        let part_of_body = bodies.iter().map(|body| {
+            let mut first = None;
+            body.each_element(&mut |nodes| {
+                first.get_or_insert(unknowns.first(nodes[0]));
+            });
+            part_of(&parts, first.unwrap_or(0))
         });
         let system = System {
             part_of_body: part_of_body.collect(),
             origin,
-            tolerance: 1e-12 * model.mesh.size(),
+            tolerance: 1e-12 * model.length(),
             axisymmetric: model
                 .bodies
                 .iter()
@@ -219,6 +224,8 @@ impl System {
             number,
             parts,
             unknowns,
+            has_springs: bodies.iter().any(|body| !body.balances_itself()),
+            has_dashpots: bodies.iter().any(Body::has_damping),
             bodies,
             body_masses,
             mass,
@@ -423,7 +430,8 @@ impl System {
 fn numbering(model: &Model) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
     let count = model.mesh.nodes.len();
     let cells = model.bodies.iter().flat_map(|body| &body.spec.cells);
-    let joined = Parts::new(&model.mesh, cells.copied());
+    let discrete = model.discrete.iter().flat_map(|some| &some.spec.cells);
+    let joined = Parts::new(&model.mesh, cells.chain(discrete).copied());
     // parts come in the order of their first node, which leads
     let mut nodes: Vec<(u32, u32)> = (0..count as u32)
         .filter_map(|node| Some((joined.of(node)?, node)))
@@ -495,15 +503,45 @@ fn initial(
     unknowns: &Unknowns,
 ) -> (Vec<f64>, Vec<f64>) {
     let (mut u, mut v) = (vec![0.0; fixed.len()], vec![0.0; fixed.len()]);
-    for (body, masses) in model.bodies.iter().zip(masses) {
+    let bodies = model.bodies.iter();
+    let bodies = bodies.map(|body| (Some(body.displacement), Some(body.velocity)));
+    let discrete = model.discrete.iter();
+    let discrete = discrete.map(|some| (some.displacement, some.velocity));
+    for ((displacement, velocity), masses) in bodies.chain(discrete).zip(masses) {
         for &(node, _) in masses {
             for (i, dof) in unknowns.translations_of(node).enumerate() {
                 if !fixed[dof] {
-                    u[dof] = body.displacement[i];
-                    v[dof] = body.velocity[i];
+                    u[dof] = displacement.map_or(u[dof], |given| given[i]);
+                    v[dof] = velocity.map_or(v[dof], |given| given[i]);
                 }
             }
         }
     }
     (u, v)
+}
+
+/// Refuses springs and dashpots at nodes without mass: nothing says how they move.
+fn check_masses(
+    bodies: &[Body],
+    masses: &[Vec<(u32, f64)>],
+    mesh_node: &[u32],
+) -> Result<(), Error> {
+    let mut heavy = vec![false; mesh_node.len()];
+    for &(node, _) in masses.iter().flatten() {
+        heavy[node as usize] = true;
+    }
+    for body in bodies.iter().filter(|body| body.as_discrete().is_some()) {
+        let mut light = None;
+        body.each_element(&mut |nodes| {
+            let mut without = nodes.iter().filter(|node| !heavy[**node as usize]);
+            light = light.or(without.next().copied());
+        });
+        if let Some(node) = light {
+            return Err(Error::NoMass {
+                element: body.name().to_owned(),
+                node: mesh_node[node as usize],
+            });
+        }
+    }
+    Ok(())
 }

@@ -112,6 +112,24 @@ impl Surface {
         })
     }
 
+    /// The surface of points that stand by themselves: nodes, each with the cell that owns it. `axis`: their outward unit
+    /// vector, along which a primary side measures gaps; of a secondary side it does not matter.
+    pub fn of_points(points: &[(u32, ElementId)], axis: [f64; 3]) -> Surface {
+        let face = |&(node, parent): &(u32, ElementId)| Face {
+            kind: Kind::Point1,
+            nodes: face_nodes(&[node]),
+            parent,
+            axis,
+        };
+        let mut nodes: Vec<u32> = points.iter().map(|(node, _)| *node).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        Surface {
+            faces: points.iter().map(face).collect(),
+            nodes,
+        }
+    }
+
     /// Place of a node in [`Surface::nodes`]; `None` if the surface does not have it.
     pub fn index_of(&self, node: u32) -> Option<usize> {
         self.nodes.binary_search(&node).ok()

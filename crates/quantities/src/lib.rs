@@ -17,6 +17,6 @@ pub mod units;
 pub use nearest::nearest;
 pub use quantity::{
     Acceleration, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density, Duration,
-    Force, Length, Modulus, Rate, SignedStress, Stress, SurfaceDamping, SurfaceStiffness, Vector,
-    Velocity,
+    Force, Length, Modulus, Rate, SignedForce, SignedStress, Stiffness, Stress, SurfaceDamping,
+    SurfaceStiffness, Vector, Velocity, Weight,
 };

@@ -188,6 +188,30 @@ quantity!(
     "A force greater than zero, N."
 );
 quantity!(
+    SignedForce,
+    "force",
+    "N",
+    "-10 kN",
+    None,
+    "A force of any sign, N."
+);
+quantity!(
+    Weight,
+    "mass",
+    "kg",
+    "100 kg",
+    POSITIVE,
+    "A mass greater than zero, kg."
+);
+quantity!(
+    Stiffness,
+    "stiffness",
+    "N/m",
+    "10 kN/m",
+    POSITIVE,
+    "A stiffness greater than zero, N/m."
+);
+quantity!(
     Damping,
     "damping",
     "N*s/m",
@@ -275,4 +299,4 @@ macro_rules! into_si {
     };
 }
 
-into_si!(Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);
+into_si!(SignedForce Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);

@@ -67,6 +67,7 @@ impl Tube {
         body.spec.formulation = self.formulation;
         let mut model = Model {
             bodies: vec![body],
+            discrete: Vec::new(),
             supports: Vec::new(),
             gravity: [0.0; 3],
             contacts: Vec::new(),

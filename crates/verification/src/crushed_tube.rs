@@ -63,6 +63,7 @@ fn newton(mesh: &str, facing_itself: bool) -> Result<Driver, Error> {
     let system: Arc<System> = System::new(Model {
         contacts,
         bodies: vec![tube],
+        discrete: Vec::new(),
         supports: Vec::new(),
         gravity: [0.0; 3],
         scheme: Scheme::EnergyMomentum(EnergyMomentum {}),

@@ -24,6 +24,9 @@ pub enum Error {
     /// Points that make no curve of a stop.
     #[error(transparent)]
     Curve(#[from] carom_contact::law::CurveError),
+    /// Points that make no curve of a spring.
+    #[error(transparent)]
+    Spring(#[from] carom_bodies::CurveError),
     /// A mesh lacks a group.
     #[error("the mesh has no group '{name}'")]
     Group {

@@ -87,6 +87,7 @@ impl Hairpin {
         nonlinear.iteration.tolerance = 1e-12;
         Ok(System::new(Model {
             bodies: vec![strip],
+            discrete: Vec::new(),
             supports,
             gravity: [0.0; 3],
             contacts: vec![touch],

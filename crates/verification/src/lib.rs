@@ -20,6 +20,7 @@ mod hairpin;
 mod hertz;
 mod kept;
 mod kind;
+mod points;
 
 mod adaptive;
 mod adaptive_bars;
@@ -48,9 +49,11 @@ mod bars_theta;
 mod block_drop;
 mod blocks;
 mod blocks_as_bars;
+mod bouncing_mass;
 mod closed_field_as_printed;
 mod contact_patch;
 mod conveyor;
+mod coulomb_oscillator;
 mod crushed_stop;
 mod crushed_tube;
 mod energy_identity;
@@ -62,7 +65,9 @@ mod hertz_spheres;
 mod interface_problems;
 mod invariance;
 mod ironing;
+mod knocking_oscillators;
 pub mod long_run;
+mod mass_on_stop;
 mod oblique_bar;
 mod order;
 mod quadrature;
@@ -139,10 +144,12 @@ registry! {
     block_drop
     blocks
     blocks_as_bars
+    bouncing_mass
     breathing_tube
     closed_field_as_printed
     contact_patch
     conveyor
+    coulomb_oscillator
     crushed_stop
     crushed_tube
     energy_identity
@@ -154,7 +161,9 @@ registry! {
     interface_problems
     invariance
     ironing
+    knocking_oscillators
     long_run
+    mass_on_stop
     oblique_bar
     order
     quadrature

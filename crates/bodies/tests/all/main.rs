@@ -7,6 +7,7 @@ mod allocation;
 mod axisymmetry;
 mod bars;
 mod derivatives;
+mod discrete;
 mod distortion;
 mod finite;
 mod mass;

@@ -27,12 +27,12 @@ impl Builder<'_> {
         let cells = of.concat();
         for (name, contact) in self.case.contact.iter() {
             let path = format!("contact.{name}");
-            let secondary = self.surface(
-                mesh,
-                &cells,
-                &format!("{path}.secondary"),
-                &contact.secondary,
-            );
+            let mass = self.mass_surface(mesh, &contact.secondary);
+            let at_point = mass.is_some();
+            let secondary = mass.or_else(|| {
+                let path = format!("{path}.secondary");
+                self.surface(mesh, &cells, &path, &contact.secondary)
+            });
             let primary = match (&contact.primary, &contact.obstacle) {
                 (Some(primary), _) => self
                     .surface(mesh, &cells, &format!("{path}.primary"), primary)
@@ -51,6 +51,9 @@ impl Builder<'_> {
             let Some(law) = self.law(name, &contact.law, (&sides, &scheme)) else {
                 continue;
             };
+            if at_point && !self.acts_at_a_point(&path, &law) {
+                continue;
+            }
             self.warn_of_areas(name, &law, sections(bodies, &secondary, &primary));
             let sliding = match contact.sliding {
                 // the default waits for what makes the steps linear or not

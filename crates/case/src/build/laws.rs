@@ -29,7 +29,8 @@ impl Builder<'_> {
         let law = match given.law(&defaults) {
             Ok(law) => law,
             Err(error) => {
-                self.problems.push(no_curve(name, &error));
+                self.problems
+                    .push(no_curve(&format!("contact.{name}.law.stop"), &error));
                 return None;
             }
         };
@@ -60,8 +61,9 @@ impl Builder<'_> {
     }
 }
 
-fn no_curve(name: &str, error: &CurveError) -> Problem {
-    let path = format!("contact.{name}.law.stop.curve");
+/// The problem of a curve of a stop; `path`: of the stop.
+pub(super) fn no_curve(path: &str, error: &CurveError) -> Problem {
+    let path = format!("{path}.curve");
     match error {
         CurveError::Count { points } => Problem::new(path, error.to_string()).found(points),
         CurveError::TooSteep {

@@ -33,6 +33,9 @@ impl Builder<'_> {
         }
         let mut parts = parts.into_iter();
         let Some((_, first_name, mut whole)) = parts.next() else {
+            if let Some(mesh) = self.empty_mesh() {
+                return Some(mesh);
+            }
             let problem = Problem::new("mesh", "no mesh");
             self.problems
                 .push(problem.accepted(["`file`", "`generate`"]));

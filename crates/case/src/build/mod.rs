@@ -5,6 +5,7 @@ mod arlequin;
 mod bodies;
 mod builder;
 mod contacts;
+mod discrete;
 mod held;
 mod laws;
 mod loads;
@@ -106,8 +107,10 @@ impl Builder<'_> {
             let one = |_: &str| self.case.time.scheme();
             self.laws(one);
         }
-        let mesh = self.mesh(input)?;
+        let mut mesh = self.mesh(input)?;
+        self.own_nodes(&mut mesh);
         let mut bodies = self.bodies(&mesh, &materials);
+        let discrete = self.discrete(&mut mesh);
         let (supports, motions) = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
         let loads = self.loads(&mesh, &bodies);
@@ -119,19 +122,23 @@ impl Builder<'_> {
         let joints = self.joints_of(&mesh, &mut bodies, &supports);
         let cells: Vec<Vec<carom_mesh::ElementId>> =
             bodies.iter().map(|body| body.spec.cells.clone()).collect();
-        let contacts = self.contacts(&mesh, &bodies, &cells);
+        let mut contacts = self.contacts(&mesh, &bodies, &cells);
+        contacts.extend(self.stops(&mesh, &bodies, &discrete));
         self.listed_twice(&contacts);
         self.nonlinear_in_zones();
         self.stresses_between(&bodies);
         self.contacts_outside(&mesh, &contacts, &joints);
         self.zones_of_contacts(&contacts, &cells);
-        self.within_bodies(&mesh, &probes, &cells);
+        let points = discrete.iter().map(|some| some.spec.cells.clone());
+        let all: Vec<_> = cells.iter().cloned().chain(points).collect();
+        self.within_bodies(&mesh, &probes, &all);
         if !self.problems.is_empty() {
             return None;
         }
         let mut model = Model {
             mesh,
             bodies,
+            discrete,
             supports,
             gravity,
             contacts,

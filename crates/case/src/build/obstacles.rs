@@ -105,7 +105,12 @@ impl Builder<'_> {
     }
 
     /// A unit vector in the space of the mesh.
-    fn normal(&mut self, mesh: &Mesh, path: &str, given: &NormalVector) -> Option<[f64; 3]> {
+    pub(super) fn normal(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        given: &NormalVector,
+    ) -> Option<[f64; 3]> {
         let normal = given.components();
         if normal[mesh.dim..].iter().any(|n| *n != 0.0) {
             let message = format!(

@@ -94,7 +94,7 @@ impl Builder<'_> {
             .map(|(name, _)| name)
             .collect();
         self.tell(&names.join("`, `"), count, (node as u32, *way), "removed");
-        for body in &system.bodies {
+        for body in system.bodies.iter().filter(|b| b.as_solid().is_some()) {
             let path = format!("body.{}", body.name());
             self.sound(&system.mesh, &path, body.cells());
         }

@@ -36,7 +36,18 @@ impl Builder<'_> {
                 Problem::new(format!("contact.{contact}.integration"), error.to_string())
             }
             Error::Massless { body, .. } => {
-                Problem::new(format!("body.{body}.mass"), error.to_string())
+                let path = match self.case.body.get(body) {
+                    Some(_) => format!("body.{body}.mass"),
+                    None => format!("mass.{body}"),
+                };
+                Problem::new(path, error.to_string())
+            }
+            Error::NoMass { element, .. } => {
+                let path = match self.case.spring.get(element) {
+                    Some(_) => format!("spring.{element}.ends"),
+                    None => format!("dashpot.{element}.ends"),
+                };
+                Problem::new(path, error.to_string())
             }
             Error::Penetration { contact, .. } => {
                 Problem::new(format!("contact.{contact}.initial"), error.to_string())

@@ -7,7 +7,7 @@ use super::Named;
 use carom_quantities::{Coordinate, Length, Vector};
 
 /// The mesh: a file, generated parts, or both. Their groups keep their names.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend("anyOf" = [{ "required": ["file"] }, { "required": ["generate"] }], "dependentRequired" = { "unit": ["file"] }))]
 pub struct Mesh {
@@ -27,6 +27,13 @@ pub struct Mesh {
     /// `a.bottom` and `a.top` (in y in two dimensions, in z in three), `a.front` and `a.back` (in y in three dimensions).
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub generate: Named<Part>,
+}
+
+impl Mesh {
+    /// Whether nothing is given.
+    pub fn is_empty(&self) -> bool {
+        *self == Mesh::default()
+    }
 }
 
 /// A unit of length, such as `"mm"`.

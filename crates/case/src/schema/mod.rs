@@ -6,6 +6,7 @@
 
 mod body;
 mod contact;
+mod discrete;
 mod load;
 mod material;
 mod mesh;
@@ -27,14 +28,15 @@ pub use body::{
 pub use carom_laws::GivenLaw;
 pub use carom_quantities::{
     Acceleration, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density, Duration,
-    Force, Length, Modulus, Rate, SignedStress, Stress, SurfaceDamping, SurfaceStiffness, Vector,
-    Velocity,
+    Force, Length, Modulus, Rate, SignedForce, SignedStress, Stiffness, Stress, SurfaceDamping,
+    SurfaceStiffness, Vector, Velocity, Weight,
 };
 pub use carom_schemes::Scheme;
 pub use contact::{
     Basis, Contact, Friction, Integration, IntegrationName, IntegrationWith, Mortar, Nodes,
     Penetration, Sliding,
 };
+pub use discrete::{Dashpot, DashpotPoint, Ends, PointMass, Spring, SpringPoint, Stop};
 pub use load::{AmplitudePoint, Load};
 pub use material::Material;
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
@@ -56,7 +58,10 @@ pub use zone::{
 /// A case: bodies, their contacts and joints, and the time to simulate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(title = "Carom case file")]
+#[schemars(title = "Carom case file", extend(
+    "anyOf" = [{ "required": ["body"] }, { "required": ["mass"] }],
+    "dependentRequired" = { "body": ["mesh", "material"] },
+))]
 pub struct Case {
     /// Version of the format: 1.
     #[schemars(extend("const" = 1))]
@@ -64,11 +69,26 @@ pub struct Case {
     /// Title of the report.
     pub title: Option<String>,
     /// Source of the mesh.
+    #[serde(default, skip_serializing_if = "Mesh::is_empty")]
     pub mesh: Mesh,
     /// Materials, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub material: Named<Material>,
     /// Bodies, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub body: Named<Body>,
+    /// Point masses, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub mass: Named<PointMass>,
+    /// Springs, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub spring: Named<Spring>,
+    /// Dashpots, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub dashpot: Named<Dashpot>,
+    /// Stops, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub stop: Named<Stop>,
     /// Supports, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub support: Named<Support>,

@@ -213,6 +213,7 @@ impl Driver {
         let friction = self.friction_work(of_contact);
         let obstacles = self.obstacle_work(of_contact);
         let own_before = identity.inertia * self.acceleration_at_the_start(&identity);
+        let springs = self.balanced_springs();
         let factor = self.contact_factor();
         let (old, new) = (&self.state.motion, &self.next.motion);
         let map = &self.map;
@@ -270,6 +271,7 @@ impl Driver {
             &vectors.balanced,
             &vectors.damping,
             &link,
+            &springs,
         ];
         let before = &self.state.forces;
         let mean = |k: usize, now: &[f64]| -> Vec<f64> {
@@ -282,7 +284,7 @@ impl Driver {
             }
         };
         let way = |f: &[f64]| -> f64 { (0..f.len()).map(|i| f[i] * (new.u[i] - old.u[i])).sum() };
-        let means = [0, 1, 2, 3, 4, 5, 6].map(|k| mean(k, now[k]));
+        let means = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| mean(k, now[k]));
         let [load, touch, support, mut inertia, internal, damping] =
             [0, 1, 2, 3, 4, 5].map(|k| way(&means[k]));
         if pushes {
@@ -305,7 +307,8 @@ impl Driver {
         let forces = [
             Resultant::at(&system, &places, &means[0]),
             Resultant::at(&system, &places, &means[1]),
-            Resultant::at(&system, &places, &means[2]),
+            Resultant::at(&system, &places, &means[2])
+                .plus(&Resultant::at(&system, &places, &means[7]).reversed()),
             match pushes {
                 true => Resultant::at(&system, &places, &held),
                 false => Resultant::default(),
@@ -323,7 +326,9 @@ impl Driver {
             if let Some(impulses) = self.jump.impulses() {
                 exchange.jump(&system, impulses);
             }
-            let own = |i: usize| vectors.load[i] + own[i] + link[i] - vectors.damping[i];
+            let spring = |i: usize| springs.get(i).unwrap_or(&0.0);
+            let own =
+                |i: usize| vectors.load[i] + own[i] + link[i] - vectors.damping[i] - spring(i);
             exchange.add(&system, (0, self.dt, &map.impulse), own);
             exchange.add(&system, (1, self.dt, &map.contact_impulse), |i| held[i]);
         }

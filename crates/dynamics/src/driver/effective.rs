@@ -544,7 +544,7 @@ fn linear_part(
         diagonal[part.clone()].copy_from_slice(&masses);
         return Ok((Operator::diagonal(&masses, fixed), None));
     }
-    let mut a = assembled(system, part, map.inertia.x, &of_body);
+    let mut a = assembled(system, part, [map.inertia.x, rate], &of_body);
     for (k, masses) in system.body_masses.iter().enumerate() {
         let factor = rate * damping(k).mass;
         if factor == 0.0 || system.parts[system.part_of_body[k]] != *part {

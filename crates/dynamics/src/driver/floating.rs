@@ -114,9 +114,10 @@ fn size_of_elements(system: &System, part: &Range<usize>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0f64);
     for body in &system.bodies {
         body.each_element(&mut |nodes| {
-            if !nodes
-                .iter()
-                .any(|&node| part.contains(&system.unknowns.first(node)))
+            if nodes.len() < 2
+                || !nodes
+                    .iter()
+                    .any(|&node| part.contains(&system.unknowns.first(node)))
             {
                 return;
             }
@@ -365,13 +366,18 @@ impl Driver {
         }
     }
 
-    /// What supports and contacts that carry a force hold of the rigid motions.
+    /// What supports, springs and contacts that carry a force hold of the rigid motions.
     fn held(&self, rigid: &Rigid) -> Span {
         let mut held = Span::default();
         for i in self.floating.parts.iter().flat_map(Range::clone) {
             if self.system.fixed[i] {
                 held.add(rigid.of([(i, 1.0)]));
             }
+        }
+        for body in &self.system.bodies {
+            body.each_spring(&mut |row| {
+                held.add(rigid.of(row.iter().copied()));
+            });
         }
         let tangents = &self.pairing.tangents[..self.system.tangents()];
         for point in self.carrying() {

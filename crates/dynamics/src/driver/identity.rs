@@ -168,7 +168,7 @@ impl Driver {
         2.0 * self.linear_forces()
     }
 
-    /// Resultants of the forces of the supports in the step; apart, those against contact forces that act in the
+    /// Resultants of the forces of the supports and the ground in the step; apart, those against contact forces that act in the
     /// impulse in their own way.
     fn reactions(&mut self) -> [Resultant; 2] {
         let system = Arc::clone(&self.system);
@@ -178,13 +178,11 @@ impl Driver {
             self.linear_forces();
         }
         let (old, new) = (&self.state.motion, &self.next.motion);
-        let super::Vectors {
-            half,
-            work,
-            inertia,
-            ..
-        } = &mut self.vectors;
+        let super::Vectors { work, inertia, .. } = &mut self.vectors;
         reactions(&system, &self.map, old, new, inertia, work);
+        self.take_linear_springs();
+        let new = &self.next.motion;
+        let super::Vectors { half, work, .. } = &mut self.vectors;
         let exchange = &mut self.next.exchange;
         exchange.follow(&self.state.exchange);
         let own = |i: usize| work[i] + system.load[i] + new.link_of(i);

@@ -49,16 +49,19 @@ impl Driver {
         }
     }
 
-    /// Rayleigh's damping forces at the velocity of the iteration, N.
+    /// Forces of dashpots and of Rayleigh's damping at the velocity of the iteration, N.
     pub(super) fn evaluate_damping(&mut self) {
         let system = &*self.system;
         let vectors = &mut self.vectors;
-        if system.nonlinear.damping.is_empty() {
+        if !system.has_damping() {
             return;
         }
         vectors.damping.fill(0.0);
         if self.map.inertia.x == 0.0 {
             return;
+        }
+        for body in &system.bodies {
+            body.add_damping_force(&vectors.rate, &mut vectors.damping);
         }
         vectors.work.copy_from_slice(&vectors.rate);
         for (k, damping) in system.nonlinear.damping.iter().enumerate() {

@@ -37,6 +37,7 @@ mod residual;
 mod restoring;
 mod rigid;
 mod solve;
+mod springs;
 mod stable;
 mod start;
 mod step;

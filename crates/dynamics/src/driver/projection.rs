@@ -90,6 +90,13 @@ impl Driver {
     pub(super) fn enter_jump(&mut self, mut jump: Jump) {
         let system = Arc::clone(&self.system);
         let identity = self.identity_of_ledger();
+        let springs = match system.is_nonlinear() && system.has_springs {
+            true => {
+                self.vectors.place.copy_from_slice(&self.next.motion.u);
+                self.springs_at_place(false)
+            }
+            false => Vec::new(),
+        };
         let (nonlinear, factor) = (system.is_nonlinear(), self.contact_factor());
         let (old, new) = (&self.state.motion, &self.next.motion);
         let Vectors {
@@ -117,7 +124,9 @@ impl Driver {
                 true => factor * new.contact_force[i],
                 false => 0.0,
             };
-            let own = |i: usize| work[i] + held(i) + load[i] + new.link_of(i) - damping[i];
+            let spring = |i: usize| springs.get(i).unwrap_or(&0.0);
+            let own =
+                |i: usize| work[i] + held(i) + load[i] + new.link_of(i) - damping[i] - spring(i);
             self.next.exchange.renew(&system, own);
             if let [_, contact, reaction, of_inertia, ..] = &mut self.next.forces[..] {
                 for (f, p) in contact.iter_mut().zip(&new.contact_force) {
@@ -126,11 +135,17 @@ impl Driver {
                 reaction.copy_from_slice(work);
                 of_inertia.copy_from_slice(inertia);
             }
+            for (reaction, spring) in work.iter_mut().zip(&springs) {
+                *reaction -= spring;
+            }
         } else {
             reactions(&system, &self.map, old, new, inertia, work);
+            self.take_linear_springs();
+            let (new, work) = (&self.next.motion, &self.vectors.work);
             let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
             self.next.exchange.renew(&system, own);
         }
+        let (new, work) = (&self.next.motion, &self.vectors.work);
         jump.forces = [
             Resultant::of(&system, &new.contact_force),
             Resultant::of(&system, work),

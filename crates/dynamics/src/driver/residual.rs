@@ -67,7 +67,7 @@ impl Driver {
     pub(super) fn evaluate_rate(&mut self) {
         let system = &*self.system;
         let linear = system.bodies.iter().all(Body::is_linear);
-        if linear && system.nonlinear.damping.is_empty() {
+        if linear && !system.has_damping() {
             return;
         }
         let (rate, vectors) = (damping_rate(&self.map), &mut self.vectors);

@@ -266,7 +266,7 @@ impl<'a> Rigid<'a> {
         (&self.parts[most / count], self.modes[most % count].0)
     }
 
-    /// The first of the motions that supports do not hold, with those before it held.
+    /// The first of the motions that neither supports nor springs hold, with those before it held.
     pub(super) fn free_motion(&self) -> Option<&'static str> {
         let mut held = Span::default();
         for i in self.parts.iter().flat_map(Range::clone) {
@@ -274,7 +274,14 @@ impl<'a> Rigid<'a> {
                 held.add(self.of([(i, 1.0)]));
             }
         }
-        let mut modes = self.modes.iter().enumerate();
+        for body in &self.system.bodies {
+            body.each_spring(&mut |row| {
+                held.add(self.of(row.iter().copied()));
+            });
+        }
+        // a single node has no turn
+        let moves = |j: usize| self.frames.iter().any(|frame| frame.squares[j] > 0.0);
+        let mut modes = self.modes.iter().enumerate().filter(|(j, _)| moves(*j));
         modes.find_map(|(j, mode)| {
             let mut unit = vec![0.0; self.modes.len()];
             unit[j] = 1.0;

@@ -75,6 +75,7 @@ impl Driver {
             .internal_force
             .clone_from(&self.vectors.internal);
         self.evaluate_loads(self.state.time);
+        self.evaluate_damping();
         if self.map.has_memory() {
             let motion = &mut self.state.motion;
             motion.memory.clone_from(&motion.v);
@@ -84,7 +85,7 @@ impl Driver {
             let (vectors, motion) = (&mut self.vectors, &mut self.state.motion);
             for i in 0..system.unknowns() {
                 let outside = vectors.load[i] + motion.contact_force[i] + motion.link_of(i);
-                let balance = outside - vectors.internal[i];
+                let balance = outside - vectors.internal[i] - vectors.damping[i];
                 vectors.residual[i] = if system.fixed[i] { 0.0 } else { balance };
             }
             mass.begin(&vectors.residual, &mut vectors.half);
@@ -111,6 +112,10 @@ impl Driver {
         system.mass.multiply(&motion.a, inertia);
         work.copy_from_slice(&motion.internal_force);
         reactions(&system, &self.map, motion, motion, inertia, work);
+        place.copy_from_slice(&motion.u);
+        self.take_linear_springs_at_place();
+        let motion = &self.state.motion;
+        let super::Vectors { work, place, .. } = &mut self.vectors;
         let supports = Resultant::of(&system, work);
         for (i, force) in work.iter_mut().enumerate() {
             *force += system.load[i] + motion.link_of(i);
@@ -129,7 +134,9 @@ impl Driver {
     /// The ledger at the start, where forces are not all linear.
     fn start_works(&mut self, strain: f64, hardening: f64) {
         let system = Arc::clone(&self.system);
-        self.forces_at_the_start();
+        // where the forces of the start were evaluated
+        let springs = self.springs_at_place(false);
+        self.forces_at_the_start(springs);
         self.start_exchange();
         let motion = &self.state.motion;
         let identity = self.identity_of_ledger();
@@ -142,7 +149,7 @@ impl Driver {
         let forces = [
             at(0),
             at(1),
-            at(2),
+            at(2).plus(&at(7).reversed()),
             Resultant::default(),
             at(6).plus(&at(5).reversed()),
         ];
@@ -150,8 +157,8 @@ impl Driver {
         self.state.ledger.store(hardening);
     }
 
-    /// Forces that a step with a balance at both of its ends begins with: none where a static stage begins out of balance.
-    fn forces_at_the_start(&mut self) {
+    /// Forces that a step with a balance at both of its ends begins with, those of `springs` (N) also by themselves: none where a static stage begins out of balance.
+    fn forces_at_the_start(&mut self, springs: Vec<f64>) {
         self.state.forces.clear();
         let system = &*self.system;
         let of_end = system.scheme.get().step_map(system.dt).impulse.old == 0.0;
@@ -168,7 +175,8 @@ impl Driver {
         let (load, internal) = (&self.vectors.load, &motion.internal_force);
         let reaction = (0..system.unknowns()).map(|i| match system.fixed[i] {
             true => {
-                inertia[i] + internal[i] - load[i] - motion.contact_force[i] - motion.link_of(i)
+                let inside = inertia[i] + internal[i] + self.vectors.damping[i];
+                inside - load[i] - motion.contact_force[i] - motion.link_of(i)
             }
             false => 0.0,
         });
@@ -178,8 +186,9 @@ impl Driver {
             reaction.collect(),
             inertia,
             internal.clone(),
-            vec![0.0; system.unknowns()],
+            self.vectors.damping.clone(),
             (0..system.unknowns()).map(|i| motion.link_of(i)).collect(),
+            springs,
         ];
     }
 
@@ -195,8 +204,9 @@ impl Driver {
         let zero = vec![0.0; system.unknowns()];
         let of = |k: usize| self.state.forces.get(k).unwrap_or(&zero);
         let held = |i: usize| if system.fixed[i] { of(1)[i] } else { 0.0 };
+        let spring = |i: usize| of(7).get(i).unwrap_or(&0.0);
         let own: Vec<f64> = (0..system.unknowns())
-            .map(|i| of(0)[i] + of(2)[i] + held(i) + of(6)[i] - of(5)[i])
+            .map(|i| of(0)[i] + of(2)[i] + held(i) + of(6)[i] - of(5)[i] - spring(i))
             .collect();
         let held: Vec<f64> = (0..system.unknowns()).map(|i| -held(i)).collect();
         self.state.exchange = Exchange::start(system, work, [&own, &held]);

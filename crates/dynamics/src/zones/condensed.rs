@@ -200,7 +200,7 @@ fn add_implicit(zone: &Answer, first: usize, unknowns: usize, matrix: &mut Csr) 
     let (mass, stiffness) = (zone.mass / zone.scale, zone.stiffness / zone.scale);
     let fixed = |i: usize| system.fixed[i];
     for part in &system.parts {
-        let a = crate::operator::assembled(system, part, mass, &|_| stiffness);
+        let a = crate::operator::assembled(system, part, [mass, 0.0], &|_| stiffness);
         for i in part.clone() {
             let (columns, values) = a.row(i - part.start);
             for (&j, &value) in columns.iter().zip(values) {

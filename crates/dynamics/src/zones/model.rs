@@ -126,6 +126,7 @@ impl Zoned {
         let whole = &self.model;
         Model {
             mesh: whole.mesh.clone(),
+            discrete: Vec::new(),
             bodies: part
                 .bodies
                 .iter()
@@ -179,6 +180,11 @@ impl Zoned {
 
     /// Refuses schemes that no link takes, and numbers of inner steps that do not go together.
     pub(super) fn check(&self) -> Result<(), Error> {
+        if let Some(some) = self.model.discrete.first() {
+            return Err(Error::DiscreteInZones {
+                element: some.spec.name.clone(),
+            });
+        }
         let linked = |zone: &usize| self.links.iter().any(|link| link.zones.contains(zone));
         if self.model.nonlinear.preload.is_some() {
             return Err(Error::Nonlinear {

@@ -62,6 +62,7 @@ fn sheared(secondary: usize) -> Driver {
             initial: Initial::Keep,
             depth: None,
         }],
+        discrete: Vec::new(),
         supports: vec![Support {
             nodes: mesh.group_nodes(&mesh.groups["lower.bottom"]),
             fix: [true, true, false],

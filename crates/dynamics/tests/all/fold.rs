@@ -65,6 +65,7 @@ fn pressed(depth: f64, way: f64) -> Driver {
             initial: Initial::Keep,
             depth: None,
         }],
+        discrete: Vec::new(),
         supports: vec![Support {
             nodes: mesh.group_nodes(&mesh.groups["b.bottom"]),
             fix: [true, true, false],

@@ -5,6 +5,7 @@
 
 mod allocation;
 mod dense;
+mod discrete;
 mod edges;
 mod floating;
 mod fold;

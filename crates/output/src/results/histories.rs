@@ -3,7 +3,8 @@
 //! `contact.csv` is there where steps have parts, as in a run in zones: its rows are at the ends of the parts, its columns
 //! the contacts' ones, every cell filled. The forces in `histories.csv` are then means over the step, so that in both
 //! files the sum of a column of forces times the step is the impulse. Where steps may end with impulses that are in no force, a
-//! column has these. (One file with both would be half blank.)
+//! column has these. Springs and dashpots have the sum of their forces, and the mean of their elongations or rates, at the end
+//! of the step. (One file with both would be half blank.)
 
 use std::ops::Range;
 
@@ -86,6 +87,12 @@ impl Histories {
                 for (_, sensor) in &point.sides {
                     row.extend(vectors.map(|vector| Cell::from(sensor.of(vector))));
                 }
+            }
+        }
+        for discrete in system.bodies.iter().filter_map(|body| body.as_discrete()) {
+            for direction in 0..discrete.directions() {
+                let response = discrete.response(direction, [&motion.u, &motion.v]);
+                row.extend(response.map(Cell::Number));
             }
         }
         for (recorded, sensors) in &self.probes {
@@ -217,6 +224,22 @@ pub(crate) fn columns(
                 for (motion, unit) in MOTIONS {
                     names.push(column(&["contact", &contact.name, side, motion], unit));
                 }
+            }
+        }
+    }
+    for discrete in system.bodies.iter().filter_map(|body| body.as_discrete()) {
+        let (kind, name) = (discrete.kind_name(), discrete.name());
+        let extent = match kind {
+            "dashpot" => ("rate", "m/s"),
+            _ => ("elongation", "m"),
+        };
+        for direction in 0..discrete.directions() {
+            for (what, unit) in [("force", "N"), extent] {
+                let what = match discrete.directions() {
+                    1 => what.to_owned(),
+                    _ => format!("{what} {}", COMPONENTS[direction]),
+                };
+                names.push(column(&[kind, name, &what], unit));
             }
         }
     }

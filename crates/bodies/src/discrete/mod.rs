@@ -1,0 +1,413 @@
+//! Point masses, springs and dashpots.
+//!
+//! A spring or a dashpot is between two nodes a and b, or between a node a and the ground, which does not move. Along a
+//! unit vector n its elongation is `e = n · (u_b - u_a)`, with `u_b = 0` on the ground. Its force F, positive in tension, is
+//! a function of e (spring) or of ė (dashpot), and acts with `n F` on a and with `-n F` on b. In all directions it is one
+//! along each axis. n is fixed in space: an element that turns much is none of these.
+//!
+//! Forces on the ground have no partner in the system, and forces along n have a moment where nodes do not stand along n:
+//! [`Body::balances_itself`](crate::Body::balances_itself).
+
+mod curve;
+
+use std::ops::Range;
+
+use carom_algebra::csr::Csr;
+use carom_algebra::unknowns::Unknowns;
+use carom_mesh::{ElementId, Mesh};
+
+pub use self::curve::{Curve, CurveError};
+use crate::{Error, Placement, Stored};
+
+/// What a set of discrete elements is made of.
+#[derive(Clone, Debug)]
+pub struct DiscreteSpec {
+    /// Name as in the case file.
+    pub name: String,
+    /// Cells of the mesh: points for masses and for what stands on the ground, bars of two nodes for what is between them.
+    /// A bar may have no length.
+    pub cells: Vec<ElementId>,
+    /// What each cell is.
+    pub kind: DiscreteKind,
+}
+
+impl DiscreteSpec {
+    /// Whether the linear driver can take it: a dashpot has forces of the velocity, and a curve is not linear.
+    pub fn is_linear(&self) -> bool {
+        match &self.kind {
+            DiscreteKind::Mass(_) => true,
+            DiscreteKind::Spring(link) => link.curve.is_line(),
+            DiscreteKind::Dashpot(_) => false,
+        }
+    }
+}
+
+/// What a discrete element is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DiscreteKind {
+    /// A point mass, kg.
+    Mass(f64),
+    /// A spring: force (N) over elongation (m).
+    Spring(Link),
+    /// A dashpot: force (N) over the rate of elongation (m/s).
+    Dashpot(Link),
+}
+
+/// How the two ends of a spring or a dashpot are linked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    /// Force, positive in tension.
+    pub curve: Curve,
+    /// Unit vector n from the first end to the second one, or to the ground; none for all directions.
+    pub axis: Option<[f64; 3]>,
+}
+
+/// Discrete elements of one kind.
+#[derive(Debug)]
+pub struct Discrete {
+    name: String,
+    cells: Vec<ElementId>,
+    kind: DiscreteKind,
+    dim: usize,
+    /// System numbers of the nodes of each element; twice the same on the ground.
+    nodes: Vec<[u32; 2]>,
+    /// First unknowns of these nodes.
+    first: Vec<[usize; 2]>,
+    /// Nodes of an element.
+    per: usize,
+}
+
+impl Discrete {
+    /// Builds the elements on the cells of a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the
+    /// system.
+    ///
+    /// # Errors
+    /// No cell, cells that are neither all points nor all bars of two nodes, a mass between two nodes.
+    pub fn new(
+        mesh: &Mesh,
+        spec: DiscreteSpec,
+        number: &[u32],
+        unknowns: &Unknowns,
+    ) -> Result<Discrete, Error> {
+        let of = |&cell: &ElementId| mesh.element_nodes(cell);
+        let Some(per) = spec.cells.first().map(|cell| of(cell).len()) else {
+            return Err(Error::Empty { body: spec.name });
+        };
+        let most = match spec.kind {
+            DiscreteKind::Mass(_) => 1,
+            DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) => 2,
+        };
+        let unfit = |cell: &&ElementId| of(cell).len() != per || per > most;
+        if let Some(&cell) = spec.cells.iter().find(unfit) {
+            return Err(Error::NotDiscrete {
+                body: spec.name,
+                found: mesh.kind(cell).table().name,
+            });
+        }
+        let ends = |cell: &ElementId| {
+            let nodes = of(cell);
+            [nodes[0], nodes[per - 1]].map(|node| number[node as usize])
+        };
+        let nodes: Vec<[u32; 2]> = spec.cells.iter().map(ends).collect();
+        let first = |ends: &[u32; 2]| ends.map(|node| unknowns.first(node));
+        Ok(Discrete {
+            first: nodes.iter().map(first).collect(),
+            nodes,
+            name: spec.name,
+            cells: spec.cells,
+            kind: spec.kind,
+            dim: mesh.dim,
+            per,
+        })
+    }
+
+    /// Name as in the case file.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Cells of the mesh.
+    pub fn cells(&self) -> &[ElementId] {
+        &self.cells
+    }
+
+    /// What each of them is.
+    pub fn kind(&self) -> &DiscreteKind {
+        &self.kind
+    }
+
+    /// Whether forces are linear in displacement and velocity.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.link().is_none_or(|link| link.curve.is_line())
+    }
+
+    /// Whether forces depend on the velocity.
+    pub(crate) fn has_damping(&self) -> bool {
+        matches!(self.kind, DiscreteKind::Dashpot(_))
+    }
+
+    /// Whether the elements have stiffness.
+    pub(crate) fn has_stiffness(&self) -> bool {
+        matches!(self.kind, DiscreteKind::Spring(_))
+    }
+
+    fn link(&self) -> Option<&Link> {
+        match &self.kind {
+            DiscreteKind::Mass(_) => None,
+            DiscreteKind::Spring(link) | DiscreteKind::Dashpot(link) => Some(link),
+        }
+    }
+
+    fn spring(&self) -> Option<&Link> {
+        self.link().filter(|_| self.has_stiffness())
+    }
+
+    fn dashpot(&self) -> Option<&Link> {
+        self.link().filter(|_| self.has_damping())
+    }
+
+    /// System numbers of the nodes of each element.
+    pub(crate) fn each_element(&self, visit: &mut dyn FnMut(&[u32])) {
+        for nodes in &self.nodes {
+            visit(&nodes[..self.per]);
+        }
+    }
+
+    /// Elongation (m) of an element along its axis for displacements, or its rate (m/s) for velocities; of an element in
+    /// all directions along one of the axes of space.
+    fn elongation(&self, element: usize, direction: usize, u: &[f64]) -> f64 {
+        let first = &self.first[element];
+        let axis = self.link().map_or([0.0; 3], |link| axis(link, direction));
+        let along = |first: usize| -> f64 {
+            let u = &u[first..][..self.dim];
+            u.iter().zip(axis).map(|(u, n)| u * n).sum()
+        };
+        match self.per {
+            1 => -along(first[0]),
+            _ => along(first[1]) - along(first[0]),
+        }
+    }
+
+    /// Name of the kind: `mass`, `spring` or `dashpot`.
+    pub fn kind_name(&self) -> &'static str {
+        match self.kind {
+            DiscreteKind::Mass(_) => "mass",
+            DiscreteKind::Spring(_) => "spring",
+            DiscreteKind::Dashpot(_) => "dashpot",
+        }
+    }
+
+    /// Sum of the forces of all elements along the axis or along one of those of space, N, positive in tension, and the mean of
+    /// what they depend on: the elongation (m) of springs, its rate (m/s) of dashpots. Zero of masses.
+    pub fn response(&self, direction: usize, [u, v]: [&[f64]; 2]) -> [f64; 2] {
+        let Some(link) = self.link() else {
+            return [0.0; 2];
+        };
+        let x = if self.has_damping() { v } else { u };
+        let (mut force, mut mean) = (0.0, 0.0);
+        for element in 0..self.nodes.len() {
+            let extent = self.elongation(element, direction, x);
+            force += link.curve.value(extent);
+            mean += extent / self.nodes.len() as f64;
+        }
+        [force, mean]
+    }
+
+    /// Directions in which each element acts: one along an axis, as many as space has otherwise.
+    pub fn directions(&self) -> usize {
+        match self.link() {
+            None => 0,
+            Some(Link { axis: Some(_), .. }) => 1,
+            Some(Link { axis: None, .. }) => self.dim,
+        }
+    }
+
+    /// Adds the forces of springs and returns their energy; see [`Body::force`](crate::Body::force).
+    pub fn add_spring_force(&self, at: &Placement, f: &mut [f64]) -> Stored {
+        let mut stored = Stored::default();
+        let Some(link) = self.spring() else {
+            return stored;
+        };
+        for element in 0..self.nodes.len() {
+            for direction in 0..self.directions() {
+                let end = self.elongation(element, direction, at.u);
+                stored.strain += link.curve.integral(end);
+                let force = match at.from {
+                    None => link.curve.value(end),
+                    Some(from) => {
+                        let start = self.elongation(element, direction, from);
+                        link.curve.mean(start, end).0
+                    }
+                };
+                self.add(element, axis(link, direction), force, f);
+            }
+        }
+        stored
+    }
+
+    /// Adds the forces of linear springs and returns their energy.
+    pub(crate) fn internal_force(&self, u: &[f64], f: &mut [f64]) -> f64 {
+        let at = Placement {
+            u,
+            v: &[],
+            from: None,
+            dt: 0.0,
+            old: &[],
+        };
+        self.add_spring_force(&at, f).strain
+    }
+
+    /// Adds the forces of dashpots.
+    pub(crate) fn add_damping_force(&self, v: &[f64], f: &mut [f64]) {
+        let Some(link) = self.dashpot() else {
+            return;
+        };
+        for element in 0..self.nodes.len() {
+            for direction in 0..self.directions() {
+                let rate = self.elongation(element, direction, v);
+                let force = link.curve.value(rate);
+                self.add(element, axis(link, direction), force, f);
+            }
+        }
+    }
+
+    /// Adds the force on the rest of the system reversed: -n F at the first node, n F at the second.
+    fn add(&self, element: usize, axis: [f64; 3], force: f64, f: &mut [f64]) {
+        for (&first, sign) in self.first[element][..self.per].iter().zip([-1.0, 1.0]) {
+            let f = &mut f[first..][..self.dim];
+            for (f, n) in f.iter_mut().zip(axis) {
+                *f += sign * n * force;
+            }
+        }
+    }
+
+    /// Adds `by_u` ∂f/∂u + `by_v` ∂f/∂v; see [`Body::add_tangent`](crate::Body::add_tangent).
+    pub(crate) fn add_tangent(&self, at: &Placement, [by_u, by_v]: [f64; 2], matrix: &mut Csr) {
+        for element in 0..self.nodes.len() {
+            for direction in 0..self.directions() {
+                let along = |x| self.elongation(element, direction, x);
+                let slope = match &self.kind {
+                    DiscreteKind::Mass(_) => 0.0,
+                    DiscreteKind::Dashpot(link) => by_v * link.curve.slope(along(at.v)),
+                    DiscreteKind::Spring(link) => {
+                        by_u * match at.from {
+                            None => link.curve.slope(along(at.u)),
+                            Some(from) => link.curve.mean(along(from), along(at.u)).1,
+                        }
+                    }
+                };
+                self.each_entry((element, direction), slope, &mut |i, j, k| {
+                    matrix.add(i, j, k);
+                });
+            }
+        }
+    }
+
+    /// Visits the entries of slope · n nᵀ over the unknowns of an element.
+    fn each_entry(
+        &self,
+        (element, direction): (usize, usize),
+        slope: f64,
+        visit: &mut dyn FnMut(usize, usize, f64),
+    ) {
+        let Some(link) = self.link() else {
+            return;
+        };
+        let (axis, first) = (axis(link, direction), &self.first[element][..self.per]);
+        for (&a, sign_a) in first.iter().zip([-1.0, 1.0]) {
+            for (&b, sign_b) in first.iter().zip([-1.0, 1.0]) {
+                for i in (0..self.dim).filter(|&i| axis[i] != 0.0) {
+                    for j in (0..self.dim).filter(|&j| axis[j] != 0.0) {
+                        let value = sign_a * sign_b * slope * axis[i] * axis[j];
+                        visit(a + i, b + j, value);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Visits the rows n of springs, as unknowns and coefficients: what they hold.
+    pub(crate) fn each_spring(&self, visit: &mut dyn FnMut(&[(usize, f64)])) {
+        let Some(link) = self.spring() else {
+            return;
+        };
+        let mut row = Vec::new();
+        for first in &self.first {
+            for direction in 0..self.directions() {
+                row.clear();
+                for (&first, sign) in first[..self.per].iter().zip([-1.0, 1.0]) {
+                    let n = axis(link, direction);
+                    row.extend((0..self.dim).map(|i| (first + i, sign * n[i])));
+                }
+                visit(&row);
+            }
+        }
+    }
+
+    /// Adds the point masses (kg) to the entries of a system vector.
+    pub(crate) fn add_lumped_mass(&self, mass: &mut [f64]) {
+        let DiscreteKind::Mass(m) = self.kind else {
+            return;
+        };
+        for first in &self.first {
+            for entry in &mut mass[first[0]..][..self.dim] {
+                *entry += m;
+            }
+        }
+    }
+
+    /// Adds `stiffness` K + `damping` C, both at rest, + `mass` M; see [`Body::assemble`](crate::Body::assemble).
+    pub(crate) fn assemble(
+        &self,
+        [stiffness, damping, mass]: [f64; 3],
+        part: &Range<usize>,
+        matrix: &mut Csr,
+    ) {
+        for (element, &[first, _]) in self.first.iter().enumerate() {
+            if !part.contains(&first) {
+                continue;
+            }
+            let slope = match &self.kind {
+                DiscreteKind::Mass(m) => {
+                    for i in first - part.start..first - part.start + self.dim {
+                        matrix.add(i, i, mass * m);
+                    }
+                    continue;
+                }
+                DiscreteKind::Spring(link) => stiffness * link.curve.slope(0.0),
+                DiscreteKind::Dashpot(link) => damping * link.curve.slope(0.0),
+            };
+            for direction in 0..self.directions() {
+                self.each_entry((element, direction), slope, &mut |i, j, k| {
+                    matrix.add(i - part.start, j - part.start, k);
+                });
+            }
+        }
+    }
+
+    /// Adds the largest sums of the magnitudes in the rows of the stiffness (N/m) or of the damping matrix (N s/m) to system
+    /// vectors: over the mass they bound the eigenvalues (Gershgorin).
+    pub(crate) fn add_row_sums(&self, stiffness: &mut [f64], damping: &mut [f64]) {
+        let sums = match self.has_damping() {
+            true => damping,
+            false => stiffness,
+        };
+        let Some(link) = self.link() else {
+            return;
+        };
+        for element in 0..self.nodes.len() {
+            for direction in 0..self.directions() {
+                let slope = link.curve.steepest();
+                self.each_entry((element, direction), slope, &mut |i, _, k| {
+                    sums[i] += k.abs();
+                });
+            }
+        }
+    }
+}
+
+/// The unit vector along which an element acts in one of its directions.
+fn axis(link: &Link, direction: usize) -> [f64; 3] {
+    link.axis
+        .unwrap_or_else(|| [0, 1, 2].map(|i| f64::from(u8::from(i == direction))))
+}

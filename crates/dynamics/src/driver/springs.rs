@@ -1,0 +1,68 @@
+//! Forces of springs in the balance of momentum: they may have a resultant and a moment, on the ground and across their nodes, which is
+//! counted with that of the supports.
+
+use carom_bodies::Placement;
+
+use super::Driver;
+
+impl Driver {
+    /// Forces of springs in the balance of the step, N; empty without springs.
+    pub(super) fn balanced_springs(&mut self) -> Vec<f64> {
+        let super::Vectors { x, push, place, .. } = &mut self.vectors;
+        if self.system.has_springs {
+            self.map.force.whole(&self.state.motion, x, push, place);
+        }
+        self.springs_at_place(self.between())
+    }
+
+    /// Forces of springs at the displacement in `place`, or between that of the state and this one, N; empty without springs.
+    pub(super) fn springs_at_place(&mut self, between: bool) -> Vec<f64> {
+        let system = &*self.system;
+        if !system.has_springs {
+            return Vec::new();
+        }
+        let mut forces = vec![0.0; system.unknowns()];
+        let at = Placement {
+            u: &self.vectors.place,
+            v: &self.vectors.rate,
+            from: between.then_some(&self.state.motion.u[..]),
+            dt: self.dt,
+            old: &[],
+        };
+        let springs = system.bodies.iter().filter_map(|body| body.as_discrete());
+        for some in springs {
+            some.add_spring_force(&at, &mut forces);
+        }
+        forces
+    }
+
+    /// Takes from `work` the forces of linear springs in the balance of the step.
+    pub(super) fn take_linear_springs(&mut self) {
+        if !self.system.has_springs {
+            return;
+        }
+        let super::Vectors { x, push, place, .. } = &mut self.vectors;
+        self.map.force.whole(&self.state.motion, x, push, place);
+        self.take_linear_springs_at_place();
+    }
+
+    /// Takes from `work` the forces of linear springs at the displacement in `place`, which is its opposite afterwards.
+    pub(super) fn take_linear_springs_at_place(&mut self) {
+        if !self.system.has_springs {
+            return;
+        }
+        let super::Vectors { place, work, .. } = &mut self.vectors;
+        place.iter_mut().for_each(|u| *u = -*u);
+        let at = Placement {
+            u: place,
+            v: &[],
+            from: None,
+            dt: 0.0,
+            old: &[],
+        };
+        let springs = self.system.bodies.iter().filter_map(|b| b.as_discrete());
+        for some in springs {
+            some.add_spring_force(&at, work);
+        }
+    }
+}

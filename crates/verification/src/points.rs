@@ -1,0 +1,139 @@
+//! Models of point masses, springs and stops.
+
+use carom_bodies::{Curve, DiscreteKind, DiscreteSpec, Link};
+use carom_contact::law::{Adhesion, Crush, Curve as StopCurve, Stop};
+use carom_contact::{Initial, Law, Plane};
+use carom_dynamics::{Model, ModelContact, ModelDiscrete, ModelTarget, Scheme, State};
+use carom_elements::Kind;
+use carom_mesh::{ElementId, Mesh, Surface};
+
+use crate::Error;
+use crate::check::Row;
+
+/// A model that grows.
+pub(crate) struct Points {
+    mesh: Mesh,
+    discrete: Vec<ModelDiscrete>,
+    contacts: Vec<ModelContact>,
+}
+
+/// Node and cell of a point mass.
+pub(crate) type Point = (u32, ElementId);
+
+impl Points {
+    pub(crate) fn new(dim: usize) -> Points {
+        Points {
+            mesh: Mesh::new(dim),
+            discrete: Vec::new(),
+            contacts: Vec::new(),
+        }
+    }
+
+    /// A point mass (kg) at a place with its initial displacement and velocity.
+    pub(crate) fn mass(&mut self, mass: f64, at: [f64; 3], [u, v]: [[f64; 3]; 2]) -> Point {
+        let node = self.mesh.nodes.len() as u32;
+        self.mesh.nodes.push(at);
+        let cell = self.mesh.push(Kind::Point1, &[node]);
+        self.discrete.push(ModelDiscrete {
+            displacement: Some(u),
+            velocity: Some(v),
+            ..self.made("mass", cell, DiscreteKind::Mass(mass))
+        });
+        (node, cell)
+    }
+
+    /// A spring between a mass and the ground along an axis.
+    pub(crate) fn spring(&mut self, at: Point, axis: [f64; 3], curve: Curve) {
+        let cell = self.mesh.push(Kind::Point1, &[at.0]);
+        let axis = Some(axis);
+        let made = self.made("spring", cell, DiscreteKind::Spring(Link { curve, axis }));
+        self.discrete.push(made);
+    }
+
+    /// A linear dashpot between a mass and the ground in all directions, N s/m.
+    pub(crate) fn dashpot(&mut self, at: Point, damping: f64) {
+        let cell = self.mesh.push(Kind::Point1, &[at.0]);
+        let link = Link {
+            curve: Curve::line(damping),
+            axis: None,
+        };
+        let made = self.made("dashpot", cell, DiscreteKind::Dashpot(link));
+        self.discrete.push(made);
+    }
+
+    fn made(&self, kind_name: &str, cell: ElementId, kind: DiscreteKind) -> ModelDiscrete {
+        ModelDiscrete::new(DiscreteSpec {
+            name: format!("{kind_name}-{}", self.discrete.len()),
+            cells: vec![cell],
+            kind,
+        })
+    }
+
+    /// A stop of stiffness (N/m) and damping (N s/m) with a gap (m) between a mass and another one, or the ground, along the
+    /// unit vector from it to that.
+    pub(crate) fn stop(
+        &mut self,
+        (one, other): (Point, Option<Point>),
+        axis: [f64; 3],
+        gap: f64,
+        [stiffness, damping]: [f64; 2],
+    ) -> Result<(), Error> {
+        let back = axis.map(|n| -n);
+        let target = match other {
+            Some(other) => ModelTarget::Surface(Surface::of_points(&[other], back)),
+            None => ModelTarget::rigid(Plane {
+                point: self.mesh.nodes[one.0 as usize],
+                normal: back,
+            }),
+        };
+        let law = Law::Stop(Stop {
+            clearance: 0.0,
+            curve: StopCurve::new(&[[1.0, stiffness]])?,
+            crush: Crush::Recovered,
+            damping,
+            adhesion: Adhesion::Clip,
+        });
+        self.contacts.push(ModelContact {
+            initial: Initial::Gap(gap),
+            ..ModelContact::new("stop", Surface::of_points(&[one], axis), target, law)
+        });
+        Ok(())
+    }
+
+    /// Contact of a mass by any law.
+    pub(crate) fn contact(&mut self, one: Point, target: ModelTarget, law: Law, friction: f64) {
+        self.contacts.push(ModelContact {
+            friction,
+            ..ModelContact::new("floor", Surface::of_points(&[one], [0.0; 3]), target, law)
+        });
+    }
+
+    pub(crate) fn model(self, scheme: Scheme, dt: f64) -> Model {
+        Model {
+            discrete: self.discrete,
+            contacts: self.contacts,
+            ..Model::new(Vec::new(), self.mesh, scheme, dt)
+        }
+    }
+}
+
+/// What the balances leave, over the largest energy and over the largest momentum or `scale` (N s), if that is more: round-off
+/// of the steps.
+pub(crate) fn balances(name: &str, state: &State, scale: f64) -> [Row; 2] {
+    let ledger = &state.ledger;
+    let energy = ledger.largest_energy_residual / ledger.largest_energy;
+    let momentum = ledger.largest_momentum_residual / ledger.largest_momentum.max(scale);
+    [("energy", energy), ("momentum", momentum)]
+        .map(|(what, found)| Row::at_most(format!("{name}: {what} residual"), found, 1e-11))
+}
+
+/// The zero of a line through two points (x, y).
+pub(crate) fn crossing([x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) -> f64 {
+    x0 + (x1 - x0) * y0 / (y0 - y1)
+}
+
+/// Place and value of the vertex of the parabola through three values at equal distances, the middle one at `x`.
+pub(crate) fn vertex(x: f64, step: f64, [before, at, after]: [f64; 3]) -> [f64; 2] {
+    let (slope, bend) = (0.5 * (after - before), before - 2.0 * at + after);
+    [x - step * slope / bend, at - 0.5 * slope * slope / bend]
+}
