@@ -91,7 +91,8 @@ impl Film {
         });
     }
 
-    /// The film strip; none in one dimension, and none of a linear run in which nothing is seen to move.
+    /// The film strip; none in one dimension, none of points and springs alone, and none of a linear run in which nothing is seen to
+    /// move.
     pub(crate) fn draw(&self, system: &System) -> Option<Result<String, Error>> {
         let moved = |still: &Still| still.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let largest = self.stills.iter().map(moved).fold(0.0, f64::max);
@@ -99,6 +100,9 @@ impl Film {
             return None;
         }
         let outlines = Outlines::new(system);
+        if outlines.patches.is_empty() {
+            return None;
+        }
         let shown = self.shown();
         let frames: Vec<Frame> = shown
             .iter()
@@ -172,6 +176,10 @@ impl Outlines {
         };
         let mut cell = 0;
         for body in &system.bodies {
+            if body.as_discrete().is_some() {
+                cell += body.cells().len();
+                continue;
+            }
             // the faces that only one cell of the body has
             let mut outer: BTreeMap<Vec<u32>, Option<(Vec<u32>, usize)>> = BTreeMap::new();
             for &element in body.cells() {
