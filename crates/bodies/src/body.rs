@@ -8,7 +8,7 @@ use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
 use crate::block::Scratch;
-use crate::discrete::{Discrete, DiscreteSpec};
+use crate::discrete::{Discrete, DiscreteSpec, VisitRow};
 use crate::distortion::Distortion;
 use crate::solid::{BodySpec, Solid};
 use crate::{Error, Placement, Stored};
@@ -260,7 +260,7 @@ impl Body {
     }
 
     /// Visits the rows n of springs, as unknowns and coefficients of the elongation: motions that they hold.
-    pub fn each_spring(&self, visit: &mut dyn FnMut(&[(usize, f64)])) {
+    pub fn each_spring(&self, visit: &mut VisitRow) {
         match self {
             Body::Solid(_) => {}
             Body::Discrete(discrete) => discrete.each_spring(visit),

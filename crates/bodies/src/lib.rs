@@ -24,7 +24,7 @@ mod weights;
 
 pub use block::Scratch;
 pub use body::Body;
-pub use discrete::{Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, Link};
+pub use discrete::{Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, Link, VisitRow};
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};

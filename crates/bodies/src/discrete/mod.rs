@@ -19,6 +19,9 @@ use carom_mesh::{ElementId, Mesh};
 pub use self::curve::{Curve, CurveError};
 use crate::{Error, Placement, Stored};
 
+/// What is called for each row, of unknowns and coefficients.
+pub type VisitRow<'a> = dyn FnMut(&[(usize, f64)]) + 'a;
+
 /// What a set of discrete elements is made of.
 #[derive(Clone, Debug)]
 pub struct DiscreteSpec {
@@ -327,7 +330,7 @@ impl Discrete {
     }
 
     /// Visits the rows n of springs, as unknowns and coefficients: what they hold.
-    pub(crate) fn each_spring(&self, visit: &mut dyn FnMut(&[(usize, f64)])) {
+    pub(crate) fn each_spring(&self, visit: &mut VisitRow) {
         let Some(link) = self.spring() else {
             return;
         };
