@@ -7,8 +7,8 @@ use carom_dynamics::{ModelBody, ModelContact, ModelDiscrete, ModelTarget};
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Group, Mesh, Surface};
 
+use super::builder::{Builder, plural};
 use super::laws::no_curve;
-use super::{Builder, plural};
 use crate::error::Problem;
 use crate::schema::{Ends, Force, Length, NormalVector, PointMass, Stop};
 
