@@ -61,11 +61,13 @@ impl Unknowns {
     }
 
     /// First unknown of a node; of a node without any, that of the next one.
+    #[inline]
     pub fn first(&self, node: u32) -> usize {
         self.first[node as usize] as usize
     }
 
     /// All unknowns of a node.
+    #[inline]
     pub fn of(&self, node: u32) -> Range<usize> {
         self.first(node)..self.first[node as usize + 1] as usize
     }
@@ -76,6 +78,7 @@ impl Unknowns {
     }
 
     /// Translations of a node: `dim` of them, or none.
+    #[inline]
     pub fn translations_of(&self, node: u32) -> Range<usize> {
         let all = self.of(node);
         all.start..all.end.min(all.start + self.dim)
@@ -87,6 +90,7 @@ impl Unknowns {
     }
 
     /// Node of an unknown.
+    #[inline]
     pub fn node(&self, unknown: usize) -> u32 {
         self.node[unknown]
     }
@@ -97,6 +101,7 @@ impl Unknowns {
     }
 
     /// Kind of an unknown.
+    #[inline]
     pub fn kind(&self, unknown: usize) -> Kind {
         let place = unknown - self.first(self.node[unknown]);
         match (place < self.dim, self.dim) {
@@ -118,6 +123,7 @@ impl Unknowns {
     }
 
     /// The translations of a node in a system vector, with zeros beyond the dimension.
+    #[inline]
     pub fn vector(&self, node: u32, values: &[f64]) -> [f64; 3] {
         let mut vector = [0.0; 3];
         for (to, from) in vector.iter_mut().zip(&values[self.translations_of(node)]) {

@@ -193,18 +193,31 @@ fn print(summary: &Summary, folder: &Path) {
         out!("  {}", terms.join(", "));
     }
     let angular = match &summary.momentum.angular {
-        Some(angular) => format!(", angular {:.1e}", angular.relative_residual),
+        Some(angular) => format!(", {:.1e} of angular momentum", angular.relative_residual),
         None => String::new(),
     };
     out!(
-        "  energy residual {:.1e}, momentum residual {:.1e}{angular} (relative)",
+        "  the equations are solved to {:.1e} of energy, {:.1e} of momentum{angular}{}",
         summary.energy.relative_residual,
-        summary.momentum.relative_residual
+        summary.momentum.relative_residual,
+        of_scheme(summary)
     );
     out!("  {}", cost(summary));
     out!("  {}", verdict(summary));
     out!("  report: {}", folder.join("report.html").display());
     out!("  figures: {}", folder.join("plots").display());
+}
+
+/// What the scheme itself took from the energy, or made.
+fn of_scheme(summary: &Summary) -> String {
+    let energy = &summary.energy;
+    let taken = energy.dissipations.get("scheme").copied().unwrap_or(0.0);
+    if !energy.identity || energy.largest == 0.0 || taken == 0.0 {
+        return String::new();
+    }
+    let verb = if taken > 0.0 { "took" } else { "made" };
+    let share = 100.0 * (taken / energy.largest).abs();
+    format!("; the scheme {verb} {share:.2} % of the largest energy")
 }
 
 /// The error and those of its causes that it does not already say; where the results so far are.

@@ -130,6 +130,8 @@ pub struct Ledger {
     pub largest_angular_momentum: f64,
     /// Largest energy so far beyond that at the start and the work from outside, J: what the scheme balances has gained.
     pub largest_gain: f64,
+    /// Largest energy that the scheme has made since the start so far, J: minus its dissipation.
+    pub largest_made: f64,
     /// Largest work of the contacts since the start so far, J.
     pub largest_contact_work: f64,
     /// Largest kinetic and strain energy so far beyond the energy that the scheme balances, J.
@@ -382,6 +384,7 @@ impl Ledger {
         self.largest_energy = self.largest_energy.max(self.balance.energy());
         let gain = self.balance.balanced() - self.initial.balanced() - self.balance.work_given();
         self.largest_gain = self.largest_gain.max(gain);
+        self.largest_made = self.largest_made.max(-self.balance.dissipation_scheme);
         self.largest_contact_work = self.largest_contact_work.max(self.balance.work_contact);
         self.largest_excess = self.largest_excess.max(-self.balance.scheme_energy);
         self.largest_energy_residual = self

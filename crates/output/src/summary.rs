@@ -248,7 +248,10 @@ pub struct Energy {
     /// Largest magnitude of the residual over the run.
     #[serde(with = "float")]
     pub largest_residual: f64,
-    /// `largest_residual` over the largest kinetic and strain energy of the run; what the check bounds.
+    /// Largest kinetic and strain energy of the run, in a static stage the largest work of the loads if that is more.
+    #[serde(default)]
+    pub largest: f64,
+    /// `largest_residual` over `largest`; what the check bounds: how far the equations are solved.
     #[serde(with = "float")]
     pub relative_residual: f64,
     /// Whether an energy identity of the scheme is known; without one what the scheme dissipates is in the residual.

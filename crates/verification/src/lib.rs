@@ -51,6 +51,7 @@ mod blocks;
 mod blocks_as_bars;
 mod bouncing_mass;
 mod closed_field_as_printed;
+mod connected_parts;
 mod contact_patch;
 mod conveyor;
 mod coulomb_oscillator;
@@ -148,6 +149,7 @@ registry! {
     breathing_tube
     closed_field_as_printed
     contact_patch
+    connected_parts
     conveyor
     coulomb_oscillator
     crushed_stop

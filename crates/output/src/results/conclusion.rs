@@ -300,6 +300,7 @@ fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {
         stored,
         residual: end.energy_residual,
         largest_residual: largest,
+        largest: ledger.largest_energy,
         relative_residual: relative(largest, ledger.largest_energy),
         identity,
     }

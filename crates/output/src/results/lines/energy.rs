@@ -43,7 +43,31 @@ const GAIN: Bounds = Bounds::Both(1e-3, 0.01);
 /// quarter of the energy in it the balance of the scheme says little about the motion, with half of it nothing.
 const EXCESS: Bounds = Bounds::Both(0.25, 0.5);
 
-/// What the terms of the balance leave over.
+/// Energy that the scheme makes, whatever contacts, friction and damping lose.
+pub(super) fn made(evidence: &Evidence) -> Finding {
+    let (system, ledger) = (evidence.system, &evidence.last.ledger);
+    let identity = system.scheme.get().energy_identity(system.dt);
+    let lags = identity.is_some_and(|identity| identity.lag != 0.0);
+    if evidence.zones.is_some() || ledger.is_static || identity.is_none() {
+        return Finding::Absent;
+    }
+    if lags && system.is_nonlinear() {
+        let why = "what the scheme made: the energy that it balances is that of displacements between two steps, known for linear forces only";
+        return Finding::Unchecked(why.to_owned());
+    }
+    Finding::Line(Line::new(
+        "scheme-made",
+        (
+            "largest energy that the scheme made, relative to the largest energy",
+            relative(ledger, ledger.largest_made),
+            Form::Percent,
+        ),
+        GAIN,
+        "use a smaller step, a scheme that dissipates, or energy-momentum",
+    ))
+}
+
+/// How far the equations are solved: what the terms of the balance leave over.
 pub(super) fn residual(evidence: &Evidence) -> Finding {
     if let Some(scheme) = without_identity(evidence) {
         return Finding::Unchecked(format!(

@@ -22,6 +22,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     momentum::exchange,
     momentum::resizing,
     energy::gain,
+    energy::made,
     energy::of_contact,
     energy::of_scheme,
     finite::states,

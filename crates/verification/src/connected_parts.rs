@@ -1,0 +1,206 @@
+//! Linear parts in models that are not linear as a whole.
+//!
+//! Problems and references, counts and bounds stated before the run:
+//! * A block of linear elasticity (full size: 18 elements a side, 20 577 unknowns) on a rigid base is struck obliquely by a small
+//!   neo-Hookean cube, with friction (µ = 0.3), finite sliding, 50 steps of theta 0.75. The matrix of the block depends on the
+//!   size of the step alone: it is factored once. That of the striker changes with its strain: once a step at least.
+//! * A linear block on a belt under tractions in time, with Coulomb's friction, 60 steps: neither loads nor friction nor the motion of the
+//!   obstacle are in its matrix: one factor for the run, and a forward and a backward sweep a step, with the two of the solve for the start.
+//! * Two equal bars as plane strips without Poisson's effect, the one linear, the other of St. Venant and Kirchhoff's law, meet at
+//!   v = 2e-6 c: the strain is 1e-6, and the second law differs from the first by about 3/2 of it. The forces agree with
+//!   those of two linear bars within 1e-5 of the plane wave's force.
+
+use carom_bodies::Kinematics;
+use carom_contact::law::{Capture, Reading, Velocity};
+use carom_contact::{Law, Motion, Obstacle, Plane, Sliding, Translation};
+use carom_dynamics::{
+    Amplitude, Driver, Load, LoadKind, Model, ModelBody, ModelTarget, Nonlinear, System,
+};
+use carom_materials::{Elastic, Law as Material, NeoHooke, StVenantKirchhoff};
+use carom_mesh::{Mesh, generate};
+
+use crate::Error;
+use crate::build::{body, contact, support, surface, theta};
+use crate::check::{Check, Row, Size};
+
+const CLOSED: Law = Law::Velocity(Velocity {
+    capture: Capture::Now,
+    reading: Reading::Closed,
+});
+
+fn part(
+    mesh: &Mesh,
+    name: &str,
+    kinematics: Kinematics,
+    material: Material,
+) -> Result<ModelBody, Error> {
+    let elastic = Elastic {
+        density: 1.0,
+        young: 1.0,
+        poisson: 0.0,
+    };
+    let mut part = body(mesh, name, kinematics, elastic)?;
+    part.spec.material = material;
+    Ok(part)
+}
+
+/// Factorisations of the block and of the striker.
+fn struck(n: usize, steps: usize) -> Result<[usize; 2], Error> {
+    let soft = |young: f64| Elastic {
+        density: 1000.0,
+        young,
+        poisson: 0.3,
+    };
+    let mut mesh = generate::box_("block", [0.0; 3], [1.0; 3], [n; 3], false);
+    let cube = generate::box_("cube", [0.43, 0.44, 1.002], [0.15; 3], [2; 3], false);
+    mesh.merge("cube", cube)?;
+    let block = part(&mesh, "block", Kinematics::Solid, soft(1e8).into())?;
+    let neo = Material::NeoHooke(NeoHooke { initial: soft(1e7) });
+    let mut striker = part(&mesh, "cube", Kinematics::Solid, neo)?;
+    striker.velocity = [2.0, 0.0, -5.0];
+    let secondary = surface(&mesh, "cube.bottom", &striker)?;
+    let primary = ModelTarget::Surface(surface(&mesh, "block.top", &block)?);
+    let mut blow = contact(secondary, primary, CLOSED);
+    blow.sliding = Sliding::Finite;
+    blow.friction = 0.3;
+    let mut driver = Driver::new(System::new(Model {
+        contacts: vec![blow],
+        supports: vec![support(&mesh, "block.bottom", [true; 3])?],
+        ..Model::new(vec![block, striker], mesh, theta(0.75), 1e-4)
+    })?)?;
+    for _ in 0..steps {
+        driver.step()?;
+    }
+    let mut factors = driver.costs().factors;
+    factors.sort_by_key(|factor| factor.unknowns);
+    match &factors[..] {
+        [small, large] => Ok([large.factorisations, small.factorisations]),
+        _ => Ok([0, 0]),
+    }
+}
+
+/// Factorisations and sweeps of a block on a belt, and the largest share of friction in the normal force.
+fn carried(steps: usize) -> Result<(usize, usize, f64), Error> {
+    let mesh = generate::rectangle("block", [0.0; 2], [0.4, 0.2], [8, 4], false);
+    let elastic = Elastic {
+        density: 1000.0,
+        young: 1e8,
+        poisson: 0.3,
+    };
+    let strain = Kinematics::PlaneStrain { thickness: 0.1 };
+    let block = part(&mesh, "block", strain, elastic.into())?;
+    let belt = Obstacle {
+        motion: Motion {
+            translation: Some(Translation::Velocity([0.5, 0.0, 0.0])),
+            turn: None,
+        },
+        ..Plane {
+            point: [0.0; 3],
+            normal: [0.0, 1.0, 0.0],
+        }
+        .into()
+    };
+    let foot = surface(&mesh, "block.bottom", &block)?;
+    let mut rubbing = contact(foot, ModelTarget::Rigid(belt), CLOSED);
+    rubbing.friction = 0.3;
+    let press = Load {
+        name: "press".into(),
+        surface: surface(&mesh, "block.top", &block)?,
+        kind: LoadKind::Traction([500.0, -1e4, 0.0]),
+        amplitude: Amplitude::new(vec![[0.0, 0.0], [5e-3, 1.0], [1e-2, 0.4]])?,
+    };
+    let mut driver = Driver::new(System::new(Model {
+        contacts: vec![rubbing],
+        nonlinear: Nonlinear {
+            loads: vec![press],
+            ..Nonlinear::default()
+        },
+        gravity: [0.0, -9.81, 0.0],
+        ..Model::new(vec![block], mesh, theta(1.0), 2e-4)
+    })?)?;
+    let before = driver.costs().work.sweeps;
+    let mut share: f64 = 0.0;
+    for _ in 0..steps {
+        driver.step()?;
+        let report = &driver.report().contacts[0];
+        if report.force > 0.0 {
+            share = share.max(report.friction / report.force);
+        }
+    }
+    let work = driver.costs().work;
+    Ok((work.factorisations, work.sweeps - before, share))
+}
+
+/// Contact forces of two bars, the second of this material, over the force of the plane wave.
+fn knock(n: usize, second: fn(Elastic) -> Material) -> Result<Vec<f64>, Error> {
+    let elastic = Elastic {
+        density: 1.0,
+        young: 1.0,
+        poisson: 0.0,
+    };
+    let height = 1.0 / n as f64;
+    let mut mesh = generate::rectangle("one", [0.0; 2], [1.0, height], [n, 1], false);
+    let other = generate::rectangle("two", [1.0, 0.0], [1.0, height], [n, 1], false);
+    mesh.merge("two", other)?;
+    let strain = Kinematics::PlaneStrain { thickness: 1.0 };
+    let mut one = part(&mesh, "one", strain, elastic.into())?;
+    let two = part(&mesh, "two", strain, second(elastic))?;
+    // c = 1 m/s and F = ρ c v A / 2
+    one.velocity = [2e-6, 0.0, 0.0];
+    let secondary = surface(&mesh, "one.right", &one)?;
+    let primary = ModelTarget::Surface(surface(&mesh, "two.left", &two)?);
+    let dt = 0.5 / n as f64;
+    let mut driver = Driver::new(System::new(Model {
+        contacts: vec![contact(secondary, primary, CLOSED)],
+        ..Model::new(vec![one, two], mesh, theta(0.5), dt)
+    })?)?;
+    let mut forces = Vec::new();
+    while driver.state().time < 2.5 {
+        driver.step()?;
+        forces.push(driver.report().contacts[0].force / (1e-6 * height));
+    }
+    Ok(forces)
+}
+
+pub(crate) const CHECK: Check = Check {
+    name: "connected-parts",
+    fact: "the matrix of a linear part is factored once, whatever touches it; a law at finite strain tends to the linear one",
+    run: |size| {
+        let (n, bars) = match size {
+            Size::Quick => (4, 20),
+            Size::Full => (18, 80),
+        };
+        let [block, striker] = struck(n, 50)?;
+        let (factors, sweeps, share) = carried(60)?;
+        let linear = knock(bars, Material::from)?;
+        let mixed = knock(bars, |initial| {
+            Material::StVenantKirchhoff(StVenantKirchhoff { initial })
+        })?;
+        let pairs = linear.iter().zip(&mixed);
+        let difference = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        let peak = linear.iter().fold(0.0, |most: f64, f| most.max(*f));
+        Ok(vec![
+            Row::count("struck block: factorisations of the block", block, 1),
+            Row::at_least(
+                "struck block: factorisations of the striker in 50 steps",
+                striker as f64,
+                50.0,
+            ),
+            Row::count("block on a belt: factorisations in 60 steps", factors, 1),
+            Row::count("block on a belt: sweeps in 60 steps", sweeps, 120),
+            Row::near(
+                "block on a belt: largest friction / normal force",
+                share,
+                0.3,
+                1e-9,
+            ),
+            Row::at_least("two bars: peak force / that of the plane wave", peak, 0.9),
+            Row::near(
+                "two bars, one of St. Venant and Kirchhoff: largest difference to two linear ones / force of the plane wave",
+                difference,
+                0.0,
+                1e-5,
+            ),
+        ])
+    },
+};
