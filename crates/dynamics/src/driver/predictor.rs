@@ -33,8 +33,8 @@ impl Driver {
         if !self.system.scheme.get().projects_predictor() || self.is_static() {
             return Ok(());
         }
-        self.vectors.ahead.clear();
-        self.pair(true);
+        self.pair_now();
+        self.stack();
         let dt = self.dt;
         let Self {
             predictor,

@@ -241,7 +241,8 @@ impl Driver {
         self.begin()
     }
 
-    fn pair_now(&mut self) {
+    /// Pairs all contacts as the state has them.
+    pub(super) fn pair_now(&mut self) {
         self.pairing.clear();
         self.pairing.span = [0.0; 2];
         self.vectors.place.clone_from(&self.state.motion.u);

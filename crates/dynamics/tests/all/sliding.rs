@@ -34,7 +34,7 @@ fn over_sphere(scheme: Scheme, law: Law, sliding: Sliding) -> Model {
 }
 
 #[test]
-fn a_linear_system_takes_the_steps_of_the_linear_driver() {
+fn small_sliding_leaves_a_linear_system_linear_and_is_not_finite_sliding() {
     let theta = |theta| Scheme::Theta(scheme::Theta { theta });
     let mortar = Integration::Mortar { basis: Basis::Dual };
     let sets = [
@@ -54,36 +54,26 @@ fn a_linear_system_takes_the_steps_of_the_linear_driver() {
             model.contacts[0].integration = integration;
             System::new(model).unwrap()
         };
-        let mut linear = Driver::new(model(Sliding::Small)).unwrap();
-        let mut newton = Driver::new(model(Sliding::Small)).unwrap();
+        let mut small = Driver::new(model(Sliding::Small)).unwrap();
         let mut finite = Driver::new(model(Sliding::Finite)).unwrap();
         let mut largest = 0.0_f64;
         for _ in 0..40 {
-            linear.step().unwrap();
-            newton.step().unwrap();
+            small.step().unwrap();
             finite.step().unwrap();
-            let [one, other] = [linear.report(), newton.report()].map(|r| r.contacts[0].force);
-            largest = largest.max(one);
-            // both solve the same linear equations to rounding, again at each step
-            assert!(
-                (one - other).abs() < 1e-10 * largest.max(1e-3),
-                "{name}: {one} {other}"
-            );
+            largest = largest.max(small.report().contacts[0].force);
         }
         assert!(largest > 0.0, "{name} never touches");
-        let [one, other, apart] =
-            [linear.state(), newton.state(), finite.state()].map(|state| &state.motion.u);
+        let [one, apart] = [small.state(), finite.state()].map(|state| &state.motion.u);
         let size = one.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let off = |other: &[f64]| {
             let each = one.iter().zip(other).map(|(a, b)| (a - b).abs());
             each.fold(0.0, f64::max) / size
         };
-        assert!(off(other) < 1e-10, "{name}: {:e}", off(other));
         // the sphere curves, so that it matters where points are paired
         assert!(off(apart) > 1e-4, "{name}: {:e}", off(apart));
         if scheme.get().step_map(0.05).force.x != 0.0 {
             assert_eq!(
-                newton.costs().work.factorisations,
+                small.costs().work.factorisations,
                 1,
                 "{name}: all is linear"
             );
