@@ -5,6 +5,7 @@
 //! * [`closed_forms`] holds the formulas of the discrete schemes that are known in closed form.
 //! * [`friction`] holds motions under Coulomb friction that slide and stick.
 //! * [`hertz`] is the contact of spheres and cylinders, at rest and in impact.
+//! * [`mass_on_bar`] is a rigid mass that strikes an elastic bar.
 //!
 //! Nothing here is shared with the code that is judged: this crate depends on no other.
 
@@ -14,6 +15,7 @@ mod error;
 pub mod friction;
 pub mod hertz;
 mod impact;
+pub mod mass_on_bar;
 mod motion;
 mod wave;
 
