@@ -10,7 +10,9 @@ use std::time::{Duration, Instant};
 
 use carom_algebra::unknowns::Unknowns;
 use carom_contact::law::Displacement;
-use carom_contact::{Contact, Integration, Law, Places, Point, Rows, Search, Sliding, Target};
+use carom_contact::{
+    Contact, Frames, Integration, Law, Places, Point, Rows, Search, Sliding, Target,
+};
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Face, face_nodes};
 use criterion::{BenchmarkId, Criterion, SamplingMode};
@@ -51,6 +53,7 @@ fn sheet(criterion: &mut Criterion, side: u32) -> Vec<String> {
                 time: 0.0,
                 x: &x,
                 u: &u,
+                frames: Frames::default(),
             };
             let begin = Instant::now();
             rows.clear();

@@ -10,6 +10,7 @@ mod error;
 mod ordering;
 pub mod pattern;
 pub mod reduce;
+pub mod rotation;
 pub mod solver;
 pub mod tensor;
 pub mod unknowns;

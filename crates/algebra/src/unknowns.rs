@@ -1,7 +1,7 @@
 //! The map of unknowns: which entries of a system vector belong to a node, and what each of them is.
 //!
-//! A node has no unknowns, its translations, or its translations followed by its rotations. Nothing else decides where
-//! the unknowns of a node are: whoever needs them asks this map.
+//! A node has its translations, its translations followed by its rotations, or none, if another node carries it. Nothing
+//! else decides where the unknowns of a node are: whoever needs them asks this map.
 
 use std::ops::Range;
 
@@ -15,13 +15,26 @@ pub enum Kind {
 }
 
 /// Unknowns of the nodes of a system, those of a node next to each other, in the order of the nodes.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Unknowns {
     dim: usize,
     /// First unknown of each node, and one end more.
     first: Vec<u32>,
     /// Node of each unknown.
     node: Vec<u32>,
+    /// Nodes with rotations, ascending: the order of their frames.
+    turning: Vec<u32>,
+    /// What carries a node that is carried, by node; empty where none is.
+    carriers: Vec<Option<Carrier>>,
+}
+
+/// What carries a node without unknowns: it keeps its place in the frame of another node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carrier {
+    /// The node that carries it, with rotations.
+    pub node: u32,
+    /// From that node to the carried one, in the axes of its frame, m.
+    pub arm: [f64; 3],
 }
 
 impl Unknowns {
@@ -32,12 +45,25 @@ impl Unknowns {
 
     /// Nodes of these kinds in space of `dim` dimensions.
     pub fn new(dim: usize, nodes: impl IntoIterator<Item = NodeKind>) -> Unknowns {
-        let (mut first, mut node) = (vec![0], Vec::new());
+        let mut map = Unknowns {
+            dim,
+            first: vec![0],
+            ..Unknowns::default()
+        };
         for (number, kind) in nodes.into_iter().enumerate() {
-            node.extend(std::iter::repeat_n(number as u32, kind.unknowns(dim)));
-            first.push(node.len() as u32);
+            let own = std::iter::repeat_n(number as u32, kind.unknowns(dim));
+            map.node.extend(own);
+            map.first.push(map.node.len() as u32);
+            match kind {
+                NodeKind::Translations => {}
+                NodeKind::Turning => map.turning.push(number as u32),
+                NodeKind::Carried(carrier) => {
+                    map.carriers.resize(number + 1, None);
+                    map.carriers[number] = Some(carrier);
+                }
+            }
         }
-        Unknowns { dim, first, node }
+        map
     }
 
     /// Dimension of space: translations of a node that has any.
@@ -89,6 +115,37 @@ impl Unknowns {
         self.translations_of(node).end..self.of(node).end
     }
 
+    /// What carries a node, if anything does.
+    pub fn carrier(&self, node: u32) -> Option<&Carrier> {
+        self.carriers.get(node as usize)?.as_ref()
+    }
+
+    /// The node whose unknowns move a node: its carrier, or itself.
+    pub fn moved_by(&self, node: u32) -> u32 {
+        self.carrier(node).map_or(node, |carrier| carrier.node)
+    }
+
+    /// Nodes with rotations, in the order of their frames.
+    pub fn turning(&self) -> &[u32] {
+        &self.turning
+    }
+
+    /// Place of the frame of a node with rotations.
+    pub fn frame(&self, node: u32) -> Option<usize> {
+        self.turning.binary_search(&node).ok()
+    }
+
+    /// The rotations of a node in a system vector, about the axes of its frame, with zeros where there are none.
+    pub fn spin(&self, node: u32, values: &[f64]) -> [f64; 3] {
+        let mut spin = [0.0; 3];
+        for unknown in self.rotations_of(node) {
+            if let Kind::Rotation(axis) = self.kind(unknown) {
+                spin[axis] = values[unknown];
+            }
+        }
+        spin
+    }
+
     /// Node of an unknown.
     #[inline]
     pub fn node(&self, unknown: usize) -> u32 {
@@ -134,23 +191,23 @@ impl Unknowns {
 }
 
 /// Which unknowns a node has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NodeKind {
-    /// None: it is carried by another node, or nothing moves it.
-    None,
     /// Its translations.
     Translations,
-    /// Its translations, and its rotations: one in the plane, three in space, none on a line.
-    WithRotations,
+    /// Its translations, and its rotations, which may be finite: one in the plane, three in space, none on a line.
+    Turning,
+    /// None: another node carries it.
+    Carried(Carrier),
 }
 
 impl NodeKind {
     fn unknowns(self, dim: usize) -> usize {
         match (self, dim) {
-            (NodeKind::None, _) => 0,
-            (NodeKind::Translations, _) | (NodeKind::WithRotations, 0 | 1) => dim,
-            (NodeKind::WithRotations, 2) => 3,
-            (NodeKind::WithRotations, _) => 6,
+            (NodeKind::Carried(_), _) => 0,
+            (NodeKind::Translations, _) | (NodeKind::Turning, 0 | 1) => dim,
+            (NodeKind::Turning, 2) => 3,
+            (NodeKind::Turning, _) => 6,
         }
     }
 }
@@ -161,12 +218,11 @@ mod tests {
 
     #[test]
     fn every_unknown_is_found_again_by_its_node_and_kind() {
-        let kinds = [
-            NodeKind::Translations,
-            NodeKind::None,
-            NodeKind::WithRotations,
-            NodeKind::None,
-        ];
+        let carried = NodeKind::Carried(Carrier {
+            node: 2,
+            arm: [0.0; 3],
+        });
+        let kinds = [NodeKind::Translations, carried, NodeKind::Turning, carried];
         for (dim, counts) in [(1, [1, 0, 1, 0]), (2, [2, 0, 3, 0]), (3, [3, 0, 6, 0])] {
             let map = Unknowns::new(dim, kinds);
             assert_eq!(map.nodes(), 4);
@@ -181,14 +237,17 @@ mod tests {
             assert_eq!(map.find(0, Kind::Rotation(2)), None);
             assert_eq!(map.find(1, Kind::Translation(0)), None);
             assert_eq!(map.of_range(0..4), 0..map.len());
+            assert_eq!([0, 1, 2, 3].map(|node| map.moved_by(node)), [0, 2, 2, 2]);
+            assert_eq!(map.frame(2), Some(0));
         }
     }
 
     #[test]
     fn the_vector_of_a_node_is_that_of_its_translations() {
-        let map = Unknowns::new(2, [NodeKind::WithRotations, NodeKind::Translations]);
+        let map = Unknowns::new(2, [NodeKind::Turning, NodeKind::Translations]);
         let values = [1.0, 2.0, 3.0, 4.0, 5.0];
         assert_eq!(map.vector(0, &values), [1.0, 2.0, 0.0]);
         assert_eq!(map.vector(1, &values), [4.0, 5.0, 0.0]);
+        assert_eq!(map.spin(0, &values), [0.0, 0.0, 3.0]);
     }
 }

@@ -10,14 +10,19 @@ use carom_mesh::{ElementId, Mesh};
 use crate::block::Scratch;
 use crate::discrete::{Discrete, DiscreteSpec, VisitRow};
 use crate::distortion::Distortion;
+use crate::rigid::Rigid;
 use crate::solid::{BodySpec, Solid};
 use crate::{Error, Placement, Stored};
 
 /// A body: mass, forces f(u, v), their derivatives, energies.
 #[derive(Debug)]
+// A system has few bodies.
+#[allow(clippy::large_enum_variant)]
 pub enum Body {
     /// A solid or a bar.
     Solid(Solid),
+    /// A rigid body.
+    Rigid(Rigid),
     /// Point masses, springs or dashpots.
     Discrete(Discrete),
 }
@@ -54,14 +59,22 @@ impl Body {
     pub fn as_solid(&self) -> Option<&Solid> {
         match self {
             Body::Solid(solid) => Some(solid),
-            Body::Discrete(_) => None,
+            Body::Rigid(_) | Body::Discrete(_) => None,
+        }
+    }
+
+    /// The rigid body that it is, if it is one.
+    pub fn as_rigid(&self) -> Option<&Rigid> {
+        match self {
+            Body::Rigid(rigid) => Some(rigid),
+            Body::Solid(_) | Body::Discrete(_) => None,
         }
     }
 
     /// The discrete elements that it is, if it is some.
     pub fn as_discrete(&self) -> Option<&Discrete> {
         match self {
-            Body::Solid(_) => None,
+            Body::Solid(_) | Body::Rigid(_) => None,
             Body::Discrete(discrete) => Some(discrete),
         }
     }
@@ -70,7 +83,7 @@ impl Body {
     /// ground, and across their nodes.
     pub fn balances_itself(&self) -> bool {
         match self {
-            Body::Solid(_) => true,
+            Body::Solid(_) | Body::Rigid(_) => true,
             Body::Discrete(discrete) => !discrete.has_stiffness(),
         }
     }
@@ -78,7 +91,7 @@ impl Body {
     /// Whether it has dashpots ([`Body::add_damping_force`]).
     pub fn has_damping(&self) -> bool {
         match self {
-            Body::Solid(_) => false,
+            Body::Solid(_) | Body::Rigid(_) => false,
             Body::Discrete(discrete) => discrete.has_damping(),
         }
     }
@@ -88,6 +101,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.name(),
             Body::Discrete(discrete) => discrete.name(),
+            Body::Rigid(rigid) => rigid.name(),
         }
     }
 
@@ -96,6 +110,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.cells(),
             Body::Discrete(discrete) => discrete.cells(),
+            Body::Rigid(rigid) => rigid.cells(),
         }
     }
 
@@ -104,6 +119,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.is_linear(),
             Body::Discrete(discrete) => discrete.is_linear(),
+            Body::Rigid(_) => false,
         }
     }
 
@@ -111,7 +127,7 @@ impl Body {
     pub fn passage(&self) -> f64 {
         match self {
             Body::Solid(solid) => solid.smallest_size() / solid.wave_speed(),
-            Body::Discrete(_) => 0.0,
+            Body::Rigid(_) | Body::Discrete(_) => 0.0,
         }
     }
 
@@ -119,7 +135,7 @@ impl Body {
     pub fn history_len(&self) -> usize {
         match self {
             Body::Solid(solid) => solid.history_len(),
-            Body::Discrete(_) => 0,
+            Body::Rigid(_) | Body::Discrete(_) => 0,
         }
     }
 
@@ -127,7 +143,7 @@ impl Body {
     pub fn start_history(&self, out: &mut [f64]) {
         match self {
             Body::Solid(solid) => solid.start_history(out),
-            Body::Discrete(_) => {}
+            Body::Rigid(_) | Body::Discrete(_) => {}
         }
     }
 
@@ -140,6 +156,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.internal_force(u, scratch, f),
             Body::Discrete(discrete) => discrete.internal_force(u, f),
+            Body::Rigid(_) => 0.0,
         }
     }
 
@@ -161,6 +178,10 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.force(at, new, scratch, f),
             Body::Discrete(discrete) => Ok(discrete.add_spring_force(at, f)),
+            Body::Rigid(rigid) => {
+                rigid.add_force(at, f);
+                Ok(Stored::default())
+            }
         }
     }
 
@@ -179,6 +200,10 @@ impl Body {
         match self {
             // its forces do not depend on the velocity
             Body::Solid(solid) => solid.add_tangent(at, by_u, matrix),
+            Body::Rigid(rigid) => {
+                rigid.add_tangent(at, by_v, matrix);
+                Ok(())
+            }
             Body::Discrete(discrete) => {
                 discrete.add_tangent(at, [by_u, by_v], matrix);
                 Ok(())
@@ -190,7 +215,7 @@ impl Body {
     /// [`Body::force`], since all their work is dissipated; their derivative is a part of [`Body::add_tangent`].
     pub fn add_damping_force(&self, v: &[f64], f: &mut [f64]) {
         match self {
-            Body::Solid(_) => {}
+            Body::Solid(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.add_damping_force(v, f),
         }
     }
@@ -200,6 +225,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.add_lumped_mass(mass),
             Body::Discrete(discrete) => discrete.add_lumped_mass(mass),
+            Body::Rigid(rigid) => rigid.add_mass(mass),
         }
     }
 
@@ -210,6 +236,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.assemble(factors[0], factors[2], part, matrix),
             Body::Discrete(discrete) => discrete.assemble(factors, part, matrix),
+            Body::Rigid(_) => {}
         }
     }
 
@@ -218,6 +245,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.each_element(visit),
             Body::Discrete(discrete) => discrete.each_element(visit),
+            Body::Rigid(rigid) => visit(&[rigid.node()]),
         }
     }
 
@@ -227,6 +255,7 @@ impl Body {
             Body::Solid(solid) => solid.stresses(u, history),
             // neither volume nor stress
             Body::Discrete(discrete) => vec![(0.0, Mat3::zeros()); discrete.cells().len()],
+            Body::Rigid(rigid) => vec![(0.0, Mat3::zeros()); rigid.cells().len()],
         }
     }
 
@@ -235,7 +264,7 @@ impl Body {
     pub fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
         match self {
             Body::Solid(solid) => solid.plastic_strains(history),
-            Body::Discrete(_) => None,
+            Body::Rigid(_) | Body::Discrete(_) => None,
         }
     }
 
@@ -244,7 +273,7 @@ impl Body {
     pub fn frequency_bound(&self) -> f64 {
         match self {
             Body::Solid(solid) => solid.frequency_bound(),
-            Body::Discrete(_) => 0.0,
+            Body::Rigid(_) | Body::Discrete(_) => 0.0,
         }
     }
 
@@ -255,14 +284,14 @@ impl Body {
     pub fn frequency_bound_at(&self, at: &Placement) -> Result<f64, Error> {
         match self {
             Body::Solid(solid) => solid.frequency_bound_at(at),
-            Body::Discrete(_) => Ok(0.0),
+            Body::Rigid(_) | Body::Discrete(_) => Ok(0.0),
         }
     }
 
     /// Visits the rows n of springs, as unknowns and coefficients of the elongation: motions that they hold.
     pub fn each_spring(&self, visit: &mut VisitRow) {
         match self {
-            Body::Solid(_) => {}
+            Body::Solid(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.each_spring(visit),
         }
     }
@@ -272,7 +301,7 @@ impl Body {
     /// (Gershgorin).
     pub fn add_row_sums(&self, stiffness: &mut [f64], damping: &mut [f64]) {
         match self {
-            Body::Solid(_) => {}
+            Body::Solid(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.add_row_sums(stiffness, damping),
         }
     }
@@ -281,7 +310,7 @@ impl Body {
     pub fn distortion(&self, u: &[f64], point: usize, before: &Distortion) -> Option<Distortion> {
         match self {
             Body::Solid(solid) => solid.distortion(u, point, before),
-            Body::Discrete(_) => None,
+            Body::Rigid(_) | Body::Discrete(_) => None,
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use carom_bodies::{Body, Discrete, DiscreteKind, Link};
-use carom_contact::{Contact, Integration, Places, Rows, Search, Sliding, Target};
+use carom_contact::{Contact, Integration, Rows, Search, Sliding, Target};
 use carom_dynamics::{LinkKind, ModelLink, ModelZone, System, Zoned, step_count};
 
 use crate::build::Built;
@@ -226,12 +226,7 @@ pub(crate) fn approach(system: &System, contact: usize) -> Approach {
 
 /// The same from another displacement, m.
 pub(crate) fn approach_from(system: &System, contact: usize, u: &[f64]) -> Approach {
-    let places = Places {
-        unknowns: &system.unknowns,
-        time: 0.0,
-        x: &system.x,
-        u,
-    };
+    let places = system.places(0.0, u, &system.initial_frames);
     let mut rows = Rows::default();
     rows.clear();
     system.contacts[contact].pair(&places, &mut Search::default(), &mut rows);

@@ -1,11 +1,12 @@
 //! One contact: secondary points that carry the forces, what they face, and the law between them.
 
-use carom_algebra::unknowns::Unknowns;
 use carom_elements::MAX_FACE_NODES;
 use carom_mesh::{Face, Projection};
 
 use crate::sight::View;
-use crate::{Basis, Distance, Held, Law, Mortar, Obstacle, Point, Rows, Search, Shape, Sight};
+use crate::{
+    Basis, Distance, Held, Law, Mortar, Obstacle, Places, Point, Rows, Search, Shape, Sight,
+};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,38 +68,6 @@ pub struct Contact {
     /// What is added to the gap of each point, m: initial penetrations that are to count as contact without any
     /// ([`Initial::Offset`](crate::Initial)). Empty for none.
     pub offsets: Vec<f64>,
-}
-
-/// Positions of the system's nodes: reference coordinates and a displacement.
-#[derive(Clone, Copy, Debug)]
-pub struct Places<'a> {
-    /// Unknowns of the nodes.
-    pub unknowns: &'a Unknowns,
-    /// Time, s: where obstacles are that move.
-    pub time: f64,
-    /// Reference coordinates by system number, m.
-    pub x: &'a [[f64; 3]],
-    /// Displacement, a system vector, m.
-    pub u: &'a [f64],
-}
-
-impl Places<'_> {
-    /// Current position of a node in m.
-    pub fn of(&self, node: u32) -> [f64; 3] {
-        let mut place = self.x[node as usize];
-        for (x, u) in place
-            .iter_mut()
-            .zip(&self.u[self.unknowns.translations_of(node)])
-        {
-            *x += u;
-        }
-        place
-    }
-
-    /// Dimension of space.
-    pub fn dim(&self) -> usize {
-        self.unknowns.dim()
-    }
 }
 
 impl Contact {
@@ -212,10 +181,12 @@ fn add_row(places: &Places, point: &Point, foot: &Projection, face: &Face, rows:
 
 #[cfg(test)]
 mod tests {
+    use carom_algebra::unknowns::Unknowns;
     use carom_elements::Kind;
     use carom_mesh::{ElementId, face_nodes};
 
     use super::*;
+    use crate::Frames;
     use crate::law::Displacement;
 
     fn grid() -> (Vec<[f64; 3]>, Vec<Face>) {
@@ -257,6 +228,7 @@ mod tests {
                 time: 0.0,
                 x: &x,
                 u: &vec![0.0; 78],
+                frames: Frames::default(),
             },
             &mut Search::default(),
             &mut rows,

@@ -103,6 +103,7 @@ mod tests {
     use carom_algebra::unknowns::Unknowns;
 
     use super::*;
+    use crate::Frames;
     use crate::law::Displacement;
     use crate::{Integration, Law, Plane, Point, Sliding, Target};
 
@@ -129,6 +130,7 @@ mod tests {
             time: 0.0,
             x: &x,
             u: &[0.0; 6],
+            frames: Frames::default(),
         };
         let expected = Penetration {
             point: 1,

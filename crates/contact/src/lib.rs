@@ -10,6 +10,7 @@ mod contact;
 mod initial;
 mod obstacle;
 mod pairing;
+mod places;
 mod point;
 mod rows;
 mod search;
@@ -17,13 +18,14 @@ mod sight;
 
 pub use carom_laws as law;
 pub use carom_laws::Law;
-pub use contact::{Contact, Integration, Places, Sliding, Target};
+pub use contact::{Contact, Integration, Sliding, Target};
 pub use initial::{Initial, Penetration};
 pub use obstacle::{
     Cylinder, Distance, Motion, Obstacle, Placed, Plane, RigidSurface, Shape, Side, Sphere,
     Translation, Turn,
 };
 pub use pairing::{Basis, Mortar, Pairing, Tie};
+pub use places::{Balance, Frames, Places};
 pub use point::Point;
 pub use rows::Rows;
 pub use search::{Held, Search};

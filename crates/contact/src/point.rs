@@ -119,6 +119,7 @@ mod tests {
     use carom_mesh::{ElementId, face_nodes};
 
     use super::*;
+    use crate::Frames;
 
     fn face(kind: Kind, nodes: &[u32]) -> Face {
         Face {
@@ -144,6 +145,7 @@ mod tests {
             time: 0.0,
             x: &x,
             u: &[0.0; 12],
+            frames: Frames::default(),
         };
         let moment = |i: usize| -> f64 {
             points

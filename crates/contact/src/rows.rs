@@ -149,12 +149,25 @@ impl Rows {
 
     /// Adds to the row of the point pushed last the motion of a node along `direction`.
     pub(crate) fn add_node(&mut self, places: &Places, node: u32, direction: &[f64; 3]) {
-        for (unknown, &n) in places.unknowns.translations_of(node).zip(direction) {
-            if n != 0.0 {
-                self.dofs.push(unknown as u32);
-                self.coefficients.push(n);
+        let carried = places.unknowns.carrier(node).is_some();
+        let begin = self.offsets[self.offsets.len() - 2] as usize;
+        places.each_derivative(node, direction, |unknown, n| {
+            if n == 0.0 {
+                return;
             }
-        }
+            let own = self.dofs[begin..].iter();
+            // nodes that one node carries share its unknowns
+            let place = own
+                .take_while(|_| carried)
+                .position(|dof| *dof == unknown as u32);
+            match place {
+                Some(place) => self.coefficients[begin + place] += n,
+                None => {
+                    self.dofs.push(unknown as u32);
+                    self.coefficients.push(n);
+                }
+            }
+        });
         if let Some(end) = self.offsets.last_mut() {
             *end = self.dofs.len() as u32;
         }

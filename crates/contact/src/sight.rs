@@ -16,7 +16,7 @@ use carom_elements::{MAX_FACE_NODES, map};
 use carom_mesh::{Bounds, BoxTree, Face, Projection};
 
 use crate::search::positions;
-use crate::{Places, Point};
+use crate::{Frames, Places, Point};
 
 /// Cosine of the angle between the normals of a point and of a face up to which the face is in view.
 const OPPOSED: f64 = -0.5;
@@ -172,6 +172,7 @@ impl Sight {
             time: 0.0,
             x,
             u: &rest,
+            frames: Frames::default(),
         };
         let normals: Vec<[f64; 3]> = self.normals(&places).collect();
         let boxes: Vec<Bounds> = target.iter().map(|face| bounds(face, x)).collect();

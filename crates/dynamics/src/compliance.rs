@@ -23,6 +23,10 @@ struct Kept {
 pub(crate) struct Compliance {
     /// By contact point.
     kept: Vec<Option<Kept>>,
+    /// Whether an unknown is one of a rigid body; empty without any.
+    rigid: Vec<bool>,
+    /// Part by which the own response of a point of a rigid body grows.
+    softening: f64,
     /// Candidates of the current matrix, ascending.
     pub(crate) candidates: Vec<u32>,
     /// D over the candidates, row-major; x per N.
@@ -34,9 +38,13 @@ pub(crate) struct Compliance {
 }
 
 impl Compliance {
-    pub(crate) fn new(points: usize) -> Compliance {
+    /// `rigid`: whether an unknown is one of a rigid body, empty without any; `softening`: the part by which the own response of a
+    /// point of such a body grows.
+    pub(crate) fn new(points: usize, (rigid, softening): (Vec<bool>, f64)) -> Compliance {
         Compliance {
             kept: (0..points).map(|_| None).collect(),
+            rigid,
+            softening,
             ..Compliance::default()
         }
     }
@@ -92,6 +100,11 @@ impl Compliance {
                         _ => self.entry(candidates[column], candidates[row], operators),
                     },
                 };
+                let softened = row == column && places[row].is_none();
+                let entry = match softened && self.is_rigid(candidates[row]) {
+                    true => entry * (1.0 + self.softening),
+                    false => entry,
+                };
                 next[row * n + column] = entry;
                 next[column * n + row] = entry;
             }
@@ -99,6 +112,13 @@ impl Compliance {
         self.matrix = next;
         self.candidates = candidates.to_vec();
         self.version += 1;
+    }
+
+    /// Whether the point is one of a rigid body.
+    fn is_rigid(&self, point: u32) -> bool {
+        let rigid = |&dof: &u32| self.rigid.get(dof as usize) == Some(&true);
+        let kept = self.kept[point as usize].as_ref();
+        kept.is_some_and(|kept| kept.dofs.iter().any(rigid))
     }
 
     fn is_current(&self, point: u32, rows: &Rows) -> bool {

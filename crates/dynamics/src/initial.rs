@@ -1,7 +1,7 @@
 //! Contacts that penetrate at the start: refused, offset, or their nodes moved before bodies are built.
 
 use carom_algebra::unknowns::Unknowns;
-use carom_contact::{Contact, Initial, Integration, Places, Sight, Target};
+use carom_contact::{Contact, Frames, Initial, Integration, Places, Sight, Target};
 
 use crate::Error;
 use crate::contacts::numbered;
@@ -39,6 +39,7 @@ impl Model {
                     time: 0.0,
                     x: &self.mesh.nodes,
                     u: &u,
+                    frames: Frames::default(),
                 };
                 let found = numbered.penetrations(&places, slack);
                 free &= found.is_empty();

@@ -21,6 +21,7 @@ mod nonlinear;
 mod operator;
 mod records;
 mod resultant;
+mod rigid;
 mod small;
 mod stability;
 mod state;
@@ -42,12 +43,14 @@ pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Tolerated};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, march, step_count};
 pub use mass::Mass;
-pub use model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelTarget, Support};
+pub use model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelRigid, ModelTarget, Support};
 pub use nonlinear::{
-    Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed, Refused,
+    Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed, PrescribedTurn,
+    Refused,
 };
 pub use records::{ContactRecord, Records};
 pub use resultant::Resultant;
+pub use rigid::Order;
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use small::{Largest, SmallSliding, SmallStrain, Smallness};
 pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, StepReport};

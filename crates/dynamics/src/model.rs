@@ -1,7 +1,7 @@
 //! Everything from which a system is built.
 
 use carom_algebra::unknowns::Kind;
-use carom_bodies::{BodySpec, DiscreteSpec, MassKind};
+use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind};
 use carom_contact::{Initial, Integration, Law, Obstacle, Sliding};
 use carom_mesh::{Mesh, Surface};
 
@@ -85,6 +85,17 @@ pub struct ModelBody {
     pub velocity: [f64; 3],
     /// Initial displacement of all its nodes, m.
     pub displacement: [f64; 3],
+    /// What it is as a rigid body; its cells then only say which nodes it carries.
+    pub rigid: Option<ModelRigid>,
+}
+
+/// A rigid body and its initial rotation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelRigid {
+    /// Mass, centre of mass, moments of inertia.
+    pub inertia: Inertia,
+    /// Initial angular velocity about the axes of coordinates, rad/s.
+    pub spin: [f64; 3],
 }
 
 impl ModelBody {
@@ -95,6 +106,7 @@ impl ModelBody {
             mass: MassKind::Lumped,
             velocity: [0.0; 3],
             displacement: [0.0; 3],
+            rigid: None,
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use carom_algebra::unknowns::Unknowns;
+use carom_algebra::rotation::Rotation;
+use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_bodies::{Body, FollowerPressure};
 use carom_contact::law::Level;
 use carom_contact::{Contact, Integration};
@@ -94,6 +95,17 @@ pub struct Prescribed {
     pub displacement: [Option<Amplitude>; 3],
 }
 
+/// A rotation that follows a function of time about one axis of the frame of a node, which no other rotation moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrescribedTurn {
+    /// Node of the mesh.
+    pub node: u32,
+    /// Axis, from 0: the third one in the plane.
+    pub axis: usize,
+    /// Angle in rad.
+    pub angle: Amplitude,
+}
+
 /// Rayleigh damping of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Damping {
@@ -146,6 +158,15 @@ pub enum Refused {
     /// A static stage.
     #[error("a static stage")]
     StaticStage,
+    /// A load on a rigid body.
+    #[error("a pressure or a traction on node {node} of the mesh, which a rigid body carries")]
+    Load {
+        /// Node of the mesh.
+        node: u32,
+    },
+    /// Something of a rigid body, by its name.
+    #[error("the rigid body '{0}'")]
+    Rigid(String),
     /// A prescribed motion.
     #[error("the motion of node {node} of the mesh in direction {direction}")]
     Motion {
@@ -163,6 +184,8 @@ pub struct Nonlinear {
     pub loads: Vec<Load>,
     /// Prescribed motions.
     pub motions: Vec<Prescribed>,
+    /// Prescribed rotations.
+    pub turns: Vec<PrescribedTurn>,
     /// Damping by body; empty for none.
     pub damping: Vec<Damping>,
     /// The static stage.
@@ -176,6 +199,7 @@ impl Nonlinear {
     pub(crate) fn asks(&self) -> bool {
         !self.loads.is_empty()
             || !self.motions.is_empty()
+            || !self.turns.is_empty()
             || self.damping.iter().any(|d| *d != Damping::default())
             || self.preload.is_some()
     }
@@ -204,6 +228,8 @@ pub(crate) enum NumberedForce {
 pub(crate) struct Follows {
     pub(crate) unknown: u32,
     pub(crate) amplitude: usize,
+    /// Whether it is a rotation: the function is then an angle.
+    pub(crate) turns: bool,
 }
 
 /// [`Nonlinear`] in the numbers of a system.
@@ -243,30 +269,27 @@ impl NumberedNonlinear {
         for motion in &given.motions {
             for (i, amplitude) in motion.displacement.iter().enumerate().take(dim) {
                 let Some(amplitude) = amplitude else { continue };
-                let place = numbered.amplitudes.len();
-                numbered.amplitudes.push(amplitude.clone());
                 let of_bodies = |node: &&u32| number[**node as usize] != u32::MAX;
-                for &node in motion.nodes.iter().filter(of_bodies) {
-                    let unknown = unknowns.first(number[node as usize]) + i;
-                    if fixed[unknown]
-                        || numbered
-                            .follows
-                            .iter()
-                            .any(|f| f.unknown as usize == unknown)
-                    {
-                        return Err(Error::Nonlinear {
-                            what: Refused::Motion { node, direction: i },
-                            why: "a support or another motion holds it already",
-                        });
-                    }
-                    numbered.follows.push(Follows {
-                        unknown: unknown as u32,
-                        amplitude: place,
-                    });
-                }
+                let nodes: Vec<u32> = motion.nodes.iter().filter(of_bodies).copied().collect();
+                let kind = Kind::Translation(i);
+                numbered.follow((&nodes, amplitude), kind, (number, unknowns), fixed)?;
             }
         }
+        for turn in &given.turns {
+            let node = std::slice::from_ref(&turn.node);
+            let kind = Kind::Rotation(turn.axis);
+            numbered.follow((node, &turn.angle), kind, (number, unknowns), fixed)?;
+        }
         for load in &given.loads {
+            let nodes = load.surface.nodes.iter();
+            let mut carried =
+                nodes.filter(|&&node| unknowns.carrier(number[node as usize]).is_some());
+            if let Some(&node) = carried.next() {
+                return Err(Error::Nonlinear {
+                    what: Refused::Load { node },
+                    why: "a rigid body takes gravity, contact forces and prescribed motions",
+                });
+            }
             numbered.loads.push(NumberedLoad {
                 amplitude: load.amplitude.clone(),
                 force: numbered_force(load, model, (number, unknowns)),
@@ -282,6 +305,50 @@ impl NumberedNonlinear {
         Ok(numbered)
     }
 
+    /// Lets the unknowns of this kind of some nodes of the mesh follow a function of time; a carried node has those of its carrier.
+    fn follow(
+        &mut self,
+        (nodes, amplitude): (&[u32], &Amplitude),
+        kind: Kind,
+        (number, unknowns): (&[u32], &Unknowns),
+        fixed: &[bool],
+    ) -> Result<(), Error> {
+        let place = self.amplitudes.len();
+        self.amplitudes.push(amplitude.clone());
+        let (direction, turns) = match kind {
+            Kind::Translation(axis) => (axis, false),
+            Kind::Rotation(axis) => (axis, true),
+        };
+        let mut own: Vec<u32> = Vec::new();
+        for &node in nodes {
+            let refused = |why| Error::Nonlinear {
+                what: Refused::Motion { node, direction },
+                why,
+            };
+            let moving = unknowns.moved_by(number[node as usize]);
+            let Some(unknown) = unknowns.find(moving, kind) else {
+                return Err(refused("the node has no such unknown"));
+            };
+            let unknown = unknown as u32;
+            if own.contains(&unknown) {
+                continue;
+            }
+            let taken = self.follows.iter().any(|f| f.unknown == unknown);
+            if fixed[unknown as usize] || taken {
+                return Err(refused("a support or another motion holds it already"));
+            }
+            if unknowns.carrier(number[node as usize]).is_some() {
+                own.push(unknown);
+            }
+            self.follows.push(Follows {
+                unknown,
+                amplitude: place,
+                turns,
+            });
+        }
+        Ok(())
+    }
+
     /// Whether a load turns with a body.
     pub(crate) fn has_follower(&self, body: usize) -> bool {
         let turns = |load: &NumberedLoad| matches!(load.force, NumberedForce::Follower(..));
@@ -289,10 +356,15 @@ impl NumberedNonlinear {
         loads.any(|load| turns(load) && load.bodies.contains(&body))
     }
 
-    /// Displacement of the unknowns that follow a function of time, m.
-    pub(crate) fn prescribe(&self, time: f64, u: &mut [f64]) {
+    /// Displacement at `to` of the unknowns that follow a function of time, m; of rotations the increment from the time
+    /// `from` on that Cayley's map makes a turn by the difference of the angles.
+    pub(crate) fn prescribe(&self, [from, to]: [f64; 2], u: &mut [f64]) {
         for follows in &self.follows {
-            u[follows.unknown as usize] = self.amplitudes[follows.amplitude].at(time);
+            let amplitude = &self.amplitudes[follows.amplitude];
+            u[follows.unknown as usize] = match follows.turns {
+                true => Rotation::increment(amplitude.at(to) - amplitude.at(from)),
+                false => amplitude.at(to),
+            };
         }
     }
 
@@ -361,7 +433,8 @@ impl Model {
     /// strain, an obstacle that moves, or a scheme with forces between two states: the energy of its steps is then balanced
     /// by works, not by the identity of the scheme, and a step of fixed size that fails is taken in halves.
     pub fn is_nonlinear(&self) -> bool {
-        let finite = |body: &ModelBody| body.spec.material.finite().is_some();
+        let finite =
+            |body: &ModelBody| body.rigid.is_some() || body.spec.material.finite().is_some();
         self.nonlinear.asks()
             || self.bodies.iter().any(finite)
             || self.discrete.iter().any(|some| !some.spec.is_linear())
@@ -404,6 +477,7 @@ impl System {
             return Ok(());
         }
         let refuse = |what: Refused, why| Err(Error::Nonlinear { what, why });
+        self.check_rigid()?;
         let weak = |contact: &Contact| matches!(contact.integration, Integration::Weak { .. });
         for (contact, friction) in self.contacts.iter().zip(&self.friction) {
             let refused = || Refused::Integration(contact.name.clone());

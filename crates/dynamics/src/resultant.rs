@@ -1,5 +1,7 @@
 //! Resultants of nodal forces and momenta.
 
+use carom_algebra::rotation::Rotation;
+use carom_algebra::tensor::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::system::System;
@@ -18,12 +20,17 @@ impl Resultant {
     /// Resultant of a system vector of nodal forces. In axisymmetry only the axial force is one: radial forces of a full
     /// turn cancel, and hoop stresses are no external force.
     pub(crate) fn of(system: &System, f: &[f64]) -> Resultant {
-        Resultant::at(system, &[], f)
+        Resultant::at(system, (&[], &[]), f)
     }
 
-    /// Resultant of nodal forces, with moments about the origin of the nodes at the mean of these displacements; in the reference
-    /// configuration without any.
-    pub(crate) fn at(system: &System, displacements: &[&[f64]], f: &[f64]) -> Resultant {
+    /// Resultant of nodal forces, with moments about the origin of the nodes at the mean of these displacements from the
+    /// frames; in the reference configuration without any. Moments on rotations, about the axes of their frames, are turned
+    /// by the mean of the rotations.
+    pub(crate) fn at(
+        system: &System,
+        (frames, displacements): (&[Rotation], &[&[f64]]),
+        f: &[f64],
+    ) -> Resultant {
         let mut sum = Resultant::default();
         let (unknowns, share) = (&system.unknowns, 1.0 / displacements.len() as f64);
         // forces that a model does not have are an empty vector
@@ -42,6 +49,22 @@ impl Resultant {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
                 sum.linear[i] += force[i];
                 sum.angular[i] += x[j] * force[k] - x[k] * force[j];
+            }
+        }
+        let moments = if f.is_empty() { &[][..] } else { frames };
+        for (frame, &node) in moments.iter().zip(unknowns.turning()) {
+            let own = frame.matrix() * Vec3::from(unknowns.spin(node, f));
+            let turned = |u: &&[f64]| {
+                let increment = unknowns.spin(node, u).into();
+                let turned = frame.then(&Rotation::cayley(&increment));
+                turned.matrix() * Vec3::from(unknowns.spin(node, f)) * share
+            };
+            let moment = match displacements.is_empty() {
+                true => own,
+                false => displacements.iter().map(turned).sum(),
+            };
+            for i in 0..3 {
+                sum.angular[i] += moment[i];
             }
         }
         if system.axisymmetric {

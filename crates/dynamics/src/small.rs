@@ -7,7 +7,7 @@
 
 use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_bodies::{Distortion, Extreme, Solid};
-use carom_contact::{Places, Rows, Search, Target};
+use carom_contact::{Rows, Search, Target};
 use carom_mesh::Face;
 use serde::{Deserialize, Serialize};
 
@@ -228,24 +228,14 @@ impl Watched {
     /// Pairs the points at their reference places, with an obstacle where it is at a time (s).
     fn pair_initially(&mut self, system: &System, number: usize, (time, still): (f64, &[f64])) {
         self.initial.clear();
-        let places = Places {
-            unknowns: &system.unknowns,
-            time,
-            x: &system.x,
-            u: still,
-        };
+        let places = system.places(time, still, &system.initial_frames);
         let contact = &system.contacts[number];
         contact.pair(&places, &mut self.search, &mut self.initial);
     }
 
     fn look(&mut self, system: &System, number: usize, rows: &mut Rows, state: &mut State) {
         let contact = &system.contacts[number];
-        let places = Places {
-            unknowns: &system.unknowns,
-            time: state.time,
-            x: &system.x,
-            u: &state.motion.u,
-        };
+        let places = system.places(state.time, &state.motion.u, &state.motion.frames);
         rows.clear();
         contact.pair(&places, &mut self.search, rows);
         let slides = matches!(contact.target, Target::Surface(_));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use carom_bodies::{Body, Placement};
 use carom_contact::law::{Local, Status};
-use carom_contact::{Contact, Places, Rows, Search};
+use carom_contact::{Contact, Rows, Search};
 
 use crate::error::Error;
 use crate::state::Motion;
@@ -110,12 +110,7 @@ impl System {
         }
         let mut rows = Rows::default();
         rows.clear();
-        let places = Places {
-            unknowns: &self.unknowns,
-            time: 0.0,
-            x: &self.x,
-            u: &self.initial_displacement,
-        };
+        let places = self.places(0.0, &self.initial_displacement, &self.initial_frames);
         contact.pair(&places, &mut Search::default(), &mut rows);
         let lightest = self
             .mass

@@ -1,5 +1,7 @@
 //! Everything that influences the next step or the results: the state is the checkpoint.
 
+use carom_algebra::rotation::Rotation;
+use carom_algebra::unknowns::Unknowns;
 use carom_contact::law::Status;
 use serde::{Deserialize, Serialize};
 
@@ -37,10 +39,12 @@ pub struct State {
 /// Vectors of the system, one entry per unknown.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
-    /// Displacement, m.
+    /// Displacement, m; of rotations the increment since the frames, rad: zero in an accepted state.
     pub u: Vec<f64>,
-    /// Velocity, m/s.
+    /// Velocity, m/s; of rotations the angular velocity about the axes of the frame, rad/s.
     pub v: Vec<f64>,
+    /// Rotations of the nodes that have any, in the order of [`Unknowns::turning`](carom_algebra::unknowns::Unknowns::turning).
+    pub frames: Vec<Rotation>,
     /// Acceleration, m/s²: in balance, or the mean of the step, as the scheme has it.
     pub a: Vec<f64>,
     /// What the scheme remembers besides, the filtered velocity of Krenk's scheme in m/s; empty for the others.
@@ -143,6 +147,15 @@ impl InterfaceState {
 }
 
 impl Motion {
+    /// Turns the frames by the increments of the step, R₊ = R cay(θ), which are then zero.
+    pub(crate) fn compose(&mut self, unknowns: &Unknowns) {
+        for (frame, &node) in self.frames.iter_mut().zip(unknowns.turning()) {
+            let increment = unknowns.spin(node, &self.u).into();
+            *frame = frame.then(&Rotation::cayley(&increment));
+            self.u[unknowns.rotations_of(node)].fill(0.0);
+        }
+    }
+
     /// Force of the links on one unknown, N.
     pub(crate) fn link_of(&self, unknown: usize) -> f64 {
         self.link_force.get(unknown).copied().unwrap_or(0.0)
@@ -199,6 +212,7 @@ impl State {
             false => 0,
         };
         if vectors.iter().any(|vector| vector.len() != n)
+            || motion.frames.len() != system.initial_frames.len()
             || motion.memory.len() != remembered
             || self.interface.force.len() != points
         {
@@ -221,6 +235,7 @@ pub(crate) fn empty_state(system: &System) -> State {
             u: zeros.clone(),
             v: zeros.clone(),
             a: zeros.clone(),
+            frames: system.initial_frames.clone(),
             memory: Vec::new(),
             internal_force: zeros.clone(),
             contact_force: zeros,

@@ -4,10 +4,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use carom_algebra::pattern::Cliques;
+use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::{Kind, Unknowns};
-use carom_bodies::{Body, Kinematics, MassKind, height};
+use carom_bodies::{Body, Kinematics, MassKind, Rigid, height};
 use carom_contact::law::Level;
-use carom_contact::{Contact, Initial, Places, Target};
+use carom_contact::{Contact, Frames, Initial, Places, Target};
 use carom_mesh::{Face, Mesh, Parts};
 
 use crate::contacts::{numbered, renumbered, sides};
@@ -16,6 +17,7 @@ use crate::mass::Mass;
 use crate::massless::redistribute;
 use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete};
 use crate::nonlinear::NumberedNonlinear;
+use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
 use crate::{Adaptive, Error, Scheme};
 
 /// The immutable side of a run.
@@ -78,6 +80,8 @@ pub struct System {
     pub(crate) nonlinear: NumberedNonlinear,
     /// Coefficient of friction by contact.
     pub friction: Vec<f64>,
+    /// Initial rotations of the nodes that have any.
+    pub initial_frames: Vec<Rotation>,
     /// Initial displacement, m.
     pub initial_displacement: Vec<f64>,
     /// Initial velocity, m/s; zero where an unknown is held.
@@ -124,29 +128,44 @@ impl System {
     fn assemble(mut model: Model) -> Result<(System, Vec<ModelBody>, Vec<ModelContact>), Error> {
         model.remove_penetrations()?;
         let dim = model.mesh.dim;
-        let (number, mesh_node, parts) = numbering(&model);
+        let centres = add_centres(&mut model);
+        let (number, mesh_node, parts) = numbering(&model, &centres);
         let x: Vec<[f64; 3]> = mesh_node
             .iter()
             .map(|&node| model.mesh.nodes[node as usize])
             .collect();
-        let unknowns = Unknowns::translations(dim, x.len());
-        let body = |body: &ModelBody| Body::new(&model.mesh, body.spec.clone(), &number, &unknowns);
+        let (unknowns, initial_frames) = unknowns(&model, &centres, &number, &mesh_node)?;
+        let body = |(body, centre): (&ModelBody, &Option<u32>)| {
+            let (spec, unknowns) = (body.spec.clone(), &unknowns);
+            match (body.rigid, centre) {
+                (Some(rigid), Some(centre)) => {
+                    let node = (number[*centre as usize], unknowns);
+                    let rigid = Rigid::new(spec.name, spec.cells, rigid.inertia, node);
+                    Ok(Body::Rigid(rigid))
+                }
+                _ => Body::new(&model.mesh, spec, &number, unknowns),
+            }
+        };
         let discrete = |some: &ModelDiscrete| {
             Body::discrete(&model.mesh, some.spec.clone(), &number, &unknowns)
         };
-        let solids = model.bodies.iter().map(body);
-        let bodies = solids
+        let bodies = model
+            .bodies
+            .iter()
+            .zip(&centres)
+            .map(body)
             .chain(model.discrete.iter().map(discrete))
             .collect::<Result<Vec<_>, _>>()?;
         let mut fixed = vec![false; unknowns.len()];
         for support in &model.supports {
             let numbers = support.nodes.iter().map(|&node| number[node as usize]);
             for node in numbers.filter(|&node| node != u32::MAX) {
-                for unknown in unknowns.of(node) {
+                for unknown in unknowns.of(unknowns.moved_by(node)) {
                     fixed[unknown] |= support.holds(unknowns.kind(unknown));
                 }
             }
         }
+        hold_axisymmetric(&model, (&bodies, &unknowns), &mut fixed);
         let mut mass = Mass::of(&bodies, &model.bodies, &unknowns);
         let mut body_masses: Vec<_> = bodies
             .iter()
@@ -163,7 +182,7 @@ impl System {
         }
         let nonlinear = NumberedNonlinear::new(&model, (&number, &unknowns), &bodies, &fixed)?;
         let (mut initial_displacement, initial_velocity) =
-            initial(&model, &body_masses, &fixed, &unknowns);
+            initial(&model, &body_masses, &fixed, (&unknowns, &initial_frames));
         for follows in &nonlinear.follows {
             fixed[follows.unknown as usize] = true;
             initial_displacement[follows.unknown as usize] = 0.0;
@@ -179,6 +198,10 @@ impl System {
             time: 0.0,
             x: &x,
             u: &initial_displacement,
+            frames: Frames {
+                start: &initial_frames,
+                ..Frames::default()
+            },
         };
         settle(&mut contacts, ways, &places, (&mesh_node, model.length()))?;
         let mut first_point = vec![0];
@@ -241,6 +264,7 @@ impl System {
             adaptive: model.adaptive,
             nonlinear,
             friction: model.contacts.iter().map(|c| c.friction).collect(),
+            initial_frames,
             initial_displacement,
             initial_velocity,
             mesh: model.mesh,
@@ -426,8 +450,9 @@ impl System {
     }
 }
 
-/// System numbers of the mesh nodes, mesh nodes of the system numbers, and node ranges of the connected parts.
-fn numbering(model: &Model) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
+/// System numbers of the mesh nodes, mesh nodes of the system numbers, and node ranges of the connected parts. `centres`: nodes of
+/// the rigid bodies.
+fn numbering(model: &Model, centres: &[Option<u32>]) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
     let count = model.mesh.nodes.len();
     let cells = model.bodies.iter().flat_map(|body| &body.spec.cells);
     let discrete = model.discrete.iter().flat_map(|some| &some.spec.cells);
@@ -436,6 +461,14 @@ fn numbering(model: &Model) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
     let mut nodes: Vec<(u32, u32)> = (0..count as u32)
         .filter_map(|node| Some((joined.of(node)?, node)))
         .collect();
+    for (body, centre) in model.bodies.iter().zip(centres) {
+        let first = body.spec.cells.first();
+        let first = first.map(|&cell| model.mesh.element_nodes(cell)[0]);
+        if let Some(centre) = *centre {
+            let leader = first.and_then(|node| joined.of(node)).unwrap_or(centre);
+            nodes.push((leader, centre));
+        }
+    }
     nodes.sort_unstable();
     let mut number = vec![u32::MAX; count];
     let mut parts: Vec<Range<usize>> = Vec::new();
@@ -500,7 +533,7 @@ fn initial(
     model: &Model,
     masses: &[Vec<(u32, f64)>],
     fixed: &[bool],
-    unknowns: &Unknowns,
+    (unknowns, frames): (&Unknowns, &[Rotation]),
 ) -> (Vec<f64>, Vec<f64>) {
     let (mut u, mut v) = (vec![0.0; fixed.len()], vec![0.0; fixed.len()]);
     let bodies = model.bodies.iter();
@@ -516,6 +549,10 @@ fn initial(
                 }
             }
         }
+    }
+    spin(model, masses, (unknowns, frames), &mut v);
+    for (v, _) in v.iter_mut().zip(fixed).filter(|(_, fixed)| **fixed) {
+        *v = 0.0;
     }
     (u, v)
 }

@@ -16,7 +16,7 @@ pub mod units;
 
 pub use nearest::nearest;
 pub use quantity::{
-    Acceleration, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density, Duration,
-    Force, Length, Modulus, Rate, SignedForce, SignedStress, Stiffness, Stress, SurfaceDamping,
-    SurfaceStiffness, Vector, Velocity, Weight,
+    Acceleration, Angle, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density,
+    Duration, Force, Length, Modulus, MomentOfInertia, Rate, SignedForce, SignedStress, Stiffness,
+    Stress, SurfaceDamping, SurfaceStiffness, Vector, Velocity, Weight,
 };

@@ -253,6 +253,15 @@ quantity!(
     "A rate, zero or more, 1/s."
 );
 quantity!(
+    MomentOfInertia,
+    "moment of inertia",
+    "kg*m^2",
+    "2 kg*m^2",
+    POSITIVE,
+    "A moment of inertia greater than zero, kg m²."
+);
+quantity!(Angle, "angle", "rad", "30 deg", None, "An angle, rad.");
+quantity!(
     AngularVelocity,
     "frequency",
     "rad/s",
@@ -299,4 +308,4 @@ macro_rules! into_si {
     };
 }
 
-into_si!(SignedForce Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);
+into_si!(MomentOfInertia Angle SignedForce Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);

@@ -3,6 +3,9 @@
 /// Errors of this crate: a model that cannot be built or run, never a wrong number.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
+    /// A body that could not be made.
+    #[error(transparent)]
+    Body(#[from] carom_bodies::Error),
     /// A mesh could not be generated or its surfaces not be found.
     #[error(transparent)]
     Mesh(#[from] carom_mesh::Error),

@@ -75,6 +75,10 @@ mod quadrature;
 mod rejections;
 mod restitution;
 mod resume;
+mod rigid_cube;
+mod rigid_hammer;
+mod rigid_sphere;
+mod rigid_top;
 mod ring_sector;
 pub mod rings;
 mod sdnl111;
@@ -172,6 +176,10 @@ registry! {
     rejections
     restitution
     resume
+    rigid_cube
+    rigid_hammer
+    rigid_sphere
+    rigid_top
     ring_sector
     rings
     sdnl111

@@ -49,21 +49,24 @@ impl Builder<'_> {
                 }
             }
             let Some(material) = material else { continue };
+            let spec = BodySpec {
+                name: name.to_string(),
+                cells,
+                kinematics,
+                material,
+                formulation: formulation(body.formulation),
+                weights: None,
+            };
+            let rigid = self.rigid(mesh, &path, body, &spec);
             bodies.push(ModelBody {
-                spec: BodySpec {
-                    name: name.to_string(),
-                    cells,
-                    kinematics,
-                    material,
-                    formulation: formulation(body.formulation),
-                    weights: None,
-                },
+                spec,
                 mass: match body.mass {
                     Mass::Lumped => MassKind::Lumped,
                     Mass::Consistent => MassKind::Consistent,
                 },
                 velocity,
                 displacement,
+                rigid,
             });
         }
         self.one_plane(&bodies);

@@ -19,6 +19,7 @@ mod plan;
 mod probes;
 mod reference;
 mod refused;
+mod rigid;
 mod supports;
 mod ties;
 mod time;
@@ -111,7 +112,7 @@ impl Builder<'_> {
         self.own_nodes(&mut mesh);
         let mut bodies = self.bodies(&mesh, &materials);
         let discrete = self.discrete(&mut mesh);
-        let (supports, motions) = self.supports(&mesh);
+        let (supports, motions, turns) = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
         let loads = self.loads(&mesh, &bodies);
         let probes = self.probes(&mesh, &bodies);
@@ -145,7 +146,7 @@ impl Builder<'_> {
             scheme: self.outer_scheme(),
             dt: f64::MIN_POSITIVE,
             adaptive: None,
-            nonlinear: self.nonlinear(loads, motions),
+            nonlinear: self.nonlinear(loads, (motions, turns)),
         };
         let nodes = model.mesh.nodes.clone();
         let mut zoned = None;

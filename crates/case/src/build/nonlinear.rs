@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use carom_dynamics::{
-    Damping, Driver, Iteration, Load, ModelBody, Nonlinear, Preload, Prescribed, System,
+    Damping, Driver, Iteration, Load, ModelBody, Nonlinear, Preload, Prescribed, PrescribedTurn,
+    System,
 };
 
 use super::Builder;
@@ -11,7 +12,11 @@ use crate::error::Problem;
 
 impl Builder<'_> {
     /// Loads and motions with damping, static stage and the rules of the iteration.
-    pub(super) fn nonlinear(&self, loads: Vec<Load>, motions: Vec<Prescribed>) -> Nonlinear {
+    pub(super) fn nonlinear(
+        &self,
+        loads: Vec<Load>,
+        (motions, turns): (Vec<Prescribed>, Vec<PrescribedTurn>),
+    ) -> Nonlinear {
         let time = &self.case.time;
         let damping = |body: &crate::schema::Body| {
             body.damping.map_or(Damping::default(), |damping| Damping {
@@ -22,6 +27,7 @@ impl Builder<'_> {
         Nonlinear {
             loads,
             motions,
+            turns,
             damping: self.case.body.iter().map(|(_, b)| damping(b)).collect(),
             preload: time.stage.map(|stage| Preload {
                 end: stage.end.0,

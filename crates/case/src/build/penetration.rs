@@ -1,6 +1,5 @@
 //! Contacts that penetrate at the start: refused, or told.
 
-use carom_contact::Places;
 use carom_dynamics::System;
 
 use super::Builder;
@@ -11,12 +10,7 @@ impl Builder<'_> {
     /// Refuses contacts that penetrate at the start, in the initial displacement, or tells of them where the case lets them.
     pub(super) fn penetration(&mut self, system: &System) {
         let slack = system.tolerance.max(1e-9 * system.mesh.size());
-        let places = Places {
-            unknowns: &system.unknowns,
-            time: 0.0,
-            x: &system.x,
-            u: &system.initial_displacement,
-        };
+        let places = system.places(0.0, &system.initial_displacement, &system.initial_frames);
         for (k, contact) in system.contacts.iter().enumerate() {
             let name = &contact.name;
             let way = self.case.contact.get(name).map(|contact| contact.initial);

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use carom_bodies::{Body, Kinematics, Solid};
-use carom_contact::{Places, Rows, Search};
+use carom_contact::{Rows, Search};
 use carom_dynamics::{System, step_count};
 use carom_exact::{Bar, Impact, Solution};
 use carom_materials::Plane;
@@ -135,12 +135,7 @@ fn solve(
     let mut rows = Rows::default();
     rows.clear();
     contact.pair(
-        &Places {
-            unknowns: &system.unknowns,
-            time: 0.0,
-            x: &system.x,
-            u: &system.initial_displacement,
-        },
+        &system.places(0.0, &system.initial_displacement, &system.initial_frames),
         &mut Search::default(),
         &mut rows,
     );

@@ -74,6 +74,8 @@ impl Builder<'_> {
             Refused::Integration(contact) => format!("contact.{contact}.integration"),
             Refused::Damping(body) => format!("body.{body}.damping.stiffness"),
             Refused::Motion { .. } => "support".to_string(),
+            Refused::Load { .. } => "load".to_string(),
+            Refused::Rigid(body) => format!("body.{body}.rigid"),
         };
         Problem::new(path, format!("{what}: {why}"))
     }

@@ -2,33 +2,47 @@
 
 use std::collections::BTreeMap;
 
-use carom_dynamics::{Amplitude, Prescribed, Support};
+use carom_dynamics::{Amplitude, Prescribed, PrescribedTurn, Support};
 use carom_mesh::Mesh;
 
 use super::Builder;
 use crate::error::Problem;
 use crate::schema::MovementPoint;
 
+/// Supports, prescribed motions and prescribed rotations.
+pub(super) type Held = (Vec<Support>, Vec<Prescribed>, Vec<PrescribedTurn>);
+
 /// Names of the axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Builder<'_> {
     /// Supports and prescribed motions; no node is held or moved twice in one direction where one of both is a motion.
-    pub(super) fn supports(&mut self, mesh: &Mesh) -> (Vec<Support>, Vec<Prescribed>) {
-        let (mut supports, mut motions) = (Vec::new(), Vec::new());
+    pub(super) fn supports(&mut self, mesh: &Mesh) -> Held {
+        let (mut supports, mut motions, mut turns) = (Vec::new(), Vec::new(), Vec::new());
         let mut moved: BTreeMap<(u32, usize), &str> = BTreeMap::new();
         let mut held: BTreeMap<(u32, usize), &str> = BTreeMap::new();
         for (name, support) in self.case.support.iter() {
             let path = format!("support.{name}");
             for (k, axis) in support.fix.iter().enumerate() {
-                self.within(mesh, &format!("{path}.fix[{k}]"), axis.index());
+                let (axis, turns) = axis.index();
+                let path = format!("{path}.fix[{k}]");
+                match turns {
+                    true => self.turns(mesh, &path, (axis, &support.on)),
+                    false => self.within(mesh, &path, axis),
+                }
             }
             let Some(group) = self.group(mesh, &format!("{path}.on"), &support.on) else {
                 continue;
             };
             let nodes = mesh.group_nodes(group);
-            let mut fix = [false; 3];
-            support.fix.iter().for_each(|axis| fix[axis.index()] = true);
+            let (mut fix, mut fix_rotations) = ([false; 3], [false; 3]);
+            for (axis, turns) in support.fix.iter().map(|axis| axis.index()) {
+                match turns {
+                    true => fix_rotations[axis] = true,
+                    false => fix[axis] = true,
+                }
+            }
+            self.whole_if_rigid(mesh, &path, &nodes, &support.on);
             for axis in (0..3).filter(|&axis| fix[axis]) {
                 held.extend(nodes.iter().map(|&node| ((node, axis), name)));
             }
@@ -44,6 +58,17 @@ impl Builder<'_> {
                     displacement[axis] = self.movement(&path, points);
                     self.warn_of_a_jump(&path, displacement[axis].as_ref());
                 }
+                let given = [&motion.rx, &motion.ry, &motion.rz];
+                for (axis, points) in given.iter().enumerate() {
+                    let Some(points) = points else { continue };
+                    let path = format!("{path}.move.r{}", AXES[axis]);
+                    self.turns(mesh, &path, (axis, &support.on));
+                    let points = points.iter().map(|point| [point.time.0, point.angle.0]);
+                    let angle = self.amplitude(&path, points.collect());
+                    if let (Some(angle), Some(&node)) = (angle, nodes.first()) {
+                        turns.push(PrescribedTurn { node, axis, angle });
+                    }
+                }
                 let nodes = nodes.clone();
                 motions.push(Prescribed {
                     nodes,
@@ -53,11 +78,51 @@ impl Builder<'_> {
             supports.push(Support {
                 nodes,
                 fix,
-                fix_rotations: [false; 3],
+                fix_rotations,
             });
         }
         self.not_held(&moved, &held);
-        (supports, motions)
+        (supports, motions, turns)
+    }
+
+    /// Refuses a rotation of what has none: only rigid bodies turn.
+    fn turns(&mut self, mesh: &Mesh, path: &str, (axis, on): (usize, &str)) {
+        let mut bodies = self.case.body.iter();
+        let rigid = bodies.any(|(_, body)| body.region == on && body.rigid.is_some());
+        let (message, accepted) = match (rigid, mesh.dim) {
+            (false, _) => (
+                "nodes of a body that deforms have no rotations",
+                "the region of a rigid body",
+            ),
+            (true, 3) => return,
+            (true, 2) if axis == 2 => return,
+            (true, 2) => ("in the plane a body turns about z only", "rz"),
+            (true, _) => ("on a line nothing turns", "x"),
+        };
+        let problem = Problem::new(path, message).found(on.to_string());
+        self.problems.push(problem.accepted([accepted]));
+    }
+
+    /// Refuses a part of a rigid body: it is held or moved as a whole.
+    fn whole_if_rigid(&mut self, mesh: &Mesh, path: &str, nodes: &[u32], on: &str) {
+        let regions: Vec<(String, bool)> = self
+            .case
+            .body
+            .iter()
+            .filter(|(_, body)| body.rigid.is_some() && body.region != on)
+            .filter_map(|(_, body)| {
+                let group = mesh.groups.get(&body.region)?;
+                let own = mesh.group_nodes(group);
+                let shares = nodes.iter().any(|node| own.binary_search(node).is_ok());
+                Some((body.region.clone(), shares))
+            })
+            .collect();
+        for (region, _) in regions.iter().filter(|(_, shares)| *shares) {
+            let message = "a rigid body is held or moved as a whole";
+            let problem = Problem::new(format!("{path}.on"), message).found(on.to_string());
+            self.problems
+                .push(problem.accepted([format!("its region, `{region}`")]));
+        }
     }
 
     /// Refuses a direction that the mesh does not have.

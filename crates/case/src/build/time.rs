@@ -220,5 +220,6 @@ fn crossing<'m>(mesh: &Mesh, bodies: impl Iterator<Item = &'m ModelBody>) -> f64
             .map(|&cell| carom_bodies::smallest_size(mesh, cell) / speed)
             .fold(f64::INFINITY, f64::min)
     };
-    bodies.map(time).fold(f64::INFINITY, f64::min)
+    let deform = bodies.filter(|body| body.rigid.is_none());
+    deform.map(time).fold(f64::INFINITY, f64::min)
 }

@@ -3,7 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use carom_quantities::{Area, Coordinate, Delay, Length, Rate, Vector, Velocity};
+use carom_quantities::{
+    Angle, AngularVelocity, Area, Coordinate, Delay, Length, MomentOfInertia, Rate, Vector,
+    Velocity, Weight,
+};
 
 /// A body: cells of the mesh, with a material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -23,6 +26,8 @@ pub struct Body {
     pub formulation: Formulation,
     /// Rayleigh damping. Default: none.
     pub damping: Option<Damping>,
+    /// Makes the body rigid: its cells keep their shape, and it moves as one. Default: deformable.
+    pub rigid: Option<Rigid>,
     /// Initial state. After a static stage the velocity applies at the end of that stage. Default: at rest, undeformed.
     pub initial: Option<Initial>,
 }
@@ -74,6 +79,19 @@ pub struct Reduced {
 
 fn twentieth() -> f64 {
     0.05
+}
+
+/// A rigid body. What is left out is that of its cells with the density of its material.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Rigid {
+    /// Mass. Without `inertia` the moments of inertia of the cells grow with it.
+    pub mass: Option<Weight>,
+    /// Moments of inertia about the centre of mass: three about the axes of coordinates, or one about z in the plane.
+    #[schemars(extend("minItems" = 1, "maxItems" = 3))]
+    pub inertia: Option<Vec<MomentOfInertia>>,
+    /// Centre of mass.
+    pub centre: Option<Vector<Coordinate>>,
 }
 
 /// Rayleigh damping: the damping matrix is `mass` times the mass matrix plus `stiffness` times the stiffness matrix.
@@ -140,6 +158,8 @@ pub struct Initial {
     pub velocity: Option<Vector<Velocity>>,
     /// Displacement from the position of the mesh.
     pub displacement: Option<Vector<Coordinate>>,
+    /// Angular velocity of a rigid body about the axes of coordinates: three components, or one about z in the plane.
+    pub spin: Option<Vector<AngularVelocity>>,
 }
 
 /// A support: displacements held at zero, or moved as prescribed.
@@ -149,7 +169,8 @@ pub struct Initial {
 pub struct Support {
     /// Group whose nodes are held: a side, or the cells of a body.
     pub on: String,
-    /// Directions in which the nodes are held.
+    /// Directions in which the nodes are held; `rx`, `ry`, `rz` are rotations, of rigid bodies, about the principal axes of inertia
+    /// nearest to x, y, z.
     #[serde(default)]
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub fix: Vec<Axis>,
@@ -161,7 +182,7 @@ pub struct Support {
 /// Displacements as functions of time: linear between the given points, constant before the first and after the last.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(extend("anyOf" = [{ "required": ["x"] }, { "required": ["y"] }, { "required": ["z"] }]))]
+#[schemars(extend("anyOf" = [{ "required": ["x"] }, { "required": ["y"] }, { "required": ["z"] }, { "required": ["rx"] }, { "required": ["ry"] }, { "required": ["rz"] }]))]
 pub struct Movement {
     /// Displacement along the first axis. Default: free.
     pub x: Option<Vec<MovementPoint>>,
@@ -169,6 +190,22 @@ pub struct Movement {
     pub y: Option<Vec<MovementPoint>>,
     /// Displacement along the third axis. Default: free.
     pub z: Option<Vec<MovementPoint>>,
+    /// Rotation of a rigid body about its first axis. Default: free.
+    pub rx: Option<Vec<TurnPoint>>,
+    /// Rotation of a rigid body about its second axis. Default: free.
+    pub ry: Option<Vec<TurnPoint>>,
+    /// Rotation of a rigid body about its third axis, the only one in the plane. Default: free.
+    pub rz: Option<Vec<TurnPoint>>,
+}
+
+/// A point of a rotation as a function of time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct TurnPoint {
+    /// Time.
+    pub time: Delay,
+    /// Angle at that time.
+    pub angle: Angle,
 }
 
 /// A point of a displacement as a function of time.
@@ -193,15 +230,24 @@ pub enum Axis {
     Y,
     /// The third axis.
     Z,
+    /// The rotation about the first axis.
+    Rx,
+    /// The rotation about the second axis.
+    Ry,
+    /// The rotation about the third axis, the only one in the plane.
+    Rz,
 }
 
 impl Axis {
-    /// Component number, from 0.
-    pub fn index(self) -> usize {
+    /// Component number, from 0, and whether it is a rotation.
+    pub fn index(self) -> (usize, bool) {
         match self {
-            Axis::X => 0,
-            Axis::Y => 1,
-            Axis::Z => 2,
+            Axis::X => (0, false),
+            Axis::Y => (1, false),
+            Axis::Z => (2, false),
+            Axis::Rx => (0, true),
+            Axis::Ry => (1, true),
+            Axis::Rz => (2, true),
         }
     }
 }

@@ -23,7 +23,7 @@ use serde_json::Value;
 pub use body::{
     Axis, AxisymmetricSection, BarSection, Body, Damping as RayleighDamping, Formulation,
     FormulationName, FormulationWith, Initial, Mass, Movement, MovementPoint, PlaneSection,
-    Reduced, Section, Support,
+    Reduced, Rigid, Section, Support,
 };
 pub use carom_laws::GivenLaw;
 pub use carom_quantities::{

@@ -117,7 +117,8 @@ impl Pairing {
     /// Adds factor · force · ∂²g/∂u² of a point to a matrix over all unknowns.
     ///
     /// `force` in N, positive in compression. The second derivative is that of the gap in [`Pairing::rows`], exact for
-    /// every kind of face, foot inside, on an edge or in a corner; for the mortar method with the quadrature points and
+    /// every kind of face, foot inside, on an edge or in a corner, and left out where other nodes carry nodes of the stencil; for the
+    /// mortar method with the quadrature points and
     /// their weights held. Panics if the pattern of the matrix lacks the pairs of [`Pairing::cliques`].
     pub fn add_curvature(&self, point: usize, force: f64, factor: f64, matrix: &mut Csr) {
         let terms = self.terms(point).iter();
@@ -156,7 +157,7 @@ impl Pairing {
         let mut last: Option<&Stencil> = None;
         for &(stencil, _) in self.terms(point) {
             let stencil = &self.stencils[stencil as usize];
-            if !last.is_some_and(|last| last.is_like(stencil)) {
+            if !stencil.carried && !last.is_some_and(|last| last.is_like(stencil)) {
                 let (unknowns, n) = stencil.unknowns(self.dim);
                 each(&unknowns[..n]);
             }
@@ -231,7 +232,8 @@ impl Pairing {
 fn add_loads<'a>(loads: impl Iterator<Item = (&'a Stencil, f64)>, dim: usize, matrix: &mut Csr) {
     let mut block = Block::new(dim);
     let mut first: Option<&Stencil> = None;
-    for (stencil, load) in loads {
+    // those of carried nodes are left to the iteration: they turn with the rotation too
+    for (stencil, load) in loads.filter(|(stencil, _)| !stencil.carried) {
         if !first.is_some_and(|first| first.is_like(stencil)) {
             if let Some(first) = first {
                 block.add_to(first, matrix);

@@ -21,6 +21,8 @@ pub(crate) struct Stencil {
     foot: Foot,
     /// First unknowns of its nodes, in the order of [`Stencil::relative`].
     first: [u32; 2 * NODES],
+    /// Whether other nodes carry some of them.
+    pub(super) carried: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -78,6 +80,7 @@ impl Stencil {
                     gap: found.gap,
                     normal: found.normal,
                     first: [0; 2 * NODES],
+                    carried: false,
                     foot: Foot::Obstacle {
                         hessian: found.hessian,
                         velocity: placed.velocity(&x),
@@ -115,6 +118,7 @@ impl Stencil {
             gap: foot.gap,
             normal: foot.normal,
             first: [0; 2 * NODES],
+            carried: false,
             foot: Foot::Face(Foothold {
                 face: *face,
                 x: positions,
@@ -128,11 +132,12 @@ impl Stencil {
     }
 
     fn numbered(mut self, places: &Places) -> Stencil {
-        let mut first = self.first;
+        let (mut first, mut carried) = (self.first, false);
         for (first, (node, _)) in first.iter_mut().zip(self.relative()) {
             *first = places.unknowns.first(node) as u32;
+            carried |= places.unknowns.carrier(node).is_some();
         }
-        self.first = first;
+        (self.first, self.carried) = (first, carried);
         self
     }
 

@@ -5,7 +5,7 @@ use carom_mesh::Face;
 
 use super::{Basis, Mortar, Pairing};
 use crate::law::Displacement;
-use crate::{Contact, Integration, Law, Places, Search, Sliding, Target};
+use crate::{Contact, Frames, Integration, Law, Places, Search, Sliding, Target};
 
 /// What one multiplier of a tie holds together.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +48,7 @@ impl Tie {
             time: 0.0,
             x,
             u: &vec![0.0; dim * x.len()],
+            frames: Frames::default(),
         };
         let mut pairing = Pairing::default();
         contact.pair_fully(&places, &mut Search::default(), &mut pairing);

@@ -1,7 +1,7 @@
 //! Rows and curvature of a point against one face or an obstacle.
 
 use carom_algebra::unknowns::Unknowns;
-use carom_contact::{Contact, Places, Plane, Point, Rows, Search, Side, Sphere, Target};
+use carom_contact::{Contact, Frames, Places, Plane, Point, Rows, Search, Side, Sphere, Target};
 use carom_elements::Kind;
 use carom_testing::Random;
 
@@ -82,6 +82,7 @@ fn rows_and_curvature_are_derivatives_inside_faces_on_edges_and_in_corners() {
                 time: 0.0,
                 x: &x,
                 u: &u,
+                frames: Frames::default(),
             };
             let contact = over_a_face(kind, &x, case % 3 == 0);
             let pairing = paired(&contact, &places);
@@ -131,6 +132,7 @@ fn gaps_to_obstacles_have_their_curvature() {
                 time: 0.0,
                 x: &flat,
                 u: &u,
+                frames: Frames::default(),
             };
             assert_derivatives(&places, |places| paired(&contact, places));
         }
@@ -149,6 +151,7 @@ fn tangents_are_square_to_the_normal_and_measure_sliding() {
             time: 0.0,
             x: &x,
             u: &u,
+            frames: Frames::default(),
         };
         let contact = over_a_face(kind, &x, true);
         let pairing = paired(&contact, &places);
@@ -200,6 +203,7 @@ fn tangents_turn_little_with_the_normal_about_every_axis() {
                     time: 0.0,
                     x: &[[0.0; 3]],
                     u: &[0.0; 3],
+                    frames: Frames::default(),
                 };
                 let pairing = paired(&contact, &places);
                 pairing.tangents.map(|tangent| tangent.normal(0))

@@ -2,7 +2,8 @@
 
 use carom_algebra::unknowns::Unknowns;
 use carom_contact::{
-    Basis, Contact, Integration, Mortar, Pairing, Places, Plane, Search, Side, Sphere, Target,
+    Basis, Contact, Frames, Integration, Mortar, Pairing, Places, Plane, Search, Side, Sphere,
+    Target,
 };
 use carom_elements::Kind;
 use carom_mesh::Face;
@@ -43,6 +44,7 @@ impl Pair {
             time: 0.0,
             x: &self.x,
             u,
+            frames: Frames::default(),
         }
     }
 

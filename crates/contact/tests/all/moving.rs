@@ -2,7 +2,8 @@
 
 use carom_algebra::unknowns::Unknowns;
 use carom_contact::{
-    Basis, Integration, Mortar, Motion, Obstacle, Places, Plane, Rows, Search, Target, Translation,
+    Basis, Frames, Integration, Mortar, Motion, Obstacle, Places, Plane, Rows, Search, Target,
+    Translation,
 };
 use carom_elements::Kind;
 
@@ -38,6 +39,7 @@ fn rows_of_gaps_and_of_sliding_have_the_velocity_of_the_obstacle() {
         time,
         x: &x,
         u: &[0.0; 12],
+        frames: Frames::default(),
     };
     let along = |n: [f64; 3]| -(0..3).map(|i| n[i] * velocity[i]).sum::<f64>();
     for integration in [

@@ -1,7 +1,7 @@
 //! The search with its memory against asking all faces.
 
 use carom_algebra::unknowns::Unknowns;
-use carom_contact::{Contact, Places, Point, Rows, Search, Target};
+use carom_contact::{Contact, Frames, Places, Point, Rows, Search, Target};
 use carom_elements::Kind;
 use carom_mesh::{Face, project};
 use carom_testing::Random;
@@ -133,6 +133,7 @@ fn pairings_of_moving_surfaces_equal_brute_force_whatever_the_search_remembers()
                 time: 0.0,
                 x: &scene.x,
                 u: &u,
+                frames: Frames::default(),
             };
             let rows = paired(&scene.contact, &places, &mut search);
             assert_eq!(
@@ -166,6 +167,7 @@ fn a_slow_surface_is_hardly_searched() {
             time: 0.0,
             x: &scene.x,
             u: &u,
+            frames: Frames::default(),
         };
         paired(&scene.contact, &places, &mut search);
         projections.push(search.projections());
@@ -190,6 +192,7 @@ fn memory_of_other_faces_does_no_harm() {
                 time: 0.0,
                 x: &scene.x,
                 u: &u,
+                frames: Frames::default(),
             };
             let rows = paired(&scene.contact, &places, &mut search);
             assert_eq!(
@@ -209,6 +212,7 @@ fn memory_of_the_search_is_a_few_hundred_bytes_for_a_face() {
         time: 0.0,
         x: &scene.x,
         u: &u,
+        frames: Frames::default(),
     };
     let mut search = Search::default();
     paired(&scene.contact, &places, &mut search);
@@ -231,6 +235,7 @@ fn a_point_that_comes_back_twice_in_a_step_stays_with_its_face() {
                 time: 0.0,
                 x: &x,
                 u: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, side, 0.002],
+                frames: Frames::default(),
             };
             let rows = paired(&contact, &places, search);
             let held = contact.held(&places, search);

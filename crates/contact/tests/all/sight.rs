@@ -2,7 +2,7 @@
 
 use carom_algebra::unknowns::Unknowns;
 use carom_contact::{
-    Basis, Contact, Integration, Mortar, Places, Point, Rows, Search, Sight, Target,
+    Basis, Contact, Frames, Integration, Mortar, Places, Point, Rows, Search, Sight, Target,
 };
 use carom_elements::Kind;
 use carom_mesh::Face;
@@ -85,6 +85,7 @@ impl Fold {
             time: 0.0,
             x: &self.x,
             u,
+            frames: Frames::default(),
         };
         let mut rows = Rows::default();
         rows.clear();
@@ -181,6 +182,7 @@ fn a_node_deep_in_a_thin_plate_is_pushed_back_to_the_side_it_came_from() {
         time: 0.0,
         x: &x,
         u: &[0.0; 12],
+        frames: Frames::default(),
     };
     let mut gaps = |sight| {
         contact.sight = sight;

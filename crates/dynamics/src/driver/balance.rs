@@ -27,6 +27,7 @@ impl Driver {
         map.displacement.whole(old, x, push, &mut new.u);
         map.velocity.whole(old, x, push, &mut new.v);
         map.acceleration.whole(old, x, push, &mut new.a);
+        new.frames.clone_from(&old.frames);
         if map.has_memory() {
             map.memory.whole(old, x, push, &mut new.memory);
         }
@@ -56,7 +57,7 @@ impl Driver {
     fn follow_motions(&mut self) {
         let system = &*self.system;
         let (old, new) = (&self.state.motion, &mut self.next.motion);
-        let time = self.state.time + self.dt;
+        let time = [self.state.time, self.state.time + self.dt];
         system.nonlinear.prescribe(time, &mut new.u);
         for follows in &system.nonlinear.follows {
             let i = follows.unknown as usize;
@@ -303,18 +304,18 @@ impl Driver {
             energy: self.left_over * travel.sum::<f64>().sqrt(),
             momentum: self.left_over * nodes.sqrt() * self.dt,
         };
-        let places = [&old.u[..], &new.u[..]];
+        let places = (&old.frames[..], &[&old.u[..], &new.u[..]][..]);
         let forces = [
-            Resultant::at(&system, &places, &means[0]),
-            Resultant::at(&system, &places, &means[1]),
-            Resultant::at(&system, &places, &means[2])
-                .plus(&Resultant::at(&system, &places, &means[7]).reversed()),
+            Resultant::at(&system, places, &means[0]),
+            Resultant::at(&system, places, &means[1]),
+            Resultant::at(&system, places, &means[2])
+                .plus(&Resultant::at(&system, places, &means[7]).reversed()),
             match pushes {
-                true => Resultant::at(&system, &places, &held),
+                true => Resultant::at(&system, places, &held),
                 false => Resultant::default(),
             },
-            Resultant::at(&system, &places, &means[6])
-                .plus(&Resultant::at(&system, &places, &means[5]).reversed()),
+            Resultant::at(&system, places, &means[6])
+                .plus(&Resultant::at(&system, places, &means[5]).reversed()),
         ];
         self.next.forces = match weights[0] != 0.0 || map.inertia.x == 0.0 {
             true => now.iter().map(|f| f.to_vec()).collect(),

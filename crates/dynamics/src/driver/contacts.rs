@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use carom_contact::law::{Displacement, End, Level, Local, Status};
-use carom_contact::{Contact, Integration, Law, Places, Sliding};
+use carom_contact::{Balance, Contact, Integration, Law, Sliding};
 
 use super::candidates::{instant, least_gap, on_row, part_way};
 use super::{Driver, Vectors};
@@ -82,8 +82,17 @@ impl Driver {
     pub(super) fn pair(&mut self, first: bool) {
         let system = Arc::clone(&self.system);
         let mut contacts = 0..system.contacts.len();
-        if !first && contacts.all(|k| self.turning(k) == 0.0) {
+        // moments about axes that turn depend on the rotation of the step
+        let turns = !system.unknowns.turning().is_empty();
+        if !first && !turns && contacts.all(|k| self.turning(k) == 0.0) {
             return;
+        }
+        if turns {
+            let Vectors { x, push, end, .. } = &mut self.vectors;
+            end.resize(x.len(), 0.0);
+            self.map
+                .displacement
+                .whole(&self.state.motion, x, push, end);
         }
         self.pairing.clear();
         for (k, contact) in system.contacts.iter().enumerate() {
@@ -94,11 +103,11 @@ impl Driver {
                 x,
                 push,
                 place,
-                ahead: end,
+                ahead: predicted,
                 ..
             } = &mut self.vectors;
             match ahead {
-                true => part_way(motion, end, &contact.law, place),
+                true => part_way(motion, predicted, &contact.law, place),
                 false => row.whole(motion, x, push, place),
             }
             self.pairing.span = self.span(k);
@@ -117,13 +126,18 @@ impl Driver {
     pub(super) fn append(&mut self, number: usize, time: f64) {
         let system = Arc::clone(&self.system);
         let contact = &system.contacts[number];
+        let (middle, frames) = (self.between(), &self.state.motion.frames);
+        let fraction = self.map.force_fraction.unwrap_or(1.0);
         let search = &mut self.search[number];
-        let Vectors { place, work, .. } = &mut self.vectors;
-        let at = |u| Places {
-            unknowns: &system.unknowns,
-            time,
-            x: &system.x,
-            u,
+        let Vectors {
+            place, work, end, ..
+        } = &mut self.vectors;
+        let end = &*end;
+        let at = |u| {
+            let mut places = system.places(time, u, frames);
+            places.frames.middle = middle;
+            places.frames.balance = (!end.is_empty()).then_some(Balance { end, fraction });
+            places
         };
         if contact.sliding == Sliding::Finite {
             return contact.pair_fully(&at(place), search, &mut self.pairing);

@@ -270,7 +270,10 @@ impl Matrices {
             group.operator = Some(operator);
             held.push(matrix);
         }
-        let mut compliance = Compliance::new(system.points() * (1 + system.tangents()));
+        let mut compliance = Compliance::new(
+            system.points() * (1 + system.tangents()),
+            system.rigid_points(),
+        );
         compliance.version = made << 32;
         Ok(Matrices {
             key: key(map),

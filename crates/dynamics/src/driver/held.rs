@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use carom_contact::Places;
-
 use super::Driver;
 use crate::error::Error;
 
@@ -26,12 +24,9 @@ impl Driver {
                 &self.vectors.push,
                 &mut u,
             );
-            let places = Places {
-                unknowns: &system.unknowns,
-                time: self.state.time + self.paired_after(contact),
-                x: &system.x,
-                u: &u,
-            };
+            let time = self.state.time + self.paired_after(contact);
+            let mut places = system.places(time, &u, &self.state.motion.frames);
+            places.frames.middle = self.between();
             let all = contact.held(&places, &self.search[k]);
             self.vectors.place = u;
             for held in all {

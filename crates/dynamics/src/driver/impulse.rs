@@ -37,7 +37,10 @@ impl Impulses {
     pub(super) fn new(system: &System) -> Result<Impulses, Error> {
         Ok(Impulses {
             operators: Operators::new(system, 1.0, 0.0, "mass matrix")?,
-            compliance: Compliance::new(system.points() * (1 + system.tangents())),
+            compliance: Compliance::new(
+                system.points() * (1 + system.tangents()),
+                system.rigid_points(),
+            ),
             with_weak: WithWeak::default(),
             interface: Interface::default(),
             candidates: Vec::new(),

@@ -165,6 +165,8 @@ struct Vectors {
     place: Vec<f64>,
     /// Velocity at the instant of the internal forces.
     rate: Vec<f64>,
+    /// Displacement at the end of the step at the x of the iteration; empty without rotations.
+    end: Vec<f64>,
     /// Displacement at the end of the step, predicted; empty where no contact is paired ahead.
     ahead: Vec<f64>,
     work: Vec<f64>,
@@ -336,6 +338,7 @@ impl Driver {
                 before: zeros(),
                 place: zeros(),
                 rate: zeros(),
+                end: Vec::new(),
                 ahead: Vec::new(),
                 work: zeros(),
                 history: state.motion.history.clone(),

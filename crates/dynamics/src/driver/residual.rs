@@ -145,7 +145,12 @@ impl Driver {
             let v = &self.state.motion.v[unknowns.translations_of(node)];
             m * m * v.iter().map(|v| v * v).sum::<f64>()
         });
-        squares.sum::<f64>().sqrt() / self.dt
+        let turning = unknowns.turning().iter();
+        let spins = turning.flat_map(|&node| unknowns.rotations_of(node));
+        let spins = spins.map(|unknown| {
+            (self.system.mass.lumped[unknown] * self.state.motion.v[unknown]).powi(2)
+        });
+        (squares.sum::<f64>() + spins.sum::<f64>()).sqrt() / self.dt
     }
 
     /// Norm of what rounding of the positions leaves in the internal forces, N. Displacements cannot be told apart within

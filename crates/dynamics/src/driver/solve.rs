@@ -222,9 +222,8 @@ impl Driver {
         }
         end.known(motion, &mut vectors.place);
         vectors.work.fill(0.0);
-        system
-            .nonlinear
-            .prescribe(self.state.time + self.dt, &mut vectors.work);
+        let time = [self.state.time, self.state.time + self.dt];
+        system.nonlinear.prescribe(time, &mut vectors.work);
         for i in (0..system.unknowns()).filter(|&i| system.fixed[i]) {
             vectors.x[i] = (motion.u[i] - vectors.place[i]) / end.x;
             vectors.jump[i] = (vectors.work[i] - motion.u[i]) / end.x;

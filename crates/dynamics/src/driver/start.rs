@@ -38,7 +38,8 @@ impl Driver {
                 motion.v[i] = velocity[i];
             }
         }
-        system.nonlinear.prescribe(0.0, &mut motion.u);
+        system.nonlinear.prescribe([0.0; 2], &mut motion.u);
+        motion.compose(&system.unknowns);
         self.start()
     }
 
@@ -143,7 +144,7 @@ impl Driver {
         let of = (strain, identity.inertia != 0.0, Some(&motion.u[..]));
         let energies = energies(&system, motion, of, &mut self.vectors.work);
         let at = |k: usize| match self.state.forces.get(k) {
-            Some(f) => Resultant::at(&system, &[&motion.u], f),
+            Some(f) => Resultant::at(&system, (&motion.frames, &[&motion.u]), f),
             None => Resultant::default(),
         };
         let forces = [
@@ -245,6 +246,7 @@ impl Driver {
     pub(super) fn pair_now(&mut self) {
         self.pairing.clear();
         self.pairing.span = [0.0; 2];
+        self.vectors.end.clear();
         self.vectors.place.clone_from(&self.state.motion.u);
         for contact in 0..self.system.contacts.len() {
             self.append(contact, self.state.time);
@@ -264,7 +266,7 @@ pub(super) fn energies(
     system.mass.multiply(&motion.v, work);
     let kinetic = 0.5 * dot(&motion.v, work);
     let momentum = match u {
-        Some(u) => Resultant::at(system, &[u], work),
+        Some(u) => Resultant::at(system, (&motion.frames, &[u]), work),
         None => Resultant::of(system, work),
     };
     let mut acceleration = 0.0;

@@ -98,6 +98,7 @@ impl Driver {
                     }
                     if done < parts {
                         start.get_or_insert_with(|| self.state.clone());
+                        self.next.motion.compose(&self.system.unknowns);
                         std::mem::swap(&mut self.state, &mut self.next);
                         self.state.time = to;
                         // parts of a step are of the same stage
@@ -147,6 +148,7 @@ impl Driver {
     pub(super) fn accept(&mut self, control: Control, size: f64) {
         self.next.control = control;
         self.prepared = false;
+        self.next.motion.compose(&self.system.unknowns);
         std::mem::swap(&mut self.state, &mut self.next);
         self.tell(size);
     }

@@ -62,7 +62,8 @@ impl Driver {
         jump.change.resize(n, 0.0);
         jump.momentum.resize(n, 0.0);
         let end = &mut jump.momentum;
-        system.nonlinear.prescribe(self.state.time + dt, end);
+        let time = self.state.time;
+        system.nonlinear.prescribe([time, time + dt], end);
         for follows in &system.nonlinear.follows {
             let i = follows.unknown as usize;
             let change = (end[i] - motion.u[i]) / dt - motion.v[i];
@@ -123,6 +124,6 @@ impl Jump {
             self.work += *p * (motion.v[i] + 0.5 * self.change[i]);
             self.velocity[i] += self.change[i];
         }
-        self.impulse = Resultant::at(system, &[&motion.u], &self.momentum);
+        self.impulse = Resultant::at(system, (&motion.frames, &[&motion.u]), &self.momentum);
     }
 }

@@ -172,6 +172,7 @@ impl Zoned {
         Nonlinear {
             loads: loads.cloned().collect(),
             motions: motions.filter(|motion| !motion.nodes.is_empty()).collect(),
+            turns: Vec::new(),
             damping: zone.bodies.iter().map(damping).collect(),
             preload: None,
             iteration: whole.iteration,
@@ -180,6 +181,13 @@ impl Zoned {
 
     /// Refuses schemes that no link takes, and numbers of inner steps that do not go together.
     pub(super) fn check(&self) -> Result<(), Error> {
+        let mut bodies = self.model.bodies.iter();
+        if let Some(body) = bodies.find(|body| body.rigid.is_some()) {
+            return Err(Error::Nonlinear {
+                what: Refused::Rigid(body.spec.name.clone()),
+                why: "zones have no frames of rotations yet; leave out the zones",
+            });
+        }
         if let Some(some) = self.model.discrete.first() {
             return Err(Error::DiscreteInZones {
                 element: some.spec.name.clone(),

@@ -34,6 +34,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
         mass: MassKind::Lumped,
         velocity: [0.0; 3],
         displacement: [0.0; 3],
+        rigid: None,
     }
 }
 

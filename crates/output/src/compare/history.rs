@@ -1,6 +1,6 @@
 //! What a comparison keeps of a run beside its summary: the force of every step or part of one, and the curves of the figures.
 
-use carom_dynamics::{Observer, State, StepReport, Stepper, System};
+use carom_dynamics::{Observer, Order, State, StepReport, Stepper, System};
 
 use crate::results::Reference;
 use crate::results::sensor::{ContactPoint, contact_point};
@@ -112,7 +112,7 @@ impl Recorder {
 impl Observer for Recorder {
     fn accepted(
         &mut self,
-        _system: &System,
+        system: &System,
         state: &State,
         report: &StepReport,
     ) -> Result<(), carom_dynamics::Error> {
@@ -124,8 +124,9 @@ impl Observer for Recorder {
                 history.force_curve.push(end, force);
             }
             for ((_, traces), (_, sensor)) in history.sides.iter_mut().zip(&point.sides) {
-                traces[0].push(t, sensor.of(&state.motion.u));
-                traces[1].push(t, sensor.of(&state.motion.v));
+                for (trace, order) in traces.iter_mut().zip(Order::ALL) {
+                    trace.push(t, sensor.of(system, &state.motion, order));
+                }
             }
         }
         history.energy.push(t, balance.energy());

@@ -1,10 +1,10 @@
 //! The distance of the result from the exact solution, step by step.
 
-use carom_dynamics::{State, StepReport};
+use carom_dynamics::{Order, State, StepReport, System};
 use carom_exact::{FarEnd, Motion, Solution};
 
 use crate::results::Reference;
-use crate::results::sensor::ContactPoint;
+use crate::results::sensor::{ContactPoint, Sensor};
 
 /// Sums of squares of an error and of what it is relative to.
 #[derive(Debug, Default)]
@@ -47,8 +47,14 @@ impl Comparison {
         }
     }
 
-    pub(crate) fn push(&mut self, point: &ContactPoint, state: &State, report: &StepReport) {
-        let values = point.sides.iter().map(|(_, s)| s.of(&state.motion.u));
+    pub(crate) fn push(
+        &mut self,
+        (system, point): (&System, &ContactPoint),
+        state: &State,
+        report: &StepReport,
+    ) {
+        let of = |s: &Sensor| s.of(system, &state.motion, Order::Displacement);
+        let values = point.sides.iter().map(|(_, s)| of(s));
         if report.step == 0 {
             self.start = values.collect();
             return;

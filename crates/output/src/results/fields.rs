@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use carom_contact::law::{Level, Status};
-use carom_contact::{Contact, Integration, Places, Point};
-use carom_dynamics::{InterfaceState, State, System};
+use carom_contact::{Contact, Integration, Point};
+use carom_dynamics::{InterfaceState, Motion, Order, State, System};
 use carom_elements::Kind;
 use carom_mesh::Face;
 
@@ -22,10 +22,7 @@ struct Snapshot {
     time: f64,
     first: bool,
     names: Vec<String>,
-    u: Vec<f64>,
-    v: Vec<f64>,
-    a: Vec<f64>,
-    history: Vec<f64>,
+    motion: Motion,
     interface: InterfaceState,
 }
 
@@ -139,14 +136,15 @@ impl Snapshot {
             motion, interface, ..
         } = state;
         self.time = state.time;
-        copy(&mut self.u, &motion.u);
-        if fields.velocity {
-            copy(&mut self.v, &motion.v);
+        copy(&mut self.motion.u, &motion.u);
+        copy(&mut self.motion.frames, &motion.frames);
+        if fields.velocity || fields.acceleration {
+            copy(&mut self.motion.v, &motion.v);
         }
         if fields.acceleration {
-            copy(&mut self.a, &motion.a);
+            copy(&mut self.motion.a, &motion.a);
         }
-        copy(&mut self.history, &motion.history);
+        copy(&mut self.motion.history, &motion.history);
         copy(&mut self.interface.force, &interface.force);
         copy(&mut self.interface.friction, &interface.friction);
         copy(&mut self.interface.gap, &interface.gap);
@@ -240,13 +238,13 @@ impl Volume {
         snapshot: &Snapshot,
     ) -> Result<(), Error> {
         let chosen = [
-            ("displacement", fields.displacement, &snapshot.u),
-            ("velocity", fields.velocity, &snapshot.v),
-            ("acceleration", fields.acceleration, &snapshot.a),
+            ("displacement", fields.displacement, Order::Displacement),
+            ("velocity", fields.velocity, Order::Velocity),
+            ("acceleration", fields.acceleration, Order::Acceleration),
         ];
         let chosen = chosen.into_iter().filter(|(_, on, _)| *on);
         let motions: Vec<(&str, Vec<[f64; 3]>)> = chosen
-            .map(|(name, _, values)| (name, vectors(system, values)))
+            .map(|(name, _, order)| (name, vectors(system, &snapshot.motion, order)))
             .collect();
         let point_fields = motions.iter().map(|(name, values)| Field {
             name,
@@ -254,10 +252,10 @@ impl Volume {
         });
         let point_fields: Vec<Field> = point_fields.collect();
         let stress = match fields.stress {
-            true => cell_stresses(system, &snapshot.u, &snapshot.history),
+            true => cell_stresses(system, &snapshot.motion.u, &snapshot.motion.history),
             false => Vec::new(),
         };
-        let plastic = plastic_strains(system, &snapshot.history);
+        let plastic = plastic_strains(system, &snapshot.motion.history);
         let mises: Vec<f64> = stress.iter().map(von_mises).collect();
         let mut cell_fields = vec![Field {
             name: "body",
@@ -301,7 +299,11 @@ impl Volume {
             path,
             &Grid {
                 time: snapshot.time,
-                points: &places(system, &system.x, &vectors(system, &snapshot.u)),
+                points: &places(
+                    system,
+                    &system.x,
+                    &vectors(system, &snapshot.motion, Order::Displacement),
+                ),
                 cells: &borrowed(&self.cells),
                 point_fields: &point_fields,
                 cell_fields: &cell_fields,
@@ -369,12 +371,7 @@ impl SurfaceGrid {
 
     fn of_points(system: &System, contact: usize, points: &[Point]) -> SurfaceGrid {
         let reference = vec![0.0; system.unknowns()];
-        let places = Places {
-            unknowns: &system.unknowns,
-            time: 0.0,
-            x: &system.x,
-            u: &reference,
-        };
+        let places = system.places(0.0, &reference, &system.initial_frames);
         SurfaceGrid {
             contact,
             points: points.iter().map(|point| point.place(&places)).collect(),
@@ -414,7 +411,7 @@ impl SurfaceGrid {
         let closed: Vec<i32> = status.iter().map(|s| sign(*s != Status::Open)).collect();
         let watched = interface.watched[range.clone()].iter();
         let watched: Vec<i32> = watched.map(|on| sign(*on)).collect();
-        let all = vectors(system, &snapshot.u);
+        let all = vectors(system, &snapshot.motion, Order::Displacement);
         let moved = |point: &Point| {
             point.carriers().fold([0.0; 3], |sum: [f64; 3], (node, n)| {
                 [0, 1, 2].map(|i| sum[i] + n * all[node as usize][i])
@@ -467,10 +464,10 @@ fn borrowed(cells: &[(Kind, Vec<u32>)]) -> Vec<Cells<'_>> {
 }
 
 /// One vector of three components per node.
-fn vectors(system: &System, values: &[f64]) -> Vec<[f64; 3]> {
+fn vectors(system: &System, motion: &Motion, order: Order) -> Vec<[f64; 3]> {
     let nodes = 0..system.x.len() as u32;
     nodes
-        .map(|node| system.unknowns.vector(node, values))
+        .map(|node| system.of_node(node, motion, order))
         .collect()
 }
 

@@ -1,6 +1,6 @@
 //! The figures of a run, from what was kept while it went.
 
-use carom_dynamics::{State, StepReport, System};
+use carom_dynamics::{Order, State, StepReport, System};
 
 use crate::Error;
 use crate::plot::{
@@ -74,12 +74,11 @@ impl Curves {
         }
     }
 
-    pub(crate) fn push(&mut self, state: &State, report: &StepReport) {
+    pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
         let (t, motion, balance) = (report.time, &state.motion, &report.balance);
         for (_, sensor, traces) in &mut self.motions {
-            let vectors = [&motion.u, &motion.v, &motion.a];
-            for (trace, vector) in traces.iter_mut().zip(vectors) {
-                trace.push(t, sensor.of(vector));
+            for (trace, order) in traces.iter_mut().zip(Order::ALL) {
+                trace.push(t, sensor.of(system, motion, order));
             }
         }
         if let Some(contact) = self.contact {

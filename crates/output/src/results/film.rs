@@ -5,7 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use carom_contact::{Places, Target};
+use carom_algebra::rotation::Rotation;
+use carom_contact::Target;
 use carom_dynamics::{State, System};
 
 use crate::Error;
@@ -33,6 +34,7 @@ struct Still {
     step: u64,
     time: f64,
     u: Vec<f64>,
+    frames: Vec<Rotation>,
     /// Equivalent stress of the cells, Pa.
     stress: Vec<f64>,
     /// Places with a contact force, m.
@@ -63,12 +65,7 @@ impl Film {
 
     fn keep(&mut self, system: &System, state: &State) {
         let (motion, interface) = (&state.motion, &state.interface);
-        let places = Places {
-            unknowns: &system.unknowns,
-            time: state.time,
-            x: &system.x,
-            u: &motion.u,
-        };
+        let places = system.places(state.time, &motion.u, &motion.frames);
         let mut marks = Vec::new();
         if system.dim == 2 {
             for (k, contact) in system.contacts.iter().enumerate() {
@@ -86,6 +83,7 @@ impl Film {
             step: state.step,
             time: state.time,
             u: motion.u.clone(),
+            frames: motion.frames.clone(),
             stress: stress.iter().map(von_mises).collect(),
             marks,
         });
@@ -217,12 +215,7 @@ impl Outlines {
 
     /// The picture of an instant; of an axisymmetric model both halves of the section.
     fn frame(&self, system: &System, still: &Still) -> Frame {
-        let places = Places {
-            unknowns: &system.unknowns,
-            time: still.time,
-            x: &system.x,
-            u: &still.u,
-        };
+        let places = system.places(still.time, &still.u, &still.frames);
         let place = |node: &u32| places.of(*node);
         let patch = |(nodes, cell): &(Vec<u32>, usize)| Patch {
             points: nodes.iter().map(place).collect(),

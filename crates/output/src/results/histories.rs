@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use carom_dynamics::{ContactReport, State, StepReport, System};
+use carom_dynamics::{ContactReport, Order, State, StepReport, System};
 
 use crate::history::column;
 use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor};
@@ -78,14 +78,14 @@ impl Histories {
         };
         let (row, dim) = (&mut self.row, system.dim);
         let motion = &state.motion;
-        let vectors = [&motion.u, &motion.v, &motion.a];
         row.clear();
         row.push(report.time.into());
         for (k, contact) in report.contacts.iter().enumerate() {
             put(system, (k, contact), row);
             if let Some(point) = point.filter(|point| point.contact == k) {
                 for (_, sensor) in &point.sides {
-                    row.extend(vectors.map(|vector| Cell::from(sensor.of(vector))));
+                    let of = |order| Cell::from(sensor.of(system, motion, order));
+                    row.extend(Order::ALL.map(of));
                 }
             }
         }
@@ -96,8 +96,9 @@ impl Histories {
             }
         }
         for (recorded, sensors) in &self.probes {
-            for (vector, _) in vectors.iter().zip(recorded).filter(|(_, on)| **on) {
-                row.extend(sensors.iter().map(|sensor| Cell::from(sensor.of(vector))));
+            for (order, _) in Order::ALL.into_iter().zip(recorded).filter(|(_, on)| **on) {
+                let of = |sensor: &Sensor| Cell::from(sensor.of(system, motion, order));
+                row.extend(sensors.iter().map(of));
             }
         }
         let balance = &report.balance;

@@ -116,10 +116,10 @@ impl Results {
         let point = self.point.as_ref();
         self.histories.push(&self.system, (state, report), point)?;
         self.impacts.take(&self.system, state, report)?;
-        self.curves.push(state, report);
+        self.curves.push(&self.system, state, report);
         self.film.push(&self.system, state);
         if let (Some(comparison), Some(point)) = (&mut self.comparison, point) {
-            comparison.push(point, state, report);
+            comparison.push((&self.system, point), state, report);
         }
         match &mut self.fields {
             Some(fields) => fields.take(&mut self.folder, &self.system, state),

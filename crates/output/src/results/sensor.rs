@@ -1,7 +1,7 @@
 //! Linear functionals of the motion: the component of a node, the mean of a group.
 
-use carom_contact::{Places, Point, Rows, Search, Target};
-use carom_dynamics::System;
+use carom_contact::{Point, Rows, Search, Target};
+use carom_dynamics::{Motion, Order, System};
 
 use crate::Error;
 use crate::results::{Probe, Reference};
@@ -9,25 +9,26 @@ use crate::results::{Probe, Reference};
 /// Names of the components.
 pub(crate) const COMPONENTS: [&str; 3] = ["x", "y", "z"];
 
-/// Σ c_i q_i of a system vector q (displacement, velocity or acceleration).
+/// Σ c · q over nodes of their displacements, velocities or accelerations q.
 #[derive(Clone, Debug)]
 pub(crate) struct Sensor {
-    terms: Vec<(u32, f64)>,
+    terms: Vec<(u32, [f64; 3])>,
 }
 
 impl Sensor {
     /// The component along `axis` (unit vector) of the motion of a node (system number).
-    fn node(system: &System, node: u32, axis: [f64; 3]) -> Sensor {
-        let unknowns = system.unknowns.translations_of(node);
-        let terms = unknowns.zip(axis).map(|(i, c)| (i as u32, c));
+    fn node(node: u32, axis: [f64; 3]) -> Sensor {
         Sensor {
-            terms: terms.filter(|(_, c)| *c != 0.0).collect(),
+            terms: vec![(node, axis)],
         }
     }
 
-    /// The value for a system vector.
-    pub(crate) fn of(&self, vector: &[f64]) -> f64 {
-        let products = self.terms.iter().map(|&(i, c)| c * vector[i as usize]);
+    /// The value in a motion.
+    pub(crate) fn of(&self, system: &System, motion: &Motion, order: Order) -> f64 {
+        let products = self.terms.iter().map(|(node, c)| {
+            let q = system.of_node(*node, motion, order);
+            c[0] * q[0] + c[1] * q[1] + c[2] * q[2]
+        });
         products.sum()
     }
 }
@@ -50,8 +51,9 @@ pub(crate) fn of_probe(system: &System, probe: &Probe) -> Result<Vec<Sensor>, Er
         terms: nodes
             .iter()
             .map(|(node, weight)| {
-                let unknown = system.unknowns.first(*node) + i;
-                (unknown as u32, weight / total)
+                let mut c = [0.0; 3];
+                c[i] = weight / total;
+                (*node, c)
             })
             .collect(),
     };
@@ -83,12 +85,7 @@ pub(crate) fn contact_point(
     let contact = system.contacts.get(index)?;
     let total: f64 = contact.points.iter().map(|point| point.area).sum();
     let at_rest = vec![0.0; system.unknowns()];
-    let places = Places {
-        unknowns: &system.unknowns,
-        time: 0.0,
-        x: &system.x,
-        u: &at_rest,
-    };
+    let places = system.places(0.0, &at_rest, &system.initial_frames);
     let mut centroid = [0.0; 3];
     for point in &contact.points {
         let place = point.place(&places);
@@ -116,7 +113,7 @@ pub(crate) fn contact_point(
     }
     let nodes = [Some(secondary), primary].into_iter().zip(names);
     let side = |(node, name): (Option<u32>, Option<&str>)| {
-        let sensor = Sensor::node(system, node?, axis);
+        let sensor = Sensor::node(node?, axis);
         Some((name.unwrap_or("primary").to_owned(), sensor))
     };
     Some(ContactPoint {
@@ -137,12 +134,7 @@ fn nearest(system: &System, nodes: impl Iterator<Item = u32>, to: &[f64; 3]) -> 
 
 /// Normal at a secondary node at the start; where it faces nothing yet, the way to the primary node.
 fn normal(system: &System, contact: usize, secondary: u32, primary: Option<u32>) -> [f64; 3] {
-    let places = Places {
-        unknowns: &system.unknowns,
-        time: 0.0,
-        x: &system.x,
-        u: &system.initial_displacement,
-    };
+    let places = system.places(0.0, &system.initial_displacement, &system.initial_frames);
     let mut rows = Rows::default();
     rows.clear();
     let contact = &system.contacts[contact];

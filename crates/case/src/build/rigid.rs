@@ -1,0 +1,124 @@
+//! Rigid bodies: mass, centre and moments of inertia, and what goes with them.
+
+use carom_algebra::rotation::Rotation;
+use carom_bodies::{BodySpec, Inertia, Kinematics};
+use carom_dynamics::ModelRigid;
+use carom_mesh::Mesh;
+
+use super::Builder;
+use crate::error::Problem;
+use crate::schema::{Body, Mass, Rigid};
+
+impl Builder<'_> {
+    /// What a body is as a rigid one; `None` for one that deforms.
+    pub(super) fn rigid(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        body: &Body,
+        spec: &BodySpec,
+    ) -> Option<ModelRigid> {
+        let spin = body
+            .initial
+            .as_ref()
+            .and_then(|initial| initial.spin.as_ref());
+        let Some(rigid) = &body.rigid else {
+            if spin.is_some() {
+                let message = "a body that deforms has no angular velocity as a whole";
+                let problem = Problem::new(format!("{path}.initial.spin"), message);
+                self.problems
+                    .push(problem.accepted(["rigid = {}", "no spin"]));
+            }
+            return None;
+        };
+        self.suits_rigid(path, body);
+        let turns = mesh.dim > 1 && spec.kinematics != Kinematics::Axisymmetric;
+        let spin = spin.map_or([0.0; 3], |vector| match (vector.given(), mesh.dim) {
+            (1, 2) => [0.0, 0.0, vector.si()[0]],
+            _ => vector.si(),
+        });
+        let along = |spin: &[f64; 3]| spin[0] == 0.0 && spin[1] == 0.0;
+        if spin != [0.0; 3] && (!turns || mesh.dim == 2 && !along(&spin)) {
+            let message = match turns {
+                true => "in the plane a body turns about z only",
+                false => "here a rigid body does not turn",
+            };
+            let problem = Problem::new(format!("{path}.initial.spin"), message);
+            let accepted = if turns {
+                "one component, about z"
+            } else {
+                "no spin"
+            };
+            self.problems
+                .push(problem.found(format!("{spin:?}")).accepted([accepted]));
+        }
+        // what is unfit has been told
+        let of_cells = Inertia::of_cells(mesh, spec).ok()?;
+        Some(ModelRigid {
+            inertia: self.inertia(mesh, path, rigid, of_cells)?,
+            spin,
+        })
+    }
+
+    /// Mass, centre and moments as given, and those of the cells where they are not.
+    fn inertia(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        rigid: &Rigid,
+        of_cells: Inertia,
+    ) -> Option<Inertia> {
+        let mut inertia = of_cells;
+        if let Some(mass) = rigid.mass {
+            inertia.moments = inertia.moments.map(|moment| moment * mass.0 / inertia.mass);
+            inertia.mass = mass.0;
+        }
+        if let Some(centre) = &rigid.centre {
+            inertia.centre = self.vector(mesh, &format!("{path}.rigid.centre"), centre);
+        }
+        if let Some(moments) = &rigid.inertia {
+            let needed = if mesh.dim == 3 { 3 } else { 1 };
+            if moments.len() != needed {
+                let message = "a wrong number of moments of inertia";
+                let problem = Problem::new(format!("{path}.rigid.inertia"), message);
+                let accepted = match needed {
+                    3 => "three, about the axes of coordinates",
+                    _ => "one, about z",
+                };
+                self.problems.push(
+                    problem
+                        .found(moments.len().to_string())
+                        .accepted([accepted]),
+                );
+                return None;
+            }
+            inertia.moments = match moments[..] {
+                [x, y, z] => [x.0, y.0, z.0],
+                _ => [moments[0].0; 3],
+            };
+            inertia.axes = Rotation::IDENTITY;
+        }
+        Some(inertia)
+    }
+
+    /// Refuses keys of bodies that deform.
+    fn suits_rigid(&mut self, path: &str, body: &Body) {
+        let refused = [
+            (
+                "damping",
+                body.damping.is_some(),
+                "a rigid body has no damping",
+            ),
+            (
+                "mass",
+                body.mass == Mass::Consistent,
+                "a rigid body has one mass, and no mass matrix of its cells",
+            ),
+        ];
+        for (key, _, message) in refused.iter().filter(|(_, wrong, _)| *wrong) {
+            let problem = Problem::new(format!("{path}.{key}"), *message);
+            self.problems
+                .push(problem.accepted([format!("no `{key}`")]));
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! Rigid bodies in a system: their nodes, what these carry, and how they begin.
+
+use std::collections::BTreeSet;
+
+use carom_algebra::rotation::Rotation;
+use carom_algebra::tensor::Vec3;
+use carom_algebra::unknowns::{Carrier, Kind, NodeKind, Unknowns};
+use carom_bodies::{Body, Kinematics};
+use carom_contact::{Contact, Frames, Places, Sliding};
+
+use crate::Error;
+use crate::model::{Model, ModelBody};
+use crate::nonlinear::Refused;
+use crate::state::Motion;
+use crate::system::System;
+
+/// Which derivative of a place by time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// The place less the reference place.
+    Displacement,
+    /// The first.
+    Velocity,
+    /// The second.
+    Acceleration,
+}
+
+impl Order {
+    /// All three.
+    pub const ALL: [Order; 3] = [Order::Displacement, Order::Velocity, Order::Acceleration];
+}
+
+/// Adds the centre of mass of each rigid body to the nodes of the mesh; their numbers, by body.
+pub(crate) fn add_centres(model: &mut Model) -> Vec<Option<u32>> {
+    let nodes = &mut model.mesh.nodes;
+    let mut add = |body: &ModelBody| {
+        let inertia = body.rigid?.inertia;
+        nodes.push(inertia.centre);
+        Some(nodes.len() as u32 - 1)
+    };
+    model.bodies.iter().map(&mut add).collect()
+}
+
+/// The unknowns of all nodes, and the rotations of those that have any.
+///
+/// # Errors
+/// A node that a rigid body shares with another body.
+pub(crate) fn unknowns(
+    model: &Model,
+    centres: &[Option<u32>],
+    number: &[u32],
+    mesh_node: &[u32],
+) -> Result<(Unknowns, Vec<Rotation>), Error> {
+    let mut kinds = vec![NodeKind::Translations; mesh_node.len()];
+    let mut frames = Vec::new();
+    for (body, centre) in model.bodies.iter().zip(centres) {
+        let (Some(rigid), Some(centre)) = (body.rigid, *centre) else {
+            continue;
+        };
+        let own = number[centre as usize];
+        kinds[own as usize] = NodeKind::Turning;
+        frames.push((own, rigid.inertia.axes));
+        let (axes, nodes) = (rigid.inertia.axes.matrix(), nodes_of(model, body));
+        if let Some(node) = shared(model, body, &nodes) {
+            return Err(Error::Nonlinear {
+                what: Refused::Rigid(body.spec.name.clone()),
+                why: node,
+            });
+        }
+        for node in nodes {
+            let place = Vec3::from(model.mesh.nodes[node as usize]);
+            let arm = axes.tr_mul(&(place - Vec3::from(rigid.inertia.centre)));
+            kinds[number[node as usize] as usize] = NodeKind::Carried(Carrier {
+                node: own,
+                arm: arm.into(),
+            });
+        }
+    }
+    frames.sort_unstable_by_key(|(node, _)| *node);
+    let frames = frames.into_iter().map(|(_, frame)| frame).collect();
+    Ok((Unknowns::new(model.mesh.dim, kinds), frames))
+}
+
+fn nodes_of(model: &Model, body: &ModelBody) -> BTreeSet<u32> {
+    let cells = body.spec.cells.iter();
+    cells
+        .flat_map(|&cell| model.mesh.element_nodes(cell))
+        .copied()
+        .collect()
+}
+
+/// Why another body must not have some of these nodes, if one does.
+fn shared(model: &Model, body: &ModelBody, nodes: &BTreeSet<u32>) -> Option<&'static str> {
+    let others = model
+        .bodies
+        .iter()
+        .filter(|other| !std::ptr::eq(*other, body));
+    let discrete = model.discrete.iter().flat_map(|some| &some.spec.cells);
+    let mut cells = others.flat_map(|other| &other.spec.cells).chain(discrete);
+    let shares = cells.any(|&cell| {
+        let own = model.mesh.element_nodes(cell);
+        own.iter().any(|node| nodes.contains(node))
+    });
+    shares.then_some("it has nodes in common with another body or a discrete element; give each its own nodes and let bodies touch by a contact")
+}
+
+/// Holds what a rigid body of revolution cannot do: it moves along the axis.
+pub(crate) fn hold_axisymmetric(
+    model: &Model,
+    (bodies, unknowns): (&[Body], &Unknowns),
+    fixed: &mut [bool],
+) {
+    for (body, given) in bodies.iter().zip(&model.bodies) {
+        let Some(rigid) = body.as_rigid() else {
+            continue;
+        };
+        if given.spec.kinematics == Kinematics::Axisymmetric {
+            for unknown in unknowns.of(rigid.node()) {
+                fixed[unknown] |= unknowns.kind(unknown) != Kind::Translation(1);
+            }
+        }
+    }
+}
+
+/// Writes the initial angular velocities, about the axes of the frames. `masses`: nodes of each body.
+pub(crate) fn spin(
+    model: &Model,
+    masses: &[Vec<(u32, f64)>],
+    (unknowns, frames): (&Unknowns, &[Rotation]),
+    v: &mut [f64],
+) {
+    for (body, masses) in model.bodies.iter().zip(masses) {
+        let (Some(rigid), Some(&(node, _))) = (body.rigid, masses.first()) else {
+            continue;
+        };
+        let Some(frame) = unknowns.frame(node) else {
+            continue;
+        };
+        let spin = frames[frame].matrix().tr_mul(&Vec3::from(rigid.spin));
+        for unknown in unknowns.rotations_of(node) {
+            if let Kind::Rotation(axis) = unknowns.kind(unknown) {
+                v[unknown] = spin[axis];
+            }
+        }
+    }
+}
+
+impl System {
+    /// Where nodes are at a time (s) and a displacement, from these rotations on; those of the start are
+    /// [`System::initial_frames`].
+    pub fn places<'a>(&'a self, time: f64, u: &'a [f64], frames: &'a [Rotation]) -> Places<'a> {
+        Places {
+            unknowns: &self.unknowns,
+            time,
+            x: &self.x,
+            u,
+            frames: Frames {
+                start: frames,
+                ..Frames::default()
+            },
+        }
+    }
+
+    /// Displacement (m), velocity (m/s) or acceleration (m/s²) of a node: of a carried one with the arm r and the angular
+    /// velocity ω of its carrier `v + ω × r` and `a + ω̇ × r + ω × (ω × r)`.
+    pub fn of_node(&self, node: u32, motion: &Motion, order: Order) -> [f64; 3] {
+        let values = match order {
+            Order::Displacement => &motion.u,
+            Order::Velocity => &motion.v,
+            Order::Acceleration => &motion.a,
+        };
+        let Some(carrier) = self.unknowns.carrier(node) else {
+            return self.unknowns.vector(node, values);
+        };
+        let places = self.places(0.0, &motion.u, &motion.frames);
+        let [place, centre] = [node, carrier.node].map(|node| Vec3::from(places.of(node)));
+        let of_centre = Vec3::from(self.unknowns.vector(carrier.node, values));
+        let (start, arm) = (self.x[node as usize], place - centre);
+        let turned = |values: &[f64]| -> Vec3 {
+            let frame = self.unknowns.frame(carrier.node);
+            let frame = frame.and_then(|frame| motion.frames.get(frame));
+            let increment = self.unknowns.spin(carrier.node, &motion.u).into();
+            let now = frame
+                .copied()
+                .unwrap_or_default()
+                .then(&Rotation::cayley(&increment));
+            now.matrix() * Vec3::from(self.unknowns.spin(carrier.node, values))
+        };
+        let moved = match order {
+            Order::Displacement => place - Vec3::from(start),
+            Order::Velocity => of_centre + turned(&motion.v).cross(&arm),
+            Order::Acceleration => {
+                let spin = turned(&motion.v);
+                of_centre + turned(&motion.a).cross(&arm) + spin.cross(&spin.cross(&arm))
+            }
+        };
+        moved.into()
+    }
+
+    /// Whether an unknown is one of a node with a frame, empty without any, and the part by which the own response of points of such
+    /// nodes grows.
+    ///
+    /// More than three such points on a plane have dependent rows: their compliance is singular, and their forces are not unique. The
+    /// part makes them share their force, and leaves that part of the rates that they stop: far below the tolerance of the laws, and
+    /// far above rounding, or with friction above what its solver leaves.
+    pub(crate) fn rigid_points(&self) -> (Vec<bool>, f64) {
+        const SMOOTH: f64 = 1e-11;
+        const ROUGH: f64 = 1e-8;
+        let turning = self.unknowns.turning();
+        let count = if turning.is_empty() {
+            0
+        } else {
+            self.unknowns.len()
+        };
+        let mut rigid = vec![false; count];
+        for &node in turning {
+            rigid[self.unknowns.of(node)].fill(true);
+        }
+        (rigid, if self.tangents() > 0 { ROUGH } else { SMOOTH })
+    }
+
+    /// Refuses what rigid bodies do not take.
+    pub(crate) fn check_rigid(&self) -> Result<(), Error> {
+        let Some(body) = self.bodies.iter().find_map(Body::as_rigid) else {
+            return Ok(());
+        };
+        let why = |contact: &Contact| {
+            let carried = |node: u32| self.unknowns.carrier(node).is_some();
+            let mut own = contact.points.iter().flat_map(|point| point.carriers());
+            let faces = match &contact.target {
+                carom_contact::Target::Surface(faces) => &faces[..],
+                carom_contact::Target::Rigid(_) => &[],
+            };
+            let mut nodes = faces.iter().flat_map(|face| face.corners());
+            let rigid = own.any(|(node, _)| carried(node)) || nodes.any(|&node| carried(node));
+            rigid && contact.sliding == Sliding::Small
+        };
+        let refuse = |why| {
+            let what = Refused::Rigid(body.name().to_owned());
+            Err(Error::Nonlinear { what, why })
+        };
+        if self.nonlinear.preload.is_some() {
+            return refuse("a static stage has no rotations; begin with the dynamics");
+        }
+        if self.scheme.get().is_explicit() {
+            return refuse(
+                "an explicit step would take the moment W × J W at the velocity before it and keep neither energy nor angular \
+                 momentum; take theta, energy-momentum, newmark, generalised-alpha or hht",
+            );
+        }
+        match self.contacts.iter().any(why) {
+            true => refuse("its contacts turn with it; give them sliding = \"finite\""),
+            false => Ok(()),
+        }
+    }
+}
