@@ -51,6 +51,7 @@ impl Tie {
             frames: Frames::default(),
         };
         let mut pairing = Pairing::default();
+        pairing.clear();
         contact.pair_fully(&places, &mut Search::default(), &mut pairing);
         let nodes = contact.points.iter().map(|point| point.node()).enumerate();
         nodes
