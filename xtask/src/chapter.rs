@@ -51,7 +51,11 @@ const COLUMNS: [(&str, &str, f64); 6] = [
 ];
 
 /// Examples of the verification crate that print a table, and its file.
-const EXAMPLES: [(&str, &str); 2] = [("long_run", "long-run.md"), ("rings", "rings.md")];
+const EXAMPLES: [(&str, &str); 3] = [
+    ("long_run", "long-run.md"),
+    ("rings", "rings.md"),
+    ("combinations", "combinations.md"),
+];
 
 /// Writes `docs/tables` and the picture; what went wrong, if anything.
 pub fn write(root: &Path) -> Result<(), String> {

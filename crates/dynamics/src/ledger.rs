@@ -227,7 +227,7 @@ pub(crate) struct Squares {
 
 impl Energies {
     /// The term of the energy that the scheme balances beside kinetic and strain energy, J.
-    fn of_scheme(&self, identity: &EnergyIdentity) -> f64 {
+    pub(crate) fn of_scheme(&self, identity: &EnergyIdentity) -> f64 {
         identity.inertia * self.acceleration + identity.memory * self.memory + self.lagged
     }
 }

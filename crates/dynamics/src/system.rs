@@ -108,9 +108,9 @@ impl System {
         }
         let (system, bodies, contacts) = System::assemble(model)?;
         system.check_overlaps(&contacts)?;
+        system.check_massless(&contacts)?;
         system.check_scheme(&bodies)?;
         system.check_nonlinear()?;
-        system.check_massless(&contacts)?;
         system.check_integration()?;
         Ok(Arc::new(system))
     }
@@ -343,14 +343,22 @@ impl System {
 
     fn check_scheme(&self, bodies: &[ModelBody]) -> Result<(), Error> {
         let scheme = self.scheme.get();
-        let mut bodies = bodies.iter();
         if scheme.needs_lumped_mass()
-            && let Some(body) = bodies.find(|body| body.mass == MassKind::Consistent)
+            && let Some(body) = bodies.iter().find(|body| body.mass == MassKind::Consistent)
         {
             return Err(Error::ConsistentMass {
                 scheme: scheme.name(),
                 body: body.spec.name.clone(),
             });
+        }
+        let dissipates = |body: &&ModelBody| body.spec.material.dissipates();
+        if scheme.is_between()
+            // a run may end with its static stage, which asks for no stress between two states
+            && self.static_steps() == 0
+            && let Some(body) = bodies.iter().find(dissipates)
+        {
+            let body = body.spec.name.clone();
+            return Err(carom_bodies::Error::NoBetween { body }.into());
         }
         let refused = |contact: &&Contact| !scheme.takes(contact.law.get().level());
         if let Some(contact) = self.contacts.iter().find(refused) {

@@ -213,6 +213,20 @@ impl StepMap {
         }
     }
 
+    /// Time after the start of a step of length `dt` at which the balance of the step holds, s: that at which a steady motion
+    /// is where internal forces are taken.
+    pub fn instant(&self, dt: f64) -> f64 {
+        match self.force_fraction {
+            Some(part) => part * dt,
+            None => self.steady_force(),
+        }
+    }
+
+    /// Time at which a body in steady motion, whose memories are velocities, is where internal forces are taken, s.
+    fn steady_force(&self) -> f64 {
+        self.force.v + self.force.m - self.force.x * self.inertia.v / self.inertia.x
+    }
+
     /// Gap and rate that a law with a compliance holds for: those of the instant at which internal forces and dampers enter the
     /// balance, so that such a contact is a spring beside the others, and a stop that dissipates nothing gives back what it
     /// got. Exact laws bind the gap or the rate of the end instead ([`StepMap::gap`], [`StepMap::rate`]). The same where the
@@ -276,5 +290,24 @@ impl StepMap {
             self.rate,
         ];
         rows.iter().any(|row| row.c != 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Scheme;
+
+    #[test]
+    fn forces_are_taken_where_a_steady_motion_is_at_their_instant() {
+        let dt = 0.3;
+        for scheme in Scheme::registered() {
+            let map = scheme.get().step_map(dt);
+            let difference = map.instant(dt) - map.steady_force();
+            assert!(difference.abs() < 1e-15, "{scheme:?}: {difference}");
+        }
+        let instant = |scheme: Scheme| scheme.get().step_map(dt).instant(dt);
+        assert!((instant(Scheme::Krenk(crate::Krenk { rho_inf: 0.8 })) - 0.5 * dt).abs() < 1e-15);
+        let two_step = crate::PaoliSchatzman { restitution: 0.5 };
+        assert!(instant(Scheme::PaoliSchatzman(two_step)).abs() < 1e-15);
     }
 }

@@ -1,7 +1,6 @@
 //! A hairpin: a strip bent into two prongs, in the plane or in space, whole or cut at its plane of symmetry.
 
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::sync::Arc;
 
 use carom_bodies::Kinematics;
 use carom_contact::{Integration, Law};
@@ -49,7 +48,15 @@ impl Hairpin {
     /// # Errors
     /// A system that is refused.
     pub(crate) fn newton(&self) -> Result<Driver, Error> {
-        let system = self.system()?;
+        let system = System::new(self.model()?)?;
+        let velocity = self.fling(&system);
+        let mut newton = Driver::new(system)?;
+        newton.restart(&vec![0.0; velocity.len()], &velocity)?;
+        Ok(newton)
+    }
+
+    /// Velocities with which the prongs are flung, m/s.
+    pub(crate) fn fling(&self, system: &System) -> Vec<f64> {
         let up = self.dim - 1;
         let mut velocity = vec![0.0; system.unknowns()];
         for (node, x) in system.x.iter().enumerate() {
@@ -58,12 +65,14 @@ impl Hairpin {
             velocity[system.unknowns.first(node as u32) + up] =
                 -x[up].signum() * self.flung[upper] * part;
         }
-        let mut newton = Driver::new(system)?;
-        newton.restart(&vec![0.0; velocity.len()], &velocity)?;
-        Ok(newton)
+        velocity
     }
 
-    fn system(&self) -> Result<Arc<System>, Error> {
+    /// The hairpin at rest.
+    ///
+    /// # Errors
+    /// A mesh without its surfaces.
+    pub(crate) fn model(&self) -> Result<Model, Error> {
         let mesh = self.mesh();
         let kinematics = match self.dim {
             2 => Kinematics::PlaneStrain { thickness: 1.0 },
@@ -85,7 +94,7 @@ impl Hairpin {
         touch.integration = self.integration;
         let mut nonlinear = Nonlinear::default();
         nonlinear.iteration.tolerance = 1e-12;
-        Ok(System::new(Model {
+        Ok(Model {
             bodies: vec![strip],
             discrete: Vec::new(),
             supports,
@@ -96,7 +105,7 @@ impl Hairpin {
             adaptive: None,
             nonlinear,
             mesh,
-        })?)
+        })
     }
 
     /// The strip, with a group `skin` of its upper and lower sides, bent.

@@ -13,6 +13,7 @@ mod build;
 mod check;
 mod collision;
 mod error;
+mod features;
 mod figures;
 mod glued;
 mod glued_bar;
@@ -21,9 +22,11 @@ mod hertz;
 mod kept;
 mod kind;
 mod points;
+mod repeated;
 
 mod adaptive;
 mod adaptive_bars;
+mod adaptive_features;
 mod arlequin_bars;
 mod arlequin_block;
 mod arlequin_energy;
@@ -51,6 +54,7 @@ mod blocks;
 mod blocks_as_bars;
 mod bouncing_mass;
 mod closed_field_as_printed;
+pub mod combinations;
 mod connected_parts;
 mod contact_patch;
 mod conveyor;
@@ -58,6 +62,7 @@ mod coulomb_oscillator;
 mod crushed_stop;
 mod crushed_tube;
 mod energy_identity;
+mod energy_identity_features;
 mod first_force;
 mod glued_rotating;
 mod hertz_cylinder;
@@ -71,14 +76,20 @@ pub mod long_run;
 mod mass_on_stop;
 mod oblique_bar;
 mod order;
+mod order_features;
 mod quadrature;
 mod rejections;
+mod rejections_features;
 mod restitution;
 mod resume;
+<<<<<<< HEAD
 mod rigid_cube;
 mod rigid_hammer;
 mod rigid_sphere;
 mod rigid_top;
+=======
+mod resume_features;
+>>>>>>> acc7659 (test(verification): batteries over friction, large strain, mortar, self-contact, zones and static stages, and a table of all combinations)
 mod ring_sector;
 pub mod rings;
 mod sdnl111;
@@ -92,6 +103,7 @@ mod stick_slip;
 mod supports;
 mod taylor_bar;
 mod threads;
+mod threads_features;
 mod tori;
 mod viability;
 
@@ -124,6 +136,7 @@ macro_rules! registry {
 registry! {
     adaptive
     adaptive_bars
+    adaptive_features
     arlequin_bars
     arlequin_block
     arlequin_energy
@@ -152,6 +165,7 @@ registry! {
     bouncing_mass
     breathing_tube
     closed_field_as_printed
+    combinations
     contact_patch
     connected_parts
     conveyor
@@ -159,6 +173,7 @@ registry! {
     crushed_stop
     crushed_tube
     energy_identity
+    energy_identity_features
     first_force
     glued_rotating
     hertz_cylinder
@@ -172,14 +187,20 @@ registry! {
     mass_on_stop
     oblique_bar
     order
+    order_features
     quadrature
     rejections
+    rejections_features
     restitution
     resume
+<<<<<<< HEAD
     rigid_cube
     rigid_hammer
     rigid_sphere
     rigid_top
+=======
+    resume_features
+>>>>>>> acc7659 (test(verification): batteries over friction, large strain, mortar, self-contact, zones and static stages, and a table of all combinations)
     ring_sector
     rings
     sdnl111
@@ -193,6 +214,7 @@ registry! {
     supports
     taylor_bar
     threads
+    threads_features
     tori
     viability
 }

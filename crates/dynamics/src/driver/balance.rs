@@ -6,13 +6,15 @@
 
 use std::sync::Arc;
 
+use carom_bodies::Body;
 use carom_contact::law::Level;
 
 use super::candidates::on_row;
+use super::identity::End;
 use super::start::energies;
 use super::{Driver, Which};
 use crate::error::Error;
-use crate::ledger::{Beyond, Squares, Tolerated};
+use crate::ledger::{Beyond, Energies, Squares, Tolerated};
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
 use crate::step_map::Impulse;
@@ -169,9 +171,18 @@ impl Driver {
             false => identity,
             true => {
                 let keeps = self.system.scheme.get().keeps_acceleration();
-                EnergyIdentity {
+                let own = EnergyIdentity {
                     inertia: if keeps { identity.inertia } else { 0.0 },
                     ..EnergyIdentity::default()
+                };
+                // the other terms are quadratic in K
+                match self.system.bodies.iter().all(Body::is_linear) {
+                    true => EnergyIdentity {
+                        lag: identity.lag,
+                        memory: identity.memory,
+                        ..own
+                    },
+                    false => own,
                 }
             }
         }
@@ -213,15 +224,22 @@ impl Driver {
         let of_contact = if pushes { [0.0, 1.0] } else { weights };
         let friction = self.friction_work(of_contact);
         let obstacles = self.obstacle_work(of_contact);
-        let own_before = identity.inertia * self.acceleration_at_the_start(&identity);
+        let own_before = self.own_energy_at_the_start(&identity);
+        let own_after = self.own_energies(End::Finish, &identity, self.stored.strain);
         let springs = self.balanced_springs();
         let factor = self.contact_factor();
+        let counted = self.identity.is_some().then(|| self.work_weights());
         let (old, new) = (&self.state.motion, &self.next.motion);
         let map = &self.map;
         let vectors = &mut self.vectors;
         let with_acceleration = identity.inertia != 0.0;
         let of = (self.stored.strain, with_acceleration, Some(&new.u[..]));
-        let energies = energies(&system, new, of, &mut vectors.work);
+        let [memory, lagged] = own_after;
+        let energies = Energies {
+            memory,
+            lagged,
+            ..energies(&system, new, of, &mut vectors.work)
+        };
         let contact: Vec<f64> = vectors.contact.iter().map(|f| factor * f).collect();
         if pushes {
             for (f, c) in vectors.inertia.iter_mut().zip(&vectors.contact) {
@@ -296,8 +314,22 @@ impl Driver {
         // what supports that jump give is no inertia of the step
         let gained = energies.kinetic - start.kinetic - self.jump.work;
         let stored = energies.strain - start.strain + self.stored.hardening - start.hardening;
-        let own_energy = identity.inertia * energies.acceleration - own_before;
-        let scheme = inertia - gained - own_energy + internal - stored - self.stored.dissipated;
+        let own_energy = energies.of_scheme(&identity) - own_before;
+        // what contacts do is counted as the identity of the scheme counts it, whichever forces the balance takes
+        let work_contact = match counted {
+            Some(weights) if weights.differ(of_contact.map(|weight| weight * factor)) => {
+                let moved = |i: usize| {
+                    let change = new.v[i] - old.v[i];
+                    new.u[i] - old.u[i] - weights.lag * change
+                };
+                let travel: Vec<f64> = (0..new.u.len()).map(moved).collect();
+                weights.of([old, new], &travel)
+            }
+            _ => touch,
+        };
+        let scheme = work_contact - touch + inertia - gained - own_energy + internal
+            - stored
+            - self.stored.dissipated;
         let nodes = system.x.len() as f64;
         let travel = (0..new.u.len()).map(|i| (new.u[i] - old.u[i]).powi(2));
         let tolerated = Tolerated {
@@ -334,7 +366,7 @@ impl Driver {
             exchange.add(&system, (1, self.dt, &map.contact_impulse), |i| held[i]);
         }
         self.next.ledger.clone_from(&self.state.ledger);
-        if identity.inertia != 0.0 {
+        if identity != EnergyIdentity::default() {
             // what it gains by a new size of the step alone
             self.next.ledger.resize_to(own_before);
         }
@@ -361,7 +393,7 @@ impl Driver {
         self.next.ledger.add(
             (dt, &identity, impulses),
             &energies,
-            [load, touch - friction - obstacles, way(&means[6])],
+            [load, work_contact - friction - obstacles, way(&means[6])],
             &squares,
             forces,
         );
@@ -376,6 +408,14 @@ impl Driver {
             true => self.map.contact,
             false => 1.0,
         }
+    }
+
+    /// The term of the scheme in the energy of the ledger, at the start of the step, J.
+    fn own_energy_at_the_start(&mut self, identity: &EnergyIdentity) -> f64 {
+        let strain = self.state.ledger.balance.strain;
+        let [memory, lagged] = self.own_energies(End::Start, identity, strain);
+        let acceleration = self.acceleration_at_the_start(identity);
+        identity.inertia * acceleration + identity.memory * memory + lagged
     }
 
     /// |a|²_M at the start of the step, as far as the identity asks for it.

@@ -109,8 +109,29 @@ impl Driver {
         }
     }
 
+    /// What the laws of the candidates know; of adaptive steps their gaps without contact forces too. `tangents`: how many rows of
+    /// tangents follow that of each point in the stacked rows; none where the points have rows of their own.
+    pub(super) fn describe_candidates(&mut self, tangents: Option<u32>) {
+        let mut data = std::mem::take(&mut self.candidate_data);
+        data.clear();
+        self.free_gaps.clear();
+        for k in 0..self.candidates.len() {
+            let point = self.candidates[k];
+            let free = match tangents {
+                Some(tangents) => self.free_along(point * (1 + tangents), &self.stacked),
+                None => self.free_along(point, &self.pairing.rows),
+            };
+            data.push(self.candidate(point as usize, free));
+            if self.system.adaptive.is_some() {
+                let gap = self.gap_at_the_end(point as usize, free);
+                self.free_gaps.push(gap);
+            }
+        }
+        self.candidate_data = data;
+    }
+
     /// What the law of a candidate knows. `free`: N x of the motion of the iteration without contact forces.
-    pub(super) fn candidate(&self, point: usize, free: f64) -> Candidate {
+    fn candidate(&self, point: usize, free: f64) -> Candidate {
         let contact = self.system.point(point).0;
         let (gap, rate) = self.now(point, false);
         let [closing, approach] = self.added(point, free);
@@ -148,19 +169,7 @@ impl Driver {
         };
         let rows = &self.pairing.rows;
         compliance.update(&self.candidates, rows, &system.fixed, operators);
-        let mut data = std::mem::take(&mut self.candidate_data);
-        data.clear();
-        self.free_gaps.clear();
-        for k in 0..self.candidates.len() {
-            let point = self.candidates[k];
-            let free = self.free_along(point, &self.pairing.rows);
-            data.push(self.candidate(point as usize, free));
-            if system.adaptive.is_some() {
-                let gap = self.gap_at_the_end(point as usize, free);
-                self.free_gaps.push(gap);
-            }
-        }
-        self.candidate_data = data;
+        self.describe_candidates(None);
         let factor = self.map.contact;
         let Some((operators, compliance)) = self.effective.both() else {
             return Ok(());

@@ -140,11 +140,7 @@ impl Driver {
         };
         let begin = Instant::now();
         compliance.update(&stacked, &self.stacked, &system.fixed, operators);
-        let of_point = |&point: &u32| {
-            let free = self.free_along(point * width, &self.stacked);
-            self.candidate(point as usize, free)
-        };
-        self.candidate_data = self.candidates.iter().map(of_point).collect();
+        self.describe_candidates(Some(tangents as u32));
         let friction = self.tangential();
         let Some((operators, compliance)) = self.effective.both() else {
             return Ok(());

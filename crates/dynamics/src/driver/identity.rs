@@ -24,9 +24,21 @@ pub(super) struct WorkWeights {
     pub(super) lag: f64,
 }
 
+impl WorkWeights {
+    /// Whether they count otherwise than forces with these weights at the start and of the step.
+    pub(super) fn differ(&self, weights: [f64; 2]) -> bool {
+        self.lag != 0.0 || [self.old, self.new] != weights
+    }
+
+    /// Work of the contact forces on the way Δū of the step, J.
+    pub(super) fn of(&self, [old, new]: [&Motion; 2], travel: &[f64]) -> f64 {
+        self.old * dot(travel, &old.contact_force) + self.new * dot(travel, &new.contact_force)
+    }
+}
+
 /// One of the two states around the step.
 #[derive(Clone, Copy)]
-enum End {
+pub(super) enum End {
     Start,
     Finish,
 }
@@ -55,6 +67,27 @@ impl Driver {
     fn energies_at(&mut self, end: End, strain: f64) -> Energies {
         let system = Arc::clone(&self.system);
         let identity = self.identity.unwrap_or_default();
+        let [memory, lagged] = self.own_energies(end, &identity, strain);
+        let motion = match end {
+            End::Start => &self.state.motion,
+            End::Finish => &self.next.motion,
+        };
+        let work = &mut self.vectors.work;
+        let with_acceleration = identity.inertia != 0.0;
+        Energies {
+            memory,
+            lagged,
+            ..energies(&system, motion, (strain, with_acceleration, None), work)
+        }
+    }
+
+    /// |m|²_K and U(u - lag v) - U(u) of a motion with this strain energy, J, as far as the identity asks for them; of linear bodies.
+    pub(super) fn own_energies(
+        &mut self,
+        end: End,
+        identity: &EnergyIdentity,
+        strain: f64,
+    ) -> [f64; 2] {
         let mut place = std::mem::take(&mut self.vectors.place);
         let mut lagged = 0.0;
         if identity.lag != 0.0 {
@@ -75,17 +108,7 @@ impl Driver {
             place = std::mem::take(&mut self.vectors.place);
         }
         self.vectors.place = place;
-        let motion = match end {
-            End::Start => &self.state.motion,
-            End::Finish => &self.next.motion,
-        };
-        let work = &mut self.vectors.work;
-        let with_acceleration = identity.inertia != 0.0;
-        Energies {
-            memory,
-            lagged,
-            ..energies(&system, motion, (strain, with_acceleration, None), work)
-        }
+        [memory, lagged]
     }
 
     /// Energies of the state, with what the scheme of the step balances.
@@ -122,8 +145,7 @@ impl Driver {
                 travel[i] -= identity.lag * (new.v[i] - old.v[i]);
             }
         }
-        let work_contact = weights.old * dot(travel, &old.contact_force)
-            + weights.new * dot(travel, &new.contact_force);
+        let work_contact = weights.of([old, new], travel);
         let work_loads = dot(travel, &system.load);
         let work_links = match new.link_force.is_empty() {
             true => 0.0,

@@ -16,14 +16,15 @@ pub(super) fn damping_rate(map: &StepMap) -> Row {
     };
     match map.force.x == 0.0 {
         true => Row { x: 0.0, ..velocity },
-        false => Row::MOVING.towards(&velocity, map.force_fraction.unwrap_or(1.0)),
+        // forces that are not on the way of the step stand between both velocities
+        false => Row::MOVING.towards(&velocity, map.force_fraction.unwrap_or(0.5)),
     }
 }
 
 impl Driver {
     /// The instant at which the balance of the step holds, s.
     pub(super) fn instant(&self) -> f64 {
-        self.state.time + self.map.force_fraction.unwrap_or(1.0) * self.dt
+        self.state.time + self.map.instant(self.dt)
     }
 
     /// Loads at a time and at the configuration in `place`, N.

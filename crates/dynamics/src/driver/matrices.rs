@@ -61,7 +61,7 @@ impl Driver {
             map: &self.map,
             dt: match self.between() {
                 true => self.dt,
-                false => self.map.force_fraction.unwrap_or(1.0) * self.dt,
+                false => self.map.instant(self.dt),
             },
             time: self.instant(),
             u: &self.vectors.place,

@@ -41,7 +41,7 @@ impl Driver {
             );
             let dt = match self.between() {
                 true => self.dt,
-                false => map.force_fraction.unwrap_or(1.0) * self.dt,
+                false => map.instant(self.dt),
             };
             self.stored = self.internal((Which::Place, self.between()), dt)?;
             self.evaluate_loads(self.instant());

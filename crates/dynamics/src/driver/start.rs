@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use carom_algebra::reduce::dot;
 
+use super::identity::End;
 use super::{Driver, Which};
 use crate::control::Control;
 use crate::error::Error;
@@ -139,10 +140,15 @@ impl Driver {
         let springs = self.springs_at_place(false);
         self.forces_at_the_start(springs);
         self.start_exchange();
-        let motion = &self.state.motion;
         let identity = self.identity_of_ledger();
+        let [memory, lagged] = self.own_energies(End::Start, &identity, strain);
+        let motion = &self.state.motion;
         let of = (strain, identity.inertia != 0.0, Some(&motion.u[..]));
-        let energies = energies(&system, motion, of, &mut self.vectors.work);
+        let energies = Energies {
+            memory,
+            lagged,
+            ..energies(&system, motion, of, &mut self.vectors.work)
+        };
         let at = |k: usize| match self.state.forces.get(k) {
             Some(f) => Resultant::at(&system, (&motion.frames, &[&motion.u]), f),
             None => Resultant::default(),
