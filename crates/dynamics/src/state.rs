@@ -236,15 +236,11 @@ pub(crate) fn empty_state(system: &System) -> State {
             u: zeros.clone(),
             v: zeros.clone(),
             a: zeros.clone(),
-<<<<<<< HEAD
             frames: system.initial_frames.clone(),
-            memory: Vec::new(),
-=======
             memory: match remembers {
                 true => zeros.clone(),
                 false => Vec::new(),
             },
->>>>>>> acc7659 (test(verification): batteries over friction, large strain, mortar, self-contact, zones and static stages, and a table of all combinations)
             internal_force: zeros.clone(),
             contact_force: zeros,
             link_force: Vec::new(),

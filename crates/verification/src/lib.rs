@@ -82,14 +82,11 @@ mod rejections;
 mod rejections_features;
 mod restitution;
 mod resume;
-<<<<<<< HEAD
+mod resume_features;
 mod rigid_cube;
 mod rigid_hammer;
 mod rigid_sphere;
 mod rigid_top;
-=======
-mod resume_features;
->>>>>>> acc7659 (test(verification): batteries over friction, large strain, mortar, self-contact, zones and static stages, and a table of all combinations)
 mod ring_sector;
 pub mod rings;
 mod sdnl111;
@@ -193,14 +190,11 @@ registry! {
     rejections_features
     restitution
     resume
-<<<<<<< HEAD
+    resume_features
     rigid_cube
     rigid_hammer
     rigid_sphere
     rigid_top
-=======
-    resume_features
->>>>>>> acc7659 (test(verification): batteries over friction, large strain, mortar, self-contact, zones and static stages, and a table of all combinations)
     ring_sector
     rings
     sdnl111
