@@ -216,8 +216,8 @@ fn of_scheme(summary: &Summary) -> String {
         return String::new();
     }
     let verb = if taken > 0.0 { "took" } else { "made" };
-    let share = 100.0 * (taken / energy.largest).abs();
-    format!("; the scheme {verb} {share:.2} % of the largest energy")
+    let share = (taken / energy.largest).abs();
+    format!("; the scheme {verb} {share:.1e} of the largest energy")
 }
 
 /// The error and those of its causes that it does not already say; where the results so far are.

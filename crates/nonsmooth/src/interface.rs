@@ -132,6 +132,8 @@ pub struct Interface {
     pub circled: Option<usize>,
     factor: Option<DenseCholesky>,
     factor_of: (u64, Vec<(u32, Status)>),
+    /// Compliances of their own of the closed points, x per N: at hand, and those of the factor.
+    own: [Vec<f64>; 2],
     /// Points that are not open.
     closed: Vec<(u32, Status)>,
     /// Those whose gap or rate depends on the forces of the step.
@@ -261,11 +263,17 @@ impl Interface {
             }
         }
         self.multiply(d);
-        if self.factor_of.0 != version || self.factor_of.1 != self.coupled {
-            let own = |i: u32, status| {
-                let relation = relation(i, status);
-                relation.compliance / scale(i, &relation)
-            };
+        let own = |i: u32, status| {
+            let relation = relation(i, status);
+            relation.compliance / scale(i, &relation)
+        };
+        // of a compliant law they depend on the size of the step, on which an explicit D does not
+        let [at_hand, of_factor] = &mut self.own;
+        at_hand.clear();
+        at_hand.extend(self.coupled.iter().map(|&(i, status)| own(i, status)));
+        let stands = self.factor_of.0 == version && self.factor_of.1 == self.coupled;
+        if !stands || at_hand != of_factor {
+            of_factor.clone_from(at_hand);
             let shared = |i: u32| candidates[i as usize].faces_itself;
             self.factor = factor(&self.coupled, d, n, own, shared)?;
             self.factor_of = (version, self.coupled.clone());

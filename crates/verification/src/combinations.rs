@@ -1,6 +1,6 @@
 //! Every scheme with every law and every feature.
 //!
-//! Problem: the models of [`crate::features`], meshes as coarse as they can be: each combination of a registered scheme, a law
+//! Problem: the models of `features`, meshes as coarse as they can be: each combination of a registered scheme, a law
 //! of each kind and a feature is built, and runs until the bodies have met, or is refused with a reason. Closed solution: the
 //! balances of energy and momentum. Tolerance: 1e-11 of the largest energy and momentum, round-off as for linear steps, and what the
 //! iterations may leave over at their tolerance, which the ledger states and which must itself stay below 1e-7 of them. The table of the

@@ -12,7 +12,7 @@ use crate::summary::Zones;
 /// What is written and where.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// The results folder; an earlier one is replaced, any other folder refused ([`Folder::create`]).
+    /// The results folder; an earlier one is replaced, any other folder refused.
     pub folder: PathBuf,
     /// Title of the case.
     pub title: String,
