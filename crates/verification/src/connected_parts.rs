@@ -7,8 +7,9 @@
 //! * A linear block on a belt under tractions in time, with Coulomb's friction, 60 steps: neither loads nor friction nor the motion of the
 //!   obstacle are in its matrix: one factor for the run, and a forward and a backward sweep a step, with the two of the solve for the start.
 //! * Two equal bars as plane strips without Poisson's effect, the one linear, the other of St. Venant and Kirchhoff's law, meet at
-//!   v = 2e-6 c: the strain is 1e-6, and the second law differs from the first by about 3/2 of it. The forces agree with
-//!   those of two linear bars within 1e-5 of the plane wave's force.
+//!   v = 2e-6 c: the strain is 1e-6, and the second law differs from the first by about 3/2 of it. The force history agrees with
+//!   that of two linear bars within 1e-5 in the L2 norm. (At a wave front the two differ by the shift in time, some 1e-6 of a
+//!   transit, times the slope, which grows with the number of elements: shown, not judged.)
 
 use carom_bodies::Kinematics;
 use carom_contact::law::{Capture, Reading, Velocity};
@@ -177,7 +178,11 @@ pub(crate) const CHECK: Check = Check {
             Material::StVenantKirchhoff(StVenantKirchhoff { initial })
         })?;
         let pairs = linear.iter().zip(&mixed);
-        let difference = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        let differences: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
+        let most = differences
+            .iter()
+            .fold(0.0_f64, |most, d| most.max(d.abs()));
+        let norm = |f: &[f64]| f.iter().map(|f| f * f).sum::<f64>().sqrt();
         let peak = linear.iter().fold(0.0, |most: f64, f| most.max(*f));
         Ok(vec![
             Row::count("struck block: factorisations of the block", block, 1),
@@ -196,10 +201,14 @@ pub(crate) const CHECK: Check = Check {
             ),
             Row::at_least("two bars: peak force / that of the plane wave", peak, 0.9),
             Row::near(
-                "two bars, one of St. Venant and Kirchhoff: largest difference to two linear ones / force of the plane wave",
-                difference,
+                "two bars, one of St. Venant and Kirchhoff: difference to two linear ones, L2",
+                norm(&differences) / norm(&linear),
                 0.0,
                 1e-5,
+            ),
+            Row::shown(
+                "two bars: largest difference at an instant / force of the plane wave",
+                most,
             ),
         ])
     },

@@ -4,7 +4,7 @@
 //! elements is called by its dimension and tag, such as `2:17`. A group with a name and without elements is kept,
 //! empty. Names must be distinct over all dimensions. Signs of physical tags (reversed orientation) are dropped.
 //!
-//! **Elements.** Those of [`Kind::ALL`]; any other type is refused by name. All elements of the file are kept, in
+//! **Elements.** Those of [`carom_elements::Kind::ALL`]; any other type is refused by name. All elements of the file are kept, in
 //! a group or not, in file order within their kind. MSH 2.2 writes an element once for each physical group that it
 //! is in: two elements of one kind on the same nodes are one, in the groups of both.
 //!
