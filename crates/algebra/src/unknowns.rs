@@ -67,16 +67,19 @@ impl Unknowns {
     }
 
     /// Dimension of space: translations of a node that has any.
+    #[inline]
     pub fn dim(&self) -> usize {
         self.dim
     }
 
     /// Number of nodes.
+    #[inline]
     pub fn nodes(&self) -> usize {
         self.first.len() - 1
     }
 
     /// Number of unknowns.
+    #[inline]
     pub fn len(&self) -> usize {
         self.node.len()
     }
@@ -99,6 +102,7 @@ impl Unknowns {
     }
 
     /// All unknowns of nodes that follow each other.
+    #[inline]
     pub fn of_range(&self, nodes: Range<usize>) -> Range<usize> {
         self.first[nodes.start] as usize..self.first[nodes.end] as usize
     }
@@ -111,21 +115,25 @@ impl Unknowns {
     }
 
     /// Rotations of a node.
+    #[inline]
     pub fn rotations_of(&self, node: u32) -> Range<usize> {
         self.translations_of(node).end..self.of(node).end
     }
 
     /// What carries a node, if anything does.
+    #[inline]
     pub fn carrier(&self, node: u32) -> Option<&Carrier> {
         self.carriers.get(node as usize)?.as_ref()
     }
 
     /// The node whose unknowns move a node: its carrier, or itself.
+    #[inline]
     pub fn moved_by(&self, node: u32) -> u32 {
         self.carrier(node).map_or(node, |carrier| carrier.node)
     }
 
     /// Nodes with rotations, in the order of their frames.
+    #[inline]
     pub fn turning(&self) -> &[u32] {
         &self.turning
     }
@@ -182,11 +190,12 @@ impl Unknowns {
     /// The translations of a node in a system vector, with zeros beyond the dimension.
     #[inline]
     pub fn vector(&self, node: u32, values: &[f64]) -> [f64; 3] {
-        let mut vector = [0.0; 3];
-        for (to, from) in vector.iter_mut().zip(&values[self.translations_of(node)]) {
-            *to = *from;
+        match values[self.translations_of(node)] {
+            [x, y, z] => [x, y, z],
+            [x, y] => [x, y, 0.0],
+            [x] => [x, 0.0, 0.0],
+            _ => [0.0; 3],
         }
-        vector
     }
 }
 

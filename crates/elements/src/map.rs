@@ -25,11 +25,17 @@ pub fn point(x: &[[f64; 3]], n: &[f64]) -> [f64; 3] {
 /// is in units of length^dim.
 #[inline]
 pub fn jacobian(x: &[[f64; 3]], dn: &[[f64; 3]], dim: usize) -> ([[f64; 3]; 3], f64) {
+    let mut sum = [[0.0; 3]; 3];
+    for (x, dn) in x.iter().zip(dn) {
+        for row in 0..3 {
+            for column in 0..3 {
+                sum[row][column] += x[row] * dn[column];
+            }
+        }
+    }
     let mut j = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for row in 0..dim {
-        for column in 0..dim {
-            j[row][column] = x.iter().zip(dn).map(|(x, dn)| x[row] * dn[column]).sum();
-        }
+        j[row][..dim].copy_from_slice(&sum[row][..dim]);
     }
     let det = dot(&j[0], &cross(&j[1], &j[2]));
     (j, det)

@@ -87,7 +87,10 @@ impl Row {
     /// Writes the combination of the known vectors, x and c left out.
     pub fn known<'a>(&self, start: impl Into<Known<'a>>, out: &mut [f64]) {
         let Known { u, v, a, memory } = start.into();
-        for i in 0..out.len() {
+        let n = out.len();
+        // of equal length, so that the loop is without checks
+        let (u, v, a) = (&u[..n], &v[..n], &a[..n]);
+        for i in 0..n {
             out[i] = self.u * u[i] + self.v * v[i] + self.a * a[i];
         }
         Row::add(self.m, memory, out);
@@ -96,7 +99,9 @@ impl Row {
     /// Writes the whole combination.
     pub fn whole<'a>(&self, start: impl Into<Known<'a>>, x: &[f64], c: &[f64], out: &mut [f64]) {
         let Known { u, v, a, memory } = start.into();
-        for i in 0..out.len() {
+        let n = out.len();
+        let (u, v, a, x) = (&u[..n], &v[..n], &a[..n], &x[..n]);
+        for i in 0..n {
             out[i] = self.u * u[i] + self.v * v[i] + self.a * a[i] + self.x * x[i];
         }
         Row::add(self.m, memory, out);

@@ -67,8 +67,10 @@ impl Driver {
         if let Some((operators, _)) = self.effective.both() {
             operators.end(&mut self.vectors.half, &mut self.vectors.dx);
         }
-        for (dx, jump) in self.vectors.dx.iter_mut().zip(&self.vectors.jump) {
-            *dx += jump;
+        if self.vectors.jumps {
+            for (dx, jump) in self.vectors.dx.iter_mut().zip(&self.vectors.jump) {
+                *dx += jump;
+            }
         }
         self.phases.sweeps += begin.elapsed();
     }

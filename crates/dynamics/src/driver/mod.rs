@@ -145,6 +145,8 @@ struct Vectors {
     dx: Vec<f64>,
     /// What supports that move add to the unknown in the first iteration.
     jump: Vec<f64>,
+    /// Whether any of it is not zero.
+    jumps: bool,
     /// Loads, inertia, internal and damping forces at x, N.
     load: Vec<f64>,
     inertia: Vec<f64>,
@@ -325,6 +327,7 @@ impl Driver {
                 x: zeros(),
                 dx: zeros(),
                 jump: zeros(),
+                jumps: false,
                 load: zeros(),
                 inertia: zeros(),
                 internal: zeros(),

@@ -47,13 +47,17 @@ impl Driver {
             self.evaluate_loads(self.instant());
         }
         let vectors = &mut self.vectors;
-        for i in 0..vectors.residual.len() {
-            vectors.residual[i] = match self.system.fixed[i] {
-                true => 0.0,
-                false => {
-                    vectors.load[i] - vectors.inertia[i] - vectors.internal[i] - vectors.damping[i]
-                }
-            };
+        let residual = &mut vectors.residual[..];
+        let n = residual.len();
+        let (fixed, load, inertia) = (
+            &self.system.fixed[..n],
+            &vectors.load[..n],
+            &vectors.inertia[..n],
+        );
+        let (internal, damping) = (&vectors.internal[..n], &vectors.damping[..n]);
+        for i in 0..n {
+            let left = load[i] - inertia[i] - internal[i] - damping[i];
+            residual[i] = if fixed[i] { 0.0 } else { left };
         }
         if !self.link_force.is_empty() {
             let vectors = &mut self.vectors;

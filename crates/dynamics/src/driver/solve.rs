@@ -175,7 +175,7 @@ impl Driver {
 
     /// Whether supports jump in the iteration.
     pub(super) fn jumps(&self) -> bool {
-        self.vectors.jump.iter().any(|jump| *jump != 0.0)
+        self.vectors.jumps
     }
 
     /// Whether iterations may end. `before`: the imbalance one iteration ago. Within what rounding leaves they end where they
@@ -216,6 +216,7 @@ impl Driver {
             }
         }
         vectors.jump.fill(0.0);
+        vectors.jumps = false;
         let end = &map.displacement;
         if end.x == 0.0 {
             return;
@@ -227,6 +228,7 @@ impl Driver {
         for i in (0..system.unknowns()).filter(|&i| system.fixed[i]) {
             vectors.x[i] = (motion.u[i] - vectors.place[i]) / end.x;
             vectors.jump[i] = (vectors.work[i] - motion.u[i]) / end.x;
+            vectors.jumps |= vectors.jump[i] != 0.0;
         }
     }
 
@@ -280,6 +282,15 @@ impl Driver {
         }
     }
 
+    /// Leaves this part of the jump of the supports to the iterations to come.
+    fn shorten_jump(&mut self, rest: f64) {
+        let vectors = &mut self.vectors;
+        for jump in &mut vectors.jump {
+            *jump *= rest;
+        }
+        vectors.jumps = vectors.jump.iter().any(|jump| *jump != 0.0);
+    }
+
     /// Goes the way of the iteration, or as much of it as does not make things much worse.
     fn go(&mut self, before: &Standing, jumps: bool) -> Result<Standing, Error> {
         self.vectors.before.copy_from_slice(&self.vectors.x);
@@ -311,12 +322,8 @@ impl Driver {
                 self.halve_forces();
             }
         }
-        let mut rest = 0.0;
-        if jumps && share < 1.0 {
-            rest = 1.0 - share;
-        }
-        for jump in self.vectors.jump.iter_mut() {
-            *jump *= rest;
+        if jumps {
+            self.shorten_jump(1.0 - share);
         }
         match last {
             Some(Ok(standing)) => {
