@@ -13,16 +13,10 @@ use source::Source;
 use crate::files;
 
 /// Folders in which circles are known, and why they still stand. A folder without one must leave the list.
-const KNOWN: [(&str, &str); 2] = [
-    (
-        "crates/contact/src/",
-        "the search keeps a pairing, which searches; places, obstacles and stencils stand in the files that use them",
-    ),
-    (
-        "crates/dynamics/src/",
-        "system, state and records import each other, and so do the driver and its stages: both become crates",
-    ),
-];
+const KNOWN: [(&str, &str); 1] = [(
+    "crates/dynamics/src/",
+    "system, state and records import each other, and so do the driver and its stages: both become crates",
+)];
 
 /// A module by the names that lead to it from the root of its crate.
 type Module = Vec<String>;

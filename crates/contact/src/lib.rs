@@ -8,6 +8,7 @@
 
 mod contact;
 mod initial;
+mod mortar;
 mod obstacle;
 mod pairing;
 mod places;
@@ -20,11 +21,12 @@ pub use carom_laws as law;
 pub use carom_laws::Law;
 pub use contact::{Contact, Integration, Sliding, Target};
 pub use initial::{Initial, Penetration};
+pub use mortar::{Basis, Mortar};
 pub use obstacle::{
     Cylinder, Distance, Motion, Obstacle, Placed, Plane, RigidSurface, Shape, Side, Sphere,
     Translation, Turn,
 };
-pub use pairing::{Basis, Mortar, Pairing, Tie};
+pub use pairing::{Pairing, Tie};
 pub use places::{Balance, Frames, Places};
 pub use point::Point;
 pub use rows::Rows;

@@ -3,6 +3,8 @@
 use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::{Mat3, Vec3};
 use carom_algebra::unknowns::{Carrier, Kind, Unknowns};
+use carom_elements::MAX_FACE_NODES;
+use carom_mesh::Face;
 
 /// Rotations of the nodes that have any.
 #[derive(Clone, Copy, Debug, Default)]
@@ -59,6 +61,15 @@ impl Places<'_> {
                 [0, 1, 2].map(|i| place[i] + arm[i])
             }
         }
+    }
+
+    /// Current positions of the nodes of a face in m, zero beyond their number.
+    pub(crate) fn of_face(&self, face: &Face) -> [[f64; 3]; MAX_FACE_NODES] {
+        let mut positions = [[0.0; 3]; MAX_FACE_NODES];
+        for (position, &node) in positions.iter_mut().zip(face.corners()) {
+            *position = self.of(node);
+        }
+        positions
     }
 
     /// Dimension of space.

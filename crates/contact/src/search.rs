@@ -8,11 +8,11 @@
 //! None of this changes results, bit for bit: the closest face is always the first of those whose projection is
 //! closest, as if all had been asked.
 
-use carom_elements::{Kind, MAX_FACE_NODES};
+use carom_elements::Kind;
 use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
 
 use crate::sight::View;
-use crate::{Pairing, Places, Sight};
+use crate::{Places, Sight};
 
 /// Renewals of an unmoved tree from which on points keep their faces.
 const SLOW: u32 = 3;
@@ -49,8 +49,6 @@ pub struct Search {
     /// Unit normals of the secondary faces, where sight asks for them.
     normals: Vec<[f64; 3]>,
     near: Vec<u32>,
-    /// Scratch of [`Contact::pair`](crate::Contact::pair) for the mortar method.
-    pub(crate) pairing: Pairing,
     /// Projections made since the last renewal.
     projections: usize,
     /// For each query its way over the faces in the step; empty where none is looked at.
@@ -405,7 +403,7 @@ fn foot_on<'a>(
     x: &[f64; 3],
 ) -> (Projection, &'a Face) {
     let face = &faces[item as usize];
-    let positions = positions(places, face);
+    let positions = places.of_face(face);
     (project(face, &positions[..face.corners().len()], x), face)
 }
 
@@ -415,18 +413,9 @@ fn diagonal(places: &Places, face: &Face) -> f64 {
     squared(&bounds.min, &bounds.max).sqrt()
 }
 
-/// Positions of the nodes of a face, m.
-pub(crate) fn positions(places: &Places, face: &Face) -> [[f64; 3]; MAX_FACE_NODES] {
-    let mut positions = [[0.0; 3]; MAX_FACE_NODES];
-    for (position, &node) in positions.iter_mut().zip(face.corners()) {
-        *position = places.of(node);
-    }
-    positions
-}
-
 /// A box that holds a face.
 fn hull(places: &Places, face: &Face) -> Bounds {
-    Bounds::of_face(face.kind, &positions(places, face)[..face.corners().len()])
+    Bounds::of_face(face.kind, &places.of_face(face)[..face.corners().len()])
 }
 
 /// Whether a point faces the face on which its closest point lies: whether the way to it runs sideways by no more than

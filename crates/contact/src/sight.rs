@@ -15,7 +15,6 @@ use carom_algebra::unknowns::Unknowns;
 use carom_elements::{MAX_FACE_NODES, map};
 use carom_mesh::{Bounds, BoxTree, Face, Projection};
 
-use crate::search::positions;
 use crate::{Frames, Places, Point};
 
 /// Cosine of the angle between the normals of a point and of a face up to which the face is in view.
@@ -183,7 +182,7 @@ impl Sight {
             let view = self.of(k);
             let behind = |item: u32| {
                 let face = &target[item as usize];
-                let x = positions(&places, face);
+                let x = places.of_face(face);
                 let foot = carom_mesh::project(face, &x[..face.corners().len()], &place);
                 // where a wall bends sharply the closest point is an edge, which none of its faces may face
                 let sideways = foot.distance.powi(2) - foot.gap.powi(2);
@@ -240,7 +239,7 @@ fn diagonal(bounds: &Bounds) -> f64 {
 
 /// Unit normal of a face at the mean of its reference corners.
 fn normal(face: &Face, places: &Places) -> [f64; 3] {
-    let (table, x) = (face.kind.table(), positions(places, face));
+    let (table, x) = (face.kind.table(), places.of_face(face));
     if table.dim == 0 {
         return face.axis;
     }

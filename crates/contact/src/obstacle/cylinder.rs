@@ -1,6 +1,6 @@
 //! A rigid circular cylinder without ends.
 
-use super::{Distance, Side, round};
+use super::distance::{Distance, Side, round};
 
 /// Rigid cylinder of infinite length; in the plane, with its axis along z, a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! A rigid plane.
 
-use super::Distance;
+use super::distance::Distance;
 
 /// Rigid plane: the material must stay on the side to which the normal points.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! A rigid sphere.
 
-use super::{Distance, Side, round};
+use super::distance::{Distance, Side, round};
 
 /// Rigid sphere, a circle in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

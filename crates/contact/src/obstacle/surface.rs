@@ -3,7 +3,7 @@
 use carom_elements::{MAX_FACE_NODES, map};
 use carom_mesh::{Bounds, BoxTree, Face, Mesh, Projection, Surface, project};
 
-use super::Distance;
+use super::distance::Distance;
 use crate::search::faces_point;
 
 /// Rigid surface of faces: the material must stay on the side to which their normals point.

@@ -1,9 +1,14 @@
 //! The curvature of a stencil as a small matrix over the unknowns of its nodes.
 
 use carom_algebra::csr::Csr;
+use carom_algebra::tensor::Vec3;
+use carom_elements::MAX_FACE_NODES;
 
-use super::curvature::Form;
-use super::stencil::{Stencil, UNKNOWNS};
+/// The largest number of unknowns of a stencil.
+pub const UNKNOWNS: usize = 6 * MAX_FACE_NODES;
+
+/// A linear form of the motion of the stencil's nodes, those of the point first: one vector per node.
+pub type Form = [Vec3; 2 * MAX_FACE_NODES];
 
 /// Small symmetric matrix over the unknowns of a stencil.
 pub struct Block {
@@ -23,16 +28,15 @@ impl Block {
         }
     }
 
-    /// Zeros over the unknowns of a stencil.
-    pub fn clear(&mut self, stencil: &Stencil) {
-        self.n = self.dim * stencil.relative().count();
+    /// Zeros over the unknowns of so many nodes.
+    pub fn clear(&mut self, nodes: usize) {
+        self.n = self.dim * nodes;
         self.entries[..self.n * self.n].fill(0.0);
     }
 
-    /// Adds the block to the matrix over all unknowns.
-    pub fn add_to(&self, stencil: &Stencil, matrix: &mut Csr) {
-        let (unknowns, n) = stencil.unknowns(self.dim);
-        matrix.add_block(&unknowns[..n], &self.entries[..n * n]);
+    /// Adds the block to the matrix over all unknowns, in which its own are these.
+    pub fn add_to(&self, unknowns: &[u32], matrix: &mut Csr) {
+        matrix.add_block(unknowns, &self.entries[..self.n * self.n]);
     }
 
     /// Adds value · matrix in the rows of one node and the columns of another.

@@ -24,12 +24,9 @@
 use carom_algebra::tensor::Vec3;
 use carom_elements::{MAX_FACE_NODES as NODES, map};
 
-use super::block::Block;
-use super::stencil::Foothold;
+use super::block::{Block, Form};
+use super::foothold::Foothold;
 use crate::Point;
-
-/// A linear form of the motion of the stencil's nodes, those of the point first: one vector per node.
-pub type Form = [Vec3; 2 * NODES];
 
 /// The face at the foot: derivatives of its shape functions and what they make of its nodes.
 pub struct Shape<'a> {

@@ -7,9 +7,12 @@
 mod block;
 mod clip;
 mod curvature;
+mod foothold;
 mod merge;
 mod mortar;
 mod overlap;
+mod pair;
+mod share;
 mod stencil;
 mod tie;
 
@@ -17,11 +20,10 @@ use carom_algebra::csr::Csr;
 
 use self::block::Block;
 use self::merge::Merge;
-use self::mortar::Quadrature;
-pub use self::mortar::{Basis, Mortar};
+use self::share::{Quadrature, Share};
 use self::stencil::Stencil;
 pub use self::tie::Tie;
-use crate::{Contact, Integration, Places, Rows, Search};
+use crate::{Places, Rows};
 
 /// Contact points of a list of contacts at one configuration, with the derivatives that Newton's method and friction
 /// ask for.
@@ -32,7 +34,7 @@ pub struct Pairing {
     /// Gaps, normals and rows N = ∂g/∂u.
     ///
     /// N is the derivative of the gap, also where the foot is at the rim of its face and the normal does not pass through
-    /// the point (there [`Contact::pair`] leaves out the turning of the face). A force `Nᵀ P` has no resultant and no
+    /// the point (there [`Contact::pair`](crate::Contact::pair) leaves out the turning of the face). A force `Nᵀ P` has no resultant and no
     /// moment.
     pub rows: Rows,
     /// Rows T of the two tangents at a point: `T v` is the velocity in m/s at which the secondary slides over the primary
@@ -55,14 +57,6 @@ pub struct Pairing {
     ends: Vec<u32>,
     dim: usize,
     work: Work,
-}
-
-/// A stencil's part in a multiplier: w_q φ_A.
-#[derive(Clone, Copy, Debug)]
-struct Share {
-    point: u32,
-    stencil: u32,
-    weight: f64,
 }
 
 /// Scratch of the mortar method.
@@ -231,47 +225,23 @@ impl Pairing {
 /// Adds the curvature of stencils times their loads; those that follow each other on the same nodes make one block.
 fn add_loads<'a>(loads: impl Iterator<Item = (&'a Stencil, f64)>, dim: usize, matrix: &mut Csr) {
     let mut block = Block::new(dim);
+    let mut add = |block: &Block, first: &Stencil| {
+        let (unknowns, n) = first.unknowns(dim);
+        block.add_to(&unknowns[..n], matrix);
+    };
     let mut first: Option<&Stencil> = None;
     // those of carried nodes are left to the iteration: they turn with the rotation too
     for (stencil, load) in loads.filter(|(stencil, _)| !stencil.carried) {
         if !first.is_some_and(|first| first.is_like(stencil)) {
             if let Some(first) = first {
-                block.add_to(first, matrix);
+                add(&block, first);
             }
-            block.clear(stencil);
+            block.clear(stencil.relative().count());
             first = Some(stencil);
         }
         stencil.add_curvature(load, &mut block);
     }
     if let Some(first) = first {
-        block.add_to(first, matrix);
-    }
-}
-
-impl Contact {
-    /// Appends all points of the contact at the given configuration, with tangents and curvature.
-    ///
-    /// Which points face what is decided as in [`Contact::pair`]; the gaps are the same, and so are the rows of points
-    /// whose foot is not at a rim.
-    pub fn pair_fully(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
-        pairing.dim = places.dim();
-        self.renew(places, search);
-        let first = pairing.len();
-        self.pair_points(places, search, pairing);
-        for k in 0..self.points.len() {
-            pairing.rows.shift(first + k, self.offset(k));
-        }
-    }
-
-    fn pair_points(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
-        if let (Integration::Mortar { basis }, Some(mortar)) = (self.integration, &self.mortar)
-            && !mortar.is_ends()
-        {
-            return mortar.pair(self, basis, places, search, pairing);
-        }
-        for (k, point) in self.points.iter().enumerate() {
-            let stencil = Stencil::new(self, places, search, (point, self.view(k), pairing.span));
-            pairing.push(places, point.area, stencil);
-        }
+        add(&block, first);
     }
 }

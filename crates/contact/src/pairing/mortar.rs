@@ -19,18 +19,15 @@
 //! these, derived here; the gap of a point along the primary normal, rather than an averaged secondary one, is a choice
 //! of this project.
 
-use carom_elements::{Element, MAX_FACE_NODES, map};
+use carom_elements::Element;
 use carom_mesh::{Bounds, Face, Projection, project};
-use serde::{Deserialize, Serialize};
 
-use super::overlap::{Cell, Sample, cells, linear};
+use super::Pairing;
+use super::overlap::{Cell, Sample, cells};
+use super::share::{Quadrature, Share};
 use super::stencil::Stencil;
-use super::{Pairing, Share};
-use crate::search::positions;
+use crate::mortar::{Basis, CORNERS, Mortar, linear};
 use crate::{Contact, Places, Point, Search, Target};
-
-/// The largest number of multipliers of a face: that of its corners.
-const CORNERS: usize = 4;
 
 /// Part of its area that a multiplier must have opposite it to face anything.
 const LEAST: f64 = 1e-6;
@@ -39,121 +36,7 @@ const LEAST: f64 = 1e-6;
 /// counts as facing nothing. In a step parts must come closer by less.
 const FAR: f64 = 4.0;
 
-/// Shape functions of the multipliers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Basis {
-    /// The linear shape functions of the corners of the faces.
-    Standard,
-    /// Their biorthogonal functions, `∫ ψ_A φ_B = δ_AB ∫ φ_B` on each face: weak gaps of neighbours then share no
-    /// secondary node of linear faces. On a face partly opposite to nothing the integrals are those over the rest
-    /// (Cichosz and Bischoff 2011); where that rest is too thin to tell the functions apart they are the standard ones.
-    Dual,
-}
-
-/// Faces of a secondary surface with the numbers of their multipliers.
-///
-/// Multipliers sit at the corners of the faces, and their functions are linear between them: midside nodes of quadratic
-/// faces have none, because the integrals of their corners' own shape functions vanish or are negative.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mortar {
-    faces: Vec<Face>,
-    /// For each face the points of its corners.
-    multipliers: Vec<[u32; CORNERS]>,
-    /// For each face the factor of its measure at its nodes.
-    factors: Vec<[f64; MAX_FACE_NODES]>,
-}
-
 impl Mortar {
-    /// The multipliers of a surface and their points: the corners of the faces, sorted, with the areas `∫ φ_A dΓ` of the
-    /// whole surface. The ends of bars have one multiplier each.
-    ///
-    /// `x`: reference coordinates by system number, m. `factor`: area in m² that a unit of the measure of the faces
-    /// stands for at a place, as in [`Point::of_faces`]; between nodes it is interpolated.
-    pub fn new(
-        faces: Vec<Face>,
-        x: &[[f64; 3]],
-        factor: impl Fn(&[f64; 3]) -> f64,
-    ) -> (Mortar, Vec<Point>) {
-        let corners = |face: &Face| linear(face.kind.table()).nodes;
-        let mut nodes: Vec<u32> = faces
-            .iter()
-            .flat_map(|face| face.corners()[..corners(face)].to_vec())
-            .collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        let multipliers = faces.iter().map(|face| {
-            let mut numbers = [u32::MAX; CORNERS];
-            for (number, node) in numbers.iter_mut().zip(&face.corners()[..corners(face)]) {
-                *number = nodes.partition_point(|other| other < node) as u32;
-            }
-            numbers
-        });
-        let factors = faces.iter().map(|face| {
-            let mut factors = [0.0; MAX_FACE_NODES];
-            for (to, &node) in factors.iter_mut().zip(face.corners()) {
-                *to = factor(&x[node as usize]);
-            }
-            factors
-        });
-        let mortar = Mortar {
-            multipliers: multipliers.collect(),
-            factors: factors.collect(),
-            faces,
-        };
-        let points = mortar.points(x, &nodes);
-        (mortar, points)
-    }
-
-    fn points(&self, x: &[[f64; 3]], nodes: &[u32]) -> Vec<Point> {
-        let mut areas = vec![0.0; nodes.len()];
-        for index in 0..self.faces.len() {
-            let rule = self.faces[index].kind.table().mass_rule;
-            for (xi, weight) in rule.points.iter().zip(rule.weights) {
-                let weight = weight * self.measure(index, xi, x);
-                for (&number, phi) in self.multipliers[index].iter().zip(self.phi(index, xi)) {
-                    if number != u32::MAX {
-                        areas[number as usize] += weight * phi;
-                    }
-                }
-            }
-        }
-        let total: f64 = areas.iter().sum();
-        let areas = nodes.iter().zip(areas);
-        areas
-            .map(|(&node, area)| Point::at_node(node, area, area / total))
-            .collect()
-    }
-
-    /// Whether the surface is made of ends of bars: there is nothing to integrate over.
-    pub(super) fn is_ends(&self) -> bool {
-        self.faces.iter().all(|face| face.kind.table().dim == 0)
-    }
-
-    /// Area per unit of the reference cell, from the reference coordinates.
-    fn measure(&self, index: usize, xi: &[f64; 3], x: &[[f64; 3]]) -> f64 {
-        let face = &self.faces[index];
-        let (table, mut positions) = (face.kind.table(), [[0.0; 3]; MAX_FACE_NODES]);
-        for (position, &node) in positions.iter_mut().zip(face.corners()) {
-            *position = x[node as usize];
-        }
-        let (mut shape, mut gradients) = ([0.0; MAX_FACE_NODES], [[0.0; 3]; MAX_FACE_NODES]);
-        (table.shape)(xi, &mut shape[..table.nodes]);
-        (table.gradient)(xi, &mut gradients[..table.nodes]);
-        let nodes = table.nodes;
-        let (measure, _) = map::measure(&positions[..nodes], &gradients[..nodes], table.dim);
-        let factors = self.factors[index].iter().zip(&shape[..nodes]);
-        measure * factors.map(|(factor, n)| factor * n).sum::<f64>()
-    }
-
-    /// Linear functions of the corners, zero beyond their number.
-    fn phi(&self, index: usize, xi: &[f64; 3]) -> [f64; CORNERS] {
-        let element = linear(self.faces[index].kind.table());
-        let mut phi = [0.0; CORNERS];
-        (element.shape)(xi, &mut phi[..element.nodes]);
-        phi
-    }
-
     /// Appends the multipliers of the contact as points.
     pub(super) fn pair(
         &self,
@@ -225,14 +108,6 @@ impl Mortar {
     }
 }
 
-/// A quadrature point of one face.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Quadrature {
-    stencil: u32,
-    weight: f64,
-    phi: [f64; CORNERS],
-}
-
 /// The quadrature points of one face on their way into the pools.
 struct Sweep<'a> {
     mortar: &'a Mortar,
@@ -268,10 +143,7 @@ impl<'a> Sweep<'a> {
         search: &mut Search,
         found: &mut Vec<u32>,
     ) {
-        let (x, element) = (
-            positions(self.places, self.face()),
-            self.face().kind.table(),
-        );
+        let (x, element) = (self.places.of_face(self.face()), self.face().kind.table());
         // a face sees what its first corner sees
         let view = contact.view(self.mortar.multipliers[self.index][0] as usize);
         for cell in cells(element, &x[..element.nodes]) {
@@ -295,7 +167,7 @@ impl<'a> Sweep<'a> {
         face: &Face,
         sees: impl Fn(&Projection) -> bool,
     ) {
-        let (x, element) = (positions(self.places, face), face.kind.table());
+        let (x, element) = (self.places.of_face(face), face.kind.table());
         let x = &x[..element.nodes];
         for other in cells(element, x) {
             cell.shared(&other, low, |sample| {

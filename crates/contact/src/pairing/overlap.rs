@@ -51,17 +51,6 @@ pub struct Sample {
     pub weight: f64,
 }
 
-/// The element whose shape functions carry the multipliers of a face: that of its corners.
-pub fn linear(element: &Element) -> &'static Element {
-    let square = (element.contains)(&[0.9, 0.9, 0.0], 0.0);
-    match (element.dim, square) {
-        (0, _) => Kind::Point1.table(),
-        (1, _) => Kind::Bar2.table(),
-        (_, true) => Kind::Quad4.table(),
-        (_, false) => Kind::Tri3.table(),
-    }
-}
-
 /// The nodes of the linear cells of a face.
 fn parts(element: &Element) -> &'static [&'static [usize]] {
     match (element.dim, element.nodes) {

@@ -1,16 +1,14 @@
 //! A point of the secondary surface and its closest point on what it faces: gap, rows and second derivative.
 
 use carom_algebra::tensor::Vec3;
-use carom_elements::{Element, MAX_FACE_NODES as NODES};
+use carom_elements::MAX_FACE_NODES as NODES;
 use carom_mesh::{Face, Projection};
 
-use super::block::Block;
-use super::curvature::{Form, Shape};
+use super::block::{Block, Form, UNKNOWNS};
+use super::curvature::Shape;
+use super::foothold::Foothold;
 use crate::sight::View;
 use crate::{Contact, Places, Point, Rows, Search, Target};
-
-/// The largest number of unknowns of a stencil.
-pub(super) const UNKNOWNS: usize = 6 * NODES;
 
 /// A point, its gap, and what is at the other end of it.
 #[derive(Clone, Debug)]
@@ -40,22 +38,6 @@ enum Foot {
         /// Its mean velocity over the span of the pairing, m/s.
         carried: [f64; 3],
     },
-}
-
-/// A foot on a face.
-#[derive(Clone, Debug)]
-pub(super) struct Foothold {
-    pub face: Face,
-    /// Positions of its nodes, m.
-    pub x: [[f64; 3]; NODES],
-    /// Coordinates of the foot in the reference cell.
-    pub xi: [f64; 3],
-    /// N_b there.
-    pub shape: [f64; NODES],
-    /// From the foot to the point, m.
-    pub r: [f64; 3],
-    /// Whether r is normal to the face.
-    pub inside: bool,
 }
 
 impl Stencil {
@@ -263,18 +245,6 @@ impl Stencil {
                 block.add_nodes(a, b, factor * s * t, hessian);
             }
         }
-    }
-}
-
-impl Foothold {
-    /// Row of data of the face.
-    pub fn element(&self) -> &'static Element {
-        self.face.kind.table()
-    }
-
-    /// Dimension of the face.
-    pub fn dim(&self) -> usize {
-        self.element().dim
     }
 }
 

@@ -3,9 +3,9 @@
 use carom_algebra::unknowns::Unknowns;
 use carom_mesh::Face;
 
-use super::{Basis, Mortar, Pairing};
+use super::Pairing;
 use crate::law::Displacement;
-use crate::{Contact, Frames, Integration, Law, Places, Search, Sliding, Target};
+use crate::{Basis, Contact, Frames, Integration, Law, Mortar, Places, Search, Sliding, Target};
 
 /// What one multiplier of a tie holds together.
 #[derive(Clone, Debug, PartialEq)]
