@@ -17,7 +17,7 @@ const PREFACE: &str = "\
 A case is one TOML file, in UTF-8. Names are physical groups of the mesh or names given in the file, never numbers. A choice is a key \
 with its own table: `law.velocity = { capture = \"half\" }`. An unknown key is an error. A bare number is in SI units; a text carries its \
 unit and is checked for its dimension: `\"254 mm\"`, `\"210 GPa\"`, `\"7.8 t/m^3\"`. Units are products and quotients, read from left to \
-right, of m, g, s, N, Pa, J, W, Hz with the SI prefixes from p to T, of t, bar, min, h, in, ft, rad and deg, with integer exponents. \
+right, of m, g, s, N, Pa, J, W, Hz with the SI prefixes from p to T, of t, bar, gn (standard gravity), min, h, in, ft, rad and deg, with integer exponents. \
 Vectors have one to three components; those left out are zero.
 
 `carom run case.toml --set time.step=\"1 us\"` replaces the value at that key path for one run.
@@ -49,6 +49,7 @@ const ORDER: &[&str] = &[
     "spring",
     "dashpot",
     "stop",
+    "signal",
     "support",
     "load",
     "contact",
@@ -106,6 +107,7 @@ impl<'a> Page<'a> {
                 };
                 self.heading(&format!("`{path}.{key}`"), level);
                 let _ = writeln!(self.text, "\nValue: {value}. {lead}");
+                self.rows(&format!("{path}.{key}"), inner, level);
             }
         }
         if target.get("properties").is_some() {
@@ -120,7 +122,6 @@ impl<'a> Page<'a> {
                 || target
                     .get("additionalProperties")
                     .is_some_and(Value::is_object);
-            let item = target.get("items").map(|item| resolve(self.root, item));
             let branches = alternatives(self.root, target).into_iter();
             for branch in branches.filter(|branch| keyed(branch).is_none()) {
                 if branch.get("properties").is_some() {
@@ -136,10 +137,21 @@ impl<'a> Page<'a> {
             }
             if is_table || !self.choices(target).is_empty() {
                 self.table(&format!("{path}.{key}"), inner, (level + 1).min(3));
-            } else if let Some(item) = item.filter(|item| item.get("properties").is_some()) {
-                let title = format!("Each table of `{path}.{key}`");
-                self.keys(&title, &description(item), item, (level + 1).min(3));
+            } else {
+                let path = format!("{path}.{key}");
+                for schema in std::iter::once(target).chain(alternatives(self.root, target)) {
+                    self.rows(&path, schema, level);
+                }
             }
+        }
+    }
+
+    /// The keys of the tables in an array at `path`.
+    fn rows(&mut self, path: &str, array: &'a Value, level: usize) {
+        let item = array.get("items").map(|item| resolve(self.root, item));
+        if let Some(item) = item.filter(|item| item.get("properties").is_some()) {
+            let title = format!("Each table of `{path}`");
+            self.keys(&title, &description(item), item, (level + 1).min(3));
         }
     }
 

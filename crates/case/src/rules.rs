@@ -21,6 +21,14 @@ pub(crate) fn check(case: &Case) -> Vec<Problem> {
     for (name, contact) in case.contact.iter() {
         check_contact(&format!("contact.{name}"), contact, &mut problems);
     }
+    for (name, load) in case.load.iter() {
+        let everywhere = load.acceleration.is_some() || load.base_acceleration.is_some();
+        if let Some(on) = load.on.as_ref().filter(|_| everywhere) {
+            let message = "gravity and base accelerations act on every body";
+            let problem = Problem::new(format!("load.{name}.on"), message).found(on);
+            problems.push(problem.accepted(["no `on`"]));
+        }
+    }
     check_time(case, &mut problems);
     problems
 }

@@ -143,6 +143,7 @@ fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Setti
                     displacement: has(Motion::Displacement),
                     velocity: has(Motion::Velocity),
                     acceleration: has(Motion::Acceleration),
+                    absolute_acceleration: has(Motion::AbsoluteAcceleration),
                 }
             })
             .collect(),

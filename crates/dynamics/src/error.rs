@@ -296,8 +296,8 @@ pub enum Error {
         defect: f64,
     },
     /// A function of time that is none.
-    #[error("a function of time needs points with increasing times and finite numbers")]
-    Amplitude,
+    #[error(transparent)]
+    Signal(#[from] carom_signals::Error),
     /// Something that a model with loads in time, friction, finite strain or a static stage does not accept.
     #[error("{what}: {why}")]
     Nonlinear {

@@ -13,6 +13,7 @@ mod exchange;
 mod impact;
 mod initial;
 mod ledger;
+mod loads;
 mod march;
 mod mass;
 mod massless;
@@ -20,6 +21,7 @@ mod model;
 mod nonlinear;
 mod operator;
 mod records;
+mod refused;
 mod resultant;
 mod rigid;
 mod small;
@@ -33,6 +35,7 @@ use carom_nonsmooth::{coulomb, interface};
 pub use carom_schemes as scheme;
 use carom_schemes::step_map;
 
+pub use carom_signals::Amplitude;
 pub use control::{Adaptive, Closing, Control};
 pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};
 pub use driver::{Costs, Driver, Phases, Work};
@@ -41,14 +44,13 @@ pub use exchange::Exchange;
 pub use impact::Impact;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Tolerated};
+pub use loads::{Load, LoadKind, NodalLoad};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, march, step_count};
 pub use mass::Mass;
 pub use model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelRigid, ModelTarget, Support};
-pub use nonlinear::{
-    Amplitude, Damping, Iteration, Load, LoadKind, Nonlinear, Preload, Prescribed, PrescribedTurn,
-    Refused,
-};
+pub use nonlinear::{Damping, Iteration, Nonlinear, Preload, Prescribed, PrescribedTurn};
 pub use records::{ContactRecord, Records};
+pub use refused::Refused;
 pub use resultant::Resultant;
 pub use rigid::Order;
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};

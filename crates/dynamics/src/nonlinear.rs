@@ -4,87 +4,17 @@ use std::ops::Range;
 
 use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::{Kind, Unknowns};
-use carom_bodies::{Body, FollowerPressure};
+use carom_bodies::Body;
 use carom_contact::law::Level;
 use carom_contact::{Contact, Integration};
-use carom_mesh::Surface;
-use serde::{Deserialize, Serialize};
-use thiserror::Error as ThisError;
+use carom_signals::Amplitude;
 
 use crate::Error;
+use crate::loads::{Load, NodalLoad, NumberedForce, NumberedLoad, numbered_loads};
+use crate::mass::Mass;
 use crate::model::{Model, ModelBody, ModelContact, ModelTarget};
+use crate::refused::Refused;
 use crate::system::System;
-
-/// A quantity as a function of time: straight between its points, constant before the first and after the last.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Amplitude(Vec<[f64; 2]>);
-
-impl Amplitude {
-    /// The same value at all times.
-    pub fn constant(value: f64) -> Amplitude {
-        Amplitude(vec![[0.0, value]])
-    }
-
-    /// Points (time in s, value), their times ascending.
-    ///
-    /// # Errors
-    /// No point, a time that does not ascend, a number that is not finite.
-    pub fn new(points: Vec<[f64; 2]>) -> Result<Amplitude, Error> {
-        let ascend = points.windows(2).all(|pair| pair[0][0] < pair[1][0]);
-        let finite = points.iter().flatten().all(|number| number.is_finite());
-        if points.is_empty() || !ascend || !finite {
-            return Err(Error::Amplitude);
-        }
-        Ok(Amplitude(points))
-    }
-
-    /// Value at a time in s.
-    pub fn at(&self, time: f64) -> f64 {
-        let points = &self.0;
-        let after = points.partition_point(|point| point[0] <= time);
-        match (after.checked_sub(1), points.get(after)) {
-            (None, Some(first)) => first[1],
-            (Some(last), None) => points[last][1],
-            (Some(before), Some(next)) => {
-                let [start, value] = points[before];
-                value + (next[1] - value) * (time - start) / (next[0] - start)
-            }
-            (None, None) => 0.0,
-        }
-    }
-
-    /// Whether it is the same at all times.
-    pub fn is_constant(&self) -> bool {
-        self.0.iter().all(|point| point[1] == self.0[0][1])
-    }
-
-    /// Largest absolute value.
-    pub fn largest(&self) -> f64 {
-        self.0.iter().fold(0.0, |m, point| m.max(point[1].abs()))
-    }
-}
-
-/// A load on a surface.
-#[derive(Clone, Debug)]
-pub struct Load {
-    /// Name as in the case file.
-    pub name: String,
-    /// Surface that it acts on.
-    pub surface: Surface,
-    /// What acts.
-    pub kind: LoadKind,
-    /// Factor in time.
-    pub amplitude: Amplitude,
-}
-
-/// What a load is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LoadKind {
-    /// Force per reference area, in Pa, of fixed direction.
-    Traction([f64; 3]),
-    /// Pressure in Pa on the surface as it moves and stretches, positive towards the body.
-    Pressure(f64),
-}
 
 /// Nodes that move as prescribed.
 #[derive(Clone, Debug)]
@@ -146,42 +76,16 @@ impl Default for Iteration {
     }
 }
 
-/// What is refused in a model whose forces are not all linear.
-#[derive(Clone, Debug, PartialEq, Eq, ThisError)]
-pub enum Refused {
-    /// Where the law of a contact, by its name, holds.
-    #[error("integration of contact '{0}'")]
-    Integration(String),
-    /// The damping of a body, by its name.
-    #[error("damping of body '{0}'")]
-    Damping(String),
-    /// A static stage.
-    #[error("a static stage")]
-    StaticStage,
-    /// A load on a rigid body.
-    #[error("a pressure or a traction on node {node} of the mesh, which a rigid body carries")]
-    Load {
-        /// Node of the mesh.
-        node: u32,
-    },
-    /// Something of a rigid body, by its name.
-    #[error("the rigid body '{0}'")]
-    Rigid(String),
-    /// A prescribed motion.
-    #[error("the motion of node {node} of the mesh in direction {direction}")]
-    Motion {
-        /// Node of the mesh.
-        node: u32,
-        /// Direction, from 0.
-        direction: usize,
-    },
-}
-
 /// Loads and motions in time, damping, a static stage, and the rules of the iterations.
 #[derive(Clone, Debug, Default)]
 pub struct Nonlinear {
-    /// Loads.
+    /// Loads on surfaces.
     pub loads: Vec<Load>,
+    /// Forces and moments at nodes.
+    pub nodal: Vec<NodalLoad>,
+    /// Acceleration of the frame of coordinates, m/s², by direction: displacements, velocities and accelerations of the run are
+    /// relative to it, and each body feels the inertia force -M r a(t), with r a unit translation of all nodes.
+    pub base: [Option<Amplitude>; 3],
     /// Prescribed motions.
     pub motions: Vec<Prescribed>,
     /// Prescribed rotations.
@@ -198,29 +102,13 @@ impl Nonlinear {
     /// Whether the energy of the steps is balanced by works because of anything in here.
     pub(crate) fn asks(&self) -> bool {
         !self.loads.is_empty()
+            || !self.nodal.is_empty()
+            || self.base.iter().any(Option::is_some)
             || !self.motions.is_empty()
             || !self.turns.is_empty()
             || self.damping.iter().any(|d| *d != Damping::default())
             || self.preload.is_some()
     }
-}
-
-/// A load in the numbers of a system.
-#[derive(Debug)]
-pub(crate) struct NumberedLoad {
-    pub(crate) amplitude: Amplitude,
-    pub(crate) force: NumberedForce,
-    /// Bodies that it acts on.
-    pub(crate) bodies: Vec<usize>,
-}
-
-/// Forces of a load at amplitude 1.
-#[derive(Debug)]
-pub(crate) enum NumberedForce {
-    /// Unknowns and forces, N.
-    Dead(Vec<(u32, f64)>),
-    /// A pressure in Pa.
-    Follower(FollowerPressure, f64),
 }
 
 /// A prescribed displacement of one unknown: which amplitude it follows.
@@ -236,6 +124,7 @@ pub(crate) struct Follows {
 #[derive(Debug, Default)]
 pub(crate) struct NumberedNonlinear {
     pub(crate) loads: Vec<NumberedLoad>,
+    pub(crate) base: [Option<Amplitude>; 3],
     pub(crate) amplitudes: Vec<Amplitude>,
     pub(crate) follows: Vec<Follows>,
     pub(crate) damping: Vec<Damping>,
@@ -248,19 +137,20 @@ pub(crate) struct NumberedNonlinear {
 }
 
 impl NumberedNonlinear {
-    /// Numbers loads and motions. `number`: system numbers of the mesh nodes; `unknowns`: of the system; `fixed`: unknowns held by supports.
+    /// Numbers loads and motions. `mass`: of the system; `number`: system numbers of the mesh nodes; `unknowns`: of the system; `fixed`: unknowns held by supports.
     ///
     /// # Errors
     /// A motion prescribed in a direction that a support holds.
     pub(crate) fn new(
         model: &Model,
         (number, unknowns): (&[u32], &Unknowns),
-        bodies: &[Body],
+        (bodies, mass): (&[Body], &Mass),
         fixed: &[bool],
     ) -> Result<NumberedNonlinear, Error> {
         let given = &model.nonlinear;
         let dim = model.mesh.dim;
         let mut numbered = NumberedNonlinear {
+            base: given.base.clone(),
             damping: given.damping.clone(),
             preload: given.preload,
             iteration: given.iteration,
@@ -280,22 +170,7 @@ impl NumberedNonlinear {
             let kind = Kind::Rotation(turn.axis);
             numbered.follow((node, &turn.angle), kind, (number, unknowns), fixed)?;
         }
-        for load in &given.loads {
-            let nodes = load.surface.nodes.iter();
-            let mut carried =
-                nodes.filter(|&&node| unknowns.carrier(number[node as usize]).is_some());
-            if let Some(&node) = carried.next() {
-                return Err(Error::Nonlinear {
-                    what: Refused::Load { node },
-                    why: "a rigid body takes gravity, contact forces and prescribed motions",
-                });
-            }
-            numbered.loads.push(NumberedLoad {
-                amplitude: load.amplitude.clone(),
-                force: numbered_force(load, model, (number, unknowns)),
-                bodies: loaded(load, model),
-            });
-        }
+        numbered.loads = numbered_loads(model, (number, unknowns), mass)?;
         let mut first = 0;
         for body in bodies {
             numbered.histories.push(first..first + body.history_len());
@@ -382,52 +257,6 @@ fn needs_newton(contact: &ModelContact) -> bool {
     contact.friction > 0.0 || moves || matches!(contact.integration, Integration::Mortar { .. })
 }
 
-/// Bodies that a load acts on.
-fn loaded(load: &Load, model: &Model) -> Vec<usize> {
-    let owns = |body: &ModelBody| {
-        let mut faces = load.surface.faces.iter();
-        faces.any(|face| body.spec.cells.contains(&face.parent))
-    };
-    let bodies = model.bodies.iter().enumerate();
-    bodies
-        .filter(|(_, body)| owns(body))
-        .map(|(k, _)| k)
-        .collect()
-}
-
-fn numbered_force(
-    load: &Load,
-    model: &Model,
-    (number, unknowns): (&[u32], &Unknowns),
-) -> NumberedForce {
-    let owner = load.surface.faces.first().and_then(|face| {
-        let owns = |body: &ModelBody| body.spec.cells.contains(&face.parent);
-        model.bodies.iter().position(owns)
-    });
-    let body = owner.unwrap_or(0);
-    match load.kind {
-        LoadKind::Pressure(pressure) => {
-            let kinematics = model.bodies[body].spec.kinematics;
-            let (faces, x) = (&load.surface.faces, &model.mesh.nodes);
-            let load = FollowerPressure::new(faces, x, number, unknowns, kinematics);
-            NumberedForce::Follower(load, pressure)
-        }
-        LoadKind::Traction(traction) => {
-            let kinematics = model.bodies[body].spec.kinematics;
-            let unit = |x: &[f64; 3]| kinematics.surface_factor(x);
-            let areas = load.surface.node_areas(&model.mesh, unit);
-            let mut forces = Vec::new();
-            for (&node, area) in load.surface.nodes.iter().zip(areas) {
-                let own = unknowns
-                    .translations_of(number[node as usize])
-                    .zip(traction);
-                forces.extend(own.map(|(unknown, t)| (unknown as u32, area * t)));
-            }
-            NumberedForce::Dead(forces)
-        }
-    }
-}
-
 impl Model {
     /// Whether it has a pressure or traction, a motion in time, damping, a static stage, friction, mortar, a body at finite
     /// strain, an obstacle that moves, or a scheme with forces between two states: the energy of its steps is then balanced
@@ -444,6 +273,23 @@ impl Model {
 }
 
 impl System {
+    /// Acceleration of the frame of coordinates at a time in s, m/s².
+    pub fn base_acceleration(&self, time: f64) -> [f64; 3] {
+        let base = &self.nonlinear.base;
+        [0, 1, 2].map(|i| base[i].as_ref().map_or(0.0, |a| a.at(time)))
+    }
+
+    /// Acceleration of the frame at the instant to which the accelerations of a step belong that ends at `time` and lasts `dt`
+    /// (both s): the end, or of schemes whose state has no acceleration the instant of their balance. The sum of both is the
+    /// absolute acceleration, m/s².
+    pub fn frame_acceleration(&self, time: f64, dt: f64) -> [f64; 3] {
+        let scheme = self.scheme.get();
+        match scheme.keeps_acceleration() || dt == 0.0 {
+            true => self.base_acceleration(time),
+            false => self.base_acceleration(time - dt + scheme.step_map(dt).instant(dt)),
+        }
+    }
+
     /// As [`Model::is_nonlinear`].
     pub fn is_nonlinear(&self) -> bool {
         self.nonlinear.needed
@@ -505,22 +351,5 @@ impl System {
             }
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn amplitude_is_straight_between_its_points_and_constant_outside() {
-        let ramp = Amplitude::new(vec![[1.0, 0.0], [2.0, 4.0], [4.0, 2.0]]).unwrap();
-        for (time, value) in [(0.0, 0.0), (1.25, 1.0), (2.0, 4.0), (3.0, 3.0), (9.0, 2.0)] {
-            assert_eq!(ramp.at(time), value);
-        }
-        assert_eq!(ramp.largest(), 4.0);
-        assert!(Amplitude::new(vec![[1.0, 0.0], [1.0, 1.0]]).is_err());
-        assert!(Amplitude::new(vec![]).is_err());
-        assert_eq!(Amplitude::constant(3.0).at(-7.0), 3.0);
     }
 }

@@ -10,7 +10,7 @@ use carom_contact::{Contact, Frames, Places, Sliding};
 
 use crate::Error;
 use crate::model::{Model, ModelBody};
-use crate::nonlinear::Refused;
+use crate::refused::Refused;
 use crate::state::Motion;
 use crate::system::System;
 

@@ -180,7 +180,8 @@ impl System {
                 load[unknown] += m * gravity;
             }
         }
-        let nonlinear = NumberedNonlinear::new(&model, (&number, &unknowns), &bodies, &fixed)?;
+        let nonlinear =
+            NumberedNonlinear::new(&model, (&number, &unknowns), (&bodies, &mass), &fixed)?;
         let (mut initial_displacement, initial_velocity) =
             initial(&model, &body_masses, &fixed, (&unknowns, &initial_frames));
         for follows in &nonlinear.follows {

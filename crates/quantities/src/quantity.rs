@@ -196,6 +196,14 @@ quantity!(
     "A force of any sign, N."
 );
 quantity!(
+    SignedMoment,
+    "moment",
+    "N*m",
+    "-10 kN*m",
+    None,
+    "A moment of a force, of any sign, N m."
+);
+quantity!(
     Weight,
     "mass",
     "kg",
@@ -308,4 +316,4 @@ macro_rules! into_si {
     };
 }
 
-into_si!(MomentOfInertia Angle SignedForce Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);
+into_si!(MomentOfInertia Angle SignedForce SignedMoment Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);

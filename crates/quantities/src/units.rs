@@ -31,6 +31,7 @@ const NAMED: &[(&str, &str, Dimension)] = &[
     ("acceleration", "m/s^2", dimension(1, 0, -2)),
     ("force", "N", dimension(1, 1, -2)),
     ("energy", "J", dimension(2, 1, -2)),
+    ("moment", "N*m", dimension(2, 1, -2)),
     ("power", "W", dimension(2, 1, -3)),
     ("frequency", "Hz", dimension(0, 0, -1)),
     ("stiffness", "N/m", dimension(0, 1, -2)),
@@ -142,6 +143,8 @@ const SYMBOLS: &[(&str, bool, f64, i32, Dimension)] = &[
     ("Hz", true, 1.0, 0, dimension(0, 0, -1)),
     ("t", false, 1.0, 3, dimension(0, 1, 0)),
     ("bar", false, 1.0, 5, dimension(-1, 1, -2)),
+    // standard gravity
+    ("gn", false, 980_665.0, -5, dimension(1, 0, -2)),
     ("min", false, 60.0, 0, dimension(0, 0, 1)),
     ("h", false, 3600.0, 0, dimension(0, 0, 1)),
     ("in", false, 254.0, -4, dimension(1, 0, 0)),

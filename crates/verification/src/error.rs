@@ -30,6 +30,9 @@ pub enum Error {
     /// Points that make no curve of a spring.
     #[error(transparent)]
     Spring(#[from] carom_bodies::CurveError),
+    /// Points that make no function of time.
+    #[error(transparent)]
+    Signal(#[from] carom_signals::Error),
     /// A mesh lacks a group.
     #[error("the mesh has no group '{name}'")]
     Group {

@@ -49,6 +49,7 @@ mod bars_projection;
 mod bars_schemes;
 mod bars_stages;
 mod bars_theta;
+mod base_motion;
 mod block_drop;
 mod blocks;
 mod blocks_as_bars;
@@ -156,6 +157,7 @@ registry! {
     bars_schemes
     bars_stages
     bars_theta
+    base_motion
     block_drop
     blocks
     blocks_as_bars

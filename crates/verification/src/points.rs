@@ -50,6 +50,14 @@ impl Points {
         self.discrete.push(made);
     }
 
+    /// A spring between two masses along the unit vector from the first to the second.
+    pub(crate) fn between(&mut self, ends: [Point; 2], axis: [f64; 3], curve: Curve) {
+        let cell = self.mesh.push(Kind::Bar2, &ends.map(|end| end.0));
+        let axis = Some(axis);
+        let made = self.made("spring", cell, DiscreteKind::Spring(Link { curve, axis }));
+        self.discrete.push(made);
+    }
+
     /// A linear dashpot between a mass and the ground in all directions, N s/m.
     pub(crate) fn dashpot(&mut self, at: Point, damping: f64) {
         let cell = self.mesh.push(Kind::Point1, &[at.0]);

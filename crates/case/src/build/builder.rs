@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use carom_mesh::{Group, Mesh};
 
 use super::plan::Plan;
+use super::signals::Signals;
 use crate::error::Problem;
 use crate::schema::{Case, Vector};
 
@@ -15,6 +16,8 @@ pub(super) struct Builder<'a> {
     pub(super) warnings: Vec<String>,
     /// Name of each contact with the damped law, and twice the rate of its spring against the elements behind it, 1/s.
     pub(super) springs: Vec<(String, f64)>,
+    /// Functions of time.
+    pub(super) signals: Signals,
     /// The zones of the case.
     pub(super) plan: Plan,
     /// Path of the case file.

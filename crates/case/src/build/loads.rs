@@ -1,11 +1,12 @@
-//! Loads: gravity, pressures, tractions.
+//! Loads: gravity, base accelerations, pressures, tractions, forces and moments at nodes.
 
-use carom_dynamics::{Amplitude, Load, LoadKind, ModelBody};
+use carom_dynamics::{Amplitude, Load, LoadKind, ModelBody, NodalLoad};
 use carom_mesh::{ElementId, Mesh, Surface};
 
 use super::Builder;
+use super::supports::AXES;
 use crate::error::Problem;
-use crate::schema;
+use crate::schema::{self, AmplitudeCourse};
 
 impl Builder<'_> {
     /// The sum of all accelerations of free fall, m/s².
@@ -30,14 +31,7 @@ impl Builder<'_> {
             let Some(kind) = self.kind(mesh, &path, load) else {
                 continue;
             };
-            let amplitude = match &load.amplitude {
-                None => Some(Amplitude::constant(1.0)),
-                Some(points) => {
-                    let points = points.iter();
-                    let points = points.map(|point| [point.time.0, point.factor]);
-                    self.amplitude(&format!("{path}.amplitude"), points.collect())
-                }
-            };
+            let amplitude = self.load_amplitude(&path, load);
             let on = load.on.as_deref().unwrap_or_default();
             let Some(surface) = self.surface(mesh, &cells, &format!("{path}.on"), on) else {
                 continue;
@@ -55,7 +49,73 @@ impl Builder<'_> {
         loads
     }
 
-    /// What acts on the surface; none for gravity.
+    /// Forces and moments at nodes.
+    pub(super) fn nodal_loads(&mut self, mesh: &Mesh) -> Vec<NodalLoad> {
+        let mut loads = Vec::new();
+        for (name, load) in self.case.load.iter() {
+            let path = format!("load.{name}");
+            let (force, moment) = match (&load.force, &load.moment) {
+                (Some(force), _) => {
+                    let path = format!("{path}.force");
+                    (self.vector(mesh, &path, force), [0.0; 3])
+                }
+                (None, Some(moment)) => ([0.0; 3], moment.si()),
+                (None, None) => continue,
+            };
+            let amplitude = self.load_amplitude(&path, load);
+            let on = load.on.as_deref().unwrap_or_default();
+            let group = self.group(mesh, &format!("{path}.on"), on);
+            if let (Some(amplitude), Some(group)) = (amplitude, group) {
+                loads.push(NodalLoad {
+                    name: name.to_string(),
+                    nodes: mesh.group_nodes(group),
+                    force,
+                    moment,
+                    amplitude,
+                });
+            }
+        }
+        loads
+    }
+
+    /// Acceleration of the ground by direction.
+    pub(super) fn base_acceleration(&mut self, mesh: &Mesh) -> [Option<Amplitude>; 3] {
+        let mut base = [None, None, None];
+        for (name, load) in self.case.load.iter() {
+            let Some(given) = &load.base_acceleration else {
+                continue;
+            };
+            for (axis, signal) in [&given.x, &given.y, &given.z].into_iter().enumerate() {
+                let Some(signal) = signal else { continue };
+                let path = format!("load.{name}.base-acceleration.{}", AXES[axis]);
+                self.within(mesh, &path, axis);
+                if base[axis].is_some() {
+                    let message = "the ground has an acceleration in this direction already";
+                    let problem = Problem::new(&path, message).found(signal);
+                    self.problems
+                        .push(problem.accepted(["one base acceleration for each direction"]));
+                }
+                base[axis] = self.acceleration_signal(&path, signal);
+            }
+        }
+        base
+    }
+
+    /// Factor of a load in time.
+    fn load_amplitude(&mut self, path: &str, load: &schema::Load) -> Option<Amplitude> {
+        let path = format!("{path}.amplitude");
+        match &load.amplitude {
+            None => Some(Amplitude::constant(1.0)),
+            Some(AmplitudeCourse::Signal(name)) => self.factor_signal(&path, name),
+            Some(AmplitudeCourse::Points(points)) => {
+                let points = points.iter();
+                let points = points.map(|point| [point.time.0, point.factor]);
+                self.amplitude(&path, points.collect())
+            }
+        }
+    }
+
+    /// What acts on the surface; none for what acts elsewhere.
     fn kind(&mut self, mesh: &Mesh, path: &str, load: &schema::Load) -> Option<LoadKind> {
         match (&load.pressure, &load.traction) {
             (Some(pressure), _) => Some(LoadKind::Pressure(pressure.0)),

@@ -20,6 +20,7 @@ mod probes;
 mod reference;
 mod refused;
 mod rigid;
+mod signals;
 mod supports;
 mod ties;
 mod time;
@@ -29,7 +30,7 @@ mod zones;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use carom_dynamics::{LinkKind, Model, System, Zoned};
+use carom_dynamics::{LinkKind, Model, Nonlinear, System, Zoned};
 
 use crate::error::Problem;
 use crate::input::Input;
@@ -40,6 +41,7 @@ pub use arlequin::BuiltOverlap;
 use builder::{Builder, dimensions, plural};
 use plan::Plan;
 pub use reference::ExactReference;
+use signals::Signals;
 
 /// What a case amounts to.
 #[derive(Debug)]
@@ -83,6 +85,7 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
         problems: Vec::new(),
         warnings: Vec::new(),
         springs: Vec::new(),
+        signals: Signals::new(),
         plan: Plan {
             zones: Vec::new(),
             kind: LinkKind::GravouilCombescure,
@@ -102,6 +105,7 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
 
 impl Builder<'_> {
     fn build(&mut self, input: &Input) -> Option<Built> {
+        self.signals = self.signals(input);
         let materials = self.materials();
         self.schemes();
         if self.plan.zones.is_empty() {
@@ -115,6 +119,8 @@ impl Builder<'_> {
         let (supports, motions, turns) = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
         let loads = self.loads(&mesh, &bodies);
+        let nodal = self.nodal_loads(&mesh);
+        let base = self.base_acceleration(&mesh);
         let probes = self.probes(&mesh, &bodies);
         if !self.problems.is_empty() {
             return None;
@@ -146,7 +152,11 @@ impl Builder<'_> {
             scheme: self.outer_scheme(),
             dt: f64::MIN_POSITIVE,
             adaptive: None,
-            nonlinear: self.nonlinear(loads, (motions, turns)),
+            nonlinear: Nonlinear {
+                nodal,
+                base,
+                ..self.nonlinear(loads, (motions, turns))
+            },
         };
         let nodes = model.mesh.nodes.clone();
         let mut zoned = None;
@@ -187,6 +197,7 @@ impl Builder<'_> {
                 return None;
             }
         };
+        self.warn_of_steps(system.dt);
         self.able_to_act(&system);
         self.with_area(&system);
         self.penetration(&system);

@@ -38,6 +38,7 @@ impl Builder<'_> {
                 passes: time.newton.passes as usize,
                 halvings: time.newton.halvings,
             },
+            ..Nonlinear::default()
         }
     }
 

@@ -75,6 +75,7 @@ impl Builder<'_> {
             Refused::Damping(body) => format!("body.{body}.damping.stiffness"),
             Refused::Motion { .. } => "support".to_string(),
             Refused::Load { .. } => "load".to_string(),
+            Refused::NodalLoad(load) => format!("load.{load}"),
             Refused::Rigid(body) => format!("body.{body}.rigid"),
         };
         Problem::new(path, format!("{what}: {why}"))

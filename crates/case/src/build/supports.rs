@@ -7,13 +7,13 @@ use carom_mesh::Mesh;
 
 use super::Builder;
 use crate::error::Problem;
-use crate::schema::MovementPoint;
+use crate::schema::MovementCourse;
 
 /// Supports, prescribed motions and prescribed rotations.
 pub(super) type Held = (Vec<Support>, Vec<Prescribed>, Vec<PrescribedTurn>);
 
 /// Names of the axes.
-const AXES: [&str; 3] = ["x", "y", "z"];
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Builder<'_> {
     /// Supports and prescribed motions; no node is held or moved twice in one direction where one of both is a motion.
@@ -126,7 +126,7 @@ impl Builder<'_> {
     }
 
     /// Refuses a direction that the mesh does not have.
-    fn within(&mut self, mesh: &Mesh, path: &str, axis: usize) {
+    pub(super) fn within(&mut self, mesh: &Mesh, path: &str, axis: usize) {
         if axis < mesh.dim {
             return;
         }
@@ -186,10 +186,15 @@ impl Builder<'_> {
         }
     }
 
-    fn movement(&mut self, path: &str, points: &[MovementPoint]) -> Option<Amplitude> {
-        let points = points.iter();
-        let points = points.map(|point| [point.time.0, point.displacement.0]);
-        self.amplitude(path, points.collect())
+    fn movement(&mut self, path: &str, course: &MovementCourse) -> Option<Amplitude> {
+        match course {
+            MovementCourse::Signal(name) => self.displacement_signal(path, name),
+            MovementCourse::Points(points) => {
+                let points = points.iter();
+                let points = points.map(|point| [point.time.0, point.displacement.0]);
+                self.amplitude(path, points.collect())
+            }
+        }
     }
 
     /// A function of time, or a problem at the first time that does not ascend.

@@ -179,23 +179,35 @@ pub struct Support {
     pub motion: Option<Movement>,
 }
 
-/// Displacements as functions of time: linear between the given points, constant before the first and after the last.
+/// Displacements as functions of time: names of signals, or points, linear between them, constant before the first and after the
+/// last.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend("anyOf" = [{ "required": ["x"] }, { "required": ["y"] }, { "required": ["z"] }, { "required": ["rx"] }, { "required": ["ry"] }, { "required": ["rz"] }]))]
 pub struct Movement {
     /// Displacement along the first axis. Default: free.
-    pub x: Option<Vec<MovementPoint>>,
+    pub x: Option<MovementCourse>,
     /// Displacement along the second axis. Default: free.
-    pub y: Option<Vec<MovementPoint>>,
+    pub y: Option<MovementCourse>,
     /// Displacement along the third axis. Default: free.
-    pub z: Option<Vec<MovementPoint>>,
+    pub z: Option<MovementCourse>,
     /// Rotation of a rigid body about its first axis. Default: free.
     pub rx: Option<Vec<TurnPoint>>,
     /// Rotation of a rigid body about its second axis. Default: free.
     pub ry: Option<Vec<TurnPoint>>,
     /// Rotation of a rigid body about its third axis, the only one in the plane. Default: free.
     pub rz: Option<Vec<TurnPoint>>,
+}
+
+/// A displacement as a function of time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum MovementCourse {
+    /// By the name of a signal, of a displacement or of an acceleration.
+    Signal(String),
+    /// By points.
+    #[schemars(extend("minItems" = 1))]
+    Points(Vec<MovementPoint>),
 }
 
 /// A point of a rotation as a function of time.

@@ -13,6 +13,7 @@ mod mesh;
 mod named;
 mod obstacle;
 mod output;
+mod signal;
 mod time;
 mod zone;
 
@@ -22,14 +23,14 @@ use serde_json::Value;
 
 pub use body::{
     Axis, AxisymmetricSection, BarSection, Body, Damping as RayleighDamping, Formulation,
-    FormulationName, FormulationWith, Initial, Mass, Movement, MovementPoint, PlaneSection,
-    Reduced, Rigid, Section, Support,
+    FormulationName, FormulationWith, Initial, Mass, Movement, MovementCourse, MovementPoint,
+    PlaneSection, Reduced, Rigid, Section, Support,
 };
 pub use carom_laws::GivenLaw;
 pub use carom_quantities::{
     Acceleration, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density, Duration,
-    Force, Length, Modulus, Rate, SignedForce, SignedStress, Stiffness, Stress, SurfaceDamping,
-    SurfaceStiffness, Vector, Velocity, Weight,
+    Force, Length, Modulus, Rate, SignedForce, SignedMoment, SignedStress, Stiffness, Stress,
+    SurfaceDamping, SurfaceStiffness, Vector, Velocity, Weight,
 };
 pub use carom_schemes::Scheme;
 pub use contact::{
@@ -37,7 +38,7 @@ pub use contact::{
     Penetration, Sliding,
 };
 pub use discrete::{Dashpot, DashpotPoint, Ends, PointMass, Spring, SpringPoint, Stop};
-pub use load::{AmplitudePoint, Load};
+pub use load::{AmplitudeCourse, AmplitudePoint, BaseAcceleration, Load};
 pub use material::Material;
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
 pub use named::Named;
@@ -46,6 +47,10 @@ pub use obstacle::{
     Turn,
 };
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};
+pub use signal::{
+    AccelerationPoint, AccelerationSource, Baseline, Columns, DisplacementSource, FactorSource,
+    Signal,
+};
 pub use time::{
     Adaptive, Closing, LargestStep, MeshStep, Newton, StaticStage, Step, StepRule, Time,
 };
@@ -89,6 +94,9 @@ pub struct Case {
     /// Stops, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub stop: Named<Stop>,
+    /// Functions of time, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub signal: Named<Signal>,
     /// Supports, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub support: Named<Support>,

@@ -28,6 +28,9 @@ pub enum Motion {
     Velocity,
     /// Acceleration, m/s².
     Acceleration,
+    /// Acceleration with that of the ground, m/s²: in a run with base acceleration the other quantities are relative to the
+    /// ground.
+    AbsoluteAcceleration,
 }
 
 /// Output of a run beside its histories, which are always written at every step.

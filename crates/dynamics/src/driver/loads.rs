@@ -1,9 +1,10 @@
 //! Loads and damping forces of an iteration.
 
 use carom_algebra::csr::Csr;
+use carom_signals::Amplitude;
 
 use super::Driver;
-use crate::nonlinear::{Amplitude, NumberedForce};
+use crate::loads::NumberedForce;
 use crate::step_map::{Row, StepMap};
 use crate::system::System;
 

@@ -7,8 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::contacts::sides;
 use crate::error::Error;
+use crate::loads::NodalLoad;
 use crate::model::Model;
-use crate::nonlinear::{Nonlinear, Refused};
+use crate::nonlinear::Nonlinear;
+use crate::refused::Refused;
 use crate::scheme::Scheme;
 use crate::system::System;
 
@@ -172,11 +174,35 @@ impl Zoned {
         Nonlinear {
             loads: loads.cloned().collect(),
             motions: motions.filter(|motion| !motion.nodes.is_empty()).collect(),
+            nodal: self.nodal(zone, &used),
+            base: whole.base.clone(),
             turns: Vec::new(),
             damping: zone.bodies.iter().map(damping).collect(),
             preload: None,
             iteration: whole.iteration,
         }
+    }
+
+    /// The loads at nodes of one zone: a node of several zones belongs to the first of them. `used`: nodes of the zone.
+    fn nodal(&self, zone: &ModelZone, used: &[bool]) -> Vec<NodalLoad> {
+        let model = &self.model;
+        let before = self
+            .zones
+            .iter()
+            .take_while(|other| other.name != zone.name);
+        let mut taken = vec![false; used.len()];
+        for &body in before.flat_map(|zone| &zone.bodies) {
+            let cells = model.bodies[body].spec.cells.iter();
+            for &node in cells.flat_map(|&cell| model.mesh.element_nodes(cell)) {
+                taken[node as usize] = true;
+            }
+        }
+        let own = |node: &u32| used[*node as usize] && !taken[*node as usize];
+        let loads = model.nonlinear.nodal.iter().map(|load| NodalLoad {
+            nodes: load.nodes.iter().copied().filter(own).collect(),
+            ..load.clone()
+        });
+        loads.filter(|load| !load.nodes.is_empty()).collect()
     }
 
     /// Refuses schemes that no link takes, and numbers of inner steps that do not go together.

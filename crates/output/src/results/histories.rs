@@ -32,7 +32,7 @@ pub(crate) struct Histories {
     file: Option<History>,
     contact: Option<History>,
     links: bool,
-    probes: Vec<([bool; 3], Vec<Sensor>)>,
+    probes: Vec<(Probe, Vec<Sensor>)>,
     row: Vec<Cell<'static>>,
 }
 
@@ -45,7 +45,7 @@ impl Histories {
         sensors: Vec<Vec<Sensor>>,
     ) -> Result<Histories, Error> {
         let path = folder.file(FILE)?;
-        let recorded = settings.probes.iter().map(Probe::recorded);
+        let probes = settings.probes.iter().cloned();
         let zoning = settings.zoning.as_ref();
         let contact = match zoning.is_some_and(Zoning::has_parts) && !system.contacts.is_empty() {
             true => {
@@ -61,7 +61,7 @@ impl Histories {
             file: Some(History::create(&path, columns)?),
             contact,
             links: zoning.is_some(),
-            probes: recorded.zip(sensors).collect(),
+            probes: probes.zip(sensors).collect(),
             row: Vec::with_capacity(columns.len()),
         })
     }
@@ -95,10 +95,18 @@ impl Histories {
                 row.extend(response.map(Cell::Number));
             }
         }
-        for (recorded, sensors) in &self.probes {
-            for (order, _) in Order::ALL.into_iter().zip(recorded).filter(|(_, on)| **on) {
+        for (probe, sensors) in &self.probes {
+            let recorded = Order::ALL.into_iter().zip(probe.recorded());
+            for (order, _) in recorded.filter(|(_, on)| *on) {
                 let of = |sensor: &Sensor| Cell::from(sensor.of(system, motion, order));
                 row.extend(sensors.iter().map(of));
+            }
+            if probe.absolute_acceleration {
+                let frame = system.frame_acceleration(report.time, report.dt);
+                let of = |(sensor, frame): (&Sensor, f64)| {
+                    Cell::from(frame + sensor.of(system, motion, Order::Acceleration))
+                };
+                row.extend(sensors.iter().zip(frame).map(of));
             }
         }
         let balance = &report.balance;
@@ -247,6 +255,13 @@ pub(crate) fn columns(
     for probe in &settings.probes {
         for ((motion, unit), _) in MOTIONS.iter().zip(probe.recorded()).filter(|(_, on)| *on) {
             let of = |i| column(&["probe", &probe.name, &format!("{motion} {i}")], unit);
+            names.extend(components.iter().map(of));
+        }
+        if probe.absolute_acceleration {
+            let of = |i| {
+                let what = format!("absolute acceleration {i}");
+                column(&["probe", &probe.name, &what], "m/s²")
+            };
             names.extend(components.iter().map(of));
         }
     }

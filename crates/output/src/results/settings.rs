@@ -47,6 +47,8 @@ pub struct Probe {
     pub velocity: bool,
     /// Whether the acceleration is written, m/s².
     pub acceleration: bool,
+    /// Whether the acceleration with that of the frame of coordinates is written, m/s².
+    pub absolute_acceleration: bool,
 }
 
 impl Probe {

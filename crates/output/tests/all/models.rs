@@ -173,5 +173,6 @@ pub fn probe(system: &System, name: &str, group: &str) -> Probe {
         displacement: true,
         velocity: true,
         acceleration: true,
+        absolute_acceleration: false,
     }
 }

@@ -1,0 +1,370 @@
+//! Signals: functions of time by name, from points and files.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use carom_dynamics::Amplitude;
+use carom_mesh::read::file;
+use carom_quantities::units::{Dimension, parse_quantity};
+use carom_signals::{Error, Record, Table, corrected};
+
+use super::Builder;
+use crate::error::Problem;
+use crate::input::Input;
+use crate::schema::{
+    AccelerationSource, Baseline, Columns, DisplacementSource, FactorSource, Signal,
+};
+
+/// Most bytes of a file of a signal, 256 MiB.
+const LARGEST: u64 = 256 << 20;
+
+/// Velocity at the end of a record over its largest one, above which a support that follows it drifts away.
+const DRIFT: f64 = 1e-6;
+
+/// A signal, by what it is a function of time of.
+#[derive(Clone, Debug)]
+pub(super) enum Course {
+    Acceleration(Record),
+    Displacement(Amplitude),
+    Factor(Amplitude),
+}
+
+impl Course {
+    /// What it is, for messages.
+    fn quantity(&self) -> &'static str {
+        match self {
+            Course::Acceleration(_) => "an acceleration",
+            Course::Displacement(_) => "a displacement",
+            Course::Factor(_) => "a factor",
+        }
+    }
+}
+
+/// Signals by name; `None` of those with a problem.
+pub(super) type Signals = BTreeMap<String, Option<Course>>;
+
+/// Times and values with the key path of each time, where the file says them one by one.
+struct Points {
+    points: Vec<[f64; 2]>,
+    /// Path of the signal's source.
+    path: String,
+    /// Lines of the points in a file.
+    lines: Vec<usize>,
+}
+
+impl Builder<'_> {
+    /// All signals of the case.
+    pub(super) fn signals(&mut self, input: &Input) -> Signals {
+        let signals = self.case.signal.iter();
+        signals
+            .map(|(name, signal)| (name.to_string(), self.signal(input, name, signal)))
+            .collect()
+    }
+
+    fn signal(&mut self, input: &Input, name: &str, signal: &Signal) -> Option<Course> {
+        let path = format!("signal.{name}");
+        let Signal {
+            acceleration,
+            displacement,
+            factor,
+            ..
+        } = signal;
+        let scale = signal.scale.unwrap_or(1.0);
+        let delay = signal.delay.map_or(0.0, |delay| delay.0);
+        let moved = |points: &mut Points| {
+            for point in &mut points.points {
+                *point = [point[0] + delay, scale * point[1]];
+            }
+        };
+        match (acceleration, displacement, factor) {
+            (Some(source), ..) => {
+                let mut points = match source {
+                    AccelerationSource::Points(points) => {
+                        let points = points.iter().map(|p| [p.time.0, p.acceleration.0]);
+                        listed(points.collect(), &format!("{path}.acceleration.points"))
+                    }
+                    AccelerationSource::Csv(columns) => {
+                        let path = format!("{path}.acceleration.csv");
+                        self.columns(&input.folder, &path, (columns, "acceleration"))?
+                    }
+                };
+                moved(&mut points);
+                let record = Record::new(points.points.clone());
+                let record = record.map_err(|error| self.no_function(&error, &points));
+                let record = record.ok()?;
+                self.on_its_baseline(&path, record, signal.baseline)
+                    .map(Course::Acceleration)
+            }
+            (None, Some(source), _) => {
+                let mut points = match source {
+                    DisplacementSource::Points(points) => {
+                        let points = points.iter().map(|p| [p.time.0, p.displacement.0]);
+                        listed(points.collect(), &format!("{path}.displacement.points"))
+                    }
+                    DisplacementSource::Csv(columns) => {
+                        let path = format!("{path}.displacement.csv");
+                        self.columns(&input.folder, &path, (columns, "length"))?
+                    }
+                };
+                moved(&mut points);
+                self.straight(&points).map(Course::Displacement)
+            }
+            (None, None, source) => {
+                let mut points = match source.as_ref()? {
+                    FactorSource::Points(points) => {
+                        let points = points.iter().map(|p| [p.time.0, p.factor]);
+                        listed(points.collect(), &format!("{path}.factor.points"))
+                    }
+                    FactorSource::Csv(columns) => {
+                        let path = format!("{path}.factor.csv");
+                        self.columns(&input.folder, &path, (columns, "number"))?
+                    }
+                };
+                moved(&mut points);
+                self.straight(&points).map(Course::Factor)
+            }
+        }
+    }
+
+    fn straight(&mut self, points: &Points) -> Option<Amplitude> {
+        let amplitude = Amplitude::new(points.points.clone());
+        amplitude
+            .map_err(|error| self.no_function(&error, points))
+            .ok()
+    }
+
+    fn on_its_baseline(
+        &mut self,
+        path: &str,
+        record: Record,
+        baseline: Option<Baseline>,
+    ) -> Option<Record> {
+        match baseline.unwrap_or_default() {
+            Baseline::AsGiven => Some(record),
+            Baseline::Corrected => corrected(&record)
+                .map_err(|error| {
+                    let problem = Problem::new(format!("{path}.baseline"), error.to_string());
+                    self.problems
+                        .push(problem.accepted(["a record with more points", "\"as-given\""]));
+                })
+                .ok(),
+        }
+    }
+
+    /// Tells why points are no function of time, at the point where the case has it, else with the line of the file.
+    fn no_function(&mut self, error: &Error, points: &Points) {
+        let path = &points.path;
+        let problem = match (error, points.lines.is_empty()) {
+            (Error::Times { at, time, before }, true) => {
+                let problem = Problem::new(format!("{path}[{at}].time"), "the times must ascend");
+                problem
+                    .found(format!("{time} s"))
+                    .accepted([format!("more than {before} s")])
+            }
+            (Error::Times { at, time, before }, false) => {
+                let line = points.lines.get(*at).copied().unwrap_or_default();
+                let message = format!(
+                    "the times must ascend: line {line} of the file has {time} s after {before} s"
+                );
+                Problem::new(format!("{path}.time"), message)
+            }
+            (error, _) => Problem::new(path, error.to_string()),
+        };
+        self.problems.push(problem);
+    }
+
+    /// Two columns of a file in SI units.
+    fn columns(
+        &mut self,
+        folder: &Path,
+        path: &str,
+        (given, dimension): (&Columns, &str),
+    ) -> Option<Points> {
+        let bytes = file::regular(&folder.join(&given.file), LARGEST);
+        let text = bytes.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+        let table = text
+            .map_err(|error| error.to_string())
+            .and_then(|text| Table::parse(&text).map_err(|error| error.to_string()));
+        let table = match table {
+            Ok(table) => table,
+            Err(error) => {
+                let message = format!("{}: {error}", given.file);
+                self.problems
+                    .push(Problem::new(format!("{path}.file"), message));
+                return None;
+            }
+        };
+        let keys = [
+            ("time", &given.time, "time-unit", &given.time_unit, "time"),
+            ("value", &given.value, "unit", &given.unit, dimension),
+        ];
+        let [times, values] = keys.map(|(key, name, unit_key, unit, dimension)| {
+            let column = match table.column(name) {
+                Ok(column) => column,
+                Err(Error::NoColumn { name, columns }) => {
+                    let message = format!("{} has no column of this name", given.file);
+                    let problem = Problem::new(format!("{path}.{key}"), message);
+                    let columns = columns.iter().map(String::as_str);
+                    self.problems.push(problem.unknown(&name, columns));
+                    return None;
+                }
+                Err(error) => {
+                    let message = format!("{}: {error}", given.file);
+                    self.problems
+                        .push(Problem::new(format!("{path}.{key}"), message));
+                    return None;
+                }
+            };
+            let unit_path = format!("{path}.{unit_key}");
+            let written = match (&column.unit, unit) {
+                (Some(of_file), Some(unit)) if of_file != unit => {
+                    let message = format!("column `{name}` has the unit [{of_file}] already");
+                    self.problems
+                        .push(Problem::new(unit_path, message).found(unit));
+                    return None;
+                }
+                (Some(of_file), _) => Some((of_file, format!("{path}.{key}"))),
+                (None, unit) => unit.as_ref().map(|unit| (unit, unit_path)),
+            };
+            let factor = match written {
+                None => 1.0,
+                Some((unit, path)) => self.factor_of(&path, unit, dimension)?,
+            };
+            let values = column
+                .values
+                .iter()
+                .map(|value| factor * value)
+                .collect::<Vec<_>>();
+            Some((values, column.lines))
+        });
+        let ((times, lines), (values, _)) = (times?, values?);
+        let points = times.into_iter().zip(values);
+        Some(Points {
+            points: points.map(|(time, value)| [time, value]).collect(),
+            path: path.to_owned(),
+            lines,
+        })
+    }
+
+    /// The SI value of one of a unit.
+    fn factor_of(&mut self, path: &str, unit: &str, dimension: &str) -> Option<f64> {
+        let wanted = Dimension::named(dimension)?;
+        match parse_quantity(&format!("1 {unit}"), wanted) {
+            Ok(factor) => Some(factor),
+            Err(error) => {
+                let problem = Problem::new(path, error.to_string()).found(unit);
+                self.problems.push(
+                    problem.accepted([format!("a unit of {dimension}, such as {}", wanted.unit())]),
+                );
+                None
+            }
+        }
+    }
+
+    /// The signal of this name, if it is one; a problem where there is none.
+    fn find(&mut self, path: &str, name: &str) -> Option<Course> {
+        match self.signals.get(name) {
+            Some(course) => course.clone(),
+            None => {
+                let names: Vec<String> = self.signals.keys().cloned().collect();
+                let problem = Problem::new(path, "no signal of this name in the case");
+                let names = names.iter().map(String::as_str);
+                self.problems.push(problem.unknown(name, names));
+                None
+            }
+        }
+    }
+
+    fn of_another_quantity(&mut self, path: &str, (name, found): (&str, &Course), accepted: &str) {
+        let message = format!("the signal `{name}` is {}", found.quantity());
+        let problem = Problem::new(path, message).found(name);
+        self.problems
+            .push(problem.accepted([format!("a signal that is {accepted}")]));
+    }
+
+    /// The displacement of a support that follows a signal.
+    pub(super) fn displacement_signal(&mut self, path: &str, name: &str) -> Option<Amplitude> {
+        match self.find(path, name)? {
+            Course::Displacement(amplitude) => Some(amplitude),
+            Course::Acceleration(record) => {
+                self.warn_of_drift(path, name, &record);
+                Some(record.displacement())
+            }
+            other => {
+                let accepted = "a displacement or an acceleration";
+                self.of_another_quantity(path, (name, &other), accepted);
+                None
+            }
+        }
+    }
+
+    /// A base acceleration.
+    pub(super) fn acceleration_signal(&mut self, path: &str, name: &str) -> Option<Amplitude> {
+        match self.find(path, name)? {
+            Course::Acceleration(record) => Some(record.acceleration()),
+            other => {
+                self.of_another_quantity(path, (name, &other), "an acceleration");
+                None
+            }
+        }
+    }
+
+    /// The factor of a load.
+    pub(super) fn factor_signal(&mut self, path: &str, name: &str) -> Option<Amplitude> {
+        match self.find(path, name)? {
+            Course::Factor(amplitude) => Some(amplitude),
+            other => {
+                self.of_another_quantity(path, (name, &other), "a factor");
+                None
+            }
+        }
+    }
+
+    /// Warns of a support that moves on after its record.
+    fn warn_of_drift(&mut self, path: &str, name: &str, record: &Record) {
+        let [v, u] = record.drift();
+        let speeds = record.integrals();
+        let fastest = speeds.iter().fold(0.0_f64, |m, [v, _]| m.max(v.abs()));
+        if v.abs() > DRIFT * fastest {
+            self.warnings.push(format!(
+                "{path}: the record `{name}` ends with {v:.3e} m/s at {u:.3e} m: the support goes on with this velocity; signal.{name}.baseline = \"corrected\" brings it to rest where it began"
+            ));
+        }
+    }
+
+    /// Warns of files whose steps are not those of the run.
+    pub(super) fn warn_of_steps(&mut self, dt: f64) {
+        let mut warnings = Vec::new();
+        for (name, signal) in self.case.signal.iter() {
+            let from_file = matches!(signal.acceleration, Some(AccelerationSource::Csv(_)));
+            let Some(Some(Course::Acceleration(record))) = self.signals.get(name) else {
+                continue;
+            };
+            let steps = record.steps();
+            // rounding of the times in the file
+            if from_file && steps.longest > 1.001 * dt {
+                warnings.push(format!(
+                    "signal.{name}: its points are up to {} s apart, the steps of the run {dt} s: the acceleration is straight between the points, so the record says nothing about the response above {:.3} Hz",
+                    steps.longest,
+                    0.5 / steps.longest
+                ));
+            }
+            if from_file && steps.shortest < 0.999 * dt {
+                warnings.push(format!(
+                    "signal.{name}: its points are {} s apart, closer than the steps of the run, {dt} s: the run does not see all of them; take a step of at most {} s",
+                    steps.shortest, steps.shortest
+                ));
+            }
+        }
+        self.warnings.extend(warnings);
+    }
+}
+
+/// Points that the case lists.
+fn listed(points: Vec<[f64; 2]>, path: &str) -> Points {
+    Points {
+        points,
+        path: path.to_owned(),
+        lines: Vec::new(),
+    }
+}

@@ -1,0 +1,37 @@
+//! What a model whose forces are not all linear does not accept.
+
+use thiserror::Error as ThisError;
+
+/// What is refused in a model whose forces are not all linear.
+#[derive(Clone, Debug, PartialEq, Eq, ThisError)]
+pub enum Refused {
+    /// Where the law of a contact, by its name, holds.
+    #[error("integration of contact '{0}'")]
+    Integration(String),
+    /// The damping of a body, by its name.
+    #[error("damping of body '{0}'")]
+    Damping(String),
+    /// A static stage.
+    #[error("a static stage")]
+    StaticStage,
+    /// A load on a rigid body.
+    #[error("a pressure or a traction on node {node} of the mesh, which a rigid body carries")]
+    Load {
+        /// Node of the mesh.
+        node: u32,
+    },
+    /// A load at nodes, by its name.
+    #[error("the load '{0}'")]
+    NodalLoad(String),
+    /// Something of a rigid body, by its name.
+    #[error("the rigid body '{0}'")]
+    Rigid(String),
+    /// A prescribed motion.
+    #[error("the motion of node {node} of the mesh in direction {direction}")]
+    Motion {
+        /// Node of the mesh.
+        node: u32,
+        /// Direction, from 0.
+        direction: usize,
+    },
+}

@@ -1,0 +1,130 @@
+//! A quantity as a function of time.
+
+use crate::error::Error;
+
+/// A quantity as a function of time: a polynomial of third degree at most between its knots, constant before the first.
+/// Most are straight between their points and constant after the last; the displacement that belongs to a record of
+/// accelerations is of third degree, and goes on with the last velocity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Amplitude {
+    knots: Vec<Knot>,
+}
+
+/// The polynomial from a time on: c₀ + c₁ s + c₂ s² + c₃ s³ with s the time since the knot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Knot {
+    pub(crate) time: f64,
+    pub(crate) c: [f64; 4],
+}
+
+impl Amplitude {
+    /// The same value at all times.
+    pub fn constant(value: f64) -> Amplitude {
+        let c = [value, 0.0, 0.0, 0.0];
+        Amplitude {
+            knots: vec![Knot { time: 0.0, c }],
+        }
+    }
+
+    /// Straight between points (time in s, value), constant before the first and after the last.
+    ///
+    /// # Errors
+    /// No point, a time that does not ascend, a number that is not finite.
+    pub fn new(points: Vec<[f64; 2]>) -> Result<Amplitude, Error> {
+        check(&points)?;
+        let slope = |k: usize| match points.get(k + 1) {
+            Some(next) => (next[1] - points[k][1]) / (next[0] - points[k][0]),
+            None => 0.0,
+        };
+        let knot = |k: usize| Knot {
+            time: points[k][0],
+            c: [points[k][1], slope(k), 0.0, 0.0],
+        };
+        Ok(Amplitude {
+            knots: (0..points.len()).map(knot).collect(),
+        })
+    }
+
+    /// Of knots with ascending times; not empty.
+    pub(crate) fn of_knots(knots: Vec<Knot>) -> Amplitude {
+        Amplitude { knots }
+    }
+
+    /// Value at a time in s.
+    pub fn at(&self, time: f64) -> f64 {
+        self.eval(time, |c, s| c[0] + s * (c[1] + s * (c[2] + s * c[3])))
+    }
+
+    /// Derivative at a time in s; at a knot that of what follows.
+    pub fn rate(&self, time: f64) -> f64 {
+        let before = self.knots.first().is_some_and(|first| time < first.time);
+        match before {
+            true => 0.0,
+            false => self.eval(time, |c, s| c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])),
+        }
+    }
+
+    fn eval(&self, time: f64, of: impl Fn(&[f64; 4], f64) -> f64) -> f64 {
+        let after = self.knots.partition_point(|knot| knot.time <= time);
+        let knot = self.knots.get(after.saturating_sub(1));
+        knot.map_or(0.0, |knot| of(&knot.c, (time - knot.time).max(0.0)))
+    }
+
+    /// Whether it is the same at all times.
+    pub fn is_constant(&self) -> bool {
+        let first = self.knots.first().map_or(0.0, |knot| knot.c[0]);
+        let mut knots = self.knots.iter();
+        knots.all(|knot| knot.c == [first, 0.0, 0.0, 0.0])
+    }
+
+    /// Times of the first and of the last knot, s.
+    pub fn span(&self) -> [f64; 2] {
+        let time = |knot: Option<&Knot>| knot.map_or(0.0, |knot| knot.time);
+        [time(self.knots.first()), time(self.knots.last())]
+    }
+}
+
+/// Whether points are those of a function of time.
+pub(crate) fn check(points: &[[f64; 2]]) -> Result<(), Error> {
+    if points.is_empty() {
+        return Err(Error::Empty);
+    }
+    let finite = |point: &[f64; 2]| point.iter().all(|number| number.is_finite());
+    if let Some(at) = points.iter().position(|point| !finite(point)) {
+        return Err(Error::NotFinite { at });
+    }
+    match (1..points.len()).find(|&at| points[at][0] <= points[at - 1][0]) {
+        None => Ok(()),
+        Some(at) => Err(Error::Times {
+            at,
+            time: points[at][0],
+            before: points[at - 1][0],
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn amplitude_is_straight_between_its_points_and_constant_outside() {
+        let ramp = Amplitude::new(vec![[1.0, 0.0], [2.0, 4.0], [4.0, 2.0]]).unwrap();
+        for (time, value) in [(0.0, 0.0), (1.25, 1.0), (2.0, 4.0), (3.0, 3.0), (9.0, 2.0)] {
+            assert_eq!(ramp.at(time), value);
+        }
+        assert_eq!(
+            (ramp.rate(0.5), ramp.rate(1.5), ramp.rate(5.0)),
+            (0.0, 4.0, 0.0)
+        );
+        assert_eq!(ramp.span(), [1.0, 4.0]);
+        assert!(!ramp.is_constant());
+        assert_eq!(Amplitude::new(vec![]), Err(Error::Empty));
+        let twice = Amplitude::new(vec![[1.0, 0.0], [1.0, 1.0]]);
+        assert!(matches!(twice, Err(Error::Times { at: 1, .. })));
+        let hole = Amplitude::new(vec![[1.0, 0.0], [2.0, f64::NAN]]);
+        assert_eq!(hole, Err(Error::NotFinite { at: 1 }));
+        assert_eq!(Amplitude::constant(3.0).at(-7.0), 3.0);
+        assert!(Amplitude::constant(3.0).is_constant());
+    }
+}

@@ -1,0 +1,82 @@
+//! What can be wrong with a signal.
+
+use thiserror::Error as ThisError;
+
+/// What can be wrong with a signal. Lines of files count from 1.
+#[derive(Clone, Debug, PartialEq, ThisError)]
+pub enum Error {
+    /// No point at all.
+    #[error("a function of time needs a point at least")]
+    Empty,
+    /// A time that is not after the one before it.
+    #[error("the times must ascend: point {} has {time} s after {before} s", at + 1)]
+    Times {
+        /// Index of the point.
+        at: usize,
+        /// Its time, s.
+        time: f64,
+        /// The time before it, s.
+        before: f64,
+    },
+    /// A number that is not finite.
+    #[error("point {} is not finite", at + 1)]
+    NotFinite {
+        /// Index of the point.
+        at: usize,
+    },
+    /// A record without duration.
+    #[error("a record needs two points at least: with one it has no duration")]
+    NoDuration,
+    /// Too few points for a baseline correction.
+    #[error("a baseline correction needs {least} points at least, the record has {points}")]
+    TooShort {
+        /// Points of the record.
+        points: usize,
+        /// Least number.
+        least: usize,
+    },
+    /// A file without a row of numbers.
+    #[error("the file has no row of numbers")]
+    NoRows,
+    /// A column that the file does not have.
+    #[error("the file has no column '{name}'; it has {}", listed(.columns))]
+    NoColumn {
+        /// Name that was asked for.
+        name: String,
+        /// Columns of the file.
+        columns: Vec<String>,
+    },
+    /// A row with another number of values than there are columns.
+    #[error("line {line} has {found} values, the file has {columns} columns: a gap in the record?")]
+    Ragged {
+        /// Line of the file.
+        line: usize,
+        /// Values in the line.
+        found: usize,
+        /// Columns of the file.
+        columns: usize,
+    },
+    /// A cell without a value.
+    #[error("line {line} has no value in column '{column}': a gap in the record")]
+    Missing {
+        /// Line of the file.
+        line: usize,
+        /// Name of the column.
+        column: String,
+    },
+    /// A cell that is no finite number.
+    #[error("line {line}: '{text}' in column '{column}' is no number (a decimal point is needed)")]
+    NotANumber {
+        /// Line of the file.
+        line: usize,
+        /// Name of the column.
+        column: String,
+        /// The cell.
+        text: String,
+    },
+}
+
+fn listed(columns: &[String]) -> String {
+    let quoted: Vec<String> = columns.iter().map(|name| format!("'{name}'")).collect();
+    quoted.join(", ")
+}

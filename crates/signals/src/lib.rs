@@ -1,0 +1,19 @@
+//! Functions of time: amplitudes, records of earthquakes, their integrals, response spectra, random and synthetic signals.
+//!
+//! All numbers are in SI units. Nothing here knows a mesh, a body or a case file. Theory: `docs/src/theory/signals.md`.
+
+mod amplitude;
+mod baseline;
+mod csv;
+mod error;
+mod oscillator;
+mod record;
+mod spectrum;
+
+pub use amplitude::Amplitude;
+pub use baseline::corrected;
+pub use csv::{Column, Table};
+pub use error::Error;
+pub use oscillator::{Oscillator, Response};
+pub use record::{Record, Steps};
+pub use spectrum::{ResponseSpectrum, response_spectrum};
