@@ -125,7 +125,8 @@ fn tabulated(end: f64) -> Result<Vec<Row>, Error> {
     let response = OSCILLATOR.response(&record);
     let exact = |step: usize| {
         let at = response[step / pieces];
-        (step % pieces == 0).then(|| [at.u, OSCILLATOR.acceleration(at)])
+        step.is_multiple_of(pieces)
+            .then(|| [at.u, OSCILLATOR.acceleration(at)])
     };
     let run = (
         record.acceleration(),

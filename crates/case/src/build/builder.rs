@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use carom_mesh::{Group, Mesh};
 
+use super::course::Signals;
 use super::plan::Plan;
-use super::signals::Signals;
 use crate::error::Problem;
 use crate::schema::{Case, Vector};
 

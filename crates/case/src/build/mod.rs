@@ -5,6 +5,7 @@ mod arlequin;
 mod bodies;
 mod builder;
 mod contacts;
+mod course;
 mod discrete;
 mod held;
 mod laws;
@@ -39,9 +40,9 @@ use crate::schema::{Case, Motion};
 
 pub use arlequin::BuiltOverlap;
 use builder::{Builder, dimensions, plural};
+use course::Signals;
 use plan::Plan;
 pub use reference::ExactReference;
-use signals::Signals;
 
 /// What a case amounts to.
 #[derive(Debug)]

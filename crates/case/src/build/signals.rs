@@ -1,6 +1,5 @@
 //! Signals: functions of time by name, from points and files.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use carom_dynamics::Amplitude;
@@ -9,6 +8,7 @@ use carom_quantities::units::{Dimension, parse_quantity};
 use carom_signals::{Error, Record, Table, corrected};
 
 use super::Builder;
+use super::course::{Course, Signals};
 use crate::error::Problem;
 use crate::input::Input;
 use crate::schema::{
@@ -20,28 +20,6 @@ const LARGEST: u64 = 256 << 20;
 
 /// Velocity at the end of a record over its largest one, above which a support that follows it drifts away.
 const DRIFT: f64 = 1e-6;
-
-/// A signal, by what it is a function of time of.
-#[derive(Clone, Debug)]
-pub(super) enum Course {
-    Acceleration(Record),
-    Displacement(Amplitude),
-    Factor(Amplitude),
-}
-
-impl Course {
-    /// What it is, for messages.
-    fn quantity(&self) -> &'static str {
-        match self {
-            Course::Acceleration(_) => "an acceleration",
-            Course::Displacement(_) => "a displacement",
-            Course::Factor(_) => "a factor",
-        }
-    }
-}
-
-/// Signals by name; `None` of those with a problem.
-pub(super) type Signals = BTreeMap<String, Option<Course>>;
 
 /// Times and values with the key path of each time, where the file says them one by one.
 struct Points {
