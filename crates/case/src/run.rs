@@ -50,13 +50,15 @@ pub fn run(
     let begin = Instant::now();
     let system = || Arc::clone(&built.system);
     match &built.zoned {
-        None => {
+        zoned if !built.apart => {
             let mut driver = Driver::new(system()).map_err(Failed::Start)?;
             let mut results = Results::create(settings(input, case, built, folder), system())?;
             let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
             let outcome = march(&mut driver, built.end, observers, stop);
-            conclude(results, outcome, (&driver, None), begin)
+            let zones = zoned.as_ref().map(|zoned| Zones::together(&driver, zoned));
+            conclude(results, outcome, (&driver, zones), begin)
         }
+        None => unreachable!("only zones step apart"),
         Some(zoned) => {
             let mut whole = Whole::new(zoned, system()).map_err(Failed::Start)?;
             let mut results = Results::create(settings(input, case, built, folder), system())?;

@@ -120,12 +120,15 @@ fn print(summary: &Summary, folder: &Path) {
                 zone.unknowns
             );
         }
-        out!(
-            "  links: {} constraints, work {}, {:.2} passes a step",
-            zones.links.iter().map(|link| link.rows).sum::<usize>(),
-            quantity(zones.work_of_links, "J"),
-            zones.passes_per_step
-        );
+        let passes = match zones.passes_per_step {
+            Some(passes) => format!(", {passes:.2} passes a step"),
+            None => String::new(),
+        };
+        let rows = zones.links.iter().map(|link| link.rows).sum::<usize>();
+        if rows > 0 {
+            let work = quantity(zones.work_of_links, "J");
+            out!("  links: {rows} constraints, work {work}{passes}");
+        }
     }
     for (name, contact) in &summary.contacts {
         out!("  contact {name} ({} law)", contact.law);

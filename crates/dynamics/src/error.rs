@@ -245,7 +245,7 @@ pub enum Error {
     },
     /// A contact whose sides are in different zones.
     #[error(
-        "contact '{contact}': its two sides are in the zones '{one}' and '{other}'; they must be in the same"
+        "contact '{contact}': its two sides are in the zones '{one}' and '{other}', which step apart: {cause}"
     )]
     AcrossZones {
         /// Name of the contact.
@@ -254,6 +254,56 @@ pub enum Error {
         one: String,
         /// Zone of the primary side.
         other: String,
+        /// Why this contact cannot be between them.
+        cause: &'static str,
+    },
+    /// A contact between zones without solution.
+    #[error("step {step}, contact '{contact}' between zones: {cause}")]
+    Between {
+        /// Number of the outer step.
+        step: u64,
+        /// Name of the contact.
+        contact: String,
+        /// Cause.
+        cause: crate::interface::Failure,
+    },
+    /// Bodies that share nodes, with different schemes.
+    #[error(
+        "body '{body}' shares nodes with a body of the scheme {}, and has the scheme {}: bodies that share nodes have one scheme",
+        schemes[0],
+        schemes[1]
+    )]
+    SchemesOfPart {
+        /// Name of the body.
+        body: String,
+        /// Names of both schemes.
+        schemes: [&'static str; 2],
+    },
+    /// A scheme that stands by itself.
+    #[error("the scheme {scheme} goes in no model with another one: {cause}")]
+    SchemeAlone {
+        /// Name of the scheme.
+        scheme: &'static str,
+        /// Why.
+        cause: &'static str,
+    },
+    /// A body at finite strain in implicit steps that links join in the step.
+    #[error(
+        "body '{body}': links join bodies at small strain, or in explicit steps, in one problem with the contacts"
+    )]
+    LinkedNonlinear {
+        /// Name of the body.
+        body: String,
+    },
+    /// A contact that bodies of different schemes cannot have.
+    #[error("contact '{contact}' in a model of the schemes {}: {cause}", schemes.join(" and "))]
+    BetweenSchemes {
+        /// Name of the contact.
+        contact: String,
+        /// Names of the schemes.
+        schemes: Vec<&'static str>,
+        /// Why.
+        cause: &'static str,
     },
     /// A zone with a scheme that no link takes.
     #[error(

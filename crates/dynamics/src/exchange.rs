@@ -89,14 +89,15 @@ impl Exchange {
     }
 
     /// Adds the impulses of one kind of forces in a step of `dt`: 0 for loads, supports and links, 1 for supports against contact
-    /// forces. `force`: of each unknown.
+    /// forces. `impulse`: how they change the momentum of the part with this unknown; `force`: of each unknown.
     pub(crate) fn add(
         &mut self,
         system: &System,
-        (kind, dt, impulse): (usize, f64, &Impulse),
+        (kind, dt, impulse): (usize, f64, impl Fn(usize) -> Impulse),
         force: impl Fn(usize) -> f64,
     ) {
         for (part, range) in self.parts.iter_mut().zip(&system.parts) {
+            let impulse = impulse(range.start);
             let total = total(system, range, &force);
             for i in 0..3 {
                 let before = part.before[kind][i];

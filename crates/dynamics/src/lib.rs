@@ -4,7 +4,9 @@
 //! [`Driver`] owns factors and scratch. [`march`] is the loop; observers see accepted states only. No files, no
 //! printing.
 
+mod between;
 mod compliance;
+mod condensed;
 mod contacts;
 mod control;
 mod driver;
@@ -14,6 +16,7 @@ mod impact;
 mod initial;
 mod ledger;
 mod loads;
+mod maps;
 mod march;
 mod mass;
 mod massless;
@@ -47,7 +50,10 @@ pub use ledger::{Balance, Ledger, Tolerated};
 pub use loads::{Load, LoadKind, NodalLoad};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, march, step_count};
 pub use mass::Mass;
-pub use model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelRigid, ModelTarget, Support};
+pub use model::{
+    Model, ModelBody, ModelContact, ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget,
+    Support,
+};
 pub use nonlinear::{Damping, Iteration, Nonlinear, Preload, Prescribed, PrescribedTurn};
 pub use records::{ContactRecord, Records};
 pub use refused::Refused;
@@ -59,5 +65,5 @@ pub use state::{ContactReport, ContactSample, InterfaceState, Motion, State, Ste
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::System;
 pub use zones::{
-    LinkKind, ModelLink, ModelZone, Origin, Sample, Whole, Zoned, Zones, ZonesState, mortar_rows,
+    LinkKind, ModelZone, Origin, Sample, Whole, Zoned, Zones, ZonesState, mortar_rows,
 };

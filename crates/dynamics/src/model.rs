@@ -1,6 +1,7 @@
 //! Everything from which a system is built.
 
 use carom_algebra::unknowns::Kind;
+use carom_arlequin::Row;
 use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind};
 use carom_contact::{Initial, Integration, Law, Obstacle, Sliding};
 use carom_mesh::{Mesh, Surface};
@@ -25,6 +26,10 @@ pub struct Model {
     pub contacts: Vec<ModelContact>,
     /// Time scheme.
     pub scheme: Scheme,
+    /// Bodies with another scheme.
+    pub zones: Vec<ModelScheme>,
+    /// Links between velocities of bodies.
+    pub links: Vec<ModelLink>,
     /// Step in s; the largest of an adaptive step.
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
@@ -44,11 +49,46 @@ impl Model {
             gravity: [0.0; 3],
             contacts: Vec::new(),
             scheme,
+            zones: Vec::new(),
+            links: Vec::new(),
             dt,
             adaptive: None,
             nonlinear: Nonlinear::default(),
         }
     }
+
+    /// The time scheme of a body.
+    pub(crate) fn scheme_of(&self, body: usize) -> Scheme {
+        let mut zones = self.zones.iter();
+        let zone = zones.find(|zone| zone.bodies.contains(&body));
+        zone.map_or(self.scheme, |zone| zone.scheme)
+    }
+
+    /// Whether bodies have different schemes.
+    pub(crate) fn mixes_schemes(&self) -> bool {
+        let first = (!self.bodies.is_empty()).then(|| self.scheme_of(0));
+        (1..self.bodies.len()).any(|body| Some(self.scheme_of(body)) != first)
+    }
+}
+
+/// A time scheme of some bodies, which no other body shares nodes with.
+#[derive(Clone, Debug)]
+pub struct ModelScheme {
+    /// Their indices in the model.
+    pub bodies: Vec<usize>,
+    /// The scheme.
+    pub scheme: Scheme,
+}
+
+/// Rows `C_c v_c - C_s v_s = 0` between two zones: an overlap, or a common border.
+#[derive(Clone, Debug)]
+pub struct ModelLink {
+    /// Name as in the case file.
+    pub name: String,
+    /// Zones of the inner and of the outer terms.
+    pub zones: [usize; 2],
+    /// The rows, on nodes of the mesh.
+    pub rows: Vec<Row>,
 }
 
 impl Model {

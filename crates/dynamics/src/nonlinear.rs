@@ -268,6 +268,7 @@ impl Model {
             || self.bodies.iter().any(finite)
             || self.discrete.iter().any(|some| !some.spec.is_linear())
             || self.scheme.get().is_between()
+            || self.mixes_schemes()
             || self.contacts.iter().any(needs_newton)
     }
 }

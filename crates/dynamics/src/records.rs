@@ -197,14 +197,13 @@ impl Records {
             .extend_from_slice(&before.impacts[self.impacts.len()..]);
     }
 
-    /// Adds a step of one contact. `old`, `new`: the states around it.
+    /// Adds a step of one contact. `velocities`: at its start and at its end.
     pub(crate) fn add(
         &mut self,
         system: &System,
         contact: usize,
         step: &Step,
-        old: &State,
-        new_velocity: &[f64],
+        velocities: [&[f64]; 2],
     ) {
         let (report, dt) = (step.report, step.dt);
         let record = &mut self.contacts[contact];
@@ -267,7 +266,6 @@ impl Records {
             work: step.work,
             crushed,
         };
-        let velocities = [&old.motion.v[..], new_velocity];
         let place = (system, contact);
         let ended = OpenImpact::follow(&mut record.open, place, &given, velocities);
         self.impacts.extend(ended);

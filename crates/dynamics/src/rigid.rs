@@ -242,7 +242,7 @@ impl System {
         if self.nonlinear.preload.is_some() {
             return refuse("a static stage has no rotations; begin with the dynamics");
         }
-        if self.scheme.get().is_explicit() {
+        if self.schemes.iter().any(|scheme| scheme.get().is_explicit()) {
             return refuse(
                 "an explicit step would take the moment W × J W at the velocity before it and keep neither energy nor angular \
                  momentum; take theta, energy-momentum, newmark, generalised-alpha or hht",

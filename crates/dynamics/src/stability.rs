@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use carom_bodies::{Body, Placement};
+use carom_bodies::Placement;
 use carom_contact::law::{Local, Status};
 use carom_contact::{Contact, Rows, Search};
 
 use crate::error::Error;
+use crate::scheme::Scheme;
 use crate::state::Motion;
 use crate::system::System;
 
@@ -22,8 +23,10 @@ impl System {
     /// z² + (A - 2) z + 1 - A + ω² dt² with A = φ ω² dt² + c dt, Ω² = 4/(2φ - 1), at z = -1; φ = 1 for central differences). The largest
     /// ω² and c bound all modes.
     pub fn critical_step(&self) -> f64 {
-        let bodies = self.bodies.iter().map(Body::frequency_bound);
-        self.critical_with(bodies.fold(0.0, f64::max))
+        let bodies = self.bodies.iter().zip(&self.zone_of_body);
+        let bodies = bodies.filter(|(_, zone)| self.is_explicit(**zone));
+        let bounds = bodies.map(|(body, _)| body.frequency_bound());
+        self.critical_with(bounds.fold(0.0, f64::max))
     }
 
     /// Critical step about a motion, s, with the tangents there; a body at small strain has always the same.
@@ -32,7 +35,9 @@ impl System {
     /// An element without tangent.
     pub(crate) fn critical_step_at(&self, motion: &Motion) -> Result<f64, Error> {
         let mut bodies: f64 = 0.0;
-        for (body, history) in self.bodies.iter().zip(&self.nonlinear.histories) {
+        let all = self.bodies.iter().zip(&self.nonlinear.histories);
+        let all = all.zip(&self.zone_of_body);
+        for ((body, history), _) in all.filter(|(_, zone)| self.is_explicit(**zone)) {
             let at = Placement {
                 u: &motion.u,
                 v: &motion.v,
@@ -43,6 +48,12 @@ impl System {
             bodies = bodies.max(body.frequency_bound_at(&at)?);
         }
         Ok(self.critical_with(bodies))
+    }
+
+    /// Whether the elements of a zone bound the step: those of all where no scheme is explicit.
+    fn is_explicit(&self, zone: usize) -> bool {
+        let explicit = |scheme: &Scheme| scheme.get().is_explicit();
+        explicit(&self.schemes[zone]) || !self.schemes.iter().any(explicit)
     }
 
     /// `bodies`: bound of the frequencies of the bodies, rad/s.
@@ -57,7 +68,11 @@ impl System {
         let damping = self.nonlinear.damping.iter();
         let rates = damping.map(|damping| damping.mass + damping.stiffness * bodies * bodies);
         let rate = rates.fold(0.0, f64::max) + dashpots;
-        let undamped = self.scheme.get().critical().unwrap_or(2.0);
+        let critical = self
+            .schemes
+            .iter()
+            .filter_map(|scheme| scheme.get().critical());
+        let undamped = critical.reduce(f64::min).unwrap_or(2.0);
         let stiffness = 4.0 * squared / (undamped * undamped);
         match rate > 0.0 {
             true => 4.0 / (rate + (rate * rate + 4.0 * stiffness).sqrt()),

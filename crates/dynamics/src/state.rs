@@ -9,6 +9,7 @@ use crate::control::Control;
 use crate::exchange::Exchange;
 use crate::ledger::{Balance, Ledger};
 use crate::records::Records;
+use crate::scheme::Scheme;
 use crate::step_map::Known;
 use crate::{Error, System};
 
@@ -26,6 +27,8 @@ pub struct State {
     /// Nodal forces of the last step as its balance by works takes them, N: loads, contacts, supports, inertia, internal,
     /// damping, links; empty where the next step does not need them.
     pub forces: Vec<Vec<f64>>,
+    /// Links between velocities.
+    pub links: Links,
     /// Step control.
     pub control: Control,
     /// Energy and momentum balance since the start.
@@ -34,6 +37,17 @@ pub struct State {
     pub records: Records,
     /// Momentum that contacts have given to the bodies since the start.
     pub exchange: Exchange,
+}
+
+/// Links at an accepted instant; empty without links.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Links {
+    /// Multiplier of each row, N per unit of the row.
+    pub multipliers: Vec<f64>,
+    /// Multipliers as the balance of the last step saw them, by scheme.
+    pub mixed: Vec<Vec<f64>>,
+    /// Work of each link on its inner and its outer side since the start, J.
+    pub works: Vec<[f64; 2]>,
 }
 
 /// Vectors of the system, one entry per unknown.
@@ -207,7 +221,8 @@ impl State {
             &motion.internal_force,
             &motion.contact_force,
         ];
-        let remembered = match system.scheme.get().step_map(system.dt).has_memory() {
+        let remembers = |scheme: &Scheme| scheme.get().step_map(system.dt).has_memory();
+        let remembered = match system.schemes.iter().any(remembers) {
             true => n,
             false => 0,
         };
@@ -228,7 +243,8 @@ impl State {
 /// At rest, nothing done yet.
 pub(crate) fn empty_state(system: &System) -> State {
     let (zeros, points) = (vec![0.0; system.unknowns()], system.points());
-    let remembers = system.scheme.get().step_map(system.dt).has_memory();
+    let remembers = |scheme: &Scheme| scheme.get().step_map(system.dt).has_memory();
+    let remembers = system.schemes.iter().any(remembers);
     State {
         step: 0,
         time: 0.0,
@@ -259,6 +275,7 @@ pub(crate) fn empty_state(system: &System) -> State {
             crush: vec![0.0; points],
         },
         forces: Vec::new(),
+        links: Links::default(),
         control: Control::start(system.dt),
         ledger: Ledger::default(),
         records: Records::default(),

@@ -20,6 +20,14 @@ use crate::nonlinear::NumberedNonlinear;
 use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
 use crate::{Adaptive, Error, Scheme};
 
+/// One row of C, which couples velocities: unknowns and coefficients, with the sign of the side.
+pub(crate) type LinkRow = Vec<(u32, f64)>;
+
+/// A row applied to a vector.
+pub(crate) fn on(row: &LinkRow, vector: &[f64]) -> f64 {
+    row.iter().map(|&(dof, c)| c * vector[dof as usize]).sum()
+}
+
 /// The immutable side of a run.
 #[derive(Debug)]
 pub struct System {
@@ -70,8 +78,20 @@ pub struct System {
     pub first_point: Vec<usize>,
     /// Gap below which a point counts as closed, m: 1e-12 of the length of the model ([`Model::length`]).
     pub tolerance: f64,
-    /// Time scheme.
+    /// Time scheme; of several the first one.
     pub scheme: Scheme,
+    /// The time schemes, each once.
+    pub schemes: Vec<Scheme>,
+    /// Which of them each body has.
+    pub(crate) zone_of_body: Vec<usize>,
+    /// Name and range of the rows of each link.
+    pub(crate) links: Vec<(String, Range<usize>)>,
+    /// The rows of all links, of both sides, those of the inner side first.
+    pub(crate) link_rows: Vec<LinkRow>,
+    /// Number of terms on the inner side of each row.
+    pub(crate) inner_terms: Vec<usize>,
+    /// Unknowns that follow each other and have one scheme, and its number; ascending.
+    pub(crate) spans: Vec<(Range<usize>, usize)>,
     /// Step, s; the largest of an adaptive step.
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
@@ -109,7 +129,10 @@ impl System {
         let (system, bodies, contacts) = System::assemble(model)?;
         system.check_overlaps(&contacts)?;
         system.check_massless(&contacts)?;
-        system.check_scheme(&bodies)?;
+        for zone in 0..system.schemes.len() {
+            system.check_scheme(zone, &bodies)?;
+        }
+        system.check_zones()?;
         system.check_nonlinear()?;
         system.check_integration()?;
         Ok(Arc::new(system))
@@ -234,8 +257,13 @@ impl System {
             });
             part_of(&parts, first.unwrap_or(0))
         });
+        let part_of_body: Vec<usize> = part_of_body.collect();
+        let (schemes, zone_of_body, spans) = schemes(&model, &bodies, &part_of_body, &parts)?;
+        let (links, link_rows) = links(&model, &number, &unknowns);
+        let rows = model.links.iter().flat_map(|link| &link.rows);
+        let inner_terms = rows.map(|row| row.inner.len()).collect();
         let system = System {
-            part_of_body: part_of_body.collect(),
+            part_of_body,
             origin,
             tolerance: 1e-12 * model.length(),
             axisymmetric: model
@@ -260,7 +288,13 @@ impl System {
             secondary_faces,
             sides,
             first_point,
-            scheme: model.scheme,
+            scheme: schemes[0],
+            schemes,
+            zone_of_body,
+            links,
+            link_rows,
+            inner_terms,
+            spans,
             dt: model.dt,
             adaptive: model.adaptive,
             nonlinear,
@@ -342,10 +376,24 @@ impl System {
         }
     }
 
-    fn check_scheme(&self, bodies: &[ModelBody]) -> Result<(), Error> {
-        let scheme = self.scheme.get();
+    /// The number of the scheme of the secondary side of a contact.
+    pub(crate) fn zone_of(&self, contact: usize) -> usize {
+        self.zone_of_body[self.sides[contact].0]
+    }
+
+    /// The number of the scheme of an unknown.
+    pub(crate) fn zone_at(&self, unknown: usize) -> usize {
+        let span = self.spans.partition_point(|(span, _)| span.end <= unknown);
+        self.spans[span].1
+    }
+
+    fn check_scheme(&self, zone: usize, bodies: &[ModelBody]) -> Result<(), Error> {
+        let scheme = self.schemes[zone].get();
+        let of_zone = |body: usize| self.zone_of_body[body] == zone;
+        let own = || bodies.iter().enumerate().filter(|(k, _)| of_zone(*k));
+        let mut own = own().map(|(_, body)| body).collect::<Vec<_>>().into_iter();
         if scheme.needs_lumped_mass()
-            && let Some(body) = bodies.iter().find(|body| body.mass == MassKind::Consistent)
+            && let Some(body) = own.clone().find(|body| body.mass == MassKind::Consistent)
         {
             return Err(Error::ConsistentMass {
                 scheme: scheme.name(),
@@ -356,13 +404,18 @@ impl System {
         if scheme.is_between()
             // a run may end with its static stage, which asks for no stress between two states
             && self.static_steps() == 0
-            && let Some(body) = bodies.iter().find(dissipates)
+            && let Some(body) = own.find(dissipates)
         {
             let body = body.spec.name.clone();
             return Err(carom_bodies::Error::NoBetween { body }.into());
         }
+        let touches = |(secondary, primary): &(usize, Option<usize>)| {
+            of_zone(*secondary) || primary.is_some_and(of_zone)
+        };
+        let contacts = self.contacts.iter().zip(&self.sides);
+        let mut contacts = contacts.filter(|(_, sides)| touches(sides)).map(|(c, _)| c);
         let refused = |contact: &&Contact| !scheme.takes(contact.law.get().level());
-        if let Some(contact) = self.contacts.iter().find(refused) {
+        if let Some(contact) = contacts.clone().find(refused) {
             let of_rates = scheme.takes(Level::Rate) && !scheme.is_explicit();
             return Err(match contact.law.get().level() {
                 Level::Gap | Level::GapAndRate if of_rates => Error::GapLaw {
@@ -379,7 +432,7 @@ impl System {
             });
         }
         let projects = |contact: &&Contact| contact.law.projects();
-        if let Some(contact) = self.contacts.iter().find(projects)
+        if let Some(contact) = contacts.find(projects)
             && !scheme.step_map(self.dt).balances_at_the_end()
         {
             return Err(Error::Projection {
@@ -508,6 +561,80 @@ fn nearest_corner(x: &[[f64; 3]]) -> [f64; 3] {
         });
         0.0_f64.min(high).max(low)
     })
+}
+
+/// Name and range of the rows of each link, and the rows.
+fn links(
+    model: &Model,
+    number: &[u32],
+    unknowns: &Unknowns,
+) -> (Vec<(String, Range<usize>)>, Vec<LinkRow>) {
+    let mut rows: Vec<LinkRow> = Vec::new();
+    let mut links = Vec::new();
+    for link in &model.links {
+        let first = rows.len();
+        for row in &link.rows {
+            let term = |sign: f64| {
+                move |term: &carom_arlequin::Term| {
+                    let first = unknowns.first(number[term.node as usize]) as u32;
+                    (first + term.component, sign * term.coefficient)
+                }
+            };
+            let inner = row.inner.iter().map(term(1.0));
+            rows.push(inner.chain(row.outer.iter().map(term(-1.0))).collect());
+        }
+        links.push((link.name.clone(), first..rows.len()));
+    }
+    (links, rows)
+}
+
+/// The schemes, each once, the number of each body's, and the unknowns by scheme.
+type Schemes = (Vec<Scheme>, Vec<usize>, Vec<(Range<usize>, usize)>);
+
+/// # Errors
+/// Bodies of one connected part that have different schemes.
+fn schemes(
+    model: &Model,
+    bodies: &[Body],
+    part_of_body: &[usize],
+    parts: &[Range<usize>],
+) -> Result<Schemes, Error> {
+    let mut of_part: Vec<Option<Scheme>> = vec![None; parts.len()];
+    for (k, body) in model.bodies.iter().enumerate() {
+        let own = model.scheme_of(k);
+        let of_part = of_part[part_of_body[k]].get_or_insert(own);
+        if *of_part != own {
+            return Err(Error::SchemesOfPart {
+                body: body.spec.name.clone(),
+                schemes: [of_part.get().name(), own.get().name()],
+            });
+        }
+    }
+    let mut schemes: Vec<Scheme> = Vec::new();
+    let mut spans: Vec<(Range<usize>, usize)> = Vec::new();
+    let mut zone_of_part = Vec::new();
+    for (part, scheme) in parts.iter().zip(of_part) {
+        // point masses by themselves
+        let scheme = scheme.unwrap_or(model.scheme);
+        let known = schemes.iter().position(|one| *one == scheme);
+        let zone = known.unwrap_or_else(|| {
+            schemes.push(scheme);
+            schemes.len() - 1
+        });
+        zone_of_part.push(zone);
+        match spans.last_mut() {
+            Some((span, of)) if *of == zone => span.end = part.end,
+            _ => spans.push((part.clone(), zone)),
+        }
+    }
+    if schemes.is_empty() {
+        schemes.push(model.scheme);
+    }
+    let zones = (0..bodies.len()).map(|body| {
+        let part = part_of_body[body];
+        zone_of_part.get(part).copied().unwrap_or(0)
+    });
+    Ok((schemes, zones.collect(), spans))
 }
 
 fn node_masses(body: &Body, unknowns: &Unknowns) -> Vec<(u32, f64)> {

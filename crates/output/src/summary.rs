@@ -111,9 +111,8 @@ pub struct Zones {
     pub work_of_links: f64,
     /// The same over the kinetic and strain energy at the start; `null` without any.
     pub relative_work_of_links: Option<f64>,
-    /// Mean number of passes over an outer step until the links held.
-    #[serde(with = "float")]
-    pub passes_per_step: f64,
+    /// Mean number of passes over an outer step until the links held; `null` where contacts and links are one problem.
+    pub passes_per_step: Option<f64>,
 }
 
 /// One zone.
@@ -140,6 +139,13 @@ pub struct Zone {
     /// Energy that the links gave to the zone, J.
     #[serde(with = "float")]
     pub work_of_links: f64,
+    /// What it cost by itself; `null` of zones that are one system.
+    pub costs: Option<ZoneCosts>,
+}
+
+/// What a zone that steps by itself cost, and how well its energy balances.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ZoneCosts {
     /// Largest magnitude of the zone's energy residual over the run, J.
     #[serde(with = "float")]
     pub largest_residual: f64,

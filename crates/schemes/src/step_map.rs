@@ -31,6 +31,21 @@ pub struct Row {
     pub c: f64,
 }
 
+impl<'a> Known<'a> {
+    /// The same of a range of the unknowns.
+    pub fn within(&self, range: std::ops::Range<usize>) -> Known<'a> {
+        Known {
+            u: &self.u[range.clone()],
+            v: &self.v[range.clone()],
+            a: &self.a[range.clone()],
+            memory: match self.memory.is_empty() {
+                true => self.memory,
+                false => &self.memory[range],
+            },
+        }
+    }
+}
+
 impl Row {
     /// The displacement at the start, alone.
     pub const START: Row = Row {
@@ -58,6 +73,14 @@ impl Row {
         x: 0.0,
         c: 0.0,
     };
+
+    /// The same combination of an unknown that is this many times as large.
+    fn over(self, factor: f64) -> Row {
+        Row {
+            x: self.x / factor,
+            ..self
+        }
+    }
 
     /// The change from another combination to this one.
     pub fn since(&self, other: &Row) -> Row {
@@ -216,6 +239,23 @@ impl StepMap {
             impulse: Impulse::weights(0.0, 1.0),
             contact_impulse: Impulse::weights(0.0, 1.0),
         }
+    }
+
+    /// The same step with another unknown: what contact forces change in the rate that laws constrain, in m/s, so that the unknowns of two schemes
+    /// may stand in one row. `None` where that rate does not depend on the unknown.
+    pub fn by_rate(&self) -> Option<StepMap> {
+        let x = self.rate.x;
+        (x != 0.0).then(|| StepMap {
+            inertia: self.inertia.over(x),
+            force: self.force.over(x),
+            displacement: self.displacement.over(x),
+            velocity: self.velocity.over(x),
+            acceleration: self.acceleration.over(x),
+            gap: self.gap.over(x),
+            rate: self.rate.over(x),
+            memory: self.memory.over(x),
+            ..*self
+        })
     }
 
     /// Time after the start of a step of length `dt` at which the balance of the step holds, s: that at which a steady motion

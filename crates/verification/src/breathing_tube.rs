@@ -73,6 +73,8 @@ impl Tube {
             contacts: Vec::new(),
             scheme: Scheme::EnergyMomentum(EnergyMomentum {}),
             dt: self.dt,
+            zones: Vec::new(),
+            links: Vec::new(),
             adaptive: None,
             nonlinear: Nonlinear::default(),
             mesh,

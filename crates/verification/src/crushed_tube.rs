@@ -68,6 +68,8 @@ fn newton(mesh: &str, facing_itself: bool) -> Result<Driver, Error> {
         gravity: [0.0; 3],
         scheme: Scheme::EnergyMomentum(EnergyMomentum {}),
         dt: STEP,
+        zones: Vec::new(),
+        links: Vec::new(),
         adaptive: None,
         nonlinear: Nonlinear::default(),
         mesh,

@@ -33,6 +33,9 @@ pub enum Error {
     /// Points that make no function of time.
     #[error(transparent)]
     Signal(#[from] carom_signals::Error),
+    /// Zones of equal steps that are not one system.
+    #[error("the zones step apart")]
+    Apart,
     /// A mesh lacks a group.
     #[error("the mesh has no group '{name}'")]
     Group {

@@ -197,6 +197,9 @@ pub(crate) enum Built {
 
 impl Built {
     fn zoned(zoned: Zoned) -> Result<Built, Error> {
+        if let Some(system) = zoned.together()? {
+            return Ok(Built::One(system, None));
+        }
         zoned.systems()?;
         let system = System::whole(zoned.model.clone())?;
         Ok(Built::Zoned(Box::new(zoned), system))

@@ -1,6 +1,6 @@
 //! Histories of a contact, and the figures of merit of bars against the exact solution.
 
-use carom_dynamics::{Driver, Observer, State, StepReport, System, march};
+use carom_dynamics::{Driver, Observer, State, StepReport, Stepper, System, march};
 
 use crate::Error;
 use crate::bars::Run;
@@ -82,6 +82,18 @@ pub(crate) fn run(run: &Run) -> Result<(History, Figures), Error> {
     Ok((history, figures))
 }
 
+/// The same, of another model of the same bars.
+pub(crate) fn run_stepper(
+    run: &Run,
+    stepper: &mut dyn Stepper,
+) -> Result<(History, Figures), Error> {
+    let mut history = History::default();
+    let end = run.end * run.set.duration();
+    march(stepper, end, &mut [&mut history], &|| false)?;
+    let figures = figures(run, stepper, &history)?;
+    Ok((history, figures))
+}
+
 /// Runs the bars to the end of the run.
 pub(crate) fn drive(run: &Run) -> Result<(Driver, History), Error> {
     let mut driver = Driver::new(System::new(run.model()?)?)?;
@@ -91,7 +103,7 @@ pub(crate) fn drive(run: &Run) -> Result<(Driver, History), Error> {
     Ok((driver, history))
 }
 
-fn figures(run: &Run, driver: &Driver, history: &History) -> Result<Figures, Error> {
+fn figures(run: &Run, driver: &dyn Stepper, history: &History) -> Result<Figures, Error> {
     let (f0, v0, duration) = (run.force(), run.set.speed, run.set.duration());
     let force = &history.force;
     let active: Vec<bool> = force.iter().map(|force| *force > 1e-4 * f0).collect();
@@ -120,7 +132,7 @@ fn figures(run: &Run, driver: &Driver, history: &History) -> Result<Figures, Err
 }
 
 /// Mean velocity of the target, or zero, less that of the striker, m/s.
-fn separation(run: &Run, driver: &Driver) -> f64 {
+fn separation(run: &Run, driver: &dyn Stepper) -> f64 {
     let (system, v) = (driver.system(), &driver.state().motion.v);
     let mean = |body| system.mean_velocity(body, v)[run.axis()];
     match system.bodies.len() {

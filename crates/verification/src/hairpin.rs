@@ -102,6 +102,8 @@ impl Hairpin {
             contacts: vec![touch],
             scheme: self.scheme,
             dt: self.dt,
+            zones: Vec::new(),
+            links: Vec::new(),
             adaptive: None,
             nonlinear,
             mesh,

@@ -104,6 +104,7 @@ mod threads;
 mod threads_features;
 mod tori;
 mod viability;
+mod zones_in_contact;
 
 use std::io::{self, Write};
 
@@ -213,6 +214,7 @@ registry! {
     threads_features
     tori
     viability
+    zones_in_contact
 }
 
 /// Runs all cases, or those whose name contains `filter`, and writes one line per row.

@@ -1,8 +1,10 @@
 //! Runs with each feature in which steps are dropped and taken again.
 //!
-//! Problem: the models of [`crate::features`] without zones, which drop no steps by themselves; each third step is attempted, dropped,
-//! and attempted again with the same size. Closed solution: a dropped step leaves nothing behind. Reference: the run without rejections,
+//! Problem: the models of [`crate::features`], which drop no steps by themselves; each third step, of zones with unequal steps each third
+//! outer step, is attempted, dropped, and attempted again with the same size. Closed solution: a dropped step leaves nothing behind. Reference: the run without rejections,
 //! a second formulation. Tolerance: none, bytes are equal or not.
+
+use carom_dynamics::Whole;
 
 use crate::Error;
 use crate::check::Check;
@@ -12,12 +14,17 @@ use crate::repeated::{Pairs, advance, rows, stride};
 pub(crate) const CHECK: Check = Check {
     name: "rejections-features",
     fact: "runs with friction, large strain, mortar and the like in which steps are dropped end in the same bytes",
-    run: |size| rows(10, (stride(size), 1), rejected),
+    run: |size| rows(12, (stride(size), 1), rejected),
 };
 
 fn rejected(pairs: &mut Pairs, feature: Feature, built: &Built) -> Result<(), Error> {
-    if matches!(built, Built::Zoned(..)) {
-        return Ok(());
+    if let Built::Zoned(zoned, system) = built {
+        let start = || Whole::new(zoned, system.clone());
+        let (mut plain, mut twice) = (start()?, start()?);
+        advance(&mut plain, feature.steps())?;
+        twice.force_rejections(3);
+        advance(&mut twice, feature.steps())?;
+        return pairs.compare(&plain, &twice);
     }
     let (mut plain, mut twice) = (built.driver()?, built.driver()?);
     advance(&mut plain, feature.steps())?;

@@ -95,12 +95,13 @@ impl Builder<'_> {
                 discrete.push(model(name, cells, kind));
             }
         }
-        if let (Some(some), false) = (discrete.first(), self.plan.zones.is_empty()) {
+        if let (Some(some), false) = (discrete.first(), self.plan.steps_are_equal()) {
             let (kind, name) = (kind_name(&some.spec.kind), &some.spec.name);
-            let message = "point masses, springs and dashpots are not available in zones";
+            let message =
+                "point masses, springs and dashpots are not available in zones of unequal steps";
             let problem = Problem::new(format!("{kind}.{name}"), message);
             self.problems
-                .push(problem.accepted(["a case without zones"]));
+                .push(problem.accepted(["substeps = 1", "a case without zones"]));
         }
         discrete
     }
@@ -286,11 +287,11 @@ impl Builder<'_> {
                 ..ModelContact::new(name, secondary, primary, law)
             });
         }
-        if let (Some(stop), false) = (stops.first(), self.plan.zones.is_empty()) {
-            let message = "stops are not available in zones";
+        if let (Some(stop), false) = (stops.first(), self.plan.steps_are_equal()) {
+            let message = "stops are not available in zones of unequal steps";
             let problem = Problem::new(format!("stop.{}", stop.name), message);
             self.problems
-                .push(problem.accepted(["a case without zones"]));
+                .push(problem.accepted(["substeps = 1", "a case without zones"]));
         }
         stops
     }

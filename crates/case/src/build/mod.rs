@@ -36,7 +36,7 @@ use carom_dynamics::{LinkKind, Model, Nonlinear, System, Zoned};
 use crate::error::Problem;
 use crate::input::Input;
 use crate::locate::Locator;
-use crate::schema::{Case, Motion};
+use crate::schema::{Case, Motion, Step, StepRule};
 
 pub use arlequin::BuiltOverlap;
 use builder::{Builder, dimensions, plural};
@@ -47,10 +47,12 @@ pub use reference::ExactReference;
 /// What a case amounts to.
 #[derive(Debug)]
 pub struct Built {
-    /// The system, ready to be driven; with zones all of the model, for output.
+    /// The system, ready to be driven unless zones step apart.
     pub system: Arc<System>,
     /// The model in zones, if the case has some.
     pub zoned: Option<Zoned>,
+    /// Whether the zones step apart: the system is then all of the model, for output.
+    pub apart: bool,
     /// Its overlaps, in the order of their names.
     pub overlaps: Vec<BuiltOverlap>,
     /// Time at the end, s.
@@ -152,6 +154,8 @@ impl Builder<'_> {
             contacts,
             scheme: self.outer_scheme(),
             dt: f64::MIN_POSITIVE,
+            zones: Vec::new(),
+            links: Vec::new(),
             adaptive: None,
             nonlinear: Nonlinear {
                 nodal,
@@ -175,30 +179,42 @@ impl Builder<'_> {
                 links: joints.links,
                 kind: self.plan.kind,
             };
-            // sides in different zones are refused before
-            let nonlinear = parts.nonlinear_contacts().unwrap_or_default();
+            let nonlinear = parts.nonlinear_contacts();
             for contacts in [&mut model.contacts, &mut parts.model.contacts] {
                 self.default_sliding(contacts, &nonlinear);
             }
             model.dt = self.step(&model.mesh, &model.bodies, || parts.systems())?;
             parts.model.dt = model.dt;
+            parts.model.adaptive = self.adaptive(model.dt);
             zoned = Some(parts);
         }
         if !self.problems.is_empty() {
             return None;
         }
         let system = match &zoned {
-            None => System::new(model),
-            Some(zoned) => zoned.systems().and_then(|_| System::whole(model)),
+            None => System::new(model).map(|system| (system, false)),
+            Some(zoned) => of_zones(zoned, model),
         };
-        let system = match system {
-            Ok(system) => system,
+        let (system, apart) = match system {
+            Ok((system, apart)) => (system, apart),
             Err(error) => {
                 self.problems.push(self.refused(&error));
                 return None;
             }
         };
         self.warn_of_steps(system.dt);
+        if apart && let Step::Rule(StepRule::Adaptive(_)) = self.case.time.step() {
+            let problem = Problem::new(
+                "time.step.adaptive",
+                "zones with unequal steps, or linked at finite strain, take steps of a fixed size",
+            );
+            self.problems.push(problem.accepted([
+                "step = { courant = ... }",
+                "a fixed step",
+                "substeps = 1",
+            ]));
+            return None;
+        }
         self.able_to_act(&system);
         self.with_area(&system);
         self.penetration(&system);
@@ -210,6 +226,7 @@ impl Builder<'_> {
         Some(Built {
             system,
             zoned,
+            apart,
             overlaps: joints.overlaps,
             end,
             stage: self.case.time.stage.map(|stage| (stage.end.0, stage.steps)),
@@ -217,5 +234,15 @@ impl Builder<'_> {
             reference,
             warnings: std::mem::take(&mut self.warnings),
         })
+    }
+}
+
+/// The system of a model in zones, and whether these step apart.
+fn of_zones(zoned: &Zoned, model: Model) -> Result<(Arc<System>, bool), carom_dynamics::Error> {
+    // errors that lie in one zone name it
+    zoned.systems()?;
+    match zoned.together()? {
+        Some(system) => Ok((system, false)),
+        None => Ok((System::whole(model)?, true)),
     }
 }

@@ -44,10 +44,12 @@ impl Builder<'_> {
 
     /// Refuses in zones what their links do not know.
     pub(super) fn nonlinear_in_zones(&mut self) {
-        if self.plan.zones.is_empty() {
+        let case = self.case;
+        let linked =
+            case.arlequin.iter().next().is_some() || case.interface.iter().next().is_some();
+        if self.plan.zones.is_empty() || self.plan.steps_are_equal() && !linked {
             return;
         }
-        let case = self.case;
         if case.time.stage.is_some() {
             let message =
                 "links between zones join velocities, and a static stage has no velocities";

@@ -61,6 +61,15 @@ impl Builder<'_> {
                     "no static stage",
                 ])
             }
+            Error::AcrossZones { contact, .. } | Error::BetweenSchemes { contact, .. } => {
+                Problem::new(format!("contact.{contact}"), error.to_string()).accepted([
+                    "one zone for both sides",
+                    "zones of equal steps and of one scheme",
+                ])
+            }
+            Error::SchemesOfPart { body, .. } | Error::LinkedNonlinear { body } => {
+                Problem::new(format!("body.{body}"), error.to_string())
+            }
             Error::Nonlinear { what, why } => self.refused_nonlinear(what, why),
             Error::Zone { zone, cause } => self.refused_zone(zone, cause),
             other => Problem::new("time", other.to_string()),

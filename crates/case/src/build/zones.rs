@@ -8,7 +8,7 @@ use carom_mesh::ElementId;
 use super::Builder;
 use super::plan::{Plan, Zone};
 use crate::error::Problem;
-use crate::schema::{self, InnerSteps, Link, Step, StepRule, Substeps};
+use crate::schema::{self, InnerSteps, Link, Substeps};
 
 impl Builder<'_> {
     /// Resolves the zones; refuses what can be told without the mesh.
@@ -18,13 +18,6 @@ impl Builder<'_> {
         let kind = self.link_kind(zones.iter().any(|zone| zone.substeps > 1));
         let plan = Plan { zones, kind };
         self.joints(&plan);
-        if !plan.zones.is_empty()
-            && let Step::Rule(StepRule::Adaptive(_)) = self.case.time.step()
-        {
-            let problem = Problem::new("time.step.adaptive", "zones take equal steps only");
-            self.problems
-                .push(problem.accepted(["step = { courant = ... }", "a fixed step"]));
-        }
         if !plan.zones.is_empty()
             && self.case.time.scheme.is_some()
             && self.case.zone.iter().all(|(_, zone)| zone.scheme.is_some())
@@ -254,7 +247,7 @@ impl Builder<'_> {
         zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme)
     }
 
-    /// Refuses contacts between zones, and laws that the schemes of zones cannot take.
+    /// Refuses laws that the schemes of zones cannot take.
     pub(super) fn zones_of_contacts(&mut self, contacts: &[ModelContact], of: &[Vec<ElementId>]) {
         if self.plan.zones.is_empty() {
             return;
@@ -272,20 +265,11 @@ impl Builder<'_> {
             zones.sort_unstable();
             zones.dedup();
             match zones[..] {
-                [zone] => {
+                // of several the one that comes first
+                [zone, ..] => {
                     schemes.insert(&contact.name, self.plan.zones[zone].scheme);
                 }
-                _ => {
-                    let names = zones
-                        .iter()
-                        .map(|&zone| self.plan.zones[zone].name.as_str());
-                    let names: Vec<&str> = names.collect();
-                    let message = "the two sides of a contact must be in the same zone";
-                    let problem = Problem::new(format!("contact.{}", contact.name), message)
-                        .found(format!("sides in the zones {}", names.join(", ")))
-                        .accepted(["one zone for all bodies of a contact"]);
-                    self.problems.push(problem);
-                }
+                [] => {}
             }
         }
         let default = self.case.time.scheme();

@@ -1,19 +1,20 @@
 //! Contacts that are paired where the step is predicted to lead.
 
 use super::candidates::looks_ahead;
+use super::contacts::Paired;
 use super::{Driver, Vectors};
 use crate::error::Error;
-use crate::step_map::Row;
 
 impl Driver {
     /// Whether a contact is paired where the step is predicted to lead.
     pub(super) fn looks_ahead(&self, contact: usize) -> bool {
+        let map = self.map_of(contact);
         let contact = &self.system.contacts[contact];
-        !self.between() && looks_ahead(&self.map, contact, &self.law(contact))
+        !self.between() && looks_ahead(map, contact, &self.law(contact))
     }
 
     /// Moves the gaps of the points from `first` on, paired at the configuration in `place`, to another one.
-    pub(super) fn move_gaps(&mut self, first: usize, to: &Row) {
+    pub(super) fn move_gaps(&mut self, first: usize, to: Paired) {
         let Vectors {
             x,
             push,
@@ -21,7 +22,8 @@ impl Driver {
             work,
             ..
         } = &mut self.vectors;
-        to.whole(&self.state.motion, x, push, work);
+        let motion = &self.state.motion;
+        self.maps.whole(|map| to.row(map), motion, [x, push], work);
         for (way, from) in work.iter_mut().zip(place) {
             *way -= *from;
         }
@@ -43,7 +45,7 @@ impl Driver {
             let link = motion.link_force.get(i).unwrap_or(&0.0);
             *r = match self.system.fixed[i] {
                 true => 0.0,
-                false => residual[i] + self.map.contact * motion.contact_force[i] + link,
+                false => residual[i] + self.maps.contact() * motion.contact_force[i] + link,
             };
         }
         self.free_motion();
@@ -52,13 +54,9 @@ impl Driver {
             *dx += x;
         }
         vectors.ahead.resize(vectors.x.len(), 0.0);
-        let end = &self.map.displacement;
-        end.whole(
-            &self.state.motion,
-            &vectors.dx,
-            &vectors.push,
-            &mut vectors.ahead,
-        );
+        let (motion, xc) = (&self.state.motion, [&vectors.dx[..], &vectors.push]);
+        let ahead = &mut vectors.ahead;
+        self.maps.whole(|map| map.displacement, motion, xc, ahead);
         Ok(())
     }
 }

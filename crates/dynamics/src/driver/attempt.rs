@@ -26,10 +26,16 @@ impl Driver {
     /// The map of the step of this size from the present state, of an explicit scheme before one of the size `next` (both s).
     pub(super) fn size(&mut self, dt: f64, next: f64) {
         self.dt = dt;
-        let scheme = self.system.scheme.get();
-        (self.map, self.identity) = match self.is_static() {
-            true => (StepMap::equilibrium(), None),
-            false => (scheme.step_map_before(dt, next), scheme.energy_identity(dt)),
+        if self.is_static() {
+            self.maps.rest();
+            self.identity = None;
+            return;
+        }
+        self.maps.resize(&self.system.schemes, (dt, next));
+        // zones of different schemes are balanced by works
+        self.identity = match &self.system.schemes[..] {
+            [scheme] => scheme.get().energy_identity(dt),
+            _ => None,
         };
     }
 
@@ -44,6 +50,7 @@ impl Driver {
         self.project()?;
         self.restore();
         self.record();
+        self.record_links();
         let forces = self.phases.forces - forces;
         self.phases.balance += solved.elapsed().saturating_sub(forces);
         Ok(())
@@ -66,14 +73,15 @@ impl Driver {
         self.phases.contact += begin.elapsed().saturating_sub(counted);
     }
 
-    /// Internal forces of all bodies where `place` says, into `internal`; histories into the scratch history.
+    /// Internal forces of all bodies where `place` says, into `internal`; histories into the scratch history. `dt`: time since
+    /// the start of the step, s.
     ///
     /// # Errors
     /// An element turned inside out, a material without stress.
     pub(super) fn internal(
         &mut self,
         (place, from): (Which, bool),
-        dt: f64,
+        dt: impl Fn(&StepMap) -> f64,
     ) -> Result<Stored, Error> {
         let begin = Instant::now();
         let system = &*self.system;
@@ -98,7 +106,7 @@ impl Driver {
                 u,
                 v,
                 from,
-                dt,
+                dt: dt(&self.maps.all()[system.zone_of_body[k]]),
                 old: &self.state.motion.history[range.clone()],
             };
             let stored = body.force(&at, &mut history[range], &mut self.scratch[k], internal)?;

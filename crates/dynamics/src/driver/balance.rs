@@ -4,12 +4,12 @@
 //! the kinetic energy, and internal forces beyond what is stored and dissipated by the material, is the scheme's share, of
 //! no fixed sign. The residual is the work of what the iterations left unbalanced.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use carom_bodies::Body;
 use carom_contact::law::Level;
 
-use super::candidates::on_row;
 use super::identity::End;
 use super::start::energies;
 use super::{Driver, Which};
@@ -17,21 +17,25 @@ use crate::error::Error;
 use crate::ledger::{Beyond, Energies, Squares, Tolerated};
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
-use crate::step_map::Impulse;
+use crate::step_map::{Impulse, Row, StepMap};
 
 impl Driver {
     /// Writes the motion at the end of the step, its internal forces and histories.
     pub(super) fn advance(&mut self) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
-        let (old, map) = (&self.state.motion, &self.map);
+        let old = &self.state.motion;
         let new = &mut self.next.motion;
         let (x, push) = (&self.vectors.x, &self.vectors.push);
-        map.displacement.whole(old, x, push, &mut new.u);
-        map.velocity.whole(old, x, push, &mut new.v);
-        map.acceleration.whole(old, x, push, &mut new.a);
+        self.maps
+            .whole(|map| map.displacement, old, [x, push], &mut new.u);
+        self.maps
+            .whole(|map| map.velocity, old, [x, push], &mut new.v);
+        self.maps
+            .whole(|map| map.acceleration, old, [x, push], &mut new.a);
         new.frames.clone_from(&old.frames);
-        if map.has_memory() {
-            map.memory.whole(old, x, push, &mut new.memory);
+        if self.maps.all().iter().any(StepMap::has_memory) {
+            self.maps
+                .whole(|map| map.memory, old, [x, push], &mut new.memory);
         }
         for i in system.massless.iter().map(|&unknown| unknown as usize) {
             (new.v[i], new.a[i]) = ((new.u[i] - old.u[i]) / self.dt, 0.0);
@@ -39,7 +43,7 @@ impl Driver {
         if !system.nonlinear.follows.is_empty() {
             self.follow_motions();
         }
-        if self.map.inertia.x == 0.0 {
+        if self.maps.is_static() {
             self.next.motion.v.fill(0.0);
             self.next.motion.a.fill(0.0);
             self.next.motion.memory.fill(0.0);
@@ -72,10 +76,12 @@ impl Driver {
     /// the x found too.
     fn end_forces(&mut self) -> Result<(), Error> {
         let affine = self.is_affine();
-        let known = self.map.force.x == 0.0;
+        let known = self.maps.is_explicit();
+        let at_the_end = |map: &StepMap| map.force == map.displacement;
+        let all = self.maps.all().iter().all(at_the_end);
         let ended = match affine {
-            true => known && self.map.force == self.map.displacement,
-            false => self.between() || self.map.force == self.map.displacement,
+            true => known && all,
+            false => self.between() || all,
         };
         if affine {
             self.evaluate_inertia();
@@ -85,8 +91,9 @@ impl Driver {
         self.vectors
             .balanced
             .copy_from_slice(&self.vectors.internal);
+        let dt = self.dt;
         if !ended {
-            self.stored = self.internal((Which::Next, false), self.dt)?;
+            self.stored = self.internal((Which::Next, false), |_| dt)?;
         }
         if affine && !known && self.system.is_nonlinear() {
             self.balance_linear_forces();
@@ -96,19 +103,26 @@ impl Driver {
 
     /// Internal forces of linear bodies where the balance of the step takes them.
     fn balance_linear_forces(&mut self) {
-        match self.map.force_fraction {
-            Some(part) => {
-                let (old, new) = (&self.state.motion.internal_force, &self.vectors.internal);
-                for (i, f) in self.vectors.balanced.iter_mut().enumerate() {
-                    *f = (1.0 - part) * old[i] + part * new[i];
-                }
-            }
-            None => {
-                let super::Vectors { x, push, place, .. } = &mut self.vectors;
-                self.map.force.whole(&self.state.motion, x, push, place);
-                self.linear_forces();
-                let super::Vectors { balanced, work, .. } = &mut self.vectors;
-                balanced.copy_from_slice(work);
+        if self
+            .maps
+            .all()
+            .iter()
+            .any(|map| map.force_fraction.is_none())
+        {
+            let super::Vectors { x, push, place, .. } = &mut self.vectors;
+            self.maps
+                .whole(|map| map.force, &self.state.motion, [x, push], place);
+            self.linear_forces();
+            let super::Vectors { balanced, work, .. } = &mut self.vectors;
+            balanced.copy_from_slice(work);
+        }
+        let (old, new) = (&self.state.motion.internal_force, &self.vectors.internal);
+        for (span, map) in self.maps.spans() {
+            let Some(part) = map.force_fraction else {
+                continue;
+            };
+            for i in span {
+                self.vectors.balanced[i] = (1.0 - part) * old[i] + part * new[i];
             }
         }
     }
@@ -119,24 +133,25 @@ impl Driver {
         let interface = &mut self.next.interface;
         interface.carried.clone_from(&interface.force);
         interface.count_flights(&self.state.interface.flight, self.dt);
-        let start_in_way = self.map.start_in_way();
+        let has_rate = self.maps.all().iter().any(|map| map.rate != Row::default());
         for (k, contact) in system.contacts.iter().enumerate() {
-            let ahead = self.map.displacement.since(&self.paired_at(k));
+            let paired = self.paired_at(k);
+            let start_in_way = self.map_of(k).start_in_way();
+            let ahead = |map: &StepMap| map.displacement.since(&paired.row(map));
             let of_rate = self.law(contact).get().level() == Level::Rate;
             for point in system.first_point[k]..system.first_point[k + 1] {
                 let motion = &self.state.motion;
                 let xc = [&self.vectors.x[..], &self.vectors.push];
                 let rows = &self.pairing.rows;
-                let gap = rows.gap(point) + on_row(rows, point, &ahead, motion, xc);
-                let rate = match (
-                    self.map.rate == Default::default(),
-                    system.massless.is_empty(),
-                ) {
-                    (true, _) => 0.0,
-                    (false, true) => {
-                        on_row(rows, point, &self.map.rate, motion, xc) + rows.rate(point)
+                let way = self.maps.on((rows, point), ahead, motion, xc);
+                let gap = rows.gap(point) + way;
+                let rate = match (has_rate, system.massless.is_empty()) {
+                    (false, _) => 0.0,
+                    (true, true) => {
+                        let rate = |map: &StepMap| map.rate;
+                        self.maps.on((rows, point), rate, motion, xc) + rows.rate(point)
                     }
-                    (false, false) => rows.product(point, &self.next.motion.v) + rows.rate(point),
+                    (true, false) => rows.product(point, &self.next.motion.v) + rows.rate(point),
                 };
                 let opening = match of_rate && start_in_way != 0.0 {
                     true => (start_in_way * self.rate_at_start(point)).max(0.0),
@@ -166,6 +181,13 @@ impl Driver {
     /// alone. The forces of bodies that are not linear give the energy that the scheme balances no other form; all else that the scheme
     /// takes is found from its works.
     pub(super) fn identity_of_ledger(&self) -> EnergyIdentity {
+        if self.maps.only().is_none() {
+            // the energies of the zones are added, each with its factor
+            return EnergyIdentity {
+                inertia: 1.0,
+                ..EnergyIdentity::default()
+            };
+        }
         let identity = self.identity.unwrap_or_default();
         match self.system.is_nonlinear() {
             false => identity,
@@ -196,22 +218,23 @@ impl Driver {
         }
     }
 
-    /// Weights of the forces at the start and of the step in their works.
-    fn weights(&self) -> [f64; 2] {
-        let impulse = &self.map.impulse;
-        match (self.is_plain(), self.map.inertia.x == 0.0) {
+    /// Weights of the forces at the start and of the step in their works, by zone.
+    fn weights(&self) -> Vec<[f64; 2]> {
+        let (plain, at_rest) = (self.is_plain(), self.maps.is_static());
+        let of_zone = |map: &StepMap| match (plain, at_rest) {
             _ if self.state.forces.is_empty() => [0.0, 1.0],
-            (true, _) => [impulse.old, impulse.new],
+            (true, _) => [map.impulse.old, map.impulse.new],
             // along a static step forces go from one equilibrium to the next
             (false, true) => [0.5, 0.5],
             (false, false) => [0.0, 1.0],
-        }
+        };
+        self.maps.all().iter().map(of_zone).collect()
     }
 
     /// Whether the forces of a dynamic step change the momentum as they are.
     fn is_plain(&self) -> bool {
-        let impulse = &self.map.impulse;
-        impulse.gain == 1.0 && impulse.carry == 0.0 && self.map.inertia.x != 0.0
+        let mut impulses = self.maps.all().iter().map(|map| &map.impulse);
+        !self.maps.is_static() && impulses.all(|one| one.gain == 1.0 && one.carry == 0.0)
     }
 
     fn balance_by_works(&mut self) {
@@ -221,16 +244,19 @@ impl Driver {
         let identity = self.identity_of_ledger();
         let pushes = !self.vectors.push.is_empty();
         // forces that push by themselves are in no other force of the balance
-        let of_contact = if pushes { [0.0, 1.0] } else { weights };
-        let friction = self.friction_work(of_contact);
-        let obstacles = self.obstacle_work(of_contact);
+        let of_contact = match pushes {
+            true => vec![[0.0, 1.0]; weights.len()],
+            false => weights.clone(),
+        };
+        let friction = self.friction_work(&of_contact);
+        let obstacles = self.obstacle_work(&of_contact);
         let own_before = self.own_energy_at_the_start(&identity);
         let own_after = self.own_energies(End::Finish, &identity, self.stored.strain);
         let springs = self.balanced_springs();
         let factor = self.contact_factor();
         let counted = self.identity.is_some().then(|| self.work_weights());
         let (old, new) = (&self.state.motion, &self.next.motion);
-        let map = &self.map;
+        let (maps, zones) = (&self.maps, &system.spans);
         let vectors = &mut self.vectors;
         let with_acceleration = identity.inertia != 0.0;
         let of = (self.stored.strain, with_acceleration, Some(&new.u[..]));
@@ -238,12 +264,14 @@ impl Driver {
         let energies = Energies {
             memory,
             lagged,
-            ..energies(&system, new, of, &mut vectors.work)
+            ..self
+                .maps
+                .energies(&system, energies(&system, new, of, &mut vectors.work), new)
         };
         let contact: Vec<f64> = vectors.contact.iter().map(|f| factor * f).collect();
         if pushes {
             for (f, c) in vectors.inertia.iter_mut().zip(&vectors.contact) {
-                *f -= map.contact * c;
+                *f -= maps.contact() * c;
             }
         }
         let link: Vec<f64> = match self.link_force.is_empty() {
@@ -258,7 +286,7 @@ impl Driver {
                 (true, true) => {
                     // held nodes have no push
                     vectors.inertia[i]
-                        + map.contact * vectors.contact[i]
+                        + maps.contact() * vectors.contact[i]
                         + vectors.balanced[i]
                         + vectors.damping[i]
                         - vectors.load[i]
@@ -294,11 +322,16 @@ impl Driver {
         ];
         let before = &self.state.forces;
         let mean = |k: usize, now: &[f64]| -> Vec<f64> {
-            let weights = if k == 1 { of_contact } else { weights };
-            match before.get(k).filter(|_| weights[0] != 0.0) {
-                Some(f) => (0..f.len())
-                    .map(|i| weights[0] * f[i] + weights[1] * now[i])
-                    .collect(),
+            let weights = if k == 1 { &of_contact } else { &weights };
+            let from_start = weights.iter().any(|of| of[0] != 0.0);
+            match before.get(k).filter(|f| from_start && !f.is_empty()) {
+                Some(f) => {
+                    let weighted = |(span, zone): &(Range<usize>, usize)| {
+                        let [old, new] = weights[*zone];
+                        span.clone().map(move |i| old * f[i] + new * now[i])
+                    };
+                    zones.iter().flat_map(weighted).collect()
+                }
                 None => now.to_vec(),
             }
         };
@@ -317,7 +350,7 @@ impl Driver {
         let own_energy = energies.of_scheme(&identity) - own_before;
         // what contacts do is counted as the identity of the scheme counts it, whichever forces the balance takes
         let work_contact = match counted {
-            Some(weights) if weights.differ(of_contact.map(|weight| weight * factor)) => {
+            Some(weights) if weights.differ(of_contact[0].map(|weight| weight * factor)) => {
                 let moved = |i: usize| {
                     let change = new.v[i] - old.v[i];
                     new.u[i] - old.u[i] - weights.lag * change
@@ -349,11 +382,12 @@ impl Driver {
             Resultant::at(&system, places, &means[6])
                 .plus(&Resultant::at(&system, places, &means[5]).reversed()),
         ];
-        self.next.forces = match weights[0] != 0.0 || map.inertia.x == 0.0 {
+        let go_on = weights.iter().any(|of| of[0] != 0.0) || maps.is_static();
+        self.next.forces = match go_on {
             true => now.iter().map(|f| f.to_vec()).collect(),
             false => Vec::new(),
         };
-        if map.inertia.x != 0.0 {
+        if !maps.is_static() {
             let exchange = &mut self.next.exchange;
             exchange.follow(&self.state.exchange);
             if let Some(impulses) = self.jump.impulses() {
@@ -362,8 +396,11 @@ impl Driver {
             let spring = |i: usize| springs.get(i).unwrap_or(&0.0);
             let own =
                 |i: usize| vectors.load[i] + own[i] + link[i] - vectors.damping[i] - spring(i);
-            exchange.add(&system, (0, self.dt, &map.impulse), own);
-            exchange.add(&system, (1, self.dt, &map.contact_impulse), |i| held[i]);
+            let dt = self.dt;
+            exchange.add(&system, (0, dt, |i| maps.of(i).impulse), own);
+            exchange.add(&system, (1, dt, |i| maps.of(i).contact_impulse), |i| {
+                held[i]
+            });
         }
         self.next.ledger.clone_from(&self.state.ledger);
         if identity != EnergyIdentity::default() {
@@ -385,11 +422,11 @@ impl Driver {
             ..Squares::default()
         };
         let one = Impulse::weights(0.0, 1.0);
-        let impulses = match plain || map.inertia.x == 0.0 {
+        let impulses = match plain || maps.is_static() {
             true => [&one, &one],
-            false => [&map.impulse, &map.contact_impulse],
+            false => [&maps.first().impulse, &maps.first().contact_impulse],
         };
-        let dt = if map.inertia.x == 0.0 { 0.0 } else { self.dt };
+        let dt = if maps.is_static() { 0.0 } else { self.dt };
         self.next.ledger.add(
             (dt, &identity, impulses),
             &energies,
@@ -397,7 +434,7 @@ impl Driver {
             &squares,
             forces,
         );
-        if map.inertia.x == 0.0 {
+        if maps.is_static() {
             self.next.ledger.end_static_step();
         }
     }
@@ -405,7 +442,7 @@ impl Driver {
     /// Factor of Nᵀ P in the contact forces that the ledger counts.
     pub(super) fn contact_factor(&self) -> f64 {
         match self.vectors.push.is_empty() {
-            true => self.map.contact,
+            true => self.maps.contact(),
             false => 1.0,
         }
     }
@@ -423,8 +460,12 @@ impl Driver {
         if identity.inertia == 0.0 {
             return 0.0;
         }
-        let (a, work) = (&self.state.motion.a, &mut self.vectors.work);
-        self.system.mass.multiply(a, work);
-        carom_algebra::reduce::dot(a, work)
+        let motion = &self.state.motion;
+        if self.maps.only().is_none() {
+            return self.maps.square_of_acceleration(&self.system, motion);
+        }
+        let work = &mut self.vectors.work;
+        self.system.mass.multiply(&motion.a, work);
+        carom_algebra::reduce::dot(&motion.a, work)
     }
 }

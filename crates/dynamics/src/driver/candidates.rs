@@ -35,6 +35,7 @@ impl Driver {
 
     /// Forces of the iteration without those of contacts, into `work`.
     fn load_iteration(&mut self) {
+        self.begin_link_iteration();
         let jumps = self.jumps();
         let vectors = &mut self.vectors;
         vectors.work.copy_from_slice(&vectors.residual);
@@ -58,6 +59,7 @@ impl Driver {
         if let Some((operators, _)) = self.effective.both() {
             operators.begin(&self.vectors.work, &mut self.vectors.half);
         }
+        self.hold_links();
         self.phases.sweeps += begin.elapsed();
     }
 
@@ -143,7 +145,7 @@ impl Driver {
             rate_free: rate + approach,
             status: self.next.interface.status[point],
             faces_itself: contact.faces_itself(),
-            instant: self.constrained(contact).1,
+            instant: self.factors(self.system.contact_of(point)),
         }
     }
 
@@ -172,26 +174,34 @@ impl Driver {
         let rows = &self.pairing.rows;
         compliance.update(&self.candidates, rows, &system.fixed, operators);
         self.describe_candidates(None);
-        let factor = self.map.contact;
-        let Some((operators, compliance)) = self.effective.both() else {
+        let factor = self.maps.contact();
+        let Some((operators, compliance, mut linking)) = self.effective.all() else {
             return Ok(());
         };
         let rows = &self.pairing.rows;
+        let (matrix, version) = match &mut linking {
+            Some(linking) => linking.compliance(&system, (&mut *operators, compliance), rows),
+            None => (&compliance.matrix[..], compliance.version),
+        };
         let impulsive = match &mut self.impulses {
-            Some(stage) if sums_compliances(&system, &self.map) => {
-                let own = (self.map.rate.x * factor, &compliance.matrix[..]);
-                stage.sum(&system, rows, &self.candidates, own, self.map.rate.c)
+            Some(stage) if sums_compliances(&system, self.maps.first()) => {
+                let rate = self.maps.first().rate;
+                let own = (rate.x * factor, matrix);
+                stage.sum(&system, rows, &self.candidates, own, rate.c)
             }
             _ => None,
         };
         let (matrix, factors) = match impulsive {
             Some(matrix) => (matrix, [0.0, 1.0]),
             None => (
-                &compliance.matrix[..],
-                [self.map.gap.x * factor, self.map.rate.x * factor],
+                matrix,
+                [
+                    self.maps.first().gap.x * factor,
+                    self.maps.first().rate.x * factor,
+                ],
             ),
         };
-        let condensed = (matrix, &compliance.candidates[..], compliance.version);
+        let condensed = (matrix, &compliance.candidates[..], version);
         let matrix = self
             .with_weak
             .of(&self.weak, &system, (condensed, rows), factors);
@@ -211,6 +221,12 @@ impl Driver {
                 compliance.add(point, factor * force, operators, &mut self.vectors.half);
             }
         }
+        if let Some(linking) = linking {
+            let forces = self.candidates.iter().zip(&self.interface.forces);
+            let forces = forces.map(|(&point, force)| (point, factor * force));
+            let pushed = &mut self.multipliers.change[1];
+            linking.answer(&system, operators, forces, (&mut self.vectors.half, pushed));
+        }
         self.warn_of_circles();
         self.take_weak();
         Ok(())
@@ -228,11 +244,28 @@ impl Driver {
 
     /// Gap of a point at the end of the step without contact forces, m.
     fn gap_at_the_end(&self, point: usize, free: f64) -> f64 {
-        let end = &self.map.displacement;
-        let ahead = end.since(&self.paired_at(self.system.contact_of(point)));
+        let number = self.system.contact_of(point);
+        let paired = self.paired_at(number);
+        let ahead = |map: &StepMap| map.displacement.since(&paired.row(map));
         let xc = [&self.vectors.x[..], &self.vectors.push];
         let rows = &self.pairing.rows;
-        rows.gap(point) + on_row(rows, point, &ahead, &self.state.motion, xc) + end.x * free
+        let motion = &self.state.motion;
+        let way = self.maps.on((rows, point), ahead, motion, xc);
+        rows.gap(point) + way + self.map_of(number).displacement.x * free
+    }
+
+    /// Factors of x in gap and rate that the law of a contact constrains, over those of the problem: of the first map.
+    fn factors(&self, contact: usize) -> [f64; 2] {
+        let (map, [gap, rate]) = (self.map_of(contact), self.constrained(contact).1);
+        if self.maps.only().is_some() {
+            return [gap, rate];
+        }
+        let first = self.maps.first();
+        let over = |own: f64, first: f64| if first == 0.0 { 1.0 } else { own / first };
+        [
+            gap * over(map.gap.x, first.gap.x),
+            rate * over(map.rate.x, first.rate.x),
+        ]
     }
 
     /// No contact force at all.
@@ -338,24 +371,4 @@ pub(super) fn part_way(motion: &Motion, end: &[f64], law: &Law, out: &mut [f64])
     for (i, q) in out.iter_mut().enumerate() {
         *q = (1.0 - part) * motion.u[i] + part * end[i];
     }
-}
-
-/// N applied to a row of the step, for one point.
-pub(crate) fn on_row(
-    rows: &Rows,
-    point: usize,
-    row: &Row,
-    motion: &Motion,
-    [x, c]: [&[f64]; 2],
-) -> f64 {
-    let term = |factor: f64, vector: &[f64]| match factor == 0.0 {
-        true => 0.0,
-        false => factor * rows.product(point, vector),
-    };
-    term(row.u, &motion.u)
-        + term(row.v, &motion.v)
-        + term(row.a, &motion.a)
-        + term(row.x, x)
-        + term(row.m, &motion.memory)
-        + term(row.c, c)
 }

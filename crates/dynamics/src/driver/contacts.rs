@@ -5,10 +5,47 @@ use std::sync::Arc;
 use carom_contact::law::{Displacement, End, Level, Local, Status};
 use carom_contact::{Balance, Contact, Integration, Law, Sliding};
 
-use super::candidates::{instant, least_gap, on_row, part_way};
+use super::candidates::{instant, least_gap, part_way};
 use super::{Driver, Vectors};
-use crate::step_map::Row;
+use crate::step_map::{Row, StepMap};
 use crate::system::System;
+
+/// The configuration in which a contact is paired.
+#[derive(Clone, Copy)]
+pub(super) enum Paired {
+    /// The newest known before the unknown, and a part of the way of the step on with its velocity.
+    Captured(f64),
+    /// The middle of the step.
+    Middle,
+    /// That in which laws in the gap hold.
+    Gap,
+    /// That in which laws with a compliance hold.
+    Compliant,
+}
+
+impl Paired {
+    /// As a row of a map.
+    pub(super) fn row(self, map: &StepMap) -> Row {
+        match self {
+            Paired::Captured(part) => Row {
+                v: map.placed.v + part * map.moves,
+                ..map.placed
+            },
+            Paired::Middle => {
+                let end = &map.displacement;
+                Row {
+                    u: 0.5 + 0.5 * end.u,
+                    v: 0.5 * end.v,
+                    a: 0.5 * end.a,
+                    x: 0.5 * end.x,
+                    ..Row::default()
+                }
+            }
+            Paired::Gap => map.gap,
+            Paired::Compliant => map.compliant()[0],
+        }
+    }
+}
 
 impl System {
     /// Whether a contact of finite sliding is paired where the iterations of a dynamic step are: the geometry of bodies at small strain
@@ -29,7 +66,7 @@ impl Driver {
     /// gap there, as the displacement law.
     pub(super) fn law(&self, contact: &Contact) -> Law {
         match contact.law.get().level() {
-            Level::Rate if self.map.inertia.x == 0.0 => {
+            Level::Rate if self.maps.is_static() => {
                 Law::Displacement(Displacement { projection: false })
             }
             _ => contact.law,
@@ -39,43 +76,41 @@ impl Driver {
     /// The configuration in which a contact is paired: of a law in the gap the one that it constrains, of a law in the rate
     /// the captured one, which is known; of a scheme between two states their middle. With small sliding gaps are linear in
     /// the displacement, and are those of a configuration that is known.
-    pub(super) fn paired_at(&self, number: usize) -> Row {
-        let map = &self.map;
+    pub(super) fn paired_at(&self, number: usize) -> Paired {
         let contact = &self.system.contacts[number];
         let law = self.law(contact);
-        let captured = Row {
-            v: map.placed.v + law.get().capture() * map.moves,
-            ..map.placed
-        };
-        let dynamic = map.inertia.x != 0.0;
+        let captured = Paired::Captured(law.get().capture());
+        let dynamic = !self.maps.is_static();
         if contact.sliding == Sliding::Small || dynamic && !self.system.pairs_anew(number) {
             return captured;
         }
         if self.between() {
-            let end = &map.displacement;
-            return Row {
-                u: 0.5 + 0.5 * end.u,
-                v: 0.5 * end.v,
-                a: 0.5 * end.a,
-                x: 0.5 * end.x,
-                ..Row::default()
-            };
+            return Paired::Middle;
         }
         match law.get().level() {
             Level::Rate => captured,
-            Level::Gap => map.gap,
-            Level::GapAndRate => map.compliant()[0],
+            Level::Gap => Paired::Gap,
+            Level::GapAndRate => Paired::Compliant,
         }
+    }
+
+    /// The map of the secondary side of a contact.
+    pub(super) fn map_of(&self, contact: usize) -> &StepMap {
+        &self.maps.all()[self.system.zone_of(contact)]
     }
 
     /// Whether internal forces and contacts belong to the way of the step.
     pub(super) fn between(&self) -> bool {
-        self.map.inertia.x != 0.0 && self.system.scheme.get().is_between()
+        !self.maps.is_static() && self.system.scheme.get().is_between()
     }
 
     /// Derivative of the paired configuration by the unknown; zero where all of it is known before the step.
     pub(super) fn turning(&self, contact: usize) -> f64 {
-        self.paired_at(contact).x
+        let paired = self.paired_at(contact);
+        let (secondary, primary) = self.system.sides[contact];
+        let sides = [Some(secondary), primary].into_iter().flatten();
+        let maps = sides.map(|body| &self.maps.all()[self.system.zone_of_body[body]]);
+        maps.fold(0.0, |most, map| f64::max(most, paired.row(map).x))
     }
 
     /// Pairs all contacts at the x of the iteration. `first`: those in known configurations too.
@@ -90,13 +125,12 @@ impl Driver {
         if turns {
             let Vectors { x, push, end, .. } = &mut self.vectors;
             end.resize(x.len(), 0.0);
-            self.map
-                .displacement
-                .whole(&self.state.motion, x, push, end);
+            self.maps
+                .whole(|map| map.displacement, &self.state.motion, [x, push], end);
         }
         self.pairing.clear();
         for (k, contact) in system.contacts.iter().enumerate() {
-            let row = self.paired_at(k);
+            let paired = self.paired_at(k);
             let ahead = self.looks_ahead(k) && !self.vectors.ahead.is_empty();
             let motion = &self.state.motion;
             let Vectors {
@@ -108,13 +142,15 @@ impl Driver {
             } = &mut self.vectors;
             match ahead {
                 true => part_way(motion, predicted, &contact.law, place),
-                false => row.whole(motion, x, push, place),
+                false => self
+                    .maps
+                    .whole(|map| paired.row(map), motion, [x, push], place),
             }
             self.pairing.span = self.span(k);
             let first = self.pairing.len();
-            self.append(k, self.state.time + self.paired_after(contact));
+            self.append(k, self.state.time + self.paired_after(k));
             if ahead {
-                self.move_gaps(first, &row);
+                self.move_gaps(first, paired);
             }
         }
         self.stack();
@@ -127,7 +163,7 @@ impl Driver {
         let system = Arc::clone(&self.system);
         let contact = &system.contacts[number];
         let (middle, frames) = (self.between(), &self.state.motion.frames);
-        let fraction = self.map.force_fraction.unwrap_or(1.0);
+        let fraction = self.map_of(number).force_fraction.unwrap_or(1.0);
         let search = &mut self.search[number];
         let Vectors {
             place, work, end, ..
@@ -153,13 +189,13 @@ impl Driver {
     }
 
     /// How long after the start of the step a contact is paired, s.
-    pub(super) fn paired_after(&self, contact: &Contact) -> f64 {
-        let law = self.law(contact);
+    pub(super) fn paired_after(&self, number: usize) -> f64 {
+        let law = self.law(&self.system.contacts[number]);
         match law.get().level() {
             _ if self.between() => 0.5 * self.dt,
             Level::Rate => law.get().capture() * self.dt,
             Level::Gap => self.dt,
-            Level::GapAndRate => self.instant() - self.state.time,
+            Level::GapAndRate => self.map_of(number).instant(self.dt),
         }
     }
 
@@ -171,30 +207,39 @@ impl Driver {
         let contact = &self.system.contacts[number];
         let motion = &self.state.motion;
         let xc = [&self.vectors.x[..], &self.vectors.push];
-        let [gap, mut rate] = self.constrained(contact).0;
-        if !pushed {
-            rate.c = 0.0;
-        }
-        let ahead = gap.since(&self.paired_at(number));
+        let (law, paired) = (self.law(contact), self.paired_at(number));
+        let ahead = |map: &StepMap| instant(map, &law).0[0].since(&paired.row(map));
+        let rate = |map: &StepMap| {
+            let mut rate = instant(map, &law).0[1];
+            if !pushed {
+                rate.c = 0.0;
+            }
+            rate
+        };
         let obstacle = rows.rate(point);
-        let until = match self.law(contact).get().level() {
-            Level::GapAndRate => self.instant() - self.state.time,
+        let until = match law.get().level() {
+            Level::GapAndRate => self.map_of(number).instant(self.dt),
             Level::Gap | Level::Rate => self.dt,
         };
         let gap = rows.gap(point)
-            + on_row(rows, point, &ahead, motion, xc)
-            + obstacle * (until - self.paired_after(contact));
-        (gap, on_row(rows, point, &rate, motion, xc) + obstacle)
+            + self.maps.on((rows, point), ahead, motion, xc)
+            + obstacle * (until - self.paired_after(number));
+        (
+            gap,
+            self.maps.on((rows, point), rate, motion, xc) + obstacle,
+        )
     }
 
-    /// Gap and rate that the law of a contact constrains, and their factors of x over those of the map.
-    pub(super) fn constrained(&self, contact: &Contact) -> ([Row; 2], [f64; 2]) {
-        instant(&self.map, &self.law(contact))
+    /// Gap and rate that the law of a contact constrains, in the map of its secondary side, and their factors of x over those of
+    /// the map.
+    pub(super) fn constrained(&self, number: usize) -> ([Row; 2], [f64; 2]) {
+        let law = self.law(&self.system.contacts[number]);
+        instant(self.map_of(number), &law)
     }
 
     /// What a motion of the unknown along the row of a point adds to the gap and the rate that its law constrains.
     pub(super) fn added(&self, point: usize, step: f64) -> [f64; 2] {
-        let [gap, rate] = self.constrained(self.system.point(point).0).0;
+        let [gap, rate] = self.constrained(self.system.contact_of(point)).0;
         [gap.x * step, rate.x * step]
     }
 
@@ -214,19 +259,19 @@ impl Driver {
             share: carrier.share,
             gap,
             rate,
-            start: self.map.start_in_way() * rate,
+            start: self.map_of(self.system.contact_of(point)).start_in_way() * rate,
             gap_free,
-            dt: self.moves(),
+            dt: self.moves(point),
             tolerance: self.system.tolerance,
             crush: self.state.interface.crush[point],
         }
     }
 
     /// Time over which the points move with the rate that a law constrains, s.
-    fn moves(&self) -> f64 {
-        match self.map.moves == 0.0 {
-            true => self.dt,
-            false => self.map.moves,
+    fn moves(&self, point: usize) -> f64 {
+        match self.map_of(self.system.contact_of(point)).moves {
+            0.0 => self.dt,
+            moves => moves,
         }
     }
 
@@ -246,7 +291,7 @@ impl Driver {
         let gap = match self.between() {
             true => self.state.interface.gap[point],
             false => {
-                let way = law.get().capture() * self.moves() * self.rate_at_start(point);
+                let way = law.get().capture() * self.moves(point) * self.rate_at_start(point);
                 least_gap(gap, way)
             }
         };

@@ -13,9 +13,11 @@ use carom_bodies::Placement;
 use carom_contact::Pairing;
 
 use super::Work;
+use super::linking::Linking;
 use super::loads::damping_rate;
 use crate::compliance::Compliance;
 use crate::error::Error;
+use crate::maps::Maps;
 use crate::operator::{Operator, Operators, assembled, factored, single};
 use crate::step_map::StepMap;
 use crate::system::{System, push_cliques};
@@ -23,12 +25,13 @@ use crate::system::{System, push_cliques};
 /// Sizes of the step and stages whose factors are kept beside those of the present one.
 const KEPT: usize = 3;
 
-/// What the matrices of linear parts depend on: factors of mass, stiffness and damping.
-pub(super) type Key = [f64; 3];
+/// What the matrices of linear parts depend on, of each zone: factors of mass, stiffness and damping.
+type Key = Vec<[f64; 3]>;
 
 /// The key of a step.
-pub(super) fn key(map: &StepMap) -> Key {
-    [map.inertia.x, map.force.x, damping_rate(map).x]
+fn key(maps: &Maps) -> impl Iterator<Item = [f64; 3]> {
+    let of_zone = |map: &StepMap| [map.inertia.x, map.force.x, damping_rate(map).x];
+    maps.all().iter().map(of_zone)
 }
 
 /// The matrices of all sizes of the step that are kept.
@@ -52,6 +55,8 @@ struct Matrices {
     /// Number of the first group of the operators that the iterations make anew; those of linear parts are before it.
     first: usize,
     compliance: Compliance,
+    /// What the rows of links change; none without links.
+    linking: Option<Linking>,
     /// The matrices of linear parts with the rows and columns of held unknowns, where supports move, by group.
     held: Vec<Option<Csr>>,
     /// Those of the other parts together, with the rows and columns of held unknowns.
@@ -64,12 +69,14 @@ struct Matrices {
 
 /// Where the tangent of the bodies is taken.
 pub(super) struct At<'a> {
-    /// The map of the step.
-    pub(super) map: &'a StepMap,
+    /// The maps of the step.
+    pub(super) maps: &'a Maps,
     /// Size of the step, s.
     pub(super) dt: f64,
-    /// Instant of the balance, s.
-    pub(super) time: f64,
+    /// Whether forces belong to the way of the step.
+    pub(super) between: bool,
+    /// Start of the step, s.
+    pub(super) start: f64,
     /// Configuration of the internal forces, m.
     pub(super) u: &'a [f64],
     /// Velocity at the same instant, m/s.
@@ -103,9 +110,10 @@ impl Effective {
         }
     }
 
-    /// Whether the matrices at hand are those of this key.
-    pub(super) fn stands(&self, key: Key) -> bool {
-        self.now.as_ref().is_some_and(|now| now.key == key)
+    /// Whether the matrices at hand are those of these maps.
+    pub(super) fn stands(&self, maps: &Maps) -> bool {
+        let stands = |now: &Matrices| now.key.iter().copied().eq(key(maps));
+        self.now.as_ref().is_some_and(stands)
     }
 
     /// Takes the matrices of this step: those kept from before, or new ones, in which linear parts are factored. `iterated`: the parts that
@@ -116,11 +124,11 @@ impl Effective {
     pub(super) fn take(
         &mut self,
         system: &System,
-        map: &StepMap,
+        maps: &Maps,
         iterated: Vec<bool>,
         between: bool,
     ) -> Result<(), Error> {
-        let key = key(map);
+        let key: Key = key(maps).collect();
         if let Some(now) = &mut self.now {
             if now.key == key {
                 return Ok(());
@@ -136,7 +144,7 @@ impl Effective {
             Some(place) => self.kept.remove(place),
             None => {
                 self.made += 1;
-                Matrices::new(system, map, iterated, (between, self.made))?
+                Matrices::new(system, maps, iterated, (between, self.made))?
             }
         };
         if let Some(before) = self.now.replace(next) {
@@ -206,6 +214,25 @@ impl Effective {
         ready.then_some((&mut now.operators, &mut now.compliance))
     }
 
+    /// The factors, the compliance, and what links change, none without links; none of all before all factors are made.
+    pub(super) fn all(
+        &mut self,
+    ) -> Option<(&mut Operators, &mut Compliance, Option<&mut Linking>)> {
+        let now = self.now.as_mut()?;
+        let ready = now.operators.groups.iter().all(|g| g.operator.is_some());
+        ready.then_some((
+            &mut now.operators,
+            &mut now.compliance,
+            now.linking.as_mut(),
+        ))
+    }
+
+    /// Bytes held for the condensed problem of the links.
+    pub(super) fn condensed_bytes(&self, rows: usize) -> usize {
+        let linking = self.now.as_ref().and_then(|now| now.linking.as_ref());
+        linking.map_or(0, |linking| linking.bytes(rows))
+    }
+
     /// N x of the free motion, from the y of `begin`, of a point whose column is at hand.
     pub(super) fn free(&self, point: u32, y: &[f64]) -> f64 {
         let now = self.now.as_ref();
@@ -216,17 +243,27 @@ impl Effective {
     pub(super) fn stiffness_norm(
         &self,
         system: &System,
-        map: &StepMap,
+        maps: &Maps,
         x: impl Iterator<Item = f64>,
     ) -> f64 {
-        let Some(now) = self.now.as_ref().filter(|_| map.force.x != 0.0) else {
+        let Some(now) = self.now.as_ref() else {
             return 0.0;
         };
-        let of = |(i, x): (usize, f64)| {
-            let stiffness = now.diagonal[i] - map.inertia.x * system.mass.lumped[i];
-            (stiffness * x).powi(2)
-        };
-        x.enumerate().map(of).sum::<f64>().sqrt() / map.force.x
+        let mut x = x;
+        let mut square = 0.0;
+        for (span, map) in maps.spans() {
+            let own = x.by_ref().take(span.len());
+            if map.force.x == 0.0 {
+                own.for_each(drop);
+                continue;
+            }
+            let of = |(i, x): (usize, f64)| {
+                let stiffness = now.diagonal[i] - map.inertia.x * system.mass.lumped[i];
+                (stiffness * x).powi(2)
+            };
+            square += span.zip(own).map(of).sum::<f64>() / (map.force.x * map.force.x);
+        }
+        square.sqrt()
     }
 
     /// Sizes and uses of the factors at hand.
@@ -252,7 +289,7 @@ impl Matrices {
     /// Factors the matrices of the linear parts. `made`: a number that no other matrices of the run have.
     fn new(
         system: &System,
-        map: &StepMap,
+        maps: &Maps,
         iterated: Vec<bool>,
         (between, made): (bool, u64),
     ) -> Result<Matrices, Error> {
@@ -266,6 +303,7 @@ impl Matrices {
         let mut held = Vec::new();
         for group in &mut operators.groups[..first] {
             let part = group.parts[0].clone();
+            let map = maps.of(part.start);
             let (operator, matrix) = linear_part(system, &part, map, between, &mut diagonal)?;
             group.operator = Some(operator);
             held.push(matrix);
@@ -275,8 +313,13 @@ impl Matrices {
             system.rigid_points(),
         );
         compliance.version = made << 32;
+        let linking = match system.link_rows.is_empty() {
+            true => None,
+            false => Some(Linking::new(system, (maps, between), &mut operators)?),
+        };
         Ok(Matrices {
-            key: key(map),
+            linking,
+            key: key(maps).collect(),
             iterated,
             operators,
             first,
@@ -460,17 +503,20 @@ impl Matrices {
 
     /// `inertia.x M + force.x K + damping` of the parts that are not linear, into a matrix of zeros.
     fn assemble(&self, system: &System, at: &At, a: &mut Csr) -> Result<(), Error> {
-        let map = at.map;
-        let rate = damping_rate(map).x;
         for (k, body) in system.bodies.iter().enumerate() {
             if !self.iterated[system.part_of_body[k]] {
                 continue;
             }
+            let map = &at.maps.all()[system.zone_of_body[k]];
+            let rate = damping_rate(map).x;
             let placement = Placement {
                 u: at.u,
                 v: at.v,
                 from: at.from,
-                dt: at.dt,
+                dt: match at.between {
+                    true => at.dt,
+                    false => map.instant(at.dt),
+                },
                 old: &at.history[system.nonlinear.histories[k].clone()],
             };
             body.add_tangent(&placement, [map.force.x, rate], a)?;
@@ -496,11 +542,12 @@ impl Matrices {
             .zip(&self.iterated)
             .filter(|(_, is)| **is)
         {
-            if map.inertia.x != 0.0 {
-                system.mass.add_to(map.inertia.x, part, 0, a);
+            let inertia = at.maps.of(part.start).inertia.x;
+            if inertia != 0.0 {
+                system.mass.add_to(inertia, part, 0, a);
             }
         }
-        super::loads::add_tangent(system, at.time, at.u, map.force.x, a);
+        super::loads::add_tangent(system, (at.maps, at.start, at.dt), at.u, a);
         Ok(())
     }
 
@@ -517,14 +564,13 @@ fn retire(operator: &Operator, retired: &mut Work) {
     }
 }
 
-/// The factor of the matrix of a linear part, and the matrix itself where supports of the part move; adds its diagonal.
-fn linear_part(
+/// The matrix of a linear part; `None` of one that is the lumped mass alone.
+pub(super) fn part_matrix(
     system: &System,
     part: &Range<usize>,
     map: &StepMap,
     between: bool,
-    diagonal: &mut [f64],
-) -> Result<(Operator, Option<Csr>), Error> {
+) -> Option<Csr> {
     let rate = damping_rate(map).x;
     let damping = |body: usize| {
         system
@@ -539,14 +585,10 @@ fn linear_part(
     } else {
         map.force.x
     };
-    let of_body = |body: usize| stiffness + rate * damping(body).stiffness;
-    let fixed = &system.fixed[part.clone()];
     if map.force.x == 0.0 && system.mass.consistent.is_none() {
-        let lumped = &system.mass.lumped[part.clone()];
-        let masses: Vec<f64> = lumped.iter().map(|m| map.inertia.x * m).collect();
-        diagonal[part.clone()].copy_from_slice(&masses);
-        return Ok((Operator::diagonal(&masses, fixed), None));
+        return None;
     }
+    let of_body = |body: usize| stiffness + rate * damping(body).stiffness;
     let mut a = assembled(system, part, [map.inertia.x, rate], &of_body);
     for (k, masses) in system.body_masses.iter().enumerate() {
         let factor = rate * damping(k).mass;
@@ -560,6 +602,24 @@ fn linear_part(
             }
         }
     }
+    Some(a)
+}
+
+/// The factor of the matrix of a linear part, and the matrix itself where supports of the part move; adds its diagonal.
+fn linear_part(
+    system: &System,
+    part: &Range<usize>,
+    map: &StepMap,
+    between: bool,
+    diagonal: &mut [f64],
+) -> Result<(Operator, Option<Csr>), Error> {
+    let fixed = &system.fixed[part.clone()];
+    let Some(a) = part_matrix(system, part, map, between) else {
+        let lumped = &system.mass.lumped[part.clone()];
+        let masses: Vec<f64> = lumped.iter().map(|m| map.inertia.x * m).collect();
+        diagonal[part.clone()].copy_from_slice(&masses);
+        return Ok((Operator::diagonal(&masses, fixed), None));
+    };
     for (place, entry) in diagonal[part.clone()].iter_mut().enumerate() {
         *entry = a.get(place, place);
     }

@@ -164,7 +164,7 @@ fn body_of(system: &System, part: &Range<usize>) -> String {
 impl Driver {
     /// Whether parts float in the attempt under way.
     pub(super) fn floats(&self) -> bool {
-        self.map.inertia.x == 0.0 && !self.floating.parts.is_empty()
+        self.maps.is_static() && !self.floating.parts.is_empty()
     }
 
     /// Moves parts that are loaded along a rigid motion that nothing holds to the next contact on their way; whether that was
@@ -283,9 +283,12 @@ impl Driver {
     fn places(&self) -> Vec<f64> {
         let mut places = vec![0.0; self.vectors.x.len()];
         let (motion, x) = (&self.state.motion, &self.vectors.x);
-        self.map
-            .displacement
-            .whole(motion, x, &self.vectors.push, &mut places);
+        self.maps.whole(
+            |map| map.displacement,
+            motion,
+            [x, &self.vectors.push],
+            &mut places,
+        );
         places
     }
 
@@ -352,10 +355,10 @@ impl Driver {
         let system = Arc::clone(&self.system);
         let mut places = vec![0.0; self.vectors.x.len()];
         let motion = &self.state.motion;
-        self.map.displacement.whole(
+        self.maps.whole(
+            |map| map.displacement,
             motion,
-            &self.vectors.before,
-            &self.vectors.push,
+            [&self.vectors.before, &self.vectors.push],
             &mut places,
         );
         let rigid = Rigid::new(&system, &self.floating.parts, Some(&places));

@@ -10,11 +10,11 @@ use std::time::Instant;
 use carom_contact::law::{Level, Status};
 
 use super::Driver;
-use super::candidates::{on_row, sums_compliances};
+use super::candidates::sums_compliances;
 use crate::coulomb::{FrictionFailure, FrictionProblem, Posed, Slip, Tangential};
 use crate::error::Error;
 use crate::state::ContactReport;
-use crate::step_map::Row;
+use crate::step_map::{Row, StepMap};
 use crate::system::System;
 
 impl System {
@@ -70,42 +70,46 @@ impl Driver {
         let system = &*self.system;
         let of_rate = |k: usize| system.contacts[k].law.get().level() == Level::Rate;
         let mut rubbing = (0..system.contacts.len()).filter(|&k| system.friction[k] > 0.0);
-        self.map.inertia.x != 0.0 && rubbing.all(of_rate)
+        !self.maps.is_static() && rubbing.all(of_rate)
     }
 
     /// The times, from that at which the places of a contact are taken, over which its sliding is looked at, s.
     pub(super) fn span(&self, contact: usize) -> [f64; 2] {
-        let after = self.paired_after(&self.system.contacts[contact]);
+        let after = self.paired_after(contact);
         match self.slides_by_rate() {
             true => [self.dt - after; 2],
             false => [-after, self.dt - after],
         }
     }
 
-    /// The row of the step whose product with T is the sliding quantity, and the time that turns a rate into it.
-    fn sliding(&self) -> (Row, f64) {
-        if self.slides_by_rate() {
-            return (self.map.rate, 1.0);
-        }
-        let now = Row {
-            u: 1.0,
-            ..Row::default()
+    /// The row of a map whose product with T is the sliding quantity, and the time that turns a rate into it.
+    fn sliding(&self) -> (impl Fn(&StepMap) -> Row + Copy + use<>, f64) {
+        let by_rate = self.slides_by_rate();
+        let row = move |map: &StepMap| match by_rate {
+            true => map.rate,
+            false => map.displacement.since(&Row::START),
         };
-        (self.map.displacement.since(&now), self.dt)
+        (row, if by_rate { 1.0 } else { self.dt })
     }
 
     /// Sliding quantity of a point along one tangent at the x of the iteration.
-    fn slid(&self, point: usize, tangent: usize, (row, time): (&Row, f64)) -> f64 {
+    fn slid(
+        &self,
+        point: usize,
+        tangent: usize,
+        (row, time): (impl Fn(&StepMap) -> Row, f64),
+    ) -> f64 {
         let rows = &self.pairing.tangents[tangent];
         let xc = [&self.vectors.x[..], &self.vectors.push];
-        on_row(rows, point, row, &self.state.motion, xc) + time * rows.rate(point)
+        let along = self.maps.on((rows, point), row, &self.state.motion, xc);
+        along + time * rows.rate(point)
     }
 
     /// What friction adds to each candidate.
     fn tangential(&self) -> Vec<Tangential> {
-        let (mut row, time) = self.sliding();
+        let (row, time) = self.sliding();
         // what the forces of the iteration give by themselves is in the matrix
-        row.c = 0.0;
+        let without = move |map: &StepMap| Row { c: 0.0, ..row(map) };
         let tangents = self.system.tangents();
         let width = 1 + tangents as u32;
         let of = |&point: &u32| {
@@ -113,8 +117,9 @@ impl Driver {
             let mut q = [0.0; 2];
             for (k, q) in q.iter_mut().enumerate().take(tangents) {
                 let number = point * width + 1 + k as u32;
-                let step = row.x * self.free_along(number, &self.stacked);
-                *q = self.slid(at, k, (&row, time)) + step;
+                let factor = row(self.map_of(self.system.contact_of(at))).x;
+                let step = factor * self.free_along(number, &self.stacked);
+                *q = self.slid(at, k, (without, time)) + step;
             }
             Tangential {
                 mu: self.system.friction[self.system.contact_of(at)],
@@ -133,8 +138,9 @@ impl Driver {
         let width = 1 + tangents as u32;
         let rows = |&point: &u32| point * width..(point + 1) * width;
         let stacked: Vec<u32> = self.candidates.iter().flat_map(rows).collect();
-        let factor = self.map.contact;
-        let s = [self.map.gap.x, self.map.rate.x, self.sliding().0.x].map(|s| s * factor);
+        let factor = self.maps.contact();
+        let first = self.maps.first();
+        let s = [first.gap.x, first.rate.x, self.sliding().0(first).x].map(|s| s * factor);
         let Some((operators, compliance)) = self.effective.both() else {
             return Ok(());
         };
@@ -142,19 +148,26 @@ impl Driver {
         compliance.update(&stacked, &self.stacked, &system.fixed, operators);
         self.describe_candidates(Some(tangents as u32));
         let friction = self.tangential();
-        let Some((operators, compliance)) = self.effective.both() else {
+        let Some((operators, compliance, mut linking)) = self.effective.all() else {
             return Ok(());
         };
+        let (matrix, _) = match &mut linking {
+            Some(linking) => {
+                linking.compliance(&system, (&mut *operators, compliance), &self.stacked)
+            }
+            None => (&compliance.matrix[..], compliance.version),
+        };
         let impulsive = match &mut self.impulses {
-            Some(stage) if sums_compliances(&system, &self.map) => {
-                let own = (self.map.rate.x * factor, &compliance.matrix[..]);
-                stage.sum(&system, &self.stacked, &stacked, own, self.map.rate.c)
+            Some(stage) if sums_compliances(&system, self.maps.first()) => {
+                let rate = self.maps.first().rate;
+                let own = (rate.x * factor, matrix);
+                stage.sum(&system, &self.stacked, &stacked, own, rate.c)
             }
             _ => None,
         };
         let (matrix, s) = match impulsive {
             Some(matrix) => (matrix, [0.0, 1.0, 1.0]),
-            None => (&compliance.matrix[..], s),
+            None => (matrix, s),
         };
         let posed = Posed {
             candidates: &self.candidate_data,
@@ -187,6 +200,17 @@ impl Driver {
             for (row, force) in rows(&point).zip(forces).filter(|(_, force)| *force != 0.0) {
                 compliance.add(row, factor * force, operators, &mut self.vectors.half);
             }
+        }
+        if let Some(linking) = linking {
+            let coulomb = &self.coulomb;
+            let of_point = |(k, point): (usize, &u32)| {
+                let (p, t) = (coulomb.forces[k], coulomb.tangential[k]);
+                let forces = [p, t[0], t[1]].map(|force| factor * force);
+                rows(point).zip(forces)
+            };
+            let forces = self.candidates.iter().enumerate().flat_map(of_point);
+            let pushed = &mut self.multipliers.change[1];
+            linking.answer(&system, operators, forces, (&mut self.vectors.half, pushed));
         }
         Ok(())
     }
@@ -231,7 +255,7 @@ impl Driver {
             return 0.0;
         }
         let (row, time) = self.sliding();
-        let slid = |k: usize| self.slid(point, k, (&row, time)).powi(2);
+        let slid = |k: usize| self.slid(point, k, (row, time)).powi(2);
         let slid: f64 = (0..self.system.tangents()).map(slid).sum();
         slid.sqrt() * self.dt / time
     }
@@ -265,13 +289,14 @@ impl Driver {
         new - old + self.dt * rows.rate(point)
     }
 
-    /// Work in J of the friction forces of the step, old and new with these weights, on the way that their points slide
+    /// Work in J of the friction forces of the step, old and new with these weights by zone, on the way that their points slide
     /// over the primary.
-    pub(super) fn friction_work(&self, weights: [f64; 2]) -> f64 {
+    pub(super) fn friction_work(&self, weights: &[[f64; 2]]) -> f64 {
         let (old, new) = (&self.state.interface, &self.next.interface);
         let mut work = 0.0;
         for (point, t) in new.friction.iter().enumerate() {
             let before = old.friction.get(point).copied().unwrap_or_default();
+            let weights = weights[self.system.zone_of(self.system.contact_of(point))];
             for k in 0..self.system.tangents() {
                 let mean = weights[0] * before[k] + weights[1] * t[k];
                 if mean != 0.0 {

@@ -17,14 +17,11 @@ impl Driver {
         let system = Arc::clone(&self.system);
         for (k, contact) in system.contacts.iter().enumerate() {
             let mut u = std::mem::take(&mut self.vectors.place);
-            let row = self.paired_at(k);
-            row.whole(
-                &self.state.motion,
-                &self.vectors.x,
-                &self.vectors.push,
-                &mut u,
-            );
-            let time = self.state.time + self.paired_after(contact);
+            let paired = self.paired_at(k);
+            let xc = [&self.vectors.x[..], &self.vectors.push];
+            let motion = &self.state.motion;
+            self.maps.whole(|map| paired.row(map), motion, xc, &mut u);
+            let time = self.state.time + self.paired_after(k);
             let mut places = system.places(time, &u, &self.state.motion.frames);
             places.frames.middle = self.between();
             let all = contact.held(&places, &self.search[k]);

@@ -47,7 +47,7 @@ impl Driver {
     /// Weights of the contact forces at the start and of the step in their work: those of the energy identity, or of the
     /// impulse where there is none.
     pub(super) fn work_weights(&self) -> WorkWeights {
-        let Impulse { old, new, .. } = self.map.contact_impulse;
+        let Impulse { old, new, .. } = self.maps.first().contact_impulse;
         let of_impulse = WorkWeights { old, new, lag: 0.0 };
         self.identity.map_or(of_impulse, |identity| WorkWeights {
             old: identity.old,
@@ -150,7 +150,7 @@ impl Driver {
         let work_links = match new.link_force.is_empty() {
             true => 0.0,
             false => {
-                let weights = &self.map.impulse;
+                let weights = &self.maps.first().impulse;
                 weights.old * dot(travel, &old.link_force)
                     + weights.new * dot(travel, &new.link_force)
             }
@@ -161,7 +161,10 @@ impl Driver {
             (
                 self.dt,
                 &identity,
-                [&self.map.impulse, &self.map.contact_impulse],
+                [
+                    &self.maps.first().impulse,
+                    &self.maps.first().contact_impulse,
+                ],
             ),
             &energies,
             [work_loads, work_contact, work_links],
@@ -194,23 +197,24 @@ impl Driver {
     /// impulse in their own way.
     fn reactions(&mut self) -> [Resultant; 2] {
         let system = Arc::clone(&self.system);
-        if self.map.force_fraction.is_none() {
+        if self.maps.first().force_fraction.is_none() {
             let super::Vectors { x, push, place, .. } = &mut self.vectors;
-            self.map.force.whole(&self.state.motion, x, push, place);
+            self.maps
+                .whole(|map| map.force, &self.state.motion, [x, push], place);
             self.linear_forces();
         }
         let (old, new) = (&self.state.motion, &self.next.motion);
         let super::Vectors { work, inertia, .. } = &mut self.vectors;
-        reactions(&system, &self.map, old, new, inertia, work);
+        reactions(&system, self.maps.first(), old, new, inertia, work);
         self.take_linear_springs();
         let new = &self.next.motion;
         let super::Vectors { half, work, .. } = &mut self.vectors;
         let exchange = &mut self.next.exchange;
         exchange.follow(&self.state.exchange);
         let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
-        exchange.add(&system, (0, self.dt, &self.map.impulse), own);
+        exchange.add(&system, (0, self.dt, |_| self.maps.first().impulse), own);
         let supports = Resultant::of(&system, work);
-        if self.map.impulse == self.map.contact_impulse {
+        if self.maps.first().impulse == self.maps.first().contact_impulse {
             return [supports, Resultant::default()];
         }
         for (i, held) in half.iter_mut().enumerate() {
@@ -219,9 +223,11 @@ impl Driver {
                 false => 0.0,
             };
         }
-        exchange.add(&system, (1, self.dt, &self.map.contact_impulse), |i| {
-            half[i]
-        });
+        exchange.add(
+            &system,
+            (1, self.dt, |_| self.maps.first().contact_impulse),
+            |i| half[i],
+        );
         [supports, Resultant::of(&system, half)]
     }
 }

@@ -10,6 +10,7 @@ use carom_contact::law::{ContactLaw, Level};
 
 use super::Driver;
 use crate::control::Adaptive;
+use crate::maps::Maps;
 use crate::step_map::{Row, StepMap};
 
 /// Distance before the surface at which a cut aims, in tolerances of a closed gap: rounding then closes no point too early.
@@ -24,7 +25,7 @@ impl Driver {
     ///
     /// A closing one or two steps ahead is approached in equal parts, so that no step is less than half of the next one.
     pub(super) fn landing(&self, rules: &Adaptive, planned: f64) -> Option<f64> {
-        let map = self.system.scheme.get().step_map(planned);
+        let maps = Maps::new(&self.system, planned, planned);
         let flight = f64::from(rules.patience) * self.system.dt;
         let mut first = f64::INFINITY;
         for point in 0..self.system.points() {
@@ -33,8 +34,10 @@ impl Driver {
                 && gap > self.system.tolerance
                 && gap.is_finite();
             if flies {
-                let law = self.system.point(point).0.law.get();
-                let cut = self.arrival(point) - lead(&map, planned, law);
+                let number = self.system.contact_of(point);
+                let law = self.system.contacts[number].law.get();
+                let zone = self.system.zone_of(number);
+                let cut = self.arrival(point) - lead(&maps.all()[zone], planned, law);
                 if cut >= rules.smallest {
                     first = first.min(cut);
                 }

@@ -16,11 +16,17 @@ use crate::operator::{Operators, factored, single};
 use crate::scheme::{Scheme, Theta};
 use crate::state::{Motion, State};
 use crate::step_map::StepMap;
-use crate::system::{System, push_cliques};
+use crate::system::{LinkRow, System, on, push_cliques};
 use crate::zones::Origin;
 
-/// One row of C: unknowns of the zone and coefficients, with the sign of the zone's side.
-pub(crate) type LinkRow = Vec<(u32, f64)>;
+/// How forces on rows run over some steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Growth {
+    /// They grow linearly from 0 to 1.
+    Linear,
+    /// They are 1.
+    Constant,
+}
 
 impl Driver {
     /// Makes the solver take forces of links from its next start on, which is with this force (N).
@@ -39,6 +45,18 @@ impl Driver {
         for (row, terms) in rows {
             for &(dof, c) in terms {
                 self.link_force[dof as usize] += c * multipliers[*row as usize];
+            }
+        }
+    }
+
+    /// Adds forces of other rows to those of the links, N.
+    pub(crate) fn add_link_rows(&mut self, rows: &[(u32, LinkRow)], forces: &[f64]) {
+        if self.link_force.is_empty() {
+            self.link_force.resize(self.system.unknowns(), 0.0);
+        }
+        for (row, terms) in rows {
+            for &(dof, c) in terms {
+                self.link_force[dof as usize] += c * forces[*row as usize];
             }
         }
     }
@@ -107,8 +125,9 @@ impl Driver {
     /// Work of the force of one row in the step just completed, J: `before` and `now` are the row's Λ of the step before and
     /// of this one.
     pub(crate) fn row_work(&self, terms: &LinkRow, before: f64, now: f64) -> f64 {
+        let impulse = &self.maps.first().impulse;
         let travel = on(terms, &self.next.motion.u) - on(terms, &self.state.motion.u);
-        (self.map.impulse.old * before + self.map.impulse.new * now) * travel
+        (impulse.old * before + impulse.new * now) * travel
     }
 
     /// Factors of M and K in the effective matrix, and of its solution in the velocity at the end of a step.
@@ -121,7 +140,7 @@ impl Driver {
     fn linear_map(&self) -> StepMap {
         match self.between() {
             true => Scheme::Theta(Theta { theta: 0.5 }).get().step_map(self.dt),
-            false => self.map,
+            false => *self.maps.first(),
         }
     }
 
@@ -130,14 +149,14 @@ impl Driver {
         &self.vectors.load
     }
 
-    /// Velocity that multipliers growing linearly from 0 to 1 in `steps` steps leave in the rows, without contact: the dense
+    /// Velocity that multipliers leave in the rows over some steps, without contact: the dense
     /// matrix `C V`, row-major over the rows given, of the zone linearised at the origin.
     ///
     /// # Errors
     /// An effective matrix that is not positive definite.
     pub(crate) fn ramp(
         &mut self,
-        (rows, steps): (&[(u32, LinkRow)], u32),
+        (rows, steps): (&[(u32, LinkRow)], (u32, Growth)),
         origin: &Origin,
     ) -> Result<Vec<f64>, Error> {
         let system = Arc::clone(&self.system);
@@ -224,7 +243,7 @@ impl Ramp<'_> {
     pub(crate) fn matrix(
         &mut self,
         rows: &[(u32, LinkRow)],
-        steps: u32,
+        (steps, growth): (u32, Growth),
         weights: [f64; 2],
     ) -> Vec<f64> {
         let n = rows.len();
@@ -243,7 +262,10 @@ impl Ramp<'_> {
             }
             for step in 0..steps {
                 let part = |k: u32| f64::from(k) / f64::from(steps);
-                let force = weights[0] * part(step) + weights[1] * part(step + 1);
+                let force = match growth {
+                    Growth::Linear => weights[0] * part(step) + weights[1] * part(step + 1),
+                    Growth::Constant => 1.0,
+                };
                 self.step(step == 0, &motion, (terms, force), &mut ended);
                 std::mem::swap(&mut motion, &mut ended);
             }
@@ -291,9 +313,4 @@ impl Ramp<'_> {
         self.map.velocity.whole(motion, &x, &none, &mut end.v);
         self.map.acceleration.whole(motion, &x, &none, &mut end.a);
     }
-}
-
-/// A row applied to a vector of the zone.
-pub(crate) fn on(row: &LinkRow, vector: &[f64]) -> f64 {
-    row.iter().map(|&(dof, c)| c * vector[dof as usize]).sum()
 }

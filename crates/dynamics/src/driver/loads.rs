@@ -5,6 +5,7 @@ use carom_signals::Amplitude;
 
 use super::Driver;
 use crate::loads::NumberedForce;
+use crate::maps::Maps;
 use crate::step_map::{Row, StepMap};
 use crate::system::System;
 
@@ -23,9 +24,24 @@ pub(super) fn damping_rate(map: &StepMap) -> Row {
 }
 
 impl Driver {
-    /// The instant at which the balance of the step holds, s.
-    pub(super) fn instant(&self) -> f64 {
-        self.state.time + self.map.instant(self.dt)
+    /// Loads in the balance of the step, which holds at an instant of its own in each zone, at the configuration in `place`, N.
+    pub(super) fn evaluate_loads_of_step(&mut self) {
+        let (start, dt) = (self.state.time, self.dt);
+        let after = |zone: usize, maps: &Maps| maps.all()[zone].instant(dt);
+        let first = after(0, &self.maps);
+        let zones = self.maps.all().len();
+        if (1..zones).all(|zone| after(zone, &self.maps) == first) {
+            return self.evaluate_loads(start + first);
+        }
+        for zone in 0..zones {
+            self.evaluate_loads(start + after(zone, &self.maps));
+            let super::Vectors { load, work, .. } = &mut self.vectors;
+            for (span, _) in self.system.spans.iter().filter(|(_, of)| *of == zone) {
+                work[span.clone()].copy_from_slice(&load[span.clone()]);
+            }
+        }
+        let super::Vectors { load, work, .. } = &mut self.vectors;
+        load.copy_from_slice(work);
     }
 
     /// Loads at a time and at the configuration in `place`, N.
@@ -59,7 +75,7 @@ impl Driver {
             return;
         }
         vectors.damping.fill(0.0);
-        if self.map.inertia.x == 0.0 {
+        if self.maps.is_static() {
             return;
         }
         for body in &system.bodies {
@@ -88,14 +104,26 @@ impl Driver {
     }
 }
 
-/// Adds to the effective matrix what loads that turn with the body take from it, at this instant (s) and configuration.
-pub(super) fn add_tangent(system: &System, time: f64, u: &[f64], factor_of_x: f64, a: &mut Csr) {
-    let ramp = system.nonlinear.ramp(time);
+/// Adds to the effective matrix what loads that turn with the body take from it in this configuration, in a step from `start` of
+/// `dt` (both s).
+pub(super) fn add_tangent(
+    system: &System,
+    (maps, start, dt): (&Maps, f64, f64),
+    u: &[f64],
+    a: &mut Csr,
+) {
     for given in &system.nonlinear.loads {
-        if let NumberedForce::Follower(load, pressure) = &given.force {
-            let p = factor(&given.amplitude, ramp, time) * pressure;
-            load.add_tangent(p, u, -factor_of_x, a);
-        }
+        let NumberedForce::Follower(load, pressure) = &given.force else {
+            continue;
+        };
+        let zone = given
+            .bodies
+            .first()
+            .map_or(0, |body| system.zone_of_body[*body]);
+        let map = &maps.all()[zone];
+        let time = start + map.instant(dt);
+        let p = factor(&given.amplitude, system.nonlinear.ramp(time), time) * pressure;
+        load.add_tangent(p, u, -map.force.x, a);
     }
 }
 

@@ -4,14 +4,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::Driver;
-use super::effective::{At, Turning, key};
+use super::effective::{At, Turning};
 use super::floating::{GROWTH as HEAVIER, LARGEST};
 use crate::error::Error;
 
 impl Driver {
     /// Takes the matrices of the attempt: those of linear parts are ready with it.
     pub(super) fn take_matrices(&mut self) -> Result<(), Error> {
-        if self.effective.stands(key(&self.map)) {
+        if self.effective.stands(&self.maps) {
             return Ok(());
         }
         let begin = Instant::now();
@@ -19,7 +19,7 @@ impl Driver {
         let iterated = (0..system.parts.len()).map(|part| self.is_iterated(part));
         let iterated = iterated.collect();
         let between = self.between();
-        let taken = self.effective.take(&system, &self.map, iterated, between);
+        let taken = self.effective.take(&system, &self.maps, iterated, between);
         self.phases.factorisation += begin.elapsed();
         taken
     }
@@ -27,7 +27,7 @@ impl Driver {
     /// Whether the matrix of a part changes within a step.
     fn is_iterated(&self, part: usize) -> bool {
         let system = &*self.system;
-        if self.map.force.x == 0.0 {
+        if self.maps.of(system.parts[part].start).force.x == 0.0 {
             return false;
         }
         let mut bodies = (0..system.bodies.len()).filter(|&k| system.part_of_body[k] == part);
@@ -47,10 +47,10 @@ impl Driver {
         let begin = Instant::now();
         let system = Arc::clone(&self.system);
         let motion = &self.state.motion;
-        self.map.force.whole(
+        self.maps.whole(
+            |map| map.force,
             motion,
-            &self.vectors.x,
-            &self.vectors.push,
+            [&self.vectors.x, &self.vectors.push],
             &mut self.vectors.place,
         );
         let floats: &[_] = match self.floats() {
@@ -58,12 +58,10 @@ impl Driver {
             false => &[],
         };
         let mut at = At {
-            map: &self.map,
-            dt: match self.between() {
-                true => self.dt,
-                false => self.map.instant(self.dt),
-            },
-            time: self.instant(),
+            maps: &self.maps,
+            dt: self.dt,
+            between: self.between(),
+            start: self.state.time,
             u: &self.vectors.place,
             v: &self.vectors.rate,
             from: self.between().then_some(&motion.u[..]),
@@ -75,14 +73,14 @@ impl Driver {
         let mut turning = Turning {
             forces: turned.collect(),
             pairing: &self.pairing,
-            factor: self.map.contact,
+            factor: self.maps.contact(),
         };
         let mut made = self.effective.renew(&system, &at, &turning);
         if made.is_err() && turning.forces.iter().any(|force| *force != 0.0) {
             turning.forces.fill(0.0);
             made = self.effective.renew(&system, &at, &turning);
         }
-        if made.is_err() && self.map.inertia.x != 0.0 {
+        if made.is_err() && !self.maps.is_static() {
             at.u = &motion.u;
             made = self.effective.renew(&system, &at, &turning);
         }

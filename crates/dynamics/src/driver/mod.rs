@@ -26,13 +26,15 @@ mod identity;
 mod impulse;
 mod landing;
 pub(crate) mod linked;
+mod linking;
+mod links;
 mod loads;
 mod matrices;
 mod mixing;
 mod obstacles;
 mod predictor;
 mod projection;
-mod record;
+pub(crate) mod record;
 mod residual;
 mod restoring;
 mod rigid;
@@ -54,17 +56,18 @@ use carom_contact::{Contact, Pairing, Search};
 use crate::coulomb::{Coulomb, FrictionProblem, Slip};
 use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
+use crate::maps::Maps;
 use crate::march::{FailedProblem, Stepper};
 use crate::operator::Operators;
 use crate::scheme::EnergyIdentity;
 use crate::small::Watch;
 use crate::state::{ContactReport, State, StepReport, empty_state};
-use crate::step_map::StepMap;
 use crate::system::System;
 use carried::Carried;
 use effective::Effective;
 use floating::Floating;
 use impulse::Impulses;
+use links::Multipliers;
 use mixing::Mixing;
 use predictor::Predictor;
 use projection::Projected;
@@ -78,9 +81,9 @@ pub(crate) use obstacles::Pushed;
 /// Takes steps.
 pub struct Driver {
     system: Arc<System>,
-    /// Size of the attempt under way, s, and its map.
+    /// Size of the attempt under way, s, and the maps of the zones.
     dt: f64,
-    map: StepMap,
+    maps: Maps,
     /// The energy identity of the scheme; none of a static step, or where none is known.
     identity: Option<EnergyIdentity>,
     effective: Effective,
@@ -128,8 +131,9 @@ pub struct Driver {
     vectors: Vectors,
     /// Energies of the iteration.
     stored: Stored,
-    /// Forces of links to other zones in the step, N; empty without links.
+    /// Forces of links in the step, N; empty without links.
     link_force: Vec<f64>,
+    multipliers: Multipliers,
     /// Whether the residual without the forces of links, and the pairing, are those of the step.
     prepared: bool,
     /// Norm of the forces that the iterations of the step may leave unbalanced, N.
@@ -272,19 +276,19 @@ impl Driver {
         let zeros = || vec![0.0; n];
         let state = empty_state(&system);
         let scheme = system.scheme.get();
-        let map = scheme.step_map(system.dt);
+        let maps = Maps::new(&system, system.dt, system.dt);
         let projects = |contact: &Contact| contact.law.projects();
         let stages = scheme.projects_predictor()
             || scheme.restores_contact_work()
-            || candidates::sums_compliances(&system, &map);
+            || candidates::sums_compliances(&system, maps.first());
         let staged = stages && points > 0 || system.contacts.iter().any(projects);
-        let push = match map.uses_contact_acceleration() {
+        let push = match maps.first().uses_contact_acceleration() {
             true => zeros(),
             false => Vec::new(),
         };
         let mut driver = Driver {
             dt: 0.0,
-            map,
+            maps,
             identity: None,
             effective: Effective::new(),
             floating: Floating::new(&system)?,
@@ -349,7 +353,11 @@ impl Driver {
             next: state.clone(),
             state,
             stored: Stored::default(),
-            link_force: Vec::new(),
+            link_force: match system.link_rows.is_empty() {
+                true => Vec::new(),
+                false => zeros(),
+            },
+            multipliers: Multipliers::new(&system),
             prepared: false,
             left_over: 0.0,
             phases: Phases::default(),

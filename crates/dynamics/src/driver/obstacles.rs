@@ -61,11 +61,12 @@ impl Driver {
         }
     }
 
-    /// Work in J of the obstacles in the step: their forces, old and new with these weights, times their way, and the power
+    /// Work in J of the obstacles in the step: their forces, old and new with these weights by zone, times their way, and the power
     /// of their turn times the step.
-    pub(super) fn obstacle_work(&self, weights: [f64; 2]) -> f64 {
+    pub(super) fn obstacle_work(&self, weights: &[[f64; 2]]) -> f64 {
         let of = |contact: usize| {
             let way = self.way_of_obstacle(contact)?;
+            let weights = weights[self.system.zone_of(contact)];
             let old = self.state.records.contacts[contact].pushed;
             let pushed = [old, self.pushed(contact)];
             let work = |pushed: &Pushed| dot(&pushed.force, &way) + self.dt * pushed.turn;

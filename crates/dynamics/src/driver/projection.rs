@@ -64,7 +64,7 @@ impl Driver {
     /// Projects the end of the step if points of laws with projection have closed in it.
     pub(super) fn project(&mut self) -> Result<(), Error> {
         self.projected.clear();
-        if self.impulses.is_none() || self.map.inertia.x == 0.0 || !self.projected_points() {
+        if self.impulses.is_none() || self.maps.is_static() || !self.projected_points() {
             return Ok(());
         }
         let identity = self.identity_of_ledger();
@@ -139,7 +139,7 @@ impl Driver {
                 *reaction -= spring;
             }
         } else {
-            reactions(&system, &self.map, old, new, inertia, work);
+            reactions(&system, self.maps.first(), old, new, inertia, work);
             self.take_linear_springs();
             let (new, work) = (&self.next.motion, &self.vectors.work);
             let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
@@ -170,7 +170,7 @@ impl Driver {
 
     /// Projects the velocity; impulses on the momentum from contacts and supports.
     fn project_velocity(&mut self) -> Result<[Resultant; 2], Error> {
-        let weights = self.map.contact_impulse;
+        let weights = self.maps.first().contact_impulse;
         let [old, new] = [&self.state, &self.next].map(|state| &state.interface);
         let rows = &self.pairing.rows;
         let projected = &mut self.projected;

@@ -18,11 +18,9 @@ impl Driver {
         self.next.records.follow(&self.state.records);
         self.next.time = self.state.time + self.dt;
         // without inertia forces give no impulse, and closing is no impact
-        let (impulse, dt) = match self.map.inertia.x == 0.0 {
-            true => (Impulse::weights(0.0, 1.0), 0.0),
-            false => (self.map.contact_impulse, self.dt),
-        };
+        let dt = if self.maps.is_static() { 0.0 } else { self.dt };
         for k in 0..system.contacts.len() {
+            let impulse = self.contact_impulse(k);
             let rows = &self.pairing.rows;
             let (old, new) = (&self.state.interface, &self.next.interface);
             let mut report = contact_report(&system, k, rows, old, new, self.dt);
@@ -58,13 +56,14 @@ impl Driver {
                     total(&system, k, rows, changed),
                 ],
             };
-            records.add(&system, k, &step, &self.state, &motion.v);
+            let velocities = [&self.state.motion.v[..], &motion.v];
+            records.add(&system, k, &step, velocities);
             records.contacts[k].pushed = pushed;
             self.report.contacts[k] = report;
         }
         self.watch
             .look(&system, self.state.step + 1, &mut self.next);
-        if self.map.inertia.x != 0.0 {
+        if !self.maps.is_static() {
             let work = &mut self.vectors.work;
             system.mass.multiply(&self.next.motion.v, work);
             let records = &self.next.records.contacts;
@@ -75,7 +74,7 @@ impl Driver {
     /// Work of the normal forces of one contact on the motion of the step, J.
     fn contact_work(&self, contact: usize) -> f64 {
         let rows = &self.pairing.rows;
-        let weights = self.weights_of_work();
+        let weights = self.weights_of_work(contact);
         let (old, new) = (&self.state, &self.next);
         let of_point = |point: usize| {
             let force = weights.old * old.interface.carried[point]
@@ -95,20 +94,25 @@ impl Driver {
         points(&self.system, contact).map(of_point).sum()
     }
 
-    fn weights_of_work(&self) -> super::identity::WorkWeights {
-        match (self.system.is_nonlinear(), self.map.inertia.x == 0.0) {
-            (false, _) => self.work_weights(),
-            (true, is_static) => {
-                let impulse = match is_static {
-                    true => Impulse::weights(0.0, 1.0),
-                    false => self.map.contact_impulse,
-                };
+    fn weights_of_work(&self, contact: usize) -> super::identity::WorkWeights {
+        match self.system.is_nonlinear() {
+            false => self.work_weights(),
+            true => {
+                let impulse = self.contact_impulse(contact);
                 super::identity::WorkWeights {
                     old: impulse.old,
                     new: impulse.new,
                     lag: 0.0,
                 }
             }
+        }
+    }
+
+    /// How the forces of a contact change the momentum.
+    fn contact_impulse(&self, contact: usize) -> Impulse {
+        match self.maps.is_static() {
+            true => Impulse::weights(0.0, 1.0),
+            false => self.map_of(contact).contact_impulse,
         }
     }
 
@@ -133,7 +137,8 @@ impl Driver {
     }
 }
 
-fn contact_report(
+/// What a contact did in a step of `dt` (s).
+pub(crate) fn contact_report(
     system: &System,
     contact: usize,
     rows: &Rows,
@@ -177,7 +182,7 @@ fn points(system: &System, contact: usize) -> Range<usize> {
 }
 
 /// Sum of a normal force or impulse over the points of a contact, and its resultant on the secondary body.
-fn total(
+pub(crate) fn total(
     system: &System,
     contact: usize,
     rows: &Rows,

@@ -23,28 +23,24 @@ pub(super) struct Standing {
 impl Driver {
     /// Loads, inertia, internal and damping forces at x. `first`: those that x does not change too.
     pub(super) fn evaluate(&mut self, first: bool) -> Result<(), Error> {
-        let map = self.map;
         match first && self.is_affine() && self.system.nonlinear.follows.is_empty() {
             // the first guess has no inertia
             true => self.vectors.inertia.fill(0.0),
             false => self.evaluate_inertia(),
         }
-        if first || map.force.x != 0.0 {
+        if first || !self.maps.is_explicit() {
             self.evaluate_rate();
             self.evaluate_damping();
             let vectors = &mut self.vectors;
-            map.force.whole(
-                &self.state.motion,
-                &vectors.x,
-                &vectors.push,
-                &mut vectors.place,
-            );
-            let dt = match self.between() {
-                true => self.dt,
-                false => map.instant(self.dt),
-            };
-            self.stored = self.internal((Which::Place, self.between()), dt)?;
-            self.evaluate_loads(self.instant());
+            let (xc, motion) = ([&vectors.x[..], &vectors.push], &self.state.motion);
+            let place = &mut vectors.place;
+            self.maps.whole(|map| map.force, motion, xc, place);
+            let (between, dt) = (self.between(), self.dt);
+            self.stored = self.internal((Which::Place, between), |map| match between {
+                true => dt,
+                false => map.instant(dt),
+            })?;
+            self.evaluate_loads_of_step();
         }
         let vectors = &mut self.vectors;
         let residual = &mut vectors.residual[..];
@@ -74,16 +70,18 @@ impl Driver {
         if linear && !system.has_damping() {
             return;
         }
-        let (rate, vectors) = (damping_rate(&self.map), &mut self.vectors);
-        let (x, push) = (&vectors.x, &vectors.push);
-        rate.whole(&self.state.motion, x, push, &mut vectors.rate);
+        let vectors = &mut self.vectors;
+        let (xc, motion) = ([&vectors.x[..], &vectors.push], &self.state.motion);
+        let rate = &mut vectors.rate;
+        self.maps.whole(damping_rate, motion, xc, rate);
     }
 
     /// Inertia forces at x, N.
     pub(super) fn evaluate_inertia(&mut self) {
         let vectors = &mut self.vectors;
         let (x, push, place) = (&vectors.x, &vectors.push, &mut vectors.place);
-        self.map.inertia.whole(&self.state.motion, x, push, place);
+        self.maps
+            .whole(|map| map.inertia, &self.state.motion, [x, push], place);
         self.system.mass.multiply(place, &mut vectors.inertia);
     }
 
@@ -103,7 +101,7 @@ impl Driver {
     /// and with the momentum per step.
     pub(super) fn standing(&mut self) -> Standing {
         self.spread();
-        let factor = self.map.contact;
+        let factor = self.maps.contact();
         let vectors = &self.vectors;
         let mut imbalance = 0.0;
         for (i, (r, c)) in vectors.residual.iter().zip(&vectors.contact).enumerate() {
@@ -126,7 +124,7 @@ impl Driver {
     pub(super) fn scale_of_forces(&self) -> f64 {
         let vectors = &self.vectors;
         let norm = |f: &[f64]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let contact = self.map.contact.abs() * norm(&vectors.contact);
+        let contact = self.maps.contact().abs() * norm(&vectors.contact);
         let forces = [
             &vectors.load,
             &self.link_force,
@@ -134,7 +132,7 @@ impl Driver {
             &vectors.inertia,
         ];
         let scale = forces.iter().fold(contact, |most, f| most.max(norm(f)));
-        let momentum = match self.map.inertia.x == 0.0 {
+        let momentum = match self.maps.is_static() {
             true => 0.0,
             false => self.momentum_scale(),
         };
@@ -172,7 +170,7 @@ impl Driver {
         2.0 * f64::EPSILON
             * self
                 .effective
-                .stiffness_norm(&self.system, &self.map, sizes)
+                .stiffness_norm(&self.system, &self.maps, sizes)
     }
 
     pub(super) fn no_equilibrium(&self, passes: usize) -> Error {
@@ -180,7 +178,7 @@ impl Driver {
         let vectors = &self.vectors;
         let imbalance = |i: usize| match system.fixed[i] {
             true => 0.0,
-            false => (vectors.residual[i] + self.map.contact * vectors.contact[i]).abs(),
+            false => (vectors.residual[i] + self.maps.contact() * vectors.contact[i]).abs(),
         };
         let larger = |best: usize, i: usize| match imbalance(i) > imbalance(best) {
             true => i,

@@ -19,7 +19,7 @@ pub(super) struct Restoring {
 impl Driver {
     /// Gives the velocity back what the contact took, if the scheme does so.
     pub(super) fn restore(&mut self) {
-        if !self.system.scheme.get().restores_contact_work() || self.map.inertia.x == 0.0 {
+        if !self.system.scheme.get().restores_contact_work() || self.maps.is_static() {
             return;
         }
         self.projected.clear();

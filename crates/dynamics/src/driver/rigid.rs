@@ -21,25 +21,22 @@ impl Driver {
     /// displacements of these modes stay what they are.
     pub(super) fn predict_rigidly(&mut self) {
         let system = Arc::clone(&self.system);
-        let (end, motion) = (&self.map.displacement, &self.state.motion);
-        if end.x == 0.0 {
-            return;
-        }
+        let motion = &self.state.motion;
+        // explicit zones have their place already
+        let factor = |i: usize| self.maps.of(i).displacement.x;
         let rigid = Rigid::new(&system, &system.parts, Some(&motion.u));
         let mut c = rigid.nearest(&motion.v);
         c.iter_mut().for_each(|c| *c *= self.dt);
         let vectors = &mut self.vectors;
-        end.known(motion, &mut vectors.place);
-        let begin = motion.u.iter().zip(&vectors.place);
-        let begin: Vec<f64> = begin.map(|(u, known)| (u - known) / end.x).collect();
-        for (i, x) in vectors.x.iter_mut().enumerate() {
-            if !system.fixed[i] {
-                *x = begin[i];
-            }
+        let place = &mut vectors.place;
+        self.maps.known(|map| map.displacement, motion, place);
+        let moved = |i: usize| !system.fixed[i] && factor(i) != 0.0;
+        for i in (0..motion.u.len()).filter(|&i| moved(i)) {
+            vectors.x[i] = (motion.u[i] - vectors.place[i]) / factor(i);
         }
         for (i, u) in rigid.motion(&c).chain(rigid.arc(&c)) {
-            if !system.fixed[i] {
-                vectors.x[i] += u / end.x;
+            if moved(i) {
+                vectors.x[i] += u / factor(i);
             }
         }
     }

@@ -2,6 +2,7 @@
 //!
 //! Where all is linear in the unknown, one iteration is all: free motion, interface problem, correction.
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -10,6 +11,7 @@ use carom_contact::Search;
 use super::Driver;
 use super::residual::Standing;
 use crate::error::Error;
+use crate::step_map::StepMap;
 
 /// Residual before and after an iteration beyond which the motion of the iteration is halved.
 const GROWTH: f64 = 4.0;
@@ -52,7 +54,7 @@ impl Driver {
         let solved = self.iterate(false);
         match solved {
             // elements inside out: once more from another guess
-            Err(Error::Body(_)) if self.map.inertia.x != 0.0 && !self.is_affine() => {
+            Err(Error::Body(_)) if !self.maps.is_static() && !self.is_affine() => {
                 self.iterate(true)
             }
             other => other,
@@ -112,6 +114,7 @@ impl Driver {
         self.floating.begin();
         self.mixing.clear();
         self.take_matrices()?;
+        self.begin_links();
         self.predict();
         if rigidly {
             self.predict_rigidly();
@@ -165,6 +168,7 @@ impl Driver {
         for (x, dx) in vectors.x.iter_mut().zip(&vectors.dx) {
             *x += dx;
         }
+        self.move_links(1.0);
         self.spread();
         self.left_over = match self.system.is_nonlinear() {
             true => self.system.nonlinear.iteration.tolerance * self.scale_of_forces(),
@@ -204,30 +208,38 @@ impl Driver {
     /// the first iteration, so that the inside of the body goes along.
     fn predict(&mut self) {
         let system = Arc::clone(&self.system);
-        let (map, motion) = (&self.map, &self.state.motion);
+        let motion = &self.state.motion;
         let vectors = &mut self.vectors;
-        let inertia = &map.inertia;
-        if inertia.x == 0.0 {
+        if self.maps.is_static() {
             vectors.x.fill(0.0);
         } else {
-            inertia.known(motion, &mut vectors.x);
-            for x in vectors.x.iter_mut() {
-                *x *= -1.0 / inertia.x;
+            self.maps.known(|map| map.inertia, motion, &mut vectors.x);
+            for (span, map) in self.maps.spans() {
+                for x in &mut vectors.x[span] {
+                    *x *= -1.0 / map.inertia.x;
+                }
             }
         }
         vectors.jump.fill(0.0);
         vectors.jumps = false;
-        let end = &map.displacement;
-        if end.x == 0.0 {
+        if self.maps.all().iter().all(|map| map.displacement.x == 0.0) {
             return;
         }
-        end.known(motion, &mut vectors.place);
+        let place = &mut vectors.place;
+        self.maps.known(|map| map.displacement, motion, place);
         vectors.work.fill(0.0);
         let time = [self.state.time, self.state.time + self.dt];
         system.nonlinear.prescribe(time, &mut vectors.work);
-        for i in (0..system.unknowns()).filter(|&i| system.fixed[i]) {
-            vectors.x[i] = (motion.u[i] - vectors.place[i]) / end.x;
-            vectors.jump[i] = (vectors.work[i] - motion.u[i]) / end.x;
+        let maps = &self.maps;
+        let held = |(span, map): (Range<usize>, &StepMap)| {
+            let x = map.displacement.x;
+            let fixed = &system.fixed;
+            let held = span.filter(move |&i| x != 0.0 && fixed[i]);
+            held.map(move |i| (i, x))
+        };
+        for (i, x) in maps.spans().flat_map(held) {
+            vectors.x[i] = (motion.u[i] - vectors.place[i]) / x;
+            vectors.jump[i] = (vectors.work[i] - motion.u[i]) / x;
             vectors.jumps |= vectors.jump[i] != 0.0;
         }
     }
@@ -304,6 +316,7 @@ impl Driver {
             if self.floats() {
                 self.turn(share);
             }
+            self.move_links(share);
             match self.evaluate(false) {
                 Ok(()) => {
                     self.pair(false);

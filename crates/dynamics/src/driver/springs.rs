@@ -10,7 +10,8 @@ impl Driver {
     pub(super) fn balanced_springs(&mut self) -> Vec<f64> {
         let super::Vectors { x, push, place, .. } = &mut self.vectors;
         if self.system.has_springs {
-            self.map.force.whole(&self.state.motion, x, push, place);
+            self.maps
+                .whole(|map| map.force, &self.state.motion, [x, push], place);
         }
         self.springs_at_place(self.between())
     }
@@ -42,7 +43,8 @@ impl Driver {
             return;
         }
         let super::Vectors { x, push, place, .. } = &mut self.vectors;
-        self.map.force.whole(&self.state.motion, x, push, place);
+        self.maps
+            .whole(|map| map.force, &self.state.motion, [x, push], place);
         self.take_linear_springs_at_place();
     }
 

@@ -17,7 +17,10 @@ impl Driver {
     /// An element without tangent.
     pub(super) fn renew_stable(&mut self, dt: f64) -> Result<(), Error> {
         let system = &*self.system;
-        let explicit = system.scheme.get().step_map(dt).force.x == 0.0;
+        let explicit = system
+            .schemes
+            .iter()
+            .any(|scheme| scheme.get().is_explicit());
         if !explicit || self.is_static() || system.bodies.iter().all(|body| body.is_linear()) {
             return Ok(());
         }

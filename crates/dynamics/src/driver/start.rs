@@ -26,6 +26,9 @@ impl Driver {
     pub fn restart(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
         self.state = empty_state(&system);
+        if self.has_links() {
+            self.link_force.fill(0.0);
+        }
         self.state.motion.link_force.clone_from(&self.link_force);
         let motion = &mut self.state.motion;
         let follows = system.nonlinear.follows.iter();
@@ -51,6 +54,10 @@ impl Driver {
         self.prepared = false;
         self.next.clone_from(&self.state);
         self.begin()?;
+        if self.has_links() {
+            self.start_links()?;
+            self.begin()?;
+        }
         self.state.control = Control::start(system.dt);
         self.state.records = Records::of(&system);
         self.vectors.x.fill(0.0);
@@ -71,18 +78,19 @@ impl Driver {
         let system = Arc::clone(&self.system);
         self.vectors.place.clone_from(&self.state.motion.u);
         self.vectors.rate.clone_from(&self.state.motion.v);
-        let stored = self.internal((Which::Place, false), 0.0)?;
+        let stored = self.internal((Which::Place, false), |_| 0.0)?;
         self.state
             .motion
             .internal_force
             .clone_from(&self.vectors.internal);
         self.evaluate_loads(self.state.time);
         self.evaluate_damping();
-        if self.map.has_memory() {
+        if self.maps.first().has_memory() {
             let motion = &mut self.state.motion;
             motion.memory.clone_from(&motion.v);
         }
-        if system.scheme.get().keeps_acceleration() && !self.is_static() {
+        let keeps = |zone: usize| system.schemes[zone].get().keeps_acceleration();
+        if (0..system.schemes.len()).any(keeps) && !self.is_static() {
             let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
             let (vectors, motion) = (&mut self.vectors, &mut self.state.motion);
             for i in 0..system.unknowns() {
@@ -92,6 +100,9 @@ impl Driver {
             }
             mass.begin(&vectors.residual, &mut vectors.half);
             mass.end(&mut vectors.half, &mut motion.a);
+            for (span, _) in system.spans.iter().filter(|(_, zone)| !keeps(*zone)) {
+                motion.a[span.clone()].fill(0.0);
+            }
         }
         match system.is_nonlinear() {
             true => self.start_works(stored.strain, stored.hardening),
@@ -113,7 +124,7 @@ impl Driver {
         } = &mut self.vectors;
         system.mass.multiply(&motion.a, inertia);
         work.copy_from_slice(&motion.internal_force);
-        reactions(&system, &self.map, motion, motion, inertia, work);
+        reactions(&system, self.maps.first(), motion, motion, inertia, work);
         place.copy_from_slice(&motion.u);
         self.take_linear_springs_at_place();
         let motion = &self.state.motion;
@@ -144,10 +155,11 @@ impl Driver {
         let [memory, lagged] = self.own_energies(End::Start, &identity, strain);
         let motion = &self.state.motion;
         let of = (strain, identity.inertia != 0.0, Some(&motion.u[..]));
+        let of_motion = energies(&system, motion, of, &mut self.vectors.work);
         let energies = Energies {
             memory,
             lagged,
-            ..energies(&system, motion, of, &mut self.vectors.work)
+            ..self.maps.energies(&system, of_motion, motion)
         };
         let at = |k: usize| match self.state.forces.get(k) {
             Some(f) => Resultant::at(&system, (&motion.frames, &[&motion.u]), f),
@@ -168,7 +180,7 @@ impl Driver {
     fn forces_at_the_start(&mut self, springs: Vec<f64>) {
         self.state.forces.clear();
         let system = &*self.system;
-        let of_end = system.scheme.get().step_map(system.dt).impulse.old == 0.0;
+        let of_end = self.maps.all().iter().all(|map| map.impulse.old == 0.0);
         if of_end && !self.is_static() {
             return;
         }

@@ -54,7 +54,7 @@ impl Driver {
         let system = Arc::clone(&self.system);
         let (motion, dt, jump) = (&self.state.motion, self.dt, &mut self.jump);
         (jump.impulse, jump.work, jump.jumps) = (Resultant::default(), 0.0, false);
-        if self.map.inertia.x == 0.0 || system.nonlinear.follows.is_empty() {
+        if self.maps.is_static() || system.nonlinear.follows.is_empty() {
             return Ok(false);
         }
         let n = system.unknowns();

@@ -8,24 +8,27 @@
 //! Sources: Gravouil, Combescure (2001); Prakash, Hjelmstad (2004); Ben Dhia et al. (2003), equations (11)-(12). The form
 //! for any pair of schemes with weights of the multipliers in time is this project's.
 
-mod condensed;
+mod between;
 mod model;
 mod moves;
 mod origin;
 mod start;
 mod tie;
+mod together;
 mod whole;
 
 use serde::{Deserialize, Serialize};
 
 use crate::driver::Driver;
-use crate::driver::linked::{LinkRow, on};
 use crate::error::Error;
 use crate::ledger::Balance;
 use crate::state::{ContactReport, State};
+use crate::system::{LinkRow, on};
 
-use condensed::Condensed;
-pub use model::{LinkKind, ModelLink, ModelZone, Zoned};
+use crate::condensed::Condensed;
+use between::Between;
+pub use between::BetweenState;
+pub use model::{LinkKind, ModelZone, Zoned};
 use moves::Moves;
 pub use origin::Origin;
 pub use tie::mortar_rows;
@@ -74,6 +77,8 @@ pub struct ZonesState {
     pub link_works: Vec<f64>,
     /// Where each zone was linearised last.
     pub origins: Vec<Origin>,
+    /// Contacts between zones, if there are any.
+    pub between: Option<BetweenState>,
     /// By zone.
     pub zones: Vec<State>,
 }
@@ -89,6 +94,8 @@ pub struct Zones {
     contacts: Vec<Vec<usize>>,
     /// By zone, number of the row and its terms there.
     rows: Vec<Vec<(u32, LinkRow)>>,
+    /// Contacts between zones.
+    between: Option<Between>,
     /// Σ |c| of each row.
     norms: Vec<f64>,
     /// Range of the rows of each link.
@@ -123,6 +130,8 @@ pub struct Zones {
     moves: Moves,
     /// Work of each link on both its sides in the outer step, and before it, J.
     works: [Vec<f64>; 2],
+    /// Every which outer step is dropped once, in tests.
+    forced: Option<u64>,
 }
 
 impl Zones {
@@ -197,12 +206,13 @@ impl Zones {
                 saved.clone_from(driver.state());
             }
         }
-        let inner = self.substeps.iter().any(|m| *m > 1);
-        let taken = match self.kind {
-            LinkKind::GravouilCombescure if inner => self.step_pointwise(),
-            _ => self.step_ramped(),
-        };
-        match taken {
+        let forced = self
+            .forced
+            .is_some_and(|every| (self.step + 1).is_multiple_of(every));
+        if forced && self.attempt().is_ok() {
+            self.go_back();
+        }
+        match self.attempt() {
             Ok(()) => {
                 self.accept();
                 Ok(())
@@ -211,6 +221,21 @@ impl Zones {
                 self.go_back();
                 Err(error)
             }
+        }
+    }
+
+    /// Computes the outer step, which is not accepted.
+    fn attempt(&mut self) -> Result<(), Error> {
+        let inner = self.substeps.iter().any(|m| *m > 1);
+        if let Some(between) = &mut self.between {
+            between.begin(&self.drivers, (self.step as f64 * self.dt, self.dt));
+            between.respond(&mut self.drivers, &self.substeps, &self.origins)?;
+        }
+        match self.kind {
+            LinkKind::GravouilCombescure if inner && !self.links.is_empty() => {
+                self.step_pointwise()
+            }
+            _ => self.step_ramped(),
         }
     }
 
@@ -223,6 +248,8 @@ impl Zones {
             let tolerance = driver.system().tolerance;
             driver.state().may_touch(self.dt, tolerance)
         });
+        let between = self.between.as_ref();
+        let near = near || between.is_some_and(|between| between.may_touch(self.dt));
         let choice = &self.choices[usize::from(!near)];
         if *choice == self.substeps {
             return Ok(());
@@ -259,6 +286,9 @@ impl Zones {
                     &mut self.mixes[k],
                     (&self.links, &mut self.works[0]),
                 );
+                if let Some(between) = &mut self.between {
+                    between.record(k, driver);
+                }
                 driver.take();
                 sample(k, driver, &mut self.samples);
             }
@@ -268,6 +298,9 @@ impl Zones {
         let [now, sum] = &mut self.works;
         sum.iter_mut().zip(now).for_each(|(sum, now)| *sum += *now);
         self.step += 1;
+        if let Some(between) = &mut self.between {
+            between.accept(&self.drivers, (self.step as f64 * self.dt, self.dt));
+        }
         self.all_passes += self.passes as u64;
         let [before, first] = &mut self.earlier;
         let [old, new] = &mut self.multipliers;
@@ -301,12 +334,19 @@ impl Zones {
             self.samples.clear();
             self.defect.fill(0.0);
             self.works[0].fill(0.0);
+            if let Some(between) = &mut self.between {
+                between.begin_pass();
+            }
             for k in 0..self.drivers.len() {
                 let [_, last, before] = &mut self.mixes[k];
                 last.copy_from_slice(before);
                 self.ramp_zone(k)?;
             }
-            if self.corrected(1)? {
+            let pressed = match &mut self.between {
+                Some(between) => between.corrected((self.step, self.dt))?,
+                None => true,
+            };
+            if self.corrected(1)? && pressed {
                 return Ok(());
             }
         }
@@ -341,6 +381,9 @@ impl Zones {
             }
             driver.set_link_force(&self.rows[k], mix);
             self.mixes[k][0].copy_from_slice(mix);
+            if let Some(between) = &self.between {
+                between.push(k, driver);
+            }
             if m == 1 {
                 driver.complete()?;
             } else {
@@ -352,6 +395,9 @@ impl Zones {
                     &mut self.mixes[k],
                     (&self.links, &mut self.works[0]),
                 );
+                if let Some(between) = &mut self.between {
+                    between.record(k, driver);
+                }
                 driver.take();
                 sample(k, driver, &mut self.samples);
             }
@@ -362,6 +408,9 @@ impl Zones {
         };
         for (row, terms) in &self.rows[k] {
             self.defect[*row as usize] += on(terms, v);
+        }
+        if let Some(between) = &mut self.between {
+            between.look(k, v);
         }
         Ok(())
     }

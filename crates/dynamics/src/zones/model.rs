@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use carom_arlequin::Row;
 use serde::{Deserialize, Serialize};
 
 use crate::contacts::sides;
 use crate::error::Error;
 use crate::loads::NodalLoad;
-use crate::model::Model;
+use crate::model::{Model, ModelLink};
 use crate::nonlinear::Nonlinear;
 use crate::refused::Refused;
 use crate::scheme::Scheme;
@@ -39,17 +38,6 @@ pub enum LinkKind {
     PrakashHjelmstad,
 }
 
-/// Rows `C_c v_c - C_s v_s = 0` between two zones: an overlap, or a common border.
-#[derive(Clone, Debug)]
-pub struct ModelLink {
-    /// Name as in the case file.
-    pub name: String,
-    /// Zones of the inner and of the outer terms.
-    pub zones: [usize; 2],
-    /// The rows, on nodes of the mesh.
-    pub rows: Vec<Row>,
-}
-
 /// A model in zones. The step of the model is the outer one, its scheme counts for nothing.
 #[derive(Clone, Debug)]
 pub struct Zoned {
@@ -64,62 +52,65 @@ pub struct Zoned {
 }
 
 impl Zoned {
-    /// The systems of the zones, each with its own scheme and step.
+    /// The systems of the zones, each with its own scheme and step, and the contacts that have no side elsewhere.
     ///
     /// # Errors
-    /// Schemes, steps or contacts that do not go together, and [`Error::Zone`] where a zone cannot be built.
+    /// Schemes or steps that do not go together, and [`Error::Zone`] where a zone cannot be built.
     pub fn systems(&self) -> Result<Vec<Arc<System>>, Error> {
-        self.check()?;
-        let contacts = self.contacts()?;
+        self.check_steps()?;
         let system = |(k, contacts): (usize, &Vec<usize>)| {
             System::new(self.zone(k, contacts)).map_err(|cause| Error::Zone {
                 zone: self.zones[k].name.clone(),
                 cause: Box::new(cause),
             })
         };
-        contacts.iter().enumerate().map(system).collect()
+        self.contacts().iter().enumerate().map(system).collect()
     }
 
-    /// For each contact of the model, whether the steps of its zone are not linear.
-    ///
-    /// # Errors
-    /// A contact whose sides are in different zones.
-    pub fn nonlinear_contacts(&self) -> Result<Vec<bool>, Error> {
-        let mut nonlinear = vec![false; self.model.contacts.len()];
-        for (k, contacts) in self.contacts()?.iter().enumerate() {
+    /// For each contact of the model, whether the steps of its zones are not linear.
+    pub fn nonlinear_contacts(&self) -> Vec<bool> {
+        // between zones
+        let mut nonlinear = vec![true; self.model.contacts.len()];
+        for (k, contacts) in self.contacts().iter().enumerate() {
             let zone = self.zone(k, contacts).is_nonlinear();
             for &contact in contacts {
                 nonlinear[contact] = zone;
             }
         }
-        Ok(nonlinear)
+        nonlinear
     }
 
-    /// The contacts of each zone.
-    ///
-    /// # Errors
-    /// A contact whose sides are in different zones.
-    pub(super) fn contacts(&self) -> Result<Vec<Vec<usize>>, Error> {
+    /// Zones of the two sides of a contact.
+    pub(super) fn zones_of(&self, contact: usize) -> [usize; 2] {
         let zone_of = |body: usize| {
             let mut zones = self.zones.iter();
-            zones
-                .position(|zone| zone.bodies.contains(&body))
-                .unwrap_or(0)
+            let zone = zones.position(|zone| zone.bodies.contains(&body));
+            zone.unwrap_or(0)
         };
+        let (secondary, primary) = sides(&self.model.contacts[contact], &self.model);
+        let zone = zone_of(secondary);
+        [zone, primary.map_or(zone, zone_of)]
+    }
+
+    /// The contacts of each zone, without those between zones.
+    pub(super) fn contacts(&self) -> Vec<Vec<usize>> {
         let mut of_zone = vec![Vec::new(); self.zones.len()];
-        for (k, contact) in self.model.contacts.iter().enumerate() {
-            let (secondary, primary) = sides(contact, &self.model);
-            let zone = zone_of(secondary);
-            if let Some(other) = primary.map(zone_of).filter(|other| *other != zone) {
-                return Err(Error::AcrossZones {
-                    contact: contact.name.clone(),
-                    one: self.zones[zone].name.clone(),
-                    other: self.zones[other].name.clone(),
-                });
+        for k in 0..self.model.contacts.len() {
+            let [one, other] = self.zones_of(k);
+            if one == other {
+                of_zone[one].push(k);
             }
-            of_zone[zone].push(k);
         }
-        Ok(of_zone)
+        of_zone
+    }
+
+    /// The contacts whose sides are in different zones.
+    pub(super) fn contacts_across(&self) -> Vec<usize> {
+        let across = |k: &usize| {
+            let [one, other] = self.zones_of(*k);
+            one != other
+        };
+        (0..self.model.contacts.len()).filter(across).collect()
     }
 
     /// The model of one zone with its own step.
@@ -141,6 +132,8 @@ impl Zoned {
                 .map(|&contact| whole.contacts[contact].clone())
                 .collect(),
             scheme: part.scheme,
+            zones: Vec::new(),
+            links: Vec::new(),
             dt: whole.dt / f64::from(part.substeps),
             adaptive: None,
             nonlinear: self.nonlinear(part),
@@ -205,7 +198,7 @@ impl Zoned {
         loads.filter(|load| !load.nodes.is_empty()).collect()
     }
 
-    /// Refuses schemes that no link takes, and numbers of inner steps that do not go together.
+    /// Refuses what zones that step apart do not take.
     pub(super) fn check(&self) -> Result<(), Error> {
         let mut bodies = self.model.bodies.iter();
         if let Some(body) = bodies.find(|body| body.rigid.is_some()) {
@@ -219,13 +212,18 @@ impl Zoned {
                 element: some.spec.name.clone(),
             });
         }
-        let linked = |zone: &usize| self.links.iter().any(|link| link.zones.contains(zone));
         if self.model.nonlinear.preload.is_some() {
             return Err(Error::Nonlinear {
                 what: Refused::StaticStage,
                 why: "links between zones join velocities, which it has none of; leave out the stage or the zones",
             });
         }
+        self.check_steps()
+    }
+
+    /// Refuses schemes that no link takes, and numbers of inner steps that do not go together.
+    pub(super) fn check_steps(&self) -> Result<(), Error> {
+        let linked = |zone: &usize| self.links.iter().any(|link| link.zones.contains(zone));
         let mut many = None;
         for (k, zone) in self.zones.iter().enumerate() {
             let refuse = |accepted| {

@@ -4,16 +4,17 @@ use std::sync::Arc;
 
 use carom_algebra::dense::DenseCholesky;
 
-use super::condensed::{Answer, Condensed, DENSE, Joined};
+use super::between::Between;
 use super::moves::Moves;
 use super::origin::Origin;
 use super::{LinkKind, Zoned, Zones, ZonesState};
+use crate::condensed::{Answer, Condensed, DENSE, Joined, Matrix};
 use crate::driver::Driver;
-use crate::driver::linked::{LinkRow, on};
+use crate::driver::linked::Growth;
 use crate::error::Error;
-use crate::operator::Operators;
+use crate::operator::{Operators, assembled};
 use crate::state::State;
-use crate::system::System;
+use crate::system::{LinkRow, System, on};
 
 impl Zones {
     /// Builds the zones, makes and factors H, and starts them: initial velocities become the closest ones, in the norm of the
@@ -22,8 +23,10 @@ impl Zones {
     /// # Errors
     /// A zone that cannot be built, redundant rows, schemes or steps that do not go together.
     pub fn new(zoned: &Zoned) -> Result<Zones, Error> {
+        zoned.check()?;
+        zoned.check_across()?;
         let systems = zoned.systems()?;
-        let contacts = zoned.contacts()?;
+        let contacts = zoned.contacts();
         let count = zoned.links.iter().map(|link| link.rows.len()).sum();
         let rows = rows(zoned, &systems);
         let mut norms = vec![0.0; count];
@@ -41,6 +44,10 @@ impl Zones {
             .iter()
             .map(|system| Driver::new(Arc::clone(system)))
             .collect::<Result<Vec<_>, Error>>()?;
+        let between = Between::new(zoned, &drivers)?;
+        if between.is_some() {
+            make_room(&mut drivers)?;
+        }
         let multipliers = start(&mut drivers, &rows, count)?;
         let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
         let far = zoned.zones.iter();
@@ -50,6 +57,7 @@ impl Zones {
             inner.then(|| driver.state().clone())
         });
         let mut zones = Zones {
+            between,
             saved: saved.collect(),
             origins: drivers.iter().map(Origin::of).collect(),
             stale: false,
@@ -77,9 +85,13 @@ impl Zones {
             moves: Moves::default(),
             mixes: Vec::new(),
             works: [Vec::new(), Vec::new()],
+            forced: None,
         };
         zones.start_works();
         zones.factorise()?;
+        if let Some(between) = &mut zones.between {
+            between.restart(&zones.drivers);
+        }
         Ok(zones)
     }
 
@@ -97,7 +109,10 @@ impl Zones {
     /// As [`Zones::new`].
     pub fn restart(&mut self, motions: &[[Vec<f64>; 2]]) -> Result<(), Error> {
         for (driver, [u, v]) in self.drivers.iter_mut().zip(motions) {
-            driver.unlink();
+            match self.between {
+                Some(_) => driver.link(&vec![0.0; u.len()]),
+                None => driver.unlink(),
+            }
             driver.restart(u, v)?;
         }
         let multipliers = start(&mut self.drivers, &self.rows, self.norms.len())?;
@@ -105,6 +120,9 @@ impl Zones {
         self.earlier = [multipliers.clone(), multipliers.clone()];
         self.multipliers = [multipliers.clone(), multipliers];
         self.start_works();
+        if let Some(between) = &mut self.between {
+            between.restart(&self.drivers);
+        }
         let origins: Vec<Origin> = self.drivers.iter().map(Origin::of).collect();
         if origins != self.origins {
             self.start_from(origins);
@@ -126,13 +144,8 @@ impl Zones {
         let answers: Vec<Answer> = zones
             .map(|(driver, rows)| {
                 let (mass, stiffness, velocity) = driver.effective();
-                Answer {
-                    system: driver.system(),
-                    rows,
-                    mass,
-                    stiffness,
-                    scale: velocity * driver.link_weights()[1],
-                }
+                let scale = velocity * driver.link_weights()[1];
+                answer((driver.system(), rows), [mass, stiffness], scale)
             })
             .collect();
         let joined = Joined::new(&answers, self.norms.len())?;
@@ -156,7 +169,7 @@ impl Zones {
                 LinkKind::GravouilCombescure => 1,
                 LinkKind::PrakashHjelmstad => self.substeps[k],
             };
-            let own = driver.ramp((rows, steps), &self.origins[k])?;
+            let own = driver.ramp((rows, (steps, Growth::Linear)), &self.origins[k])?;
             for (i, (row, _)) in rows.iter().enumerate() {
                 for (j, (column, _)) in rows.iter().enumerate() {
                     let place = *row as usize * n + *column as usize;
@@ -185,6 +198,7 @@ impl Zones {
             forces: self.mixes.iter().map(|[_, last, _]| last.clone()).collect(),
             link_works: self.works[1].clone(),
             origins: self.origins.clone(),
+            between: self.between.as_ref().map(|between| between.state.clone()),
             zones: self.drivers.iter().map(|d| d.state().clone()).collect(),
         }
     }
@@ -205,11 +219,34 @@ impl Zones {
         for (driver, state) in self.drivers.iter_mut().zip(&state.zones) {
             driver.go_back(state);
         }
+        if let (Some(between), Some(state)) = (&mut self.between, &state.between) {
+            between.state.clone_from(state);
+        }
     }
 
     /// Name of each link and the range of its rows among the multipliers.
     pub fn links(&self) -> &[(String, std::ops::Range<usize>)] {
         &self.links
+    }
+}
+
+/// A zone in H, with A = `mass` M + `stiffness` K.
+fn answer<'a>(
+    (system, rows): (&'a System, &[(u32, LinkRow)]),
+    [mass, stiffness]: [f64; 2],
+    scale: f64,
+) -> Answer<'a> {
+    let span = 0..system.unknowns();
+    let matrix = match stiffness == 0.0 && system.mass.consistent.is_none() {
+        true => Matrix::Diagonal(system.mass.lumped.iter().map(|m| mass * m).collect()),
+        false => Matrix::Sparse(assembled(system, &span, [mass, 0.0], &|_| stiffness)),
+    };
+    Answer {
+        system,
+        span,
+        rows: rows.to_vec(),
+        matrix,
+        scale,
     }
 }
 
@@ -238,6 +275,17 @@ fn rows(zoned: &Zoned, systems: &[Arc<System>]) -> Vec<Vec<(u32, LinkRow)>> {
         }
     }
     by_zone
+}
+
+/// Starts the drivers with room for forces from other zones.
+fn make_room(drivers: &mut [Driver]) -> Result<(), Error> {
+    for driver in drivers {
+        let motion = &driver.state().motion;
+        let (u, v) = (motion.u.clone(), motion.v.clone());
+        driver.link(&vec![0.0; u.len()]);
+        driver.restart(&u, &v)?;
+    }
+    Ok(())
 }
 
 /// Starts the drivers with velocities that satisfy the rows; returns the first multipliers.
@@ -353,13 +401,7 @@ impl MassLinks<'_> {
         if count > DENSE {
             let zones = drivers.iter().zip(self.rows);
             let answers: Vec<Answer> = zones
-                .map(|(driver, rows)| Answer {
-                    system: driver.system(),
-                    rows,
-                    mass: 1.0,
-                    stiffness: 0.0,
-                    scale: 1.0,
-                })
+                .map(|(driver, rows)| answer((driver.system(), rows), [1.0, 0.0], 1.0))
                 .collect();
             let joined = Joined::new(&answers, count)?;
             return Ok(Condensed::Joined(Box::new(joined)));

@@ -30,6 +30,8 @@ pub struct Whole {
     places: Vec<Places>,
     /// Impacts of each zone that the records hold.
     impacts: Vec<usize>,
+    /// Those of contacts between zones.
+    impacts_between: usize,
     /// Samples of each zone placed so far in a step.
     placed: Vec<usize>,
     state: State,
@@ -37,11 +39,11 @@ pub struct Whole {
 }
 
 /// Where the numbers of a zone are in the whole: its number and that of the whole.
-struct Places {
+pub(super) struct Places {
     /// Unknowns.
     unknowns: Vec<(u32, u32)>,
     /// Those that no zone before it has.
-    own: Vec<(u32, u32)>,
+    pub(super) own: Vec<(u32, u32)>,
     /// Contact points.
     points: Vec<(u32, u32)>,
     /// Histories of the bodies.
@@ -111,6 +113,7 @@ impl Whole {
             bodies: zoned.zones.iter().map(|zone| zone.bodies.clone()).collect(),
             places: places.collect(),
             impacts: vec![0; zones.drivers.len()],
+            impacts_between: 0,
             placed: vec![0; zones.drivers.len()],
             state,
             report: StepReport {
@@ -125,6 +128,11 @@ impl Whole {
     /// The zones.
     pub fn zones(&self) -> &Zones {
         &self.zones
+    }
+
+    /// Takes every `every`-th outer step once more after dropping it, which must change no bit of the results: for tests.
+    pub fn force_rejections(&mut self, every: u64) {
+        self.zones.forced = Some(every);
     }
 
     /// Names of the zones.
@@ -152,7 +160,13 @@ impl Whole {
                 .map(|driver| of(&driver.state().ledger))
                 .fold(Balance::default(), |sum, one| sum.plus(one))
         };
-        let (initial, balance) = (sum(|l| &l.initial), sum(|l| &l.balance));
+        let (initial, mut balance) = (sum(|l| &l.initial), sum(|l| &l.balance));
+        if let Some((_, between)) = self.zones.between() {
+            // the zones take forces between them for those of links
+            let work: f64 = between.works.iter().sum();
+            balance.work_links -= work;
+            balance.work_contact += work;
+        }
         let tolerated = self
             .zones
             .drivers
@@ -221,6 +235,20 @@ impl Whole {
                 }
             }
         }
+        let Some((contacts, between)) = self.zones.between() else {
+            return;
+        };
+        let from = &between.interface;
+        for &contact in contacts {
+            for point in self.system.first_point[contact]..self.system.first_point[contact + 1] {
+                whole.force[point] = from.force[point];
+                whole.carried[point] = from.carried[point];
+                whole.gap[point] = from.gap[point];
+                whole.rate[point] = from.rate[point];
+                whole.status[point] = from.status[point];
+                whole.watched[point] = from.watched[point];
+            }
+        }
     }
 
     /// Records by contact of the model; impacts in the order of their end, then of the zones.
@@ -242,6 +270,16 @@ impl Whole {
             }
             self.impacts[k] = records.impacts.len();
         }
+        if let Some((contacts, between)) = self.zones.between() {
+            for &contact in contacts {
+                whole.contacts[contact].clone_from(&between.records.contacts[contact]);
+            }
+            let impacts = &between.records.impacts;
+            whole
+                .impacts
+                .extend_from_slice(&impacts[self.impacts_between..]);
+            self.impacts_between = impacts.len();
+        }
         whole.impacts[before..]
             .sort_by(|a, b| (a.start + a.duration).total_cmp(&(b.start + b.duration)));
     }
@@ -259,6 +297,7 @@ impl Whole {
                     report.contacts[*contact].clone_from(own);
                 }
             }
+            self.tell_between();
             return;
         }
         report.dt = self.zones.dt;
@@ -271,6 +310,22 @@ impl Whole {
             if self.zones.substeps[zone] == 1 {
                 for (own, contact) in sample.contacts.iter().zip(&self.zones.contacts[zone]) {
                     report.contacts[*contact].clone_from(own);
+                }
+            }
+        }
+        self.tell_between();
+    }
+
+    /// What contacts between zones did, in all parts of the step alike.
+    fn tell_between(&mut self) {
+        let Some((contacts, _)) = self.zones.between() else {
+            return;
+        };
+        for &contact in contacts {
+            if let Some(own) = self.zones.report_between(contact) {
+                self.report.contacts[contact].clone_from(own);
+                for part in &mut self.report.samples {
+                    part.contacts[contact].clone_from(own);
                 }
             }
         }
@@ -319,7 +374,7 @@ fn forces_mut(motion: &mut Motion) -> [&mut Vec<f64>; 3] {
 
 impl Places {
     /// `taken`: unknowns of the whole that a zone before this one has.
-    fn new(
+    pub(super) fn new(
         zone: &System,
         (bodies, contacts): (&[usize], &[usize]),
         whole: &System,

@@ -75,6 +75,8 @@ fn sheared(secondary: usize) -> Driver {
             gamma: 0.5,
         }),
         dt: 1.0,
+        zones: Vec::new(),
+        links: Vec::new(),
         adaptive: None,
         nonlinear: Nonlinear {
             motions: vec![Prescribed {

@@ -78,6 +78,8 @@ fn pressed(depth: f64, way: f64) -> Driver {
             gamma: 0.5,
         }),
         dt: 1.0,
+        zones: Vec::new(),
+        links: Vec::new(),
         adaptive: None,
         nonlinear: Nonlinear {
             motions: vec![Prescribed {

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use carom_dynamics::{Costs, Driver, Stepper, System, Whole};
+use carom_dynamics::{Costs, Driver, ModelLink, ModelZone, Stepper, System, Whole, Zoned};
 
 use crate::results::{Ending, Results};
-use crate::summary::{Counts, Link, Newton, Zone, Zones};
+use crate::summary::{Counts, Link, Newton, Zone, ZoneCosts, Zones};
 
 pub(super) fn counts(costs: &Costs, passes: u64) -> Counts {
     let factors = &costs.factors;
@@ -66,7 +66,47 @@ pub(super) fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f6
 }
 
 impl Zones {
-    /// What the zones of a run did so far.
+    /// What zones did so far that are one system.
+    pub fn together(run: &Driver, zoned: &Zoned) -> Zones {
+        let (system, ledger) = (run.system(), &run.state().ledger);
+        let works: Vec<[f64; 2]> = run.links().map(|(_, _, works)| works).collect();
+        let one = |(k, zone): (usize, &ModelZone)| {
+            let scheme = zone.scheme.get();
+            let bodies = || zone.bodies.iter().map(|&body| &system.bodies[body]);
+            let sides = zoned.links.iter().zip(&works);
+            let given = sides.flat_map(|(link, works)| link.zones.iter().zip(works));
+            let given = given.filter(|(zone, _)| **zone == k).map(|(_, work)| work);
+            Zone {
+                name: zone.name.clone(),
+                scheme: scheme.name().to_owned(),
+                has_identity: scheme.energy_identity(system.dt).is_some(),
+                step: system.dt,
+                substeps: 1,
+                bodies: bodies().map(|body| body.name().to_owned()).collect(),
+                elements: bodies().map(|body| body.cells().len()).sum(),
+                unknowns: free_of(system, &zone.bodies),
+                courant: courant_of(system, zone.bodies.iter().copied(), system.dt),
+                work_of_links: given.sum(),
+                costs: None,
+            }
+        };
+        let link = |(link, (_, rows, works)): (&ModelLink, (&str, usize, [f64; 2]))| Link {
+            work: works[0] + works[1],
+            name: link.name.clone(),
+            zones: link.zones.map(|zone| zoned.zones[zone].name.clone()),
+            rows,
+        };
+        let (work, start) = (ledger.balance.work_links, ledger.initial.energy());
+        Zones {
+            zones: zoned.zones.iter().enumerate().map(one).collect(),
+            links: zoned.links.iter().zip(run.links()).map(link).collect(),
+            work_of_links: work,
+            relative_work_of_links: (start > 0.0).then(|| work / start),
+            passes_per_step: None,
+        }
+    }
+
+    /// What the zones of a run did so far that step apart.
     pub fn of(run: &Whole) -> Zones {
         let zones = run.zones();
         let names = run.names();
@@ -89,10 +129,12 @@ impl Zones {
                 unknowns: free(system),
                 courant: courant(system, system.dt),
                 work_of_links: ledger.balance.work_links,
-                largest_residual: ledger.largest_energy_residual,
-                factorisations: costs.work.factorisations as u64,
-                element_updates: costs.element_updates,
-                solves: costs.solves(),
+                costs: Some(ZoneCosts {
+                    largest_residual: ledger.largest_energy_residual,
+                    factorisations: costs.work.factorisations as u64,
+                    element_updates: costs.element_updates,
+                    solves: costs.solves(),
+                }),
             }
         };
         type Of<'a> = ((&'a str, [usize; 2], usize), &'a f64);
@@ -109,10 +151,10 @@ impl Zones {
             links: run.links().zip(zones.link_works()).map(link).collect(),
             work_of_links: work,
             relative_work_of_links: (start > 0.0).then(|| work / start),
-            passes_per_step: match zones.outer_step() {
+            passes_per_step: Some(match zones.outer_step() {
                 0 => 0.0,
                 steps => zones.all_passes() as f64 / steps as f64,
-            },
+            }),
         }
     }
 }
@@ -124,7 +166,23 @@ fn free(system: &System) -> usize {
 
 /// Largest step times wave speed over element size.
 pub(super) fn courant(system: &System, step: f64) -> Option<f64> {
-    let solids = system.bodies.iter().filter_map(|body| body.as_solid());
+    courant_of(system, 0..system.bodies.len(), step)
+}
+
+/// Unknowns of some bodies that no support holds.
+fn free_of(system: &System, bodies: &[usize]) -> usize {
+    let mut own = vec![false; system.x.len()];
+    for body in bodies {
+        system.bodies[*body]
+            .each_element(&mut |nodes| nodes.iter().for_each(|&node| own[node as usize] = true));
+    }
+    let nodes = (0..own.len() as u32).filter(|&node| own[node as usize]);
+    let unknowns = nodes.flat_map(|node| system.unknowns.of(node));
+    unknowns.filter(|&unknown| !system.fixed[unknown]).count()
+}
+
+fn courant_of(system: &System, bodies: impl Iterator<Item = usize>, step: f64) -> Option<f64> {
+    let solids = bodies.filter_map(|body| system.bodies[body].as_solid());
     let all = solids.map(|body| body.wave_speed() * step / body.smallest_size());
     all.reduce(f64::max)
 }

@@ -27,6 +27,12 @@ impl Zoning {
             let mut zones = zoned.zones.iter();
             zones.position(|zone| zone.bodies.contains(&body))
         };
+        // discrete elements are bodies after the others, in the zone of their nodes
+        let discrete = model.discrete.iter().map(|some| {
+            let cells = some.spec.cells.len();
+            [vec![1.0; cells], vec![1.0; cells]]
+        });
+        let count = model.bodies.len() + model.discrete.len();
         let weights = |body: &ModelBody| {
             let cells = &body.spec.cells;
             match &body.spec.weights {
@@ -38,11 +44,9 @@ impl Zoning {
         Zoning {
             zones: zoned.zones.iter().map(|zone| zone.name.clone()).collect(),
             substeps: zoned.zones.iter().map(|zone| zone.substeps).collect(),
-            of_body: (0..model.bodies.len())
-                .map(|body| of_body(body).unwrap_or(0))
-                .collect(),
+            of_body: (0..count).map(|body| of_body(body).unwrap_or(0)).collect(),
             joined: joined(zoned),
-            weights: model.bodies.iter().map(weights).collect(),
+            weights: model.bodies.iter().map(weights).chain(discrete).collect(),
         }
     }
 
@@ -50,8 +54,9 @@ impl Zoning {
     pub(crate) fn shapes(&self, system: &System) -> Vec<Shape> {
         let mesh = &system.mesh;
         let mut shapes = Vec::new();
-        for (number, body) in system.bodies.iter().enumerate() {
-            let [inertia, stiffness] = &self.weights[number];
+        // discrete elements come after the bodies
+        let bodies = system.bodies.iter().zip(&self.weights).enumerate();
+        for (number, (body, [inertia, stiffness])) in bodies {
             for (k, &cell) in body.cells().iter().enumerate() {
                 let nodes = mesh.element_nodes(cell).iter();
                 shapes.push(Shape {
@@ -78,7 +83,7 @@ impl Zoning {
 /// The bodies that are one with each body by the links between their nodes.
 fn joined(zoned: &Zoned) -> Vec<Vec<usize>> {
     let mesh = &zoned.model.mesh;
-    let count = zoned.model.bodies.len();
+    let count = zoned.model.bodies.len() + zoned.model.discrete.len();
     let mut of_node = vec![Vec::new(); mesh.nodes.len()];
     for (number, body) in zoned.model.bodies.iter().enumerate() {
         for &cell in &body.spec.cells {

@@ -1,0 +1,325 @@
+//! The rows of links in the matrices of a step: what their multipliers change.
+//!
+//! A link gives rows `Σ_z C_z v_z = 0` at the end of the step. Their multipliers enter the balance of zone z as `w_z C_zᵀ L`, and
+//! the velocity there is `ν_z x`. With `x = A⁻¹ (r + c Nᵀ P + w Cᵀ L)` the rows say
+//!
+//! `H L = -C ν A⁻¹ (r + c Nᵀ P)`, `H = C ν A⁻¹ w Cᵀ`, and `N x = N A⁻¹ r' + c (N A⁻¹ Nᵀ - (w/ν) bᵀ H⁻¹ b) P`, `b = C ν A⁻¹ Nᵀ`,
+//!
+//! with r' the forces and the multipliers without contact. So contact and links are one problem, exact with its signs, and a row may
+//! end on the surface in contact.
+
+use carom_algebra::dense::DenseCholesky;
+use carom_contact::Rows;
+
+use super::effective::part_matrix;
+use crate::compliance::Compliance;
+use crate::condensed::{Answer, Condensed, DENSE, Joined, Matrix};
+use crate::error::Error;
+use crate::maps::Maps;
+use crate::operator::Operators;
+use crate::system::{LinkRow, System};
+
+/// What the rows of links make of the matrices of one size of the step.
+pub(super) struct Linking {
+    /// H.
+    condensed: Condensed,
+    /// w of each part, and ν.
+    factors: Vec<[f64; 2]>,
+    /// By stacked row of the contact points, those met so far.
+    points: Vec<Option<Point>>,
+    /// The compliance over the candidates with the links, and the version of that without.
+    matrix: Vec<f64>,
+    of: Option<u64>,
+    versions: u64,
+    /// Scratch.
+    half: Vec<f64>,
+    x: Vec<f64>,
+    force: Vec<f64>,
+    moved: Vec<f64>,
+}
+
+/// What a unit force of a contact point leaves in the rows.
+struct Point {
+    dofs: Vec<u32>,
+    coefficients: Vec<f64>,
+    /// b.
+    left: Vec<f64>,
+    /// H⁻¹ b.
+    held: Vec<f64>,
+}
+
+/// w and ν of the parts.
+fn factors(system: &System, maps: &Maps) -> Vec<[f64; 2]> {
+    let of_part = |part: &std::ops::Range<usize>| {
+        let zone = system.zone_at(part.start);
+        let [_, weight] = maps.link_weights(&system.schemes[zone]);
+        [weight, maps.link_row(&maps.all()[zone]).x]
+    };
+    system.parts.iter().map(of_part).collect()
+}
+
+/// The parts of a row's terms, and the terms of each.
+fn by_part(system: &System) -> Vec<Vec<(u32, LinkRow)>> {
+    let mut by_part: Vec<Vec<(u32, LinkRow)>> = vec![Vec::new(); system.parts.len()];
+    for (number, row) in system.link_rows.iter().enumerate() {
+        for &(dof, c) in row {
+            let of_part = &mut by_part[system.part_of(dof as usize)];
+            match of_part.last_mut() {
+                Some((last, terms)) if *last == number as u32 => terms.push((dof, c)),
+                _ => of_part.push((number as u32, vec![(dof, c)])),
+            }
+        }
+    }
+    by_part
+}
+
+/// H from the matrices of the parts where there are many rows, from their answers where there are few.
+fn condensed(
+    system: &System,
+    factors: &[[f64; 2]],
+    operators: &mut Operators,
+    matrix: impl Fn(usize) -> Matrix,
+) -> Result<Condensed, Error> {
+    let count = system.link_rows.len();
+    if count > DENSE {
+        let linked = by_part(system).into_iter().enumerate();
+        let linked = linked.filter(|(_, rows)| !rows.is_empty());
+        let answers = linked.map(|(part, rows)| Answer {
+            system,
+            span: system.parts[part].clone(),
+            rows,
+            matrix: matrix(part),
+            scale: factors[part][0] * factors[part][1],
+        });
+        let answers: Vec<Answer> = answers.collect();
+        return Ok(Condensed::Joined(Box::new(Joined::new(&answers, count)?)));
+    }
+    let n = system.unknowns();
+    let (mut half, mut x, mut force) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    let mut h = vec![0.0; count * count];
+    let mut unit = vec![0.0; count];
+    for column in 0..count {
+        unit[column] = 1.0;
+        force.fill(0.0);
+        add_forces(system, factors, &unit, &mut force);
+        unit[column] = 0.0;
+        operators.begin(&force, &mut half);
+        operators.end(&mut half, &mut x);
+        for (row, terms) in system.link_rows.iter().enumerate() {
+            h[row * count + column] = velocity(system, factors, terms, &x);
+        }
+    }
+    for i in 0..count {
+        for j in 0..i {
+            let mean = 0.5 * (h[i * count + j] + h[j * count + i]);
+            (h[i * count + j], h[j * count + i]) = (mean, mean);
+        }
+    }
+    let factor = DenseCholesky::new(count, &h);
+    let factor = factor.map_err(|cause| Error::Redundant { rows: count, cause })?;
+    Ok(Condensed::Dense(factor))
+}
+
+/// H of the mass alone, and M⁻¹ in `operators`.
+pub(super) fn of_mass(system: &System, operators: &mut Operators) -> Result<Condensed, Error> {
+    let factors = vec![[1.0; 2]; system.parts.len()];
+    condensed(system, &factors, operators, |part| {
+        let span = &system.parts[part];
+        match system.mass.consistent {
+            None => Matrix::Diagonal(system.mass.lumped[span.clone()].to_vec()),
+            Some(_) => Matrix::Sparse(crate::operator::assembled(
+                system,
+                span,
+                [1.0, 0.0],
+                &|_| 0.0,
+            )),
+        }
+    })
+}
+
+/// Adds w Cᵀ L to a system vector; nothing on held unknowns.
+pub(super) fn add_forces(system: &System, factors: &[[f64; 2]], l: &[f64], force: &mut [f64]) {
+    for (row, l) in system.link_rows.iter().zip(l).filter(|(_, l)| **l != 0.0) {
+        for &(dof, c) in row.iter().filter(|(dof, _)| !system.fixed[*dof as usize]) {
+            let [weight, _] = factors[system.part_of(dof as usize)];
+            force[dof as usize] += c * weight * l;
+        }
+    }
+}
+
+/// ν C x of one row, x of unknowns that move.
+fn velocity(system: &System, factors: &[[f64; 2]], row: &LinkRow, x: &[f64]) -> f64 {
+    let moved = row.iter().filter(|(dof, _)| !system.fixed[*dof as usize]);
+    let term =
+        |&(dof, c): &(u32, f64)| c * factors[system.part_of(dof as usize)][1] * x[dof as usize];
+    moved.map(term).sum()
+}
+
+impl Linking {
+    /// # Errors
+    /// Rows that say the same twice.
+    pub(super) fn new(
+        system: &System,
+        (maps, between): (&Maps, bool),
+        operators: &mut Operators,
+    ) -> Result<Linking, Error> {
+        let factors = factors(system, maps);
+        let matrix = |part: usize| {
+            let span = &system.parts[part];
+            let map = maps.of(span.start);
+            match part_matrix(system, span, map, between) {
+                Some(matrix) => Matrix::Sparse(matrix),
+                None => {
+                    let lumped = system.mass.lumped[span.clone()].iter();
+                    Matrix::Diagonal(lumped.map(|m| map.inertia.x * m).collect())
+                }
+            }
+        };
+        let n = system.unknowns();
+        let points = system.points() * (1 + system.tangents());
+        Ok(Linking {
+            condensed: condensed(system, &factors, operators, matrix)?,
+            factors,
+            points: (0..points).map(|_| None).collect(),
+            matrix: Vec::new(),
+            of: None,
+            versions: 0,
+            half: vec![0.0; n],
+            x: vec![0.0; n],
+            force: vec![0.0; n],
+            moved: Vec::new(),
+        })
+    }
+
+    /// Bytes held for H.
+    pub(super) fn bytes(&self, rows: usize) -> usize {
+        self.condensed.bytes(rows)
+    }
+
+    /// Moves the multipliers by `change` (added to it) so that rows hold which the forces `work`, begun in `half`, miss by themselves.
+    /// `defect`: the rows without the motion of these forces. Adds the forces of the multipliers to `work`, and begins anew.
+    pub(super) fn hold(
+        &mut self,
+        system: &System,
+        operators: &mut Operators,
+        (work, half): (&mut [f64], &mut [f64]),
+        (defect, change): (&mut [f64], &mut [f64]),
+    ) {
+        self.half.copy_from_slice(half);
+        operators.end(&mut self.half, &mut self.x);
+        for (defect, row) in defect.iter_mut().zip(&system.link_rows) {
+            *defect += velocity(system, &self.factors, row, &self.x);
+        }
+        self.condensed.solve(defect);
+        for (change, l) in change.iter_mut().zip(defect.iter_mut()) {
+            *l = -*l;
+            *change += *l;
+        }
+        add_forces(system, &self.factors, defect, work);
+        operators.begin(work, half);
+    }
+
+    /// The compliance over some points with the links: matrix and version.
+    pub(super) fn compliance(
+        &mut self,
+        system: &System,
+        (operators, compliance): (&mut Operators, &Compliance),
+        rows: &Rows,
+    ) -> (&[f64], u64) {
+        let points = &compliance.candidates;
+        let mut fresh = self.of != Some(compliance.version);
+        for &point in points {
+            fresh |= self.meet(point, system, (&mut *operators, compliance), rows);
+        }
+        if fresh {
+            self.of = Some(compliance.version);
+            self.versions += 1;
+            let n = points.len();
+            self.matrix.clear();
+            self.matrix.extend_from_slice(&compliance.matrix);
+            for (i, &one) in points.iter().enumerate() {
+                for (j, &other) in points[..=i].iter().enumerate() {
+                    let (Some(one), Some(other)) =
+                        (&self.points[one as usize], &self.points[other as usize])
+                    else {
+                        continue;
+                    };
+                    let taken = one.left.iter().zip(&other.held).map(|(b, g)| b * g);
+                    let taken = taken.sum::<f64>() * self.ratio(system, one);
+                    self.matrix[i * n + j] -= taken;
+                    if i != j {
+                        self.matrix[j * n + i] -= taken;
+                    }
+                }
+            }
+        }
+        (&self.matrix, self.versions)
+    }
+
+    /// w/ν of the part that a point acts on; the system refuses contacts that see several.
+    fn ratio(&self, system: &System, point: &Point) -> f64 {
+        let part = point.dofs.first().map(|&dof| system.part_of(dof as usize));
+        let [weight, rate] = self.factors[part.unwrap_or(0)];
+        weight / rate
+    }
+
+    /// Makes b of a point ready; whether it is new.
+    fn meet(
+        &mut self,
+        point: u32,
+        system: &System,
+        (operators, compliance): (&mut Operators, &Compliance),
+        rows: &Rows,
+    ) -> bool {
+        let (dofs, coefficients) = rows.row(point as usize);
+        let slot = &mut self.points[point as usize];
+        let same = |kept: &Point| kept.dofs == dofs && kept.coefficients == coefficients;
+        if slot.as_ref().is_some_and(same) {
+            return false;
+        }
+        self.half.fill(0.0);
+        compliance.add(point, 1.0, operators, &mut self.half);
+        operators.end(&mut self.half, &mut self.x);
+        let left = system.link_rows.iter();
+        let left = left.map(|row| velocity(system, &self.factors, row, &self.x));
+        let left: Vec<f64> = left.collect();
+        let mut held = left.clone();
+        self.condensed.solve(&mut held);
+        *slot = Some(Point {
+            dofs: dofs.to_vec(),
+            coefficients: coefficients.to_vec(),
+            left,
+            held,
+        });
+        true
+    }
+
+    /// Moves the multipliers by what the forces of points (N, times c) ask for, `change` (added to it), and adds the forces of that to the begun
+    /// solve.
+    pub(super) fn answer(
+        &mut self,
+        system: &System,
+        operators: &mut Operators,
+        forces: impl Iterator<Item = (u32, f64)>,
+        (half, change): (&mut [f64], &mut [f64]),
+    ) {
+        self.moved.clear();
+        self.moved.resize(change.len(), 0.0);
+        for (point, force) in forces.filter(|(_, force)| *force != 0.0) {
+            if let Some(point) = &self.points[point as usize] {
+                for (moved, held) in self.moved.iter_mut().zip(&point.held) {
+                    *moved -= force * held;
+                }
+            }
+        }
+        for (change, moved) in change.iter_mut().zip(&self.moved) {
+            *change += moved;
+        }
+        self.force.fill(0.0);
+        add_forces(system, &self.factors, &self.moved, &mut self.force);
+        operators.begin(&self.force, &mut self.half);
+        for (half, more) in half.iter_mut().zip(&self.half) {
+            *half += more;
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! Links in a step: multipliers of the rows between velocities, from the start of a run to the record of a step.
+
+use std::sync::Arc;
+
+use super::Driver;
+use super::linking::{add_forces, of_mass};
+use crate::error::Error;
+use crate::operator::Operators;
+use crate::step_map::StepMap;
+use crate::system::{LinkRow, System, on};
+
+/// Multipliers of the attempt under way.
+#[derive(Default)]
+pub(super) struct Multipliers {
+    /// L at the end of the step, N per unit of the rows.
+    now: Vec<f64>,
+    /// What the iteration changes in them: to hold the rows without contact, and with the contact forces.
+    pub(super) change: [Vec<f64>; 2],
+    /// The multipliers before an iteration.
+    before: Vec<f64>,
+    defect: Vec<f64>,
+}
+
+impl Multipliers {
+    pub(super) fn new(system: &System) -> Multipliers {
+        let zeros = || vec![0.0; system.link_rows.len()];
+        Multipliers {
+            now: zeros(),
+            change: [zeros(), zeros()],
+            before: zeros(),
+            defect: zeros(),
+        }
+    }
+}
+
+impl Driver {
+    /// Whether the system has links of its own.
+    pub(super) fn has_links(&self) -> bool {
+        !self.system.link_rows.is_empty()
+    }
+
+    /// Begins the attempt with the multipliers of the state.
+    pub(super) fn begin_links(&mut self) {
+        if self.has_links() {
+            self.multipliers
+                .now
+                .clone_from(&self.state.links.multipliers);
+            self.set_links();
+        }
+    }
+
+    /// Begins an iteration.
+    pub(super) fn begin_link_iteration(&mut self) {
+        self.multipliers.change[0].fill(0.0);
+        self.multipliers.before.clone_from(&self.multipliers.now);
+    }
+
+    /// Makes the multipliers those of the iteration, a part `share` of its way from those before.
+    pub(super) fn move_links(&mut self, share: f64) {
+        if !self.has_links() {
+            return;
+        }
+        let Multipliers {
+            now,
+            change: [free, pushed],
+            before,
+            ..
+        } = &mut self.multipliers;
+        for (i, now) in now.iter_mut().enumerate() {
+            *now = before[i] + share * (free[i] + pushed[i]);
+        }
+        self.set_links();
+    }
+
+    /// The force of the multipliers as they stand, Σ_z C_zᵀ (w₀ L_k + w₁ L_{k+1}).
+    fn set_links(&mut self) {
+        self.link_force.fill(0.0);
+        let system = &*self.system;
+        for zone in 0..system.schemes.len() {
+            let [old, new] = self.maps.link_weights(&system.schemes[zone]);
+            let (before, now) = (&self.state.links.multipliers, &self.multipliers.now);
+            for (i, row) in system.link_rows.iter().enumerate() {
+                let l = old * before[i] + new * now[i];
+                for &(dof, c) in row
+                    .iter()
+                    .filter(|(dof, _)| system.zone_at(*dof as usize) == zone)
+                {
+                    self.link_force[dof as usize] += c * l;
+                }
+            }
+        }
+    }
+
+    /// Holds the rows in the begun solve, without what contact forces change in it.
+    pub(super) fn hold_links(&mut self) {
+        if !self.has_links() {
+            return;
+        }
+        let (system, maps) = (Arc::clone(&self.system), &self.maps);
+        let (motion, vectors) = (&self.state.motion, &mut self.vectors);
+        let of_row = |row: &LinkRow| -> f64 {
+            let term = |&(dof, c): &(u32, f64)| {
+                let i = dof as usize;
+                let row = maps.link_row(maps.of(i));
+                let known = row.u * motion.u[i] + row.v * motion.v[i] + row.a * motion.a[i];
+                c * (known + row.x * (vectors.x[i] + vectors.jump[i]))
+            };
+            row.iter().map(term).sum()
+        };
+        let Multipliers {
+            change: [free, pushed],
+            defect,
+            ..
+        } = &mut self.multipliers;
+        for (defect, row) in defect.iter_mut().zip(&system.link_rows) {
+            *defect = of_row(row);
+        }
+        pushed.fill(0.0);
+        if let Some((operators, _, Some(linking))) = self.effective.all() {
+            let forces = (&mut vectors.work[..], &mut vectors.half[..]);
+            linking.hold(&system, operators, forces, (defect, free));
+        }
+    }
+
+    /// Makes velocities of the state the closest ones, in the norm of the mass, that satisfy the rows, and the multipliers
+    /// those that keep the accelerations in them.
+    ///
+    /// # Errors
+    /// Redundant rows, a mass that is not positive.
+    pub(super) fn start_links(&mut self) -> Result<(), Error> {
+        if !self.has_links() {
+            return Ok(());
+        }
+        let system = Arc::clone(&self.system);
+        let count = system.link_rows.len();
+        let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
+        let mut condensed = of_mass(&system, &mut mass)?;
+        let ones = vec![[1.0; 2]; system.parts.len()];
+        let n = system.unknowns();
+        let (mut half, mut x) = (vec![0.0; n], vec![0.0; n]);
+        let mut solve = |force: &[f64]| -> Vec<f64> {
+            mass.begin(force, &mut half);
+            mass.end(&mut half, &mut x);
+            x.clone()
+        };
+        let velocities = &mut self.state.motion.v;
+        let mut l: Vec<f64> = system
+            .link_rows
+            .iter()
+            .map(|row| on(row, velocities))
+            .collect();
+        condensed.solve(&mut l);
+        let mut force = vec![0.0; n];
+        add_forces(&system, &ones, &l, &mut force);
+        for (v, change) in velocities.iter_mut().zip(solve(&force)) {
+            *v -= change;
+        }
+        self.evaluate_loads(self.state.time);
+        let (load, inside) = (&self.vectors.load, &self.state.motion.internal_force);
+        let damping = &self.vectors.damping;
+        let free = |i: usize| match system.fixed[i] {
+            true => 0.0,
+            false => load[i] - inside[i] - damping[i],
+        };
+        let balance: Vec<f64> = (0..n).map(free).collect();
+        let accelerations = solve(&balance);
+        let mut l: Vec<f64> = system
+            .link_rows
+            .iter()
+            .map(|row| -on(row, &accelerations))
+            .collect();
+        condensed.solve(&mut l);
+        self.link_force.fill(0.0);
+        // held unknowns feel the links too
+        for (row, l) in system.link_rows.iter().zip(&l) {
+            for &(dof, c) in row {
+                self.link_force[dof as usize] += c * l;
+            }
+        }
+        self.state.motion.link_force.clone_from(&self.link_force);
+        let links = &mut self.state.links;
+        links.mixed = vec![l.clone(); system.schemes.len()];
+        links.works = vec![[0.0; 2]; system.links.len()];
+        links.multipliers = l;
+        debug_assert_eq!(links.multipliers.len(), count);
+        Ok(())
+    }
+
+    /// Multipliers and works of the links in the step that was taken.
+    pub(super) fn record_links(&mut self) {
+        if !self.has_links() {
+            return;
+        }
+        let system = Arc::clone(&self.system);
+        let (old, next) = (&self.state.links, &mut self.next.links);
+        next.clone_from(old);
+        next.multipliers.clone_from(&self.multipliers.now);
+        let [before, after] = [&self.state.motion.u, &self.next.motion.u];
+        for (zone, scheme) in system.schemes.iter().enumerate() {
+            let map: &StepMap = &self.maps.all()[zone];
+            let weights = self.maps.link_weights(scheme);
+            let own = |i: usize| system.zone_at(i) == zone;
+            for (link, (_, rows)) in system.links.iter().enumerate() {
+                for row in rows.clone() {
+                    let [l, mixed] = [old.multipliers[row], old.mixed[zone][row]];
+                    let now = weights[0] * l + weights[1] * next.multipliers[row];
+                    let mean = map.impulse.old * mixed + map.impulse.new * now;
+                    let terms = &system.link_rows[row];
+                    let (inner, outer) = terms.split_at(system.inner_terms[row]);
+                    for (work, terms) in next.works[link].iter_mut().zip([inner, outer]) {
+                        let terms = terms.iter().filter(|(dof, _)| own(*dof as usize));
+                        let way = |&(dof, c): &(u32, f64)| {
+                            let i = dof as usize;
+                            c * (after[i] - before[i])
+                        };
+                        *work += mean * terms.map(way).sum::<f64>();
+                    }
+                    next.mixed[zone][row] = now;
+                }
+            }
+        }
+    }
+
+    /// Multipliers of the rows of the links at the present instant, N per unit of the row.
+    pub fn multipliers(&self) -> &[f64] {
+        &self.state.links.multipliers
+    }
+
+    /// Name, number of rows, and works on the inner and the outer side since the start in J of each link.
+    pub fn links(&self) -> impl Iterator<Item = (&str, usize, [f64; 2])> {
+        let links = self.system.links.iter().zip(&self.state.links.works);
+        links.map(|((name, rows), work)| (name.as_str(), rows.len(), *work))
+    }
+
+    /// Bytes held for the condensed problem of the links.
+    pub fn condensed_bytes(&self) -> usize {
+        self.effective.condensed_bytes(self.system.link_rows.len())
+    }
+}

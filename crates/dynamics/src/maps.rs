@@ -1,0 +1,217 @@
+//! The step maps of the zones of a system: how everything in a step depends on its one unknown x, zone by zone.
+//!
+//! A row N of a contact or a link may have terms in several zones. Each term takes the coefficients of its own zone,
+//! `q = Σ_z N_z (row_z of u, v, a, x)`. Where zones differ, the unknown of each is what forces change in its rate
+//! ([`StepMap::by_rate`]), so that N x has one meaning.
+
+use std::ops::Range;
+
+use carom_algebra::reduce::dot;
+use carom_contact::Rows;
+
+use crate::ledger::Energies;
+use crate::scheme::Scheme;
+use crate::state::Motion;
+use crate::step_map::{Known, Row, StepMap};
+use crate::system::System;
+
+/// The map of each zone, and where its unknowns are.
+#[derive(Clone, Debug)]
+pub(crate) struct Maps {
+    maps: Vec<StepMap>,
+    /// Factor of |a|²_M in the energy that the scheme of each conserves, s².
+    factors: Vec<f64>,
+    /// Unknowns that follow each other and have one map, and its number; ascending.
+    spans: Vec<(Range<usize>, usize)>,
+}
+
+impl Maps {
+    /// The maps of steps of `dt` before steps of the size `next` (both s).
+    pub(crate) fn new(system: &System, dt: f64, next: f64) -> Maps {
+        let mut maps = Maps {
+            maps: system
+                .schemes
+                .iter()
+                .map(|s| s.get().step_map(dt))
+                .collect(),
+            factors: vec![0.0; system.schemes.len()],
+            spans: system.spans.clone(),
+        };
+        maps.resize(&system.schemes, (dt, next));
+        maps
+    }
+
+    /// Makes these the maps of another size of the step.
+    pub(crate) fn resize(&mut self, schemes: &[Scheme], (dt, next): (f64, f64)) {
+        let one = schemes.len() == 1;
+        for (factor, scheme) in self.factors.iter_mut().zip(schemes) {
+            let scheme = scheme.get();
+            let identity = scheme
+                .energy_identity(dt)
+                .filter(|_| scheme.keeps_acceleration());
+            *factor = identity.map_or(0.0, |identity| identity.inertia);
+        }
+        for (map, scheme) in self.maps.iter_mut().zip(schemes) {
+            let own = scheme.get().step_map_before(dt, next);
+            // systems of several zones have rates that depend on x
+            *map = if one {
+                own
+            } else {
+                own.by_rate().unwrap_or(own)
+            };
+        }
+    }
+
+    /// Makes these the maps of a static step.
+    pub(crate) fn rest(&mut self) {
+        self.maps.fill(StepMap::equilibrium());
+        self.factors.fill(0.0);
+    }
+
+    /// The map of the first zone; of all where no zones differ.
+    pub(crate) fn first(&self) -> &StepMap {
+        &self.maps[0]
+    }
+
+    /// The maps, by zone.
+    pub(crate) fn all(&self) -> &[StepMap] {
+        &self.maps
+    }
+
+    /// The map of the only zone.
+    pub(crate) fn only(&self) -> Option<&StepMap> {
+        match &self.maps[..] {
+            [map] => Some(map),
+            _ => None,
+        }
+    }
+
+    /// Whether the steps have no inertia.
+    pub(crate) fn is_static(&self) -> bool {
+        self.maps[0].inertia.x == 0.0
+    }
+
+    /// Factor of contact forces in the balance of momentum: 1 of several zones.
+    pub(crate) fn contact(&self) -> f64 {
+        self.maps[0].contact
+    }
+
+    /// The velocity that links join, that of the end; in a static step the way.
+    pub(crate) fn link_row(&self, map: &StepMap) -> Row {
+        match self.is_static() {
+            true => map.displacement.since(&Row::START),
+            false => map.velocity,
+        }
+    }
+
+    /// Weights of the multipliers of links at the start and the end of the step in the balance of a zone.
+    pub(crate) fn link_weights(&self, scheme: &Scheme) -> [f64; 2] {
+        match self.is_static() {
+            true => [0.0, 1.0],
+            false => scheme.get().link_weights().unwrap_or([0.0, 1.0]),
+        }
+    }
+
+    /// Whether no internal force depends on the unknown.
+    pub(crate) fn is_explicit(&self) -> bool {
+        self.maps.iter().all(|map| map.force.x == 0.0)
+    }
+
+    /// The map of an unknown.
+    pub(crate) fn of(&self, unknown: usize) -> &StepMap {
+        if let [map] = &self.maps[..] {
+            return map;
+        }
+        let span = self.spans.partition_point(|(span, _)| span.end <= unknown);
+        &self.maps[self.spans[span].1]
+    }
+
+    /// The unknowns in ranges of one map each.
+    pub(crate) fn spans(&self) -> impl Iterator<Item = (Range<usize>, &StepMap)> {
+        let spans = self.spans.iter();
+        spans.map(|(span, zone)| (span.clone(), &self.maps[*zone]))
+    }
+
+    /// Σ_z f_z |a|²_M over the zones, with the factor f of |a|²_M in the energy that the scheme of each conserves, in J.
+    pub(crate) fn square_of_acceleration(&self, system: &System, motion: &Motion) -> f64 {
+        let mut force = vec![0.0; motion.a.len()];
+        system.mass.multiply(&motion.a, &mut force);
+        let own = |(span, zone): &(Range<usize>, usize)| {
+            let factor = self.factors[*zone];
+            factor * dot(&motion.a[span.clone()], &force[span.clone()])
+        };
+        self.spans.iter().map(own).sum()
+    }
+
+    /// These energies of a motion, with the term of the schemes where zones differ.
+    pub(crate) fn energies(&self, system: &System, of: Energies, motion: &Motion) -> Energies {
+        match self.only() {
+            Some(_) => of,
+            None => Energies {
+                acceleration: self.square_of_acceleration(system, motion),
+                ..of
+            },
+        }
+    }
+
+    /// Writes a row of each map on its unknowns, x and c left out.
+    pub(crate) fn known(&self, row: impl Fn(&StepMap) -> Row, motion: &Motion, out: &mut [f64]) {
+        let start = Known::from(motion);
+        for (span, map) in self.spans() {
+            row(map).known(start.within(span.clone()), &mut out[span]);
+        }
+    }
+
+    /// Writes a row of each map on its unknowns.
+    pub(crate) fn whole(
+        &self,
+        row: impl Fn(&StepMap) -> Row,
+        motion: &Motion,
+        [x, c]: [&[f64]; 2],
+        out: &mut [f64],
+    ) {
+        let start = Known::from(motion);
+        for (span, map) in self.spans() {
+            let c = if c.is_empty() { c } else { &c[span.clone()] };
+            let start = start.within(span.clone());
+            row(map).whole(start, &x[span.clone()], c, &mut out[span]);
+        }
+    }
+
+    /// N applied to a row of the step, for one point.
+    pub(crate) fn on(
+        &self,
+        (rows, point): (&Rows, usize),
+        row: impl Fn(&StepMap) -> Row,
+        motion: &Motion,
+        [x, c]: [&[f64]; 2],
+    ) -> f64 {
+        if let Some(map) = self.only() {
+            return on_row(rows, point, &row(map), motion, [x, c]);
+        }
+        let (dofs, coefficients) = rows.row(point);
+        let term = |(&dof, n): (&u32, &f64)| {
+            let i = dof as usize;
+            let row = row(self.of(i));
+            let memory = motion.memory.get(i).unwrap_or(&0.0);
+            let push = c.get(i).unwrap_or(&0.0);
+            let known = row.u * motion.u[i] + row.v * motion.v[i] + row.a * motion.a[i];
+            n * (known + row.x * x[i] + row.m * memory + row.c * push)
+        };
+        dofs.iter().zip(coefficients).map(term).sum()
+    }
+}
+
+/// N applied to a row of a step of one map, for one point.
+fn on_row(rows: &Rows, point: usize, row: &Row, motion: &Motion, [x, c]: [&[f64]; 2]) -> f64 {
+    let term = |factor: f64, vector: &[f64]| match factor == 0.0 {
+        true => 0.0,
+        false => factor * rows.product(point, vector),
+    };
+    term(row.u, &motion.u)
+        + term(row.v, &motion.v)
+        + term(row.a, &motion.a)
+        + term(row.x, x)
+        + term(row.m, &motion.memory)
+        + term(row.c, c)
+}

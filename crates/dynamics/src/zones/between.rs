@@ -1,0 +1,480 @@
+//! Contacts between zones that step apart: forces that stand over the outer step, laws in the rate at its end.
+//!
+//! A force that is the same in all steps of the outer one gives both sides the same impulse, DT P, whatever their numbers of
+//! steps. Points are paired where the captured configuration of the outer step has them, and law and force obey
+//! `ġ(P) = Σ_z N_z v_z(t + DT)`, with v_z what the steps of zone z make of P. A pass finds the rates of the present forces and
+//! solves `ġ + D ΔP` with its signs, D that of the linearised zones without their own contacts.
+
+use std::sync::Arc;
+
+use carom_contact::law::{Level, Local, Status};
+use carom_contact::{Integration, Pairing, Search};
+use serde::{Deserialize, Serialize};
+
+use super::whole::Places;
+use super::{Zoned, Zones};
+use crate::driver::Driver;
+use crate::driver::linked::Growth;
+use crate::driver::record::contact_report;
+use crate::error::Error;
+use crate::interface::{Candidate, Interface};
+use crate::records::{Records, Step};
+use crate::state::{ContactReport, InterfaceState, empty_state};
+use crate::step_map::Impulse;
+use crate::system::{LinkRow, System, on};
+
+/// Change of the forces over the largest at which the passes end.
+const TOLERANCE: f64 = 1e-12;
+
+/// What contacts between zones go on from.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BetweenState {
+    /// Forces, statuses and gaps of the points of the whole model; of the points between zones.
+    pub interface: InterfaceState,
+    /// Records of the contacts of the whole model; of the contacts between zones.
+    pub records: Records,
+    /// Work of each contact of the model on both its sides, J.
+    pub works: Vec<f64>,
+}
+
+/// Contacts between zones.
+pub(super) struct Between {
+    /// All of the model.
+    system: Arc<System>,
+    /// Contacts whose sides are in different zones.
+    pub(super) contacts: Vec<usize>,
+    /// Zone of each unknown of the whole, and its number there.
+    homes: Vec<(usize, u32)>,
+    places: Vec<Places>,
+    search: Vec<Search>,
+    initial: Vec<Pairing>,
+    pub(super) pairing: Pairing,
+    /// Points that may carry a force in the step.
+    candidates: Vec<u32>,
+    /// Their forces in this pass, N.
+    forces: Vec<f64>,
+    /// Rows of the candidates by zone.
+    rows: Vec<Vec<(u32, LinkRow)>>,
+    /// D over the candidates, and the rows that it is of.
+    matrix: Vec<f64>,
+    of: Vec<(Vec<u32>, Vec<f64>)>,
+    version: u64,
+    rates: Vec<f64>,
+    interface: Interface,
+    data: Vec<Candidate>,
+    u: Vec<f64>,
+    v: Vec<f64>,
+    pub(super) state: BetweenState,
+    /// What the contacts of the model did in the last outer step.
+    pub(super) reports: Vec<ContactReport>,
+    /// Works of the step, by contact of the model, J.
+    now: Vec<f64>,
+}
+
+impl Between {
+    /// `None` where no contact is between zones.
+    ///
+    /// # Errors
+    /// A contact that zones of unequal steps cannot have.
+    pub(super) fn new(zoned: &Zoned, drivers: &[Driver]) -> Result<Option<Between>, Error> {
+        let contacts = zoned.contacts_across();
+        if contacts.is_empty() {
+            return Ok(None);
+        }
+        let system = System::whole(zoned.model.clone())?;
+        let mut taken = vec![false; system.unknowns()];
+        let of_zone = |(driver, zone): (&Driver, &super::ModelZone)| {
+            Places::new(driver.system(), (&zone.bodies, &[]), &system, &mut taken)
+        };
+        let places: Vec<Places> = drivers.iter().zip(&zoned.zones).map(of_zone).collect();
+        let mut homes = vec![(0, 0); system.unknowns()];
+        for (zone, places) in places.iter().enumerate() {
+            for &(own, whole) in &places.own {
+                homes[whole as usize] = (zone, own);
+            }
+        }
+        let count = system.contacts.len();
+        let n = system.unknowns();
+        Ok(Some(Between {
+            contacts,
+            homes,
+            places,
+            search: (0..count).map(|_| Search::default()).collect(),
+            initial: vec![Pairing::default(); count],
+            pairing: Pairing::default(),
+            candidates: Vec::new(),
+            forces: Vec::new(),
+            rows: vec![Vec::new(); drivers.len()],
+            matrix: Vec::new(),
+            of: Vec::new(),
+            version: 0,
+            rates: Vec::new(),
+            interface: Interface::default(),
+            data: Vec::new(),
+            u: vec![0.0; n],
+            v: vec![0.0; n],
+            reports: vec![ContactReport::default(); count],
+            state: BetweenState {
+                interface: empty_state(&system).interface,
+                records: Records::of(&system),
+                works: vec![0.0; count],
+            },
+            now: vec![0.0; count],
+            system,
+        }))
+    }
+
+    /// Displacements and velocities of the whole from those of the zones at the present instant.
+    fn gather(&mut self, drivers: &[Driver]) {
+        for (driver, places) in drivers.iter().zip(&self.places) {
+            let motion = &driver.state().motion;
+            for &(own, whole) in &places.own {
+                self.u[whole as usize] = motion.u[own as usize];
+                self.v[whole as usize] = motion.v[own as usize];
+            }
+        }
+    }
+
+    /// Pairs the points for an outer step of `dt` (s) from `time`, and lists those that may carry a force; 0 for the present
+    /// instant.
+    fn pair(&mut self, drivers: &[Driver], (time, dt): (f64, f64)) {
+        self.gather(drivers);
+        let system = Arc::clone(&self.system);
+        self.pairing.clear();
+        self.pairing.span = [0.0; 2];
+        let mut place = vec![0.0; self.u.len()];
+        for (k, contact) in system.contacts.iter().enumerate() {
+            let part = contact.law.get().capture() * dt;
+            for (i, place) in place.iter_mut().enumerate() {
+                *place = self.u[i] + part * self.v[i];
+            }
+            let frames = &system.initial_frames;
+            if contact.sliding == carom_contact::Sliding::Finite {
+                let places = system.places(time + part, &place, frames);
+                contact.pair_fully(&places, &mut self.search[k], &mut self.pairing);
+                continue;
+            }
+            let initial = &mut self.initial[k];
+            if initial.is_empty() {
+                let still = vec![0.0; place.len()];
+                let places = system.places(time, &still, frames);
+                contact.pair_fully(&places, &mut self.search[k], initial);
+            }
+            self.pairing.append_moved(initial, &place);
+        }
+    }
+
+    /// Pairs and lists the candidates of an outer step, with the forces of the last one.
+    pub(super) fn begin(&mut self, drivers: &[Driver], span: (f64, f64)) {
+        self.pair(drivers, span);
+        let (system, dt) = (Arc::clone(&self.system), span.1);
+        self.candidates.clear();
+        self.now.fill(0.0);
+        for &contact in &self.contacts {
+            let law = system.contacts[contact].law;
+            for point in system.first_point[contact]..system.first_point[contact + 1] {
+                let rows = &self.pairing.rows;
+                let (gap, rate) = (rows.gap(point), rows.product(point, &self.v));
+                if gap == f64::INFINITY {
+                    continue;
+                }
+                let way = (law.get().capture() * dt * rate).max(0.0);
+                let told = law.get().watches(gap - way, system.tolerance);
+                let near = gap + 2.0 * dt * rate.min(0.0) <= system.tolerance;
+                let pressed = self.state.interface.force[point] != 0.0;
+                if told.unwrap_or(near || pressed) {
+                    self.candidates.push(point as u32);
+                }
+            }
+        }
+        let force = |&point: &u32| self.state.interface.force[point as usize];
+        self.forces = self.candidates.iter().map(force).collect();
+        self.rows.iter_mut().for_each(Vec::clear);
+        for (k, &point) in self.candidates.iter().enumerate() {
+            let (dofs, coefficients) = self.pairing.rows.row(point as usize);
+            for (&dof, &n) in dofs.iter().zip(coefficients) {
+                let (zone, own) = self.homes[dof as usize];
+                match self.rows[zone].last_mut() {
+                    Some((row, terms)) if *row == k as u32 => terms.push((own, n)),
+                    _ => self.rows[zone].push((k as u32, vec![(own, n)])),
+                }
+            }
+        }
+    }
+
+    /// D of the candidates, where their rows have changed.
+    ///
+    /// # Errors
+    /// An effective matrix that is not positive definite.
+    pub(super) fn respond(
+        &mut self,
+        drivers: &mut [Driver],
+        substeps: &[u32],
+        origins: &[super::Origin],
+    ) -> Result<(), Error> {
+        let row = |&point: &u32| {
+            let (dofs, coefficients) = self.pairing.rows.row(point as usize);
+            (dofs.to_vec(), coefficients.to_vec())
+        };
+        let of: Vec<_> = self.candidates.iter().map(row).collect();
+        if of == self.of {
+            return Ok(());
+        }
+        let n = self.candidates.len();
+        self.matrix.clear();
+        self.matrix.resize(n * n, 0.0);
+        for (zone, driver) in drivers.iter_mut().enumerate() {
+            let rows = &self.rows[zone];
+            if rows.is_empty() {
+                continue;
+            }
+            let steps = (substeps[zone], Growth::Constant);
+            let own = driver.ramp((rows, steps), &origins[zone])?;
+            for (i, (row, _)) in rows.iter().enumerate() {
+                for (j, (column, _)) in rows.iter().enumerate() {
+                    let mean = 0.5 * (own[i * rows.len() + j] + own[j * rows.len() + i]);
+                    self.matrix[*row as usize * n + *column as usize] += mean;
+                }
+            }
+        }
+        self.of = of;
+        self.version += 1;
+        Ok(())
+    }
+
+    /// Begins a pass.
+    pub(super) fn begin_pass(&mut self) {
+        self.rates.clear();
+        self.rates.resize(self.candidates.len(), 0.0);
+        self.now.fill(0.0);
+    }
+
+    /// Adds the forces of this pass to those on a zone, N.
+    pub(super) fn push(&self, zone: usize, driver: &mut Driver) {
+        driver.add_link_rows(&self.rows[zone], &self.forces);
+    }
+
+    /// Adds the work of the forces in a step of a zone just completed.
+    pub(super) fn record(&mut self, zone: usize, driver: &Driver) {
+        for (row, terms) in &self.rows[zone] {
+            let force = self.forces[*row as usize];
+            if force != 0.0 {
+                let contact = self
+                    .system
+                    .contact_of(self.candidates[*row as usize] as usize);
+                self.now[contact] += driver.row_work(terms, force, force);
+            }
+        }
+    }
+
+    /// Adds the rates that a zone ends the outer step with.
+    pub(super) fn look(&mut self, zone: usize, v: &[f64]) {
+        for (row, terms) in &self.rows[zone] {
+            self.rates[*row as usize] += on(terms, v);
+        }
+    }
+
+    /// Whether the forces obey the laws at the rates found; corrects them if not. `dt`: the outer step, s.
+    ///
+    /// # Errors
+    /// A contact problem without solution.
+    pub(super) fn corrected(&mut self, (step, dt): (u64, f64)) -> Result<bool, Error> {
+        let n = self.candidates.len();
+        if n == 0 {
+            return Ok(true);
+        }
+        let system = Arc::clone(&self.system);
+        self.data.clear();
+        for (i, &point) in self.candidates.iter().enumerate() {
+            let point = point as usize;
+            let (contact, place) = system.point(point);
+            let carrier = &contact.points[place];
+            let of_forces = (0..n).map(|j| self.matrix[i * n + j] * self.forces[j]);
+            let rows = &self.pairing.rows;
+            let gap = rows.gap(point);
+            self.data.push(Candidate {
+                law: contact.law,
+                local: Local {
+                    area: carrier.area,
+                    share: carrier.share,
+                    gap,
+                    rate: rows.product(point, &self.v),
+                    start: 0.0,
+                    gap_free: gap,
+                    dt,
+                    tolerance: system.tolerance,
+                    crush: 0.0,
+                },
+                rate_free: self.rates[i] - of_forces.sum::<f64>(),
+                status: match self.forces[i] != 0.0 {
+                    true => Status::Closed,
+                    false => self.state.interface.status[point],
+                },
+                faces_itself: false,
+                instant: [1.0; 2],
+            });
+        }
+        let solved = self
+            .interface
+            .solve(&self.data, (&self.matrix, self.version), [0.0, 1.0]);
+        if let Err(failure) = solved {
+            let contact = system.point(self.candidates[0] as usize).0.name.clone();
+            return Err(Error::Between {
+                step: step + 1,
+                contact,
+                cause: failure,
+            });
+        }
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        let changes = self.forces.iter().zip(&self.interface.forces);
+        let change = changes.fold(0.0_f64, |m, (old, new)| m.max((old - new).abs()));
+        let held = change <= TOLERANCE * largest(&self.interface.forces);
+        if !held {
+            self.forces.clone_from(&self.interface.forces);
+        }
+        Ok(held)
+    }
+
+    /// Makes the forces those of the state at the end of an outer step of `dt` (both s).
+    pub(super) fn accept(&mut self, drivers: &[Driver], (end, dt): (f64, f64)) {
+        let (before, v) = (self.state.interface.clone(), self.v.clone());
+        let interface = &mut self.state.interface;
+        for &contact in &self.contacts {
+            let points = self.system.first_point[contact]..self.system.first_point[contact + 1];
+            interface.force[points.clone()].fill(0.0);
+            interface.status[points.clone()].fill(Status::Open);
+            interface.watched[points].fill(false);
+        }
+        for (k, &point) in self.candidates.iter().enumerate() {
+            let point = point as usize;
+            interface.force[point] = self.forces[k];
+            interface.status[point] = self.interface.statuses[k];
+            interface.watched[point] = true;
+        }
+        interface.carried.clone_from(&interface.force);
+        interface.count_flights(&before.flight, dt);
+        for (sum, now) in self.state.works.iter_mut().zip(&self.now) {
+            *sum += now;
+        }
+        self.tell(drivers, end);
+        self.add_records(&before, &v, [end, dt]);
+    }
+
+    /// Records of a step of `dt` to `end` (both s), from the interface and the velocities at its start.
+    fn add_records(&mut self, before: &InterfaceState, v: &[f64], [end, dt]: [f64; 2]) {
+        let system = Arc::clone(&self.system);
+        for &contact in &self.contacts {
+            let now = &self.state.interface;
+            let rows = &self.pairing.rows;
+            let report = contact_report(&system, contact, rows, before, now, dt);
+            let step = Step {
+                span: [end - dt, end],
+                dt,
+                impulse: Impulse::weights(0.0, 1.0),
+                forces: [&before.force, &now.force],
+                report: &report,
+                work: self.now[contact],
+                crushed: 0.0,
+                jump: Default::default(),
+            };
+            let velocities = [v, &self.v[..]];
+            self.state.records.add(&system, contact, &step, velocities);
+            self.reports[contact] = report;
+        }
+    }
+
+    /// Gaps and rates at the present instant, s.
+    pub(super) fn tell(&mut self, drivers: &[Driver], time: f64) {
+        self.pair(drivers, (time, 0.0));
+        let rows = &self.pairing.rows;
+        let interface = &mut self.state.interface;
+        for &contact in &self.contacts {
+            for point in self.system.first_point[contact]..self.system.first_point[contact + 1] {
+                interface.gap[point] = rows.gap(point);
+                interface.rate[point] = rows.product(point, &self.v);
+            }
+        }
+    }
+
+    /// Forgets the forces and works so far.
+    pub(super) fn restart(&mut self, drivers: &[Driver]) {
+        self.state.interface = empty_state(&self.system).interface;
+        self.state.works.fill(0.0);
+        self.state.records = Records::of(&self.system);
+        self.tell(drivers, 0.0);
+        for &contact in &self.contacts {
+            let (rows, now) = (&self.pairing.rows, &self.state.interface);
+            self.reports[contact] = contact_report(&self.system, contact, rows, now, now, 0.0);
+        }
+    }
+
+    /// Whether a point carries a force or may do so within `dt` (s), at twice its present rate.
+    pub(super) fn may_touch(&self, dt: f64) -> bool {
+        let (interface, tolerance) = (&self.state.interface, self.system.tolerance);
+        let touches = |point: usize| {
+            let near = interface.gap[point] + 2.0 * dt * interface.rate[point].min(0.0);
+            interface.force[point] != 0.0 || near <= tolerance
+        };
+        let mut points = self.contacts.iter().flat_map(|&contact| {
+            self.system.first_point[contact]..self.system.first_point[contact + 1]
+        });
+        points.any(touches)
+    }
+}
+
+/// Why zones of unequal steps do not take a contact.
+fn refused(zoned: &Zoned, contact: usize) -> Option<&'static str> {
+    let of_model = &zoned.model.contacts[contact];
+    if of_model.law.get().level() != Level::Rate {
+        return Some("take a law in the rate, or equal steps");
+    }
+    if of_model.friction > 0.0 {
+        return Some("friction needs equal steps");
+    }
+    if let Integration::Weak { .. } = of_model.integration {
+        return Some("the weak form needs equal steps; take node or mortar");
+    }
+    let plain = |zone: usize| {
+        let map = zoned.zones[zone].scheme.get().step_map(zoned.model.dt);
+        map.contact_impulse == Impulse::weights(0.0, 1.0) && map.impulse == map.contact_impulse
+    };
+    match zoned.zones_of(contact).into_iter().all(plain) {
+        true => None,
+        false => Some(
+            "with unequal steps both zones need a scheme whose contact force is a mean over the step: theta or energy-momentum",
+        ),
+    }
+}
+
+impl Zoned {
+    /// Refuses contacts that zones of unequal steps cannot have between them.
+    pub(super) fn check_across(&self) -> Result<(), Error> {
+        for contact in self.contacts_across() {
+            if let Some(cause) = refused(self, contact) {
+                let [one, other] = self.zones_of(contact);
+                return Err(Error::AcrossZones {
+                    contact: self.model.contacts[contact].name.clone(),
+                    one: self.zones[one].name.clone(),
+                    other: self.zones[other].name.clone(),
+                    cause,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Zones {
+    /// Contacts between zones, and what they go on from; none where all contacts are inside zones.
+    pub fn between(&self) -> Option<(&[usize], &BetweenState)> {
+        let between = self.between.as_ref()?;
+        Some((&between.contacts, &between.state))
+    }
+
+    /// What a contact between zones did in the last outer step.
+    pub fn report_between(&self, contact: usize) -> Option<&ContactReport> {
+        let between = self.between.as_ref()?;
+        let known = between.contacts.contains(&contact);
+        known.then(|| &between.reports[contact])
+    }
+}

@@ -1,0 +1,109 @@
+//! Two equal bars, each a zone of its own, in contact with each other.
+//!
+//! Problem: set "slow" as in `bars-theta`. With one scheme in both zones the run is that of the single model: the project's table of
+//! bars in impact, from an independent implementation, n = 200 in each bar, to a unit of the last digit printed. With two
+//! schemes, and with four steps of one zone to one of the other, both sides get the same impulse in each step, so that the momentum
+//! stays to round-off; a wave front crosses from one bar to the other with the force Z v0 / 2 of the exact solution (mean over
+//! the middle of the contact: 1 %, since the oscillations behind the front have a mean that falls as 1/n).
+
+use carom_dynamics::scheme::{CentralDifference, Newmark};
+use carom_dynamics::{Driver, LinkKind, ModelZone, Scheme, State, Stepper, System, Whole, Zoned};
+
+use crate::Error;
+use crate::bars::Run;
+use crate::build::{HALF, NOW, theta};
+use crate::check::{Check, Row};
+use crate::figures::{Figures, History, run_stepper};
+
+pub(crate) const CHECK: Check = Check {
+    name: "zones-in-contact",
+    fact: "a contact between two zones is that of one model, and keeps the momentum between schemes and steps",
+    run: |_| {
+        let half = Run {
+            law: HALF,
+            ..Run::slow(200)
+        };
+        let printed = ["0.0470", "0.118", "-0.001398", "1", "0.9904", "0.500", ""];
+        let (_, figures, _) = in_zones(&half, [half.scheme; 2], 1)?;
+        let name = "theta 0.5 in both zones";
+        let mut rows = figures.against(name, printed);
+        rows.extend(figures.balances(name));
+        let newmark = Scheme::Newmark(Newmark::default());
+        let explicit = Scheme::CentralDifference(CentralDifference {});
+        let pairs = [
+            ("theta 0.5 and 1", [theta(0.5), theta(1.0)], 1),
+            ("newmark and central difference", [newmark, explicit], 1),
+            ("theta 0.5, four steps to one", [theta(0.5); 2], 4),
+            (
+                "theta 0.5 and 1, four steps to one",
+                [theta(0.5), theta(1.0)],
+                4,
+            ),
+        ];
+        for (name, schemes, substeps) in pairs {
+            let case = Run {
+                law: if substeps == 1 { NOW } else { HALF },
+                ..Run::slow(200)
+            };
+            let (history, figures, state) = in_zones(&case, schemes, substeps)?;
+            rows.extend(figures.balances(name));
+            let duration = case.set.duration();
+            let middle = |time: &f64| (0.1..0.9).contains(&(time / duration));
+            let inside = history.time.iter().zip(&history.force);
+            let inside: Vec<f64> = inside.filter(|(t, _)| middle(t)).map(|(_, f)| *f).collect();
+            let mean = inside.iter().sum::<f64>() / inside.len() as f64;
+            rows.push(Row::near(
+                format!("{name}: mean force / F0"),
+                mean / case.force(),
+                1.0,
+                0.01,
+            ));
+            let [before, after] = [&state.ledger.initial, &state.ledger.balance];
+            let [before, after] = [before, after].map(|balance| balance.momentum.linear[0]);
+            let change = (after / before - 1.0).abs();
+            rows.push(Row::at_most(
+                format!("{name}: change of the momentum"),
+                change,
+                1e-12,
+            ));
+            rows.push(Row::shown(
+                format!("{name}: energy change"),
+                figures.energy_change,
+            ));
+            rows.push(Row::shown(
+                format!("{name}: restitution"),
+                figures.restitution,
+            ));
+        }
+        Ok(rows)
+    },
+};
+
+/// The run with a zone for each bar, of which the second takes `substeps` steps to one of the first.
+fn in_zones(
+    case: &Run,
+    schemes: [Scheme; 2],
+    substeps: u32,
+) -> Result<(History, Figures, State), Error> {
+    let model = case.model()?;
+    let zone = |(body, scheme): (usize, Scheme)| ModelZone {
+        name: model.bodies[body].spec.name.clone(),
+        bodies: vec![body],
+        scheme,
+        substeps: if body == 1 { substeps } else { 1 },
+        far: None,
+    };
+    let zoned = Zoned {
+        zones: schemes.into_iter().enumerate().map(zone).collect(),
+        links: Vec::new(),
+        kind: LinkKind::PrakashHjelmstad,
+        model: model.clone(),
+    };
+    let mut stepper: Box<dyn Stepper> = match (zoned.together()?, substeps) {
+        (Some(system), 1) => Box::new(Driver::new(system)?),
+        (None, 1) => return Err(Error::Apart),
+        _ => Box::new(Whole::new(&zoned, System::whole(model)?)?),
+    };
+    let (history, figures) = run_stepper(case, &mut *stepper)?;
+    Ok((history, figures, stepper.state().clone()))
+}
