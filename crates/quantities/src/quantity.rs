@@ -261,6 +261,14 @@ quantity!(
     "A rate, zero or more, 1/s."
 );
 quantity!(
+    Frequency,
+    "frequency",
+    "Hz",
+    "5 Hz",
+    POSITIVE,
+    "A frequency greater than zero, Hz."
+);
+quantity!(
     MomentOfInertia,
     "moment of inertia",
     "kg*m^2",
@@ -316,4 +324,4 @@ macro_rules! into_si {
     };
 }
 
-into_si!(MomentOfInertia Angle SignedForce SignedMoment Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);
+into_si!(Frequency MomentOfInertia Angle SignedForce SignedMoment Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);

@@ -35,6 +35,59 @@ pub enum Error {
         /// Least number.
         least: usize,
     },
+    /// A point that makes no spectrum.
+    #[error(
+        "point {} of the spectrum: frequencies must ascend, frequencies and accelerations be greater than zero", at + 1
+    )]
+    NotASpectrum {
+        /// Index of the point.
+        at: usize,
+    },
+    /// A synthetic record shorter than the longest period of its spectrum.
+    #[error(
+        "a record of {duration} s cannot meet a spectrum at {frequency} Hz: it needs a period at least"
+    )]
+    TooBrief {
+        /// Duration, s.
+        duration: f64,
+        /// Lowest frequency of the spectrum, Hz.
+        frequency: f64,
+    },
+    /// A synthetic record with too long a step.
+    #[error(
+        "a record with a step of {step} s has nothing at {frequency} Hz: it needs four points in a period at least"
+    )]
+    TooCoarse {
+        /// Step, s.
+        step: f64,
+        /// Highest frequency of the spectrum, Hz.
+        frequency: f64,
+    },
+    /// An envelope longer than its record.
+    #[error("the rise and the strong part of the envelope last {least} s, the record {duration} s")]
+    Envelope {
+        /// Duration of both, s.
+        least: f64,
+        /// Duration of the record, s.
+        duration: f64,
+    },
+    /// A spectrum that no iterate met.
+    #[error(
+        "the spectrum cannot be met: at {frequency} Hz the best record has {:.1} % {} than {target} m/s², and {:.1} % are allowed",
+        100.0 * misfit.abs(),
+        if *misfit > 0.0 { "more" } else { "less" },
+        100.0 * tolerance
+    )]
+    NotMet {
+        /// Frequency of the worst point, Hz.
+        frequency: f64,
+        /// Its acceleration, m/s².
+        target: f64,
+        /// Found over target less one.
+        misfit: f64,
+        /// Largest misfit allowed.
+        tolerance: f64,
+    },
     /// A file without a row of numbers.
     #[error("the file has no row of numbers")]
     NoRows,

@@ -7,8 +7,10 @@ mod baseline;
 mod csv;
 mod error;
 mod oscillator;
+mod random;
 mod record;
 mod spectrum;
+mod synthetic;
 
 pub use amplitude::Amplitude;
 pub use baseline::corrected;
@@ -17,3 +19,4 @@ pub use error::Error;
 pub use oscillator::{Oscillator, Response};
 pub use record::{Record, Steps};
 pub use spectrum::{ResponseSpectrum, response_spectrum};
+pub use synthetic::Synthetic;

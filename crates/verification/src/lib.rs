@@ -99,6 +99,7 @@ mod sliding_work;
 mod spinning_bar;
 mod stick_slip;
 mod supports;
+mod synthetic_record;
 mod taylor_bar;
 mod threads;
 mod threads_features;
@@ -209,6 +210,7 @@ registry! {
     spinning_bar
     stick_slip
     supports
+    synthetic_record
     taylor_bar
     threads
     threads_features

@@ -5,14 +5,14 @@ use std::path::Path;
 use carom_dynamics::Amplitude;
 use carom_mesh::read::file;
 use carom_quantities::units::{Dimension, parse_quantity};
-use carom_signals::{Error, Record, Table, corrected};
+use carom_signals::{Error, Record, Synthetic, Table, corrected};
 
 use super::Builder;
 use super::course::{Course, Signals};
 use crate::error::Problem;
 use crate::input::Input;
 use crate::schema::{
-    AccelerationSource, Baseline, Columns, DisplacementSource, FactorSource, Signal,
+    self, AccelerationSource, Baseline, Columns, DisplacementSource, FactorSource, Signal,
 };
 
 /// Most bytes of a file of a signal, 256 MiB.
@@ -65,6 +65,11 @@ impl Builder<'_> {
                         let path = format!("{path}.acceleration.csv");
                         self.columns(&input.folder, &path, (columns, "acceleration"))?
                     }
+                    AccelerationSource::Synthetic(given) => {
+                        let path = format!("{path}.acceleration.synthetic");
+                        let record = self.synthetic(&path, given)?;
+                        listed(record.points().to_vec(), &path)
+                    }
                 };
                 moved(&mut points);
                 let record = Record::new(points.points.clone());
@@ -102,6 +107,45 @@ impl Builder<'_> {
                 self.straight(&points).map(Course::Factor)
             }
         }
+    }
+
+    /// A record fitted to a spectrum.
+    fn synthetic(&mut self, path: &str, given: &schema::Synthetic) -> Option<Record> {
+        let spectrum = given.spectrum.iter();
+        let spectrum: Vec<_> = spectrum
+            .map(|point| [point.frequency.0, point.acceleration.0])
+            .collect();
+        let highest = spectrum.iter().fold(0.0, |m: f64, point| m.max(point[0]));
+        let wanted = Synthetic {
+            damping: given.damping,
+            duration: given.duration.0,
+            rise: given.rise.0,
+            strong: given.strong.0,
+            step: given.step.map_or(0.1 / highest, |step| step.0),
+            seed: u64::from(given.seed),
+            tolerance: given.tolerance,
+            spectrum,
+        };
+        let refused = |error: Error| {
+            let path = match &error {
+                Error::NotASpectrum { at } => format!("{path}.spectrum[{at}]"),
+                Error::TooBrief { .. } => format!("{path}.duration"),
+                Error::TooCoarse { .. } => format!("{path}.step"),
+                Error::Envelope { .. } => format!("{path}.strong"),
+                _ => format!("{path}.spectrum"),
+            };
+            let problem = Problem::new(path, error.to_string());
+            self.problems.push(match error {
+                Error::NotMet { .. } => problem.accepted([
+                    "a spectrum that oscillators of this damping can have",
+                    "another `seed`",
+                    "a longer `duration` or `strong` part",
+                    "a larger `tolerance`",
+                ]),
+                _ => problem,
+            });
+        };
+        wanted.record().map_err(refused).ok()
     }
 
     fn straight(&mut self, points: &Points) -> Option<Amplitude> {

@@ -29,8 +29,8 @@ pub use body::{
 pub use carom_laws::GivenLaw;
 pub use carom_quantities::{
     Acceleration, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density, Duration,
-    Force, Length, Modulus, Rate, SignedForce, SignedMoment, SignedStress, Stiffness, Stress,
-    SurfaceDamping, SurfaceStiffness, Vector, Velocity, Weight,
+    Force, Frequency, Length, Modulus, Rate, SignedForce, SignedMoment, SignedStress, Stiffness,
+    Stress, SurfaceDamping, SurfaceStiffness, Vector, Velocity, Weight,
 };
 pub use carom_schemes::Scheme;
 pub use contact::{
@@ -49,7 +49,7 @@ pub use obstacle::{
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};
 pub use signal::{
     AccelerationPoint, AccelerationSource, Baseline, Columns, DisplacementSource, FactorSource,
-    Signal,
+    Signal, SpectrumPoint, Synthetic,
 };
 pub use time::{
     Adaptive, Closing, LargestStep, MeshStep, Newton, StaticStage, Step, StepRule, Time,

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use carom_quantities::{Acceleration, Delay};
+use carom_quantities::{Acceleration, Delay, Duration, Frequency};
 
 use super::body::MovementPoint;
 use super::load::AmplitudePoint;
@@ -44,6 +44,8 @@ pub enum AccelerationSource {
     Points(Vec<AccelerationPoint>),
     /// Columns of a text file.
     Csv(Columns),
+    /// A random record fitted to a response spectrum, on its baseline.
+    Synthetic(Synthetic),
 }
 
 /// Where a displacement comes from.
@@ -105,4 +107,50 @@ pub enum Baseline {
     AsGiven,
     /// Corrected by a smooth acceleration such that the ground ends at rest where it began.
     Corrected,
+}
+
+/// A random record fitted to a response spectrum. Its envelope rises, stays, and decays; velocity and displacement end at zero.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Synthetic {
+    /// Points of the response spectrum with ascending frequencies; between them it is straight in both logarithms.
+    #[schemars(extend("minItems" = 1))]
+    pub spectrum: Vec<SpectrumPoint>,
+    /// Damping ratio of the spectrum.
+    #[serde(default = "five_per_cent")]
+    #[schemars(range(min = 0.001, max = 0.5))]
+    pub damping: f64,
+    /// Duration of the record; at least the longest period of the spectrum.
+    pub duration: Duration,
+    /// Time in which the envelope rises, as the square of the time.
+    pub rise: Duration,
+    /// Time for which the envelope is one; after it the envelope decays to 5 % at the end.
+    pub strong: Duration,
+    /// Step of the record, at most a quarter of the shortest period. Default: a tenth of the shortest period.
+    pub step: Option<Duration>,
+    /// Seed of the random phases: another seed gives another record.
+    #[serde(default = "one")]
+    pub seed: u32,
+    /// Largest relative misfit at the points of the spectrum.
+    #[serde(default = "five_per_cent")]
+    #[schemars(range(min = 0.005, max = 0.5))]
+    pub tolerance: f64,
+}
+
+fn five_per_cent() -> f64 {
+    0.05
+}
+
+fn one() -> u32 {
+    1
+}
+
+/// A point of a response spectrum.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct SpectrumPoint {
+    /// Frequency of the oscillator.
+    pub frequency: Frequency,
+    /// Its largest absolute acceleration.
+    pub acceleration: Acceleration,
 }
