@@ -264,12 +264,9 @@ impl Builder<'_> {
                 .collect();
             zones.sort_unstable();
             zones.dedup();
-            match zones[..] {
-                // of several the one that comes first
-                [zone, ..] => {
-                    schemes.insert(&contact.name, self.plan.zones[zone].scheme);
-                }
-                [] => {}
+            // of several the one that comes first
+            if let Some(&zone) = zones.first() {
+                schemes.insert(&contact.name, self.plan.zones[zone].scheme);
             }
         }
         let default = self.case.time.scheme();

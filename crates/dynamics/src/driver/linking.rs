@@ -11,7 +11,7 @@
 use carom_algebra::dense::DenseCholesky;
 use carom_contact::Rows;
 
-use super::effective::part_matrix;
+use super::part_matrix::part_matrix;
 use crate::compliance::Compliance;
 use crate::condensed::{Answer, Condensed, DENSE, Joined, Matrix};
 use crate::error::Error;

@@ -32,6 +32,7 @@ mod loads;
 mod matrices;
 mod mixing;
 mod obstacles;
+mod part_matrix;
 mod predictor;
 mod projection;
 pub(crate) mod record;

@@ -1,0 +1,51 @@
+//! The matrix of a linear part.
+
+use std::ops::Range;
+
+use carom_algebra::csr::Csr;
+
+use super::loads::damping_rate;
+use crate::operator::assembled;
+use crate::step_map::StepMap;
+use crate::system::System;
+
+/// The matrix of a linear part; `None` of one that is the lumped mass alone.
+pub(super) fn part_matrix(
+    system: &System,
+    part: &Range<usize>,
+    map: &StepMap,
+    between: bool,
+) -> Option<Csr> {
+    let rate = damping_rate(map).x;
+    let damping = |body: usize| {
+        system
+            .nonlinear
+            .damping
+            .get(body)
+            .copied()
+            .unwrap_or_default()
+    };
+    let stiffness = if between {
+        0.5 * map.force.x
+    } else {
+        map.force.x
+    };
+    if map.force.x == 0.0 && system.mass.consistent.is_none() {
+        return None;
+    }
+    let of_body = |body: usize| stiffness + rate * damping(body).stiffness;
+    let mut a = assembled(system, part, [map.inertia.x, rate], &of_body);
+    for (k, masses) in system.body_masses.iter().enumerate() {
+        let factor = rate * damping(k).mass;
+        if factor == 0.0 || system.parts[system.part_of_body[k]] != *part {
+            continue;
+        }
+        for &(node, m) in masses {
+            for unknown in system.unknowns.translations_of(node) {
+                let i = unknown - part.start;
+                a.add(i, i, factor * m);
+            }
+        }
+    }
+    Some(a)
+}
