@@ -105,6 +105,7 @@ mod threads;
 mod threads_features;
 mod tori;
 mod viability;
+mod zones_glued_at_contact;
 mod zones_in_contact;
 
 use std::io::{self, Write};
@@ -216,6 +217,7 @@ registry! {
     threads_features
     tori
     viability
+    zones_glued_at_contact
     zones_in_contact
 }
 
