@@ -9,10 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
-use crate::state::Motion;
 use crate::step_map::{Impulse, StepMap};
 use crate::sum::Sum;
-use crate::system::System;
+use crate::system::{Maps, Motion, System};
 
 /// What the ledger shows at an instant; works and dissipations since the start, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -226,6 +225,17 @@ pub(crate) struct Squares {
 }
 
 impl Energies {
+    /// These energies of a motion, with the term of the schemes where zones differ.
+    pub(crate) fn of_zones(self, maps: &Maps, system: &System, motion: &Motion) -> Energies {
+        match maps.only() {
+            Some(_) => self,
+            None => Energies {
+                acceleration: maps.square_of_acceleration(system, motion),
+                ..self
+            },
+        }
+    }
+
     /// The term of the energy that the scheme balances beside kinetic and strain energy, J.
     pub(crate) fn of_scheme(&self, identity: &EnergyIdentity) -> f64 {
         identity.inertia * self.acceleration + identity.memory * self.memory + self.lagged

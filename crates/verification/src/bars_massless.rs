@@ -8,7 +8,8 @@
 //! contact changes by P Δg / 2 in steps where a point closes or opens, and the force error are regressions, to 1 %.
 
 use carom_contact::Sliding;
-use carom_dynamics::{Driver, Error as Refusal, Scheme, System};
+use carom_dynamics::{Driver, Scheme, System};
+use carom_system::Error as Refusal;
 
 use crate::Error;
 use crate::bars::{Elements, Run};
@@ -101,7 +102,7 @@ pub(crate) const CHECK: Check = Check {
             };
             match run(&case) {
                 Ok((_, figures)) => rows.extend(figures.balances(&format!("{scheme:?}"))),
-                Err(Error::Dynamics(
+                Err(Error::System(
                     Refusal::MasslessContact { .. }
                     | Refusal::DisplacementLaw { .. }
                     | Refusal::GapLaw { .. },

@@ -106,10 +106,10 @@ impl Battery {
         match System::new(model) {
             Ok(system) => Ok(Some(system)),
             Err(
-                carom_dynamics::Error::DisplacementLaw { .. }
-                | carom_dynamics::Error::GapLaw { .. }
-                | carom_dynamics::Error::RateLaw { .. }
-                | carom_dynamics::Error::Projection { .. },
+                carom_system::Error::DisplacementLaw { .. }
+                | carom_system::Error::GapLaw { .. }
+                | carom_system::Error::RateLaw { .. }
+                | carom_system::Error::Projection { .. },
             ) if senseless => {
                 self.refused += 1;
                 Ok(None)

@@ -18,6 +18,9 @@ pub enum Error {
     /// A system was refused or a step failed.
     #[error(transparent)]
     Dynamics(#[from] carom_dynamics::Error),
+    /// A system could not be built.
+    #[error(transparent)]
+    System(#[from] carom_system::Error),
     /// The exact solution was refused.
     #[error(transparent)]
     Exact(#[from] carom_exact::Error),

@@ -351,15 +351,24 @@ pub(crate) fn label(scheme: Scheme) -> String {
 /// Why a combination is refused; `None` of an error that is no refusal.
 pub(crate) fn reason(error: &Error) -> Option<String> {
     match error {
-        Error::Dynamics(error) => reason_of(error),
+        Error::Dynamics(error) => reason_of_run(error),
+        Error::System(error) => reason_of(error),
         _ => None,
     }
 }
 
-fn reason_of(error: &carom_dynamics::Error) -> Option<String> {
+fn reason_of_run(error: &carom_dynamics::Error) -> Option<String> {
     use carom_dynamics::Error as E;
+    match error {
+        E::Zone { cause, .. } => reason_of_run(cause),
+        E::System(error) => reason_of(error),
+        _ => None,
+    }
+}
+
+fn reason_of(error: &carom_system::Error) -> Option<String> {
+    use carom_system::Error as E;
     let words = match error {
-        E::Zone { cause, .. } => return reason_of(cause),
         E::DisplacementLaw { .. } => {
             "the displacement at the end of an explicit step does not depend on the contact force: the displacement law is impossible"
         }

@@ -169,7 +169,7 @@ impl Builder<'_> {
             let nonlinear = vec![model.is_nonlinear(); model.contacts.len()];
             self.default_sliding(&mut model.contacts, &nonlinear);
             model.dt = self.step(&model.mesh, &model.bodies, || {
-                System::new(model.clone()).map(|system| vec![system])
+                Ok(vec![System::new(model.clone())?])
             })?;
             model.adaptive = self.adaptive(model.dt);
         } else {
@@ -192,7 +192,9 @@ impl Builder<'_> {
             return None;
         }
         let system = match &zoned {
-            None => System::new(model).map(|system| (system, false)),
+            None => System::new(model)
+                .map(|system| (system, false))
+                .map_err(carom_dynamics::Error::from),
             Some(zoned) => of_zones(zoned, model),
         };
         let (system, apart) = match system {

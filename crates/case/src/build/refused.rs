@@ -1,56 +1,20 @@
 //! Errors of the library as problems of the case, each at its key.
 
 use carom_dynamics::{Error, Refused};
+use carom_system::Error as Refusal;
 
 use super::Builder;
 use crate::error::Problem;
 use crate::schema;
 
 impl Builder<'_> {
-    /// The problem behind an error of the system.
+    /// The problem behind an error of the system or of its first step.
     pub(super) fn refused(&self, error: &Error) -> Problem {
         match error {
-            Error::Body(cause) => {
-                let path = format!("body.{}.{}", cause.body(), key(cause));
-                Problem::new(path, cause.to_string())
-            }
-            Error::Unstable { dt, critical } => {
-                let problem = Problem::new(
-                    "time.step",
-                    "the step is above the critical step of the explicit scheme",
-                );
-                let [found, most] = apart(*dt, *critical);
-                problem.found(format!("{found} s")).accepted([
-                    format!("at most {most} s"),
-                    "step = { critical = 0.9 }".to_string(),
-                ])
-            }
-            Error::Projection { contact } => Problem::new(
-                format!("contact.{contact}.law.displacement.projection"),
-                error.to_string(),
-            ),
-            Error::MasslessContact { contact, .. } => {
-                Problem::new(format!("contact.{contact}.nodes"), error.to_string())
-            }
-            Error::Integration { contact, .. } | Error::WeakForm { contact, .. } => {
+            Error::System(error) => self.refused_system(error),
+            Error::Body(cause) => refused_body(cause),
+            Error::WeakForm { contact, .. } => {
                 Problem::new(format!("contact.{contact}.integration"), error.to_string())
-            }
-            Error::Massless { body, .. } => {
-                let path = match self.case.body.get(body) {
-                    Some(_) => format!("body.{body}.mass"),
-                    None => format!("mass.{body}"),
-                };
-                Problem::new(path, error.to_string())
-            }
-            Error::NoMass { element, .. } => {
-                let path = match self.case.spring.get(element) {
-                    Some(_) => format!("spring.{element}.ends"),
-                    None => format!("dashpot.{element}.ends"),
-                };
-                Problem::new(path, error.to_string())
-            }
-            Error::Penetration { contact, .. } => {
-                Problem::new(format!("contact.{contact}.initial"), error.to_string())
             }
             Error::FreeMotion { body, motion } => {
                 let message =
@@ -61,17 +25,69 @@ impl Builder<'_> {
                     "no static stage",
                 ])
             }
-            Error::AcrossZones { contact, .. } | Error::BetweenSchemes { contact, .. } => {
+            Error::AcrossZones { contact, .. } => {
                 Problem::new(format!("contact.{contact}"), error.to_string()).accepted([
                     "one zone for both sides",
                     "zones of equal steps and of one scheme",
                 ])
             }
-            Error::SchemesOfPart { body, .. } | Error::LinkedNonlinear { body } => {
+            Error::Zone { zone, cause } => self.refused_zone(zone, cause),
+            other => Problem::new("time", other.to_string()),
+        }
+    }
+
+    /// The problem behind an error of building the system.
+    fn refused_system(&self, error: &Refusal) -> Problem {
+        match error {
+            Refusal::Body(cause) => refused_body(cause),
+            Refusal::Unstable { dt, critical } => {
+                let problem = Problem::new(
+                    "time.step",
+                    "the step is above the critical step of the explicit scheme",
+                );
+                let [found, most] = apart(*dt, *critical);
+                problem.found(format!("{found} s")).accepted([
+                    format!("at most {most} s"),
+                    "step = { critical = 0.9 }".to_string(),
+                ])
+            }
+            Refusal::Projection { contact } => Problem::new(
+                format!("contact.{contact}.law.displacement.projection"),
+                error.to_string(),
+            ),
+            Refusal::MasslessContact { contact, .. } => {
+                Problem::new(format!("contact.{contact}.nodes"), error.to_string())
+            }
+            Refusal::Integration { contact, .. } => {
+                Problem::new(format!("contact.{contact}.integration"), error.to_string())
+            }
+            Refusal::Massless { body, .. } => {
+                let path = match self.case.body.get(body) {
+                    Some(_) => format!("body.{body}.mass"),
+                    None => format!("mass.{body}"),
+                };
+                Problem::new(path, error.to_string())
+            }
+            Refusal::NoMass { element, .. } => {
+                let path = match self.case.spring.get(element) {
+                    Some(_) => format!("spring.{element}.ends"),
+                    None => format!("dashpot.{element}.ends"),
+                };
+                Problem::new(path, error.to_string())
+            }
+            Refusal::Penetration { contact, .. } => {
+                Problem::new(format!("contact.{contact}.initial"), error.to_string())
+            }
+            Refusal::BetweenSchemes { contact, .. } => {
+                Problem::new(format!("contact.{contact}"), error.to_string()).accepted([
+                    "one zone for both sides",
+                    "zones of equal steps and of one scheme",
+                ])
+            }
+            Refusal::SchemesOfPart { body, .. } | Refusal::LinkedNonlinear { body } => {
                 Problem::new(format!("body.{body}"), error.to_string())
             }
-            Error::Nonlinear { what, why } => self.refused_nonlinear(what, why),
-            Error::Zone { zone, cause } => self.refused_zone(zone, cause),
+            Refusal::Nonlinear { what, why } => self.refused_nonlinear(what, why),
             other => Problem::new("time", other.to_string()),
         }
     }
@@ -94,7 +110,7 @@ impl Builder<'_> {
     fn refused_zone(&self, name: &str, cause: &Error) -> Problem {
         let zone = self.plan.zones.iter().find(|zone| zone.name == name);
         match (cause, zone) {
-            (Error::Unstable { dt, critical }, Some(zone)) => {
+            (Error::System(Refusal::Unstable { dt, critical }), Some(zone)) => {
                 let steps = f64::from(zone.substeps);
                 let enough = (steps * dt / critical).ceil();
                 let message = format!(
@@ -120,6 +136,12 @@ impl Builder<'_> {
             _ => self.refused(cause).note(format!("in the zone `{name}`")),
         }
     }
+}
+
+/// The problem behind an error of a body.
+fn refused_body(cause: &carom_bodies::Error) -> Problem {
+    let path = format!("body.{}.{}", cause.body(), key(cause));
+    Problem::new(path, cause.to_string())
 }
 
 /// A value and the bound below it, with the digits that tell them apart and keep the bound a bound: four decimals at least.

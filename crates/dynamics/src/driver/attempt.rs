@@ -6,6 +6,7 @@ use carom_bodies::{Placement, Stored};
 
 use super::{Driver, Which};
 use crate::error::Error;
+use crate::state::check_finite;
 use crate::step_map::StepMap;
 
 impl Driver {
@@ -18,9 +19,7 @@ impl Driver {
         let outcome = self.attempt_after_jump(Driver::take_stages);
         self.forget_predictor();
         outcome?;
-        self.next
-            .motion
-            .finite(self.state.step + 1, self.state.time)
+        check_finite(&self.next.motion, self.state.step + 1, self.state.time)
     }
 
     /// The map of the step of this size from the present state, of an explicit scheme before one of the size `next` (both s).

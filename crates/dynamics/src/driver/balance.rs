@@ -264,9 +264,7 @@ impl Driver {
         let energies = Energies {
             memory,
             lagged,
-            ..self
-                .maps
-                .energies(&system, energies(&system, new, of, &mut vectors.work), new)
+            ..energies(&system, new, of, &mut vectors.work).of_zones(&self.maps, &system, new)
         };
         let contact: Vec<f64> = vectors.contact.iter().map(|f| factor * f).collect();
         if pushes {

@@ -10,9 +10,8 @@ use super::Driver;
 use crate::coulomb::Slip;
 use crate::error::Error;
 use crate::interface::{Candidate, Failure, InterfaceProblem};
-use crate::state::Motion;
 use crate::step_map::{Row, StepMap};
-use crate::system::System;
+use crate::system::{Motion, System};
 
 /// Additions of missed candidates within one iteration.
 const ADDITIONS: usize = 10;

@@ -3,12 +3,11 @@
 use std::sync::Arc;
 
 use carom_contact::law::{Displacement, End, Level, Local, Status};
-use carom_contact::{Balance, Contact, Integration, Law, Sliding};
+use carom_contact::{Balance, Contact, Law, Sliding};
 
 use super::candidates::{instant, least_gap, part_way};
 use super::{Driver, Vectors};
 use crate::step_map::{Row, StepMap};
-use crate::system::System;
 
 /// The configuration in which a contact is paired.
 #[derive(Clone, Copy)]
@@ -44,20 +43,6 @@ impl Paired {
             Paired::Gap => map.gap,
             Paired::Compliant => map.compliant()[0],
         }
-    }
-}
-
-impl System {
-    /// Whether a contact of finite sliding is paired where the iterations of a dynamic step are: the geometry of bodies at small strain
-    /// without friction is that in which the step captures it.
-    fn pairs_anew(&self, contact: usize) -> bool {
-        let (secondary, primary) = self.sides[contact];
-        let sides = [Some(secondary), primary];
-        let mut sides = sides.into_iter().flatten();
-        let finite = sides.any(|body| !self.bodies[body].is_linear());
-        let contact = (&self.contacts[contact], self.friction[contact]);
-        let mortar = matches!(contact.0.integration, Integration::Mortar { .. });
-        finite || mortar || contact.0.moves() || contact.1 > 0.0
     }
 }
 

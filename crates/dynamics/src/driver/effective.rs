@@ -18,10 +18,9 @@ use super::loads::damping_rate;
 use super::part_matrix::part_matrix;
 use crate::compliance::Compliance;
 use crate::error::Error;
-use crate::maps::Maps;
 use crate::operator::{Operator, Operators, factored, single};
 use crate::step_map::StepMap;
-use crate::system::{System, push_cliques};
+use crate::system::{Maps, System, push_cliques};
 
 /// Sizes of the step and stages whose factors are kept beside those of the present one.
 const KEPT: usize = 3;

@@ -15,17 +15,6 @@ use crate::coulomb::{FrictionFailure, FrictionProblem, Posed, Slip, Tangential};
 use crate::error::Error;
 use crate::state::ContactReport;
 use crate::step_map::{Row, StepMap};
-use crate::system::System;
-
-impl System {
-    /// Tangents of a contact point in problems with friction: none where no contact has any.
-    pub(crate) fn tangents(&self) -> usize {
-        match self.friction.iter().any(|mu| *mu > 0.0) {
-            true => self.dim.saturating_sub(1),
-            false => 0,
-        }
-    }
-}
 
 impl Driver {
     /// Whether a candidate has friction.

@@ -10,8 +10,8 @@ use super::start::energies;
 use crate::ledger::{Energies, Squares, reactions};
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
-use crate::state::Motion;
 use crate::step_map::Impulse;
+use crate::system::Motion;
 
 /// How contact forces work in the energy balance.
 #[derive(Clone, Copy)]

@@ -9,9 +9,9 @@
 use carom_contact::law::{ContactLaw, Level};
 
 use super::Driver;
-use crate::control::Adaptive;
-use crate::maps::Maps;
 use crate::step_map::{Row, StepMap};
+use crate::system::Adaptive;
+use crate::system::Maps;
 
 /// Distance before the surface at which a cut aims, in tolerances of a closed gap: rounding then closes no point too early.
 const AIM: f64 = 10.0;

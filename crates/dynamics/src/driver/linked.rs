@@ -14,9 +14,9 @@ use super::Driver;
 use crate::error::Error;
 use crate::operator::{Operators, factored, single};
 use crate::scheme::{Scheme, Theta};
-use crate::state::{Motion, State};
+use crate::state::{State, check_finite};
 use crate::step_map::StepMap;
-use crate::system::{LinkRow, System, on, push_cliques};
+use crate::system::{LinkRow, Motion, System, on, push_cliques};
 use crate::zones::Origin;
 
 /// How forces on rows run over some steps.
@@ -69,9 +69,7 @@ impl Driver {
         self.report.attempts = 1;
         if self.prepared {
             self.take_stages()?;
-            self.next
-                .motion
-                .finite(self.state.step + 1, self.state.time)?;
+            check_finite(&self.next.motion, self.state.step + 1, self.state.time)?;
         } else {
             self.attempt(self.dt, self.dt)?;
         }

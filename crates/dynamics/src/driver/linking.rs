@@ -15,8 +15,8 @@ use super::part_matrix::part_matrix;
 use crate::compliance::Compliance;
 use crate::condensed::{Answer, Condensed, DENSE, Joined, Matrix};
 use crate::error::Error;
-use crate::maps::Maps;
 use crate::operator::Operators;
+use crate::system::Maps;
 use crate::system::{LinkRow, System};
 
 /// What the rows of links make of the matrices of one size of the step.

@@ -4,10 +4,9 @@ use carom_algebra::csr::Csr;
 use carom_signals::Amplitude;
 
 use super::Driver;
-use crate::loads::NumberedForce;
-use crate::maps::Maps;
 use crate::step_map::{Row, StepMap};
-use crate::system::System;
+use crate::system::Maps;
+use crate::system::{NumberedForce, System};
 
 /// The velocity that forces depend on: at the instant of the internal forces, or of an explicit step the one that is known
 /// before the forces; without what contact forces give by themselves.

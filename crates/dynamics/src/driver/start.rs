@@ -14,7 +14,7 @@ use crate::operator::Operators;
 use crate::records::Records;
 use crate::resultant::Resultant;
 use crate::state::empty_state;
-use crate::system::System;
+use crate::system::{Motion, System};
 
 impl Driver {
     /// Begins anew from another initial motion: displacement in m and velocity in m/s, one entry per unknown. Held
@@ -159,7 +159,7 @@ impl Driver {
         let energies = Energies {
             memory,
             lagged,
-            ..self.maps.energies(&system, of_motion, motion)
+            ..of_motion.of_zones(&self.maps, &system, motion)
         };
         let at = |k: usize| match self.state.forces.get(k) {
             Some(f) => Resultant::at(&system, (&motion.frames, &[&motion.u]), f),
@@ -277,7 +277,7 @@ impl Driver {
 /// of the nodes at these displacements, or in the reference configuration.
 pub(super) fn energies(
     system: &System,
-    motion: &crate::state::Motion,
+    motion: &Motion,
     (strain, with_acceleration, u): (f64, bool, Option<&[f64]>),
     work: &mut [f64],
 ) -> Energies {

@@ -4,9 +4,10 @@
 //! size that finds no solution is taken in halves of halves.
 
 use super::Driver;
-use crate::control::{Closing, Control, Event};
+use crate::control::{Control, Event};
 use crate::error::Error;
 use crate::state::State;
+use crate::system::Closing;
 
 /// Attempts at one step after which a closing cuts it no more.
 const CUTS: u32 = 10;

@@ -13,7 +13,7 @@ use super::Driver;
 use crate::error::Error;
 use crate::operator::Operators;
 use crate::resultant::Resultant;
-use crate::system::System;
+use crate::system::{Motion, System};
 
 /// Jump over what rounding of the displacements leaves in a rate, below which there is none.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -115,7 +115,7 @@ impl Jump {
     }
 
     /// Impulse and work of the supports, and the velocity after the jump.
-    fn add_up(&mut self, system: &System, motion: &crate::state::Motion) {
+    fn add_up(&mut self, system: &System, motion: &Motion) {
         self.velocity.clone_from(&motion.v);
         for (i, p) in self.momentum.iter_mut().enumerate() {
             if !system.fixed[i] {

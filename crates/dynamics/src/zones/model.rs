@@ -4,14 +4,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contacts::sides;
 use crate::error::Error;
-use crate::loads::NodalLoad;
-use crate::model::{Model, ModelLink};
-use crate::nonlinear::Nonlinear;
-use crate::refused::Refused;
 use crate::scheme::Scheme;
-use crate::system::System;
+use crate::system::{self, Model, ModelLink, NodalLoad, Nonlinear, Refused, System, sides};
 
 /// A group of bodies with its own scheme and step.
 #[derive(Clone, Debug)]
@@ -61,7 +56,7 @@ impl Zoned {
         let system = |(k, contacts): (usize, &Vec<usize>)| {
             System::new(self.zone(k, contacts)).map_err(|cause| Error::Zone {
                 zone: self.zones[k].name.clone(),
-                cause: Box::new(cause),
+                cause: Box::new(cause.into()),
             })
         };
         self.contacts().iter().enumerate().map(system).collect()
@@ -202,10 +197,11 @@ impl Zoned {
     pub(super) fn check(&self) -> Result<(), Error> {
         let mut bodies = self.model.bodies.iter();
         if let Some(body) = bodies.find(|body| body.rigid.is_some()) {
-            return Err(Error::Nonlinear {
+            return Err(system::Error::Nonlinear {
                 what: Refused::Rigid(body.spec.name.clone()),
                 why: "zones have no frames of rotations yet; leave out the zones",
-            });
+            }
+            .into());
         }
         if let Some(some) = self.model.discrete.first() {
             return Err(Error::DiscreteInZones {
@@ -213,10 +209,11 @@ impl Zoned {
             });
         }
         if self.model.nonlinear.preload.is_some() {
-            return Err(Error::Nonlinear {
+            return Err(system::Error::Nonlinear {
                 what: Refused::StaticStage,
                 why: "links between zones join velocities, which it has none of; leave out the stage or the zones",
-            });
+            }
+            .into());
         }
         self.check_steps()
     }
@@ -240,10 +237,11 @@ impl Zoned {
                 return refuse("one, or as many as the other zones with more than one");
             }
             if linked(&k) && zone.scheme.get().link_weights().is_none() {
-                return Err(Error::LinkScheme {
+                return Err(system::Error::LinkScheme {
                     zone: zone.name.clone(),
                     scheme: zone.scheme.get().name(),
-                });
+                }
+                .into());
             }
         }
         Ok(())

@@ -7,8 +7,7 @@ use carom_mesh::{Mesh, Surface};
 
 use super::Zoned;
 use crate::error::Error;
-use crate::model::{Model, ModelLink, ModelScheme, ModelTarget};
-use crate::system::System;
+use crate::system::{self, Model, ModelLink, ModelScheme, ModelTarget, System};
 
 impl Zoned {
     /// The zones as one system, which one driver takes through its steps; `None` where they step apart: with unequal steps, with links of bodies
@@ -28,10 +27,10 @@ impl Zoned {
         }
         match System::new(self.separated()) {
             Ok(system) => Ok(Some(system)),
-            Err(error @ (Error::SchemeAlone { .. } | Error::BetweenSchemes { .. })) => {
-                apart(Some(error))
-            }
-            Err(error) => Err(error),
+            Err(
+                error @ (system::Error::SchemeAlone { .. } | system::Error::BetweenSchemes { .. }),
+            ) => apart(Some(error.into())),
+            Err(error) => Err(error.into()),
         }
     }
 

@@ -16,8 +16,8 @@ use crate::error::Error;
 use crate::ledger::{Balance, Ledger, Tolerated};
 use crate::march::{FailedProblem, Stepper};
 use crate::records::Records;
-use crate::state::{ContactReport, ContactSample, Motion, State, StepReport, empty_state};
-use crate::system::System;
+use crate::state::{ContactReport, ContactSample, State, StepReport, empty_state};
+use crate::system::{Motion, System};
 
 /// Zones with the model as one.
 pub struct Whole {

@@ -223,7 +223,10 @@ fn the_critical_step_is_that_of_the_oscillator() {
     let critical = System::new(model.clone()).unwrap().critical_step();
     assert!((400.0 * critical * critical + 60.0 * critical - 4.0).abs() < 1e-13);
     model.dt = 1.01 * critical;
-    assert!(matches!(System::new(model), Err(Error::Unstable { .. })));
+    assert!(matches!(
+        System::new(model),
+        Err(carom_system::Error::Unstable { .. })
+    ));
 }
 
 #[test]
@@ -239,7 +242,7 @@ fn a_spring_at_a_node_without_mass_is_refused() {
     );
     assert!(matches!(
         System::new(model),
-        Err(Error::NoMass { node: 1, .. })
+        Err(carom_system::Error::NoMass { node: 1, .. })
     ));
 }
 

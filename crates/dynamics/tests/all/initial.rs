@@ -6,12 +6,12 @@ use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Displacement;
 use carom_contact::{Initial, Law, Motion, Obstacle, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
-use carom_dynamics::{Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
 
 /// A unit square of 16 cells whose lower side is 0.01 m under the ground.
-fn sunk(initial: Initial, motion: Motion) -> Result<Arc<System>, Error> {
+fn sunk(initial: Initial, motion: Motion) -> Result<Arc<System>, carom_system::Error> {
     let mesh = generate::rectangle("block", [0.0; 2], [1.0; 2], [4; 2], false);
     let cells = mesh.groups["block"].elements.clone();
     let ground = Plane {
@@ -64,7 +64,7 @@ fn after_a_step(system: Arc<System>) -> (f64, f64) {
 fn penetration_at_the_start_is_kept_refused_offset_or_removed() {
     let start = |initial| sunk(initial, Motion::default());
     match start(Initial::Refuse) {
-        Err(Error::Penetration {
+        Err(carom_system::Error::Penetration {
             contact,
             points,
             node,

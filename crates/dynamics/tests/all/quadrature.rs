@@ -6,7 +6,7 @@ use carom_contact::law::{
 };
 use carom_contact::{Integration, Law, Plane};
 use carom_dynamics::{
-    Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, scheme,
+    Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, scheme,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface, generate};
@@ -280,7 +280,10 @@ fn laws_without_a_weak_form_and_an_r_that_is_none_are_refused() {
     let refused = |law, integration| {
         let mut model = bar(scheme, law);
         model.contacts[0].integration = integration;
-        matches!(System::new(model), Err(Error::Integration { .. }))
+        matches!(
+            System::new(model),
+            Err(carom_system::Error::Integration { .. })
+        )
     };
     let damped = Law::Damped(Damped {
         stiffness: 1.0,

@@ -83,7 +83,7 @@ fn blocks_that_overlap_are_refused_with_node_and_depth() {
         };
         assert!(refused(1.0).is_ok(), "touching is no overlap");
         match refused(0.95) {
-            Err(Error::Penetration {
+            Err(carom_system::Error::Penetration {
                 contact,
                 points,
                 node,
@@ -117,7 +117,7 @@ fn a_mesh_that_overlaps_itself_is_refused_where_its_surface_faces_itself() {
         };
         assert!(refused(1.01).is_ok(), "a gap is no overlap");
         match refused(0.95) {
-            Err(Error::Overlap {
+            Err(carom_system::Error::Overlap {
                 contact, points, ..
             }) => {
                 // the nodes of either side but those on the rims, which lie in no cell

@@ -5,9 +5,10 @@ use carom_arlequin::Row;
 use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind};
 use carom_contact::{Initial, Integration, Law, Obstacle, Sliding};
 use carom_mesh::{Mesh, Surface};
+use carom_schemes::Scheme;
 
+use crate::adaptive::Adaptive;
 use crate::nonlinear::Nonlinear;
-use crate::{Adaptive, Scheme};
 
 /// Everything from which a system is built; names are those of the case file.
 #[derive(Clone, Debug)]

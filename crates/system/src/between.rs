@@ -9,9 +9,9 @@ use carom_contact::{Contact, Integration};
 use crate::error::Error;
 use crate::maps::Maps;
 use crate::refused::Refused;
-use crate::scheme::Scheme;
-use crate::step_map::{Impulse, StepMap};
 use crate::system::System;
+use carom_schemes::Scheme;
+use carom_schemes::step_map::{Impulse, StepMap};
 
 impl System {
     /// Refuses schemes and contacts that do not go with several schemes.

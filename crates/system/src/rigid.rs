@@ -8,10 +8,10 @@ use carom_algebra::unknowns::{Carrier, Kind, NodeKind, Unknowns};
 use carom_bodies::{Body, Kinematics};
 use carom_contact::{Contact, Frames, Places, Sliding};
 
-use crate::Error;
+use crate::error::Error;
 use crate::model::{Model, ModelBody};
+use crate::motion::Motion;
 use crate::refused::Refused;
-use crate::state::Motion;
 use crate::system::System;
 
 /// Which derivative of a place by time.
@@ -203,7 +203,7 @@ impl System {
     /// More than three such points on a plane have dependent rows: their compliance is singular, and their forces are not unique. The
     /// part makes them share their force, and leaves that part of the rates that they stop: far below the tolerance of the laws, and
     /// far above rounding, or with friction above what its solver leaves.
-    pub(crate) fn rigid_points(&self) -> (Vec<bool>, f64) {
+    pub fn rigid_points(&self) -> (Vec<bool>, f64) {
         const SMOOTH: f64 = 1e-11;
         const ROUGH: f64 = 1e-8;
         let turning = self.unknowns.turning();

@@ -3,8 +3,8 @@
 use carom_algebra::unknowns::Unknowns;
 use carom_contact::{Contact, Frames, Initial, Integration, Places, Sight, Target};
 
-use crate::Error;
 use crate::contacts::numbered;
+use crate::error::Error;
 use crate::model::Model;
 use crate::system::System;
 

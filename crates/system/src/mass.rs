@@ -32,7 +32,7 @@ impl Mass {
     }
 
     /// That of bodies.
-    pub(crate) fn of(bodies: &[Body], specs: &[ModelBody], unknowns: &Unknowns) -> Mass {
+    pub fn of(bodies: &[Body], specs: &[ModelBody], unknowns: &Unknowns) -> Mass {
         let n = unknowns.len();
         let mut lumped = vec![0.0; n];
         let mut cliques = Cliques::new();
@@ -64,7 +64,7 @@ impl Mass {
     }
 
     /// Adds factor · M over the unknowns of `part` to a matrix whose first unknown is `origin`.
-    pub(crate) fn add_to(&self, factor: f64, part: &Range<usize>, origin: usize, a: &mut Csr) {
+    pub fn add_to(&self, factor: f64, part: &Range<usize>, origin: usize, a: &mut Csr) {
         for (i, m) in part.clone().zip(&self.lumped[part.clone()]) {
             a.add(i - origin, i - origin, factor * m);
         }

@@ -9,7 +9,7 @@ use carom_contact::law::Level;
 use carom_contact::{Contact, Integration};
 use carom_signals::Amplitude;
 
-use crate::Error;
+use crate::error::Error;
 use crate::loads::{Load, NodalLoad, NumberedForce, NumberedLoad, numbered_loads};
 use crate::mass::Mass;
 use crate::model::{Model, ModelBody, ModelContact, ModelTarget};
@@ -113,27 +113,36 @@ impl Nonlinear {
 
 /// A prescribed displacement of one unknown: which amplitude it follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Follows {
-    pub(crate) unknown: u32,
-    pub(crate) amplitude: usize,
+pub struct Follows {
+    /// The unknown.
+    pub unknown: u32,
+    /// Place of the function in the list of amplitudes.
+    pub amplitude: usize,
     /// Whether it is a rotation: the function is then an angle.
-    pub(crate) turns: bool,
+    pub turns: bool,
 }
 
 /// [`Nonlinear`] in the numbers of a system.
 #[derive(Debug, Default)]
-pub(crate) struct NumberedNonlinear {
-    pub(crate) loads: Vec<NumberedLoad>,
-    pub(crate) base: [Option<Amplitude>; 3],
-    pub(crate) amplitudes: Vec<Amplitude>,
-    pub(crate) follows: Vec<Follows>,
-    pub(crate) damping: Vec<Damping>,
-    pub(crate) preload: Option<Preload>,
-    pub(crate) iteration: Iteration,
+pub struct NumberedNonlinear {
+    /// Loads.
+    pub loads: Vec<NumberedLoad>,
+    /// Acceleration of the frame of coordinates, m/s², by direction.
+    pub base: [Option<Amplitude>; 3],
+    /// Functions of time that unknowns follow.
+    pub amplitudes: Vec<Amplitude>,
+    /// Unknowns that follow a function of time.
+    pub follows: Vec<Follows>,
+    /// Damping by body; empty for none.
+    pub damping: Vec<Damping>,
+    /// The static stage.
+    pub preload: Option<Preload>,
+    /// How steps are solved.
+    pub iteration: Iteration,
     /// Place of the history of each body in that of the system.
-    pub(crate) histories: Vec<Range<usize>>,
+    pub histories: Vec<Range<usize>>,
     /// Whether the energy of the steps is balanced by works.
-    pub(crate) needed: bool,
+    pub needed: bool,
 }
 
 impl NumberedNonlinear {
@@ -141,7 +150,7 @@ impl NumberedNonlinear {
     ///
     /// # Errors
     /// A motion prescribed in a direction that a support holds.
-    pub(crate) fn new(
+    pub fn new(
         model: &Model,
         (number, unknowns): (&[u32], &Unknowns),
         (bodies, mass): (&[Body], &Mass),
@@ -225,7 +234,7 @@ impl NumberedNonlinear {
     }
 
     /// Whether a load turns with a body.
-    pub(crate) fn has_follower(&self, body: usize) -> bool {
+    pub fn has_follower(&self, body: usize) -> bool {
         let turns = |load: &NumberedLoad| matches!(load.force, NumberedForce::Follower(..));
         let mut loads = self.loads.iter();
         loads.any(|load| turns(load) && load.bodies.contains(&body))
@@ -233,7 +242,7 @@ impl NumberedNonlinear {
 
     /// Displacement at `to` of the unknowns that follow a function of time, m; of rotations the increment from the time
     /// `from` on that Cayley's map makes a turn by the difference of the angles.
-    pub(crate) fn prescribe(&self, [from, to]: [f64; 2], u: &mut [f64]) {
+    pub fn prescribe(&self, [from, to]: [f64; 2], u: &mut [f64]) {
         for follows in &self.follows {
             let amplitude = &self.amplitudes[follows.amplitude];
             u[follows.unknown as usize] = match follows.turns {
@@ -244,7 +253,7 @@ impl NumberedNonlinear {
     }
 
     /// Factor of gravity and constant loads at a time: it grows over the static stage.
-    pub(crate) fn ramp(&self, time: f64) -> f64 {
+    pub fn ramp(&self, time: f64) -> f64 {
         match self.preload {
             Some(preload) if time < preload.end => (time / preload.end).max(0.0),
             _ => 1.0,
@@ -297,7 +306,7 @@ impl System {
     }
 
     /// Whether any force is one of damping: of dashpots or of Rayleigh's damping.
-    pub(crate) fn has_damping(&self) -> bool {
+    pub fn has_damping(&self) -> bool {
         self.has_dashpots || !self.nonlinear.damping.is_empty()
     }
 
@@ -309,7 +318,7 @@ impl System {
     }
 
     /// Histories of all materials where nothing has happened.
-    pub(crate) fn start_histories(&self) -> Vec<f64> {
+    pub fn start_histories(&self) -> Vec<f64> {
         let ranges = &self.nonlinear.histories;
         let mut histories = vec![0.0; ranges.last().map_or(0, |range| range.end)];
         for (body, range) in self.bodies.iter().zip(ranges) {

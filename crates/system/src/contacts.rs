@@ -3,13 +3,33 @@
 use carom_contact::{Contact, Integration, Mortar, Point, Sight, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
 
-use crate::Error;
+use crate::error::Error;
 use crate::model::{Model, ModelContact, ModelTarget};
 use crate::system::System;
 
 const WHICH_LAWS: &str = "at Gauss points hold, in their weak form, the displacement law without projection and the velocity law, and, in each point by itself, the compliance, and penalty and stop without damping; the other laws hold at nodes";
 
 impl System {
+    /// Tangents of a contact point in problems with friction: none where no contact has any.
+    pub fn tangents(&self) -> usize {
+        match self.friction.iter().any(|mu| *mu > 0.0) {
+            true => self.dim.saturating_sub(1),
+            false => 0,
+        }
+    }
+
+    /// Whether a contact of finite sliding is paired where the iterations of a dynamic step are: the geometry of bodies at small strain
+    /// without friction is that in which the step captures it.
+    pub fn pairs_anew(&self, contact: usize) -> bool {
+        let (secondary, primary) = self.sides[contact];
+        let sides = [Some(secondary), primary];
+        let mut sides = sides.into_iter().flatten();
+        let finite = sides.any(|body| !self.bodies[body].is_linear());
+        let contact = (&self.contacts[contact], self.friction[contact]);
+        let mortar = matches!(contact.0.integration, Integration::Mortar { .. });
+        finite || mortar || contact.0.moves() || contact.1 > 0.0
+    }
+
     /// Refuses laws that cannot hold where they are asked to.
     pub(crate) fn check_integration(&self) -> Result<(), Error> {
         let cause = |contact: &Contact| match contact.integration {
@@ -44,7 +64,7 @@ fn owner(model: &Model, cell: ElementId) -> Option<usize> {
 }
 
 /// Bodies of a contact: the secondary's, and the primary's unless it is rigid.
-pub(crate) fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usize>) {
+pub fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usize>) {
     let body = |surface: &Surface| {
         surface
             .faces

@@ -6,10 +6,9 @@ use carom_bodies::Placement;
 use carom_contact::law::{Local, Status};
 use carom_contact::{Contact, Rows, Search};
 
-use crate::error::Error;
-use crate::scheme::Scheme;
-use crate::state::Motion;
+use crate::motion::Motion;
 use crate::system::System;
+use carom_schemes::Scheme;
 
 impl System {
     /// Critical step of an explicit scheme, s: its critical ω dt, or that of central differences, 2, over a bound of ω.
@@ -33,7 +32,7 @@ impl System {
     ///
     /// # Errors
     /// An element without tangent.
-    pub(crate) fn critical_step_at(&self, motion: &Motion) -> Result<f64, Error> {
+    pub fn critical_step_at(&self, motion: &Motion) -> Result<f64, carom_bodies::Error> {
         let mut bodies: f64 = 0.0;
         let all = self.bodies.iter().zip(&self.nonlinear.histories);
         let all = all.zip(&self.zone_of_body);

@@ -18,13 +18,16 @@ use crate::massless::redistribute;
 use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete};
 use crate::nonlinear::NumberedNonlinear;
 use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
-use crate::{Adaptive, Error, Scheme};
+use carom_schemes::Scheme;
+
+use crate::adaptive::Adaptive;
+use crate::error::Error;
 
 /// One row of C, which couples velocities: unknowns and coefficients, with the sign of the side.
-pub(crate) type LinkRow = Vec<(u32, f64)>;
+pub type LinkRow = Vec<(u32, f64)>;
 
 /// A row applied to a vector.
-pub(crate) fn on(row: &LinkRow, vector: &[f64]) -> f64 {
+pub fn on(row: &LinkRow, vector: &[f64]) -> f64 {
     row.iter().map(|&(dof, c)| c * vector[dof as usize]).sum()
 }
 
@@ -39,7 +42,7 @@ pub struct System {
     pub unknowns: Unknowns,
     /// Where places count from in what rounding leaves in forces, m: zero, since gaps are differences of places; without
     /// contacts the corner of the mesh nearest to it, since bodies and links do not see where they lie.
-    pub(crate) origin: [f64; 3],
+    pub origin: [f64; 3],
     /// Whether bodies are axisymmetric: x is then a radius.
     pub axisymmetric: bool,
     /// Reference coordinates by system number, m.
@@ -51,13 +54,13 @@ pub struct System {
     /// Unknowns of each connected part: bodies that touch only by contact are different parts.
     pub parts: Vec<Range<usize>>,
     /// The part of each body.
-    pub(crate) part_of_body: Vec<usize>,
+    pub part_of_body: Vec<usize>,
     /// Bodies.
     pub bodies: Vec<Body>,
     /// Whether there are springs: their forces may have a resultant.
-    pub(crate) has_springs: bool,
+    pub has_springs: bool,
     /// Whether there are dashpots.
-    pub(crate) has_dashpots: bool,
+    pub has_dashpots: bool,
     /// Lumped masses of the nodes of each body (system number, kg), for mean velocities.
     pub body_masses: Vec<Vec<(u32, f64)>>,
     /// Mass matrix.
@@ -83,21 +86,21 @@ pub struct System {
     /// The time schemes, each once.
     pub schemes: Vec<Scheme>,
     /// Which of them each body has.
-    pub(crate) zone_of_body: Vec<usize>,
+    pub zone_of_body: Vec<usize>,
     /// Name and range of the rows of each link.
-    pub(crate) links: Vec<(String, Range<usize>)>,
+    pub links: Vec<(String, Range<usize>)>,
     /// The rows of all links, of both sides, those of the inner side first.
-    pub(crate) link_rows: Vec<LinkRow>,
+    pub link_rows: Vec<LinkRow>,
     /// Number of terms on the inner side of each row.
-    pub(crate) inner_terms: Vec<usize>,
+    pub inner_terms: Vec<usize>,
     /// Unknowns that follow each other and have one scheme, and its number; ascending.
-    pub(crate) spans: Vec<(Range<usize>, usize)>,
+    pub spans: Vec<(Range<usize>, usize)>,
     /// Step, s; the largest of an adaptive step.
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
     pub adaptive: Option<Adaptive>,
     /// Loads and motions in time, damping, the static stage, and the rules of the iterations.
-    pub(crate) nonlinear: NumberedNonlinear,
+    pub nonlinear: NumberedNonlinear,
     /// Coefficient of friction by contact.
     pub friction: Vec<f64>,
     /// Initial rotations of the nodes that have any.
@@ -377,12 +380,12 @@ impl System {
     }
 
     /// The number of the scheme of the secondary side of a contact.
-    pub(crate) fn zone_of(&self, contact: usize) -> usize {
+    pub fn zone_of(&self, contact: usize) -> usize {
         self.zone_of_body[self.sides[contact].0]
     }
 
     /// The number of the scheme of an unknown.
-    pub(crate) fn zone_at(&self, unknown: usize) -> usize {
+    pub fn zone_at(&self, unknown: usize) -> usize {
         let span = self.spans.partition_point(|(span, _)| span.end <= unknown);
         self.spans[span].1
     }
@@ -461,7 +464,7 @@ impl System {
     }
 
     /// The connected part of an unknown.
-    pub(crate) fn part_of(&self, unknown: usize) -> usize {
+    pub fn part_of(&self, unknown: usize) -> usize {
         part_of(&self.parts, unknown)
     }
 
@@ -495,13 +498,13 @@ impl System {
     }
 
     /// An unknown of a body.
-    pub(crate) fn first_unknown(&self, body: usize) -> usize {
+    pub fn first_unknown(&self, body: usize) -> usize {
         let node = self.body_masses[body].first().map_or(0, |(node, _)| *node);
         self.unknowns.first(node)
     }
 
     /// Nodes of a range of unknowns that has all of theirs.
-    pub(crate) fn nodes_of(&self, unknowns: &Range<usize>) -> Range<usize> {
+    pub fn nodes_of(&self, unknowns: &Range<usize>) -> Range<usize> {
         let [first, last] = [unknowns.start, unknowns.end - 1];
         self.unknowns.node(first) as usize..self.unknowns.node(last) as usize + 1
     }
@@ -648,12 +651,7 @@ fn node_masses(body: &Body, unknowns: &Unknowns) -> Vec<(u32, f64)> {
 }
 
 /// Adds the unknowns of each element of a body that lies in a part, counted from the first of the part.
-pub(crate) fn push_cliques(
-    body: &Body,
-    map: &Unknowns,
-    part: &Range<usize>,
-    cliques: &mut Cliques,
-) {
+pub fn push_cliques(body: &Body, map: &Unknowns, part: &Range<usize>, cliques: &mut Cliques) {
     let mut unknowns = Vec::new();
     body.each_element(&mut |nodes| {
         if part.contains(&map.first(nodes[0])) {

@@ -5,7 +5,7 @@ use carom_bodies::FollowerPressure;
 use carom_mesh::Surface;
 use carom_signals::Amplitude;
 
-use crate::Error;
+use crate::error::Error;
 use crate::mass::Mass;
 use crate::model::{Model, ModelBody};
 use crate::refused::Refused;
@@ -49,16 +49,18 @@ pub struct NodalLoad {
 
 /// A load in the numbers of a system.
 #[derive(Debug)]
-pub(crate) struct NumberedLoad {
-    pub(crate) amplitude: Amplitude,
-    pub(crate) force: NumberedForce,
+pub struct NumberedLoad {
+    /// Factor in time.
+    pub amplitude: Amplitude,
+    /// What acts.
+    pub force: NumberedForce,
     /// Bodies that it acts on.
-    pub(crate) bodies: Vec<usize>,
+    pub bodies: Vec<usize>,
 }
 
 /// Forces of a load at amplitude 1.
 #[derive(Debug)]
-pub(crate) enum NumberedForce {
+pub enum NumberedForce {
     /// Unknowns and forces, N.
     Dead(Vec<(u32, f64)>),
     /// A pressure in Pa.
@@ -69,7 +71,7 @@ pub(crate) enum NumberedForce {
 ///
 /// # Errors
 /// A load on a node that a rigid body carries, a moment on a node without such a rotation.
-pub(crate) fn numbered_loads(
+pub fn numbered_loads(
     model: &Model,
     (number, unknowns): (&[u32], &Unknowns),
     mass: &Mass,

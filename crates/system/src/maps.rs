@@ -9,15 +9,14 @@ use std::ops::Range;
 use carom_algebra::reduce::dot;
 use carom_contact::Rows;
 
-use crate::ledger::Energies;
-use crate::scheme::Scheme;
-use crate::state::Motion;
-use crate::step_map::{Known, Row, StepMap};
+use crate::motion::Motion;
 use crate::system::System;
+use carom_schemes::Scheme;
+use carom_schemes::step_map::{Known, Row, StepMap};
 
 /// The map of each zone, and where its unknowns are.
 #[derive(Clone, Debug)]
-pub(crate) struct Maps {
+pub struct Maps {
     maps: Vec<StepMap>,
     /// Factor of |a|²_M in the energy that the scheme of each conserves, s².
     factors: Vec<f64>,
@@ -27,7 +26,7 @@ pub(crate) struct Maps {
 
 impl Maps {
     /// The maps of steps of `dt` before steps of the size `next` (both s).
-    pub(crate) fn new(system: &System, dt: f64, next: f64) -> Maps {
+    pub fn new(system: &System, dt: f64, next: f64) -> Maps {
         let mut maps = Maps {
             maps: system
                 .schemes
@@ -42,7 +41,7 @@ impl Maps {
     }
 
     /// Makes these the maps of another size of the step.
-    pub(crate) fn resize(&mut self, schemes: &[Scheme], (dt, next): (f64, f64)) {
+    pub fn resize(&mut self, schemes: &[Scheme], (dt, next): (f64, f64)) {
         let one = schemes.len() == 1;
         for (factor, scheme) in self.factors.iter_mut().zip(schemes) {
             let scheme = scheme.get();
@@ -63,23 +62,23 @@ impl Maps {
     }
 
     /// Makes these the maps of a static step.
-    pub(crate) fn rest(&mut self) {
+    pub fn rest(&mut self) {
         self.maps.fill(StepMap::equilibrium());
         self.factors.fill(0.0);
     }
 
     /// The map of the first zone; of all where no zones differ.
-    pub(crate) fn first(&self) -> &StepMap {
+    pub fn first(&self) -> &StepMap {
         &self.maps[0]
     }
 
     /// The maps, by zone.
-    pub(crate) fn all(&self) -> &[StepMap] {
+    pub fn all(&self) -> &[StepMap] {
         &self.maps
     }
 
     /// The map of the only zone.
-    pub(crate) fn only(&self) -> Option<&StepMap> {
+    pub fn only(&self) -> Option<&StepMap> {
         match &self.maps[..] {
             [map] => Some(map),
             _ => None,
@@ -87,17 +86,17 @@ impl Maps {
     }
 
     /// Whether the steps have no inertia.
-    pub(crate) fn is_static(&self) -> bool {
+    pub fn is_static(&self) -> bool {
         self.maps[0].inertia.x == 0.0
     }
 
     /// Factor of contact forces in the balance of momentum: 1 of several zones.
-    pub(crate) fn contact(&self) -> f64 {
+    pub fn contact(&self) -> f64 {
         self.maps[0].contact
     }
 
     /// The velocity that links join, that of the end; in a static step the way.
-    pub(crate) fn link_row(&self, map: &StepMap) -> Row {
+    pub fn link_row(&self, map: &StepMap) -> Row {
         match self.is_static() {
             true => map.displacement.since(&Row::START),
             false => map.velocity,
@@ -105,7 +104,7 @@ impl Maps {
     }
 
     /// Weights of the multipliers of links at the start and the end of the step in the balance of a zone.
-    pub(crate) fn link_weights(&self, scheme: &Scheme) -> [f64; 2] {
+    pub fn link_weights(&self, scheme: &Scheme) -> [f64; 2] {
         match self.is_static() {
             true => [0.0, 1.0],
             false => scheme.get().link_weights().unwrap_or([0.0, 1.0]),
@@ -113,12 +112,12 @@ impl Maps {
     }
 
     /// Whether no internal force depends on the unknown.
-    pub(crate) fn is_explicit(&self) -> bool {
+    pub fn is_explicit(&self) -> bool {
         self.maps.iter().all(|map| map.force.x == 0.0)
     }
 
     /// The map of an unknown.
-    pub(crate) fn of(&self, unknown: usize) -> &StepMap {
+    pub fn of(&self, unknown: usize) -> &StepMap {
         if let [map] = &self.maps[..] {
             return map;
         }
@@ -127,13 +126,13 @@ impl Maps {
     }
 
     /// The unknowns in ranges of one map each.
-    pub(crate) fn spans(&self) -> impl Iterator<Item = (Range<usize>, &StepMap)> {
+    pub fn spans(&self) -> impl Iterator<Item = (Range<usize>, &StepMap)> {
         let spans = self.spans.iter();
         spans.map(|(span, zone)| (span.clone(), &self.maps[*zone]))
     }
 
     /// Σ_z f_z |a|²_M over the zones, with the factor f of |a|²_M in the energy that the scheme of each conserves, in J.
-    pub(crate) fn square_of_acceleration(&self, system: &System, motion: &Motion) -> f64 {
+    pub fn square_of_acceleration(&self, system: &System, motion: &Motion) -> f64 {
         let mut force = vec![0.0; motion.a.len()];
         system.mass.multiply(&motion.a, &mut force);
         let own = |(span, zone): &(Range<usize>, usize)| {
@@ -143,19 +142,8 @@ impl Maps {
         self.spans.iter().map(own).sum()
     }
 
-    /// These energies of a motion, with the term of the schemes where zones differ.
-    pub(crate) fn energies(&self, system: &System, of: Energies, motion: &Motion) -> Energies {
-        match self.only() {
-            Some(_) => of,
-            None => Energies {
-                acceleration: self.square_of_acceleration(system, motion),
-                ..of
-            },
-        }
-    }
-
     /// Writes a row of each map on its unknowns, x and c left out.
-    pub(crate) fn known(&self, row: impl Fn(&StepMap) -> Row, motion: &Motion, out: &mut [f64]) {
+    pub fn known(&self, row: impl Fn(&StepMap) -> Row, motion: &Motion, out: &mut [f64]) {
         let start = Known::from(motion);
         for (span, map) in self.spans() {
             row(map).known(start.within(span.clone()), &mut out[span]);
@@ -163,7 +151,7 @@ impl Maps {
     }
 
     /// Writes a row of each map on its unknowns.
-    pub(crate) fn whole(
+    pub fn whole(
         &self,
         row: impl Fn(&StepMap) -> Row,
         motion: &Motion,
@@ -179,7 +167,7 @@ impl Maps {
     }
 
     /// N applied to a row of the step, for one point.
-    pub(crate) fn on(
+    pub fn on(
         &self,
         (rows, point): (&Rows, usize),
         row: impl Fn(&StepMap) -> Row,

@@ -1,0 +1,39 @@
+//! What never changes during a run, built from a model: bodies, numbering, masses, supports, loads, contacts, schemes.
+//!
+//! [`Model`] names things as the case file does; [`System`] has them in its own numbers. [`Motion`] holds the vectors of a
+//! system. No step is taken here.
+
+mod adaptive;
+mod between;
+mod contacts;
+mod error;
+mod initial;
+mod loads;
+mod maps;
+mod mass;
+mod massless;
+mod model;
+mod motion;
+mod nonlinear;
+mod refused;
+mod rigid;
+mod stability;
+mod system;
+
+pub use adaptive::{Adaptive, Closing};
+pub use contacts::sides;
+pub use error::Error;
+pub use loads::{Load, LoadKind, NodalLoad, NumberedForce, NumberedLoad};
+pub use maps::Maps;
+pub use mass::Mass;
+pub use model::{
+    Model, ModelBody, ModelContact, ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget,
+    Support,
+};
+pub use motion::Motion;
+pub use nonlinear::{
+    Damping, Follows, Iteration, Nonlinear, NumberedNonlinear, Preload, Prescribed, PrescribedTurn,
+};
+pub use refused::Refused;
+pub use rigid::Order;
+pub use system::{LinkRow, System, on, push_cliques};
