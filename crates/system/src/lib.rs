@@ -5,6 +5,8 @@
 
 mod adaptive;
 mod between;
+mod checks;
+mod cliques;
 mod contacts;
 mod error;
 mod initial;
@@ -21,6 +23,7 @@ mod stability;
 mod system;
 
 pub use adaptive::{Adaptive, Closing};
+pub use cliques::push_cliques;
 pub use contacts::sides;
 pub use error::Error;
 pub use loads::{Load, LoadKind, NodalLoad, NumberedForce, NumberedLoad};
@@ -36,4 +39,4 @@ pub use nonlinear::{
 };
 pub use refused::Refused;
 pub use rigid::Order;
-pub use system::{LinkRow, System, on, push_cliques};
+pub use system::{LinkRow, System, on};

@@ -7,8 +7,8 @@ use carom_algebra::pattern::Cliques;
 use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, MassKind};
 
+use crate::cliques::push_cliques;
 use crate::model::ModelBody;
-use crate::system::push_cliques;
 
 /// Mass of the system: a diagonal, and the consistent part where there is one.
 #[derive(Debug)]

@@ -3,12 +3,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use carom_algebra::pattern::Cliques;
 use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::{Kind, Unknowns};
-use carom_bodies::{Body, Kinematics, MassKind, Rigid, height};
-use carom_contact::law::Level;
-use carom_contact::{Contact, Frames, Initial, Places, Target};
+use carom_bodies::{Body, Kinematics, Rigid, height};
+use carom_contact::{Contact, Frames, Places, Target};
 use carom_mesh::{Face, Mesh, Parts};
 
 use crate::contacts::{numbered, renumbered, sides};
@@ -330,55 +328,6 @@ impl System {
         self.contacts[contact].law.projects() || self.scheme.get().restores_contact_work()
     }
 
-    /// Refuses meshes that overlap themselves where a contact with [`Initial::Refuse`] faces itself.
-    fn check_overlaps(&self, contacts: &[ModelContact]) -> Result<(), Error> {
-        for (k, contact) in contacts.iter().enumerate() {
-            if contact.initial != Initial::Refuse {
-                continue;
-            }
-            let inside = self.self_penetrations(k);
-            if let Some(&node) = inside.first() {
-                return Err(Error::Overlap {
-                    contact: contact.name.clone(),
-                    points: inside.len(),
-                    node,
-                });
-            }
-        }
-        Ok(())
-    }
-
-    fn check_massless(&self, contacts: &[ModelContact]) -> Result<(), Error> {
-        let scheme = self.scheme.get();
-        let cause = |contact: &ModelContact| {
-            if scheme.is_explicit() {
-                Some("an explicit scheme divides by the mass of each node")
-            } else if scheme.projects_predictor() {
-                Some("the scheme projects its predictor with the mass of the nodes in contact")
-            } else if scheme.restores_contact_work() {
-                Some("the scheme changes the velocity with the mass of the nodes in contact")
-            } else if scheme.needs_lumped_mass() {
-                Some("the scheme divides the contact forces by the mass of their nodes")
-            } else if contact.law.get().level() != Level::Gap {
-                Some(
-                    "the rate of a node without mass is no unknown: only the displacement law can hold",
-                )
-            } else if contact.law.projects() {
-                Some("there is no mass on which velocities could be projected, and no need to")
-            } else {
-                None
-            }
-        };
-        let mut refused = contacts.iter().filter(|contact| contact.massless);
-        match refused.find_map(|contact| Some((contact, cause(contact)?))) {
-            None => Ok(()),
-            Some((contact, cause)) => Err(Error::MasslessContact {
-                contact: contact.name.clone(),
-                cause,
-            }),
-        }
-    }
-
     /// The number of the scheme of the secondary side of a contact.
     pub fn zone_of(&self, contact: usize) -> usize {
         self.zone_of_body[self.sides[contact].0]
@@ -388,69 +337,6 @@ impl System {
     pub fn zone_at(&self, unknown: usize) -> usize {
         let span = self.spans.partition_point(|(span, _)| span.end <= unknown);
         self.spans[span].1
-    }
-
-    fn check_scheme(&self, zone: usize, bodies: &[ModelBody]) -> Result<(), Error> {
-        let scheme = self.schemes[zone].get();
-        let of_zone = |body: usize| self.zone_of_body[body] == zone;
-        let own = || bodies.iter().enumerate().filter(|(k, _)| of_zone(*k));
-        let mut own = own().map(|(_, body)| body).collect::<Vec<_>>().into_iter();
-        if scheme.needs_lumped_mass()
-            && let Some(body) = own.clone().find(|body| body.mass == MassKind::Consistent)
-        {
-            return Err(Error::ConsistentMass {
-                scheme: scheme.name(),
-                body: body.spec.name.clone(),
-            });
-        }
-        let dissipates = |body: &&ModelBody| body.spec.material.dissipates();
-        if scheme.is_between()
-            // a run may end with its static stage, which asks for no stress between two states
-            && self.static_steps() == 0
-            && let Some(body) = own.find(dissipates)
-        {
-            let body = body.spec.name.clone();
-            return Err(carom_bodies::Error::NoBetween { body }.into());
-        }
-        let touches = |(secondary, primary): &(usize, Option<usize>)| {
-            of_zone(*secondary) || primary.is_some_and(of_zone)
-        };
-        let contacts = self.contacts.iter().zip(&self.sides);
-        let mut contacts = contacts.filter(|(_, sides)| touches(sides)).map(|(c, _)| c);
-        let refused = |contact: &&Contact| !scheme.takes(contact.law.get().level());
-        if let Some(contact) = contacts.clone().find(refused) {
-            let of_rates = scheme.takes(Level::Rate) && !scheme.is_explicit();
-            return Err(match contact.law.get().level() {
-                Level::Gap | Level::GapAndRate if of_rates => Error::GapLaw {
-                    contact: contact.name.clone(),
-                    scheme: scheme.name(),
-                },
-                Level::Gap => Error::DisplacementLaw {
-                    contact: contact.name.clone(),
-                },
-                Level::Rate | Level::GapAndRate => Error::RateLaw {
-                    contact: contact.name.clone(),
-                    scheme: scheme.name(),
-                },
-            });
-        }
-        let projects = |contact: &&Contact| contact.law.projects();
-        if let Some(contact) = contacts.find(projects)
-            && !scheme.step_map(self.dt).balances_at_the_end()
-        {
-            return Err(Error::Projection {
-                contact: contact.name.clone(),
-            });
-        }
-        let critical = self.critical_step();
-        if scheme.is_explicit() && self.dt > critical {
-            Err(Error::Unstable {
-                dt: self.dt,
-                critical,
-            })
-        } else {
-            Ok(())
-        }
     }
 
     /// Steps of the static stage before the dynamics; 0 without one. Time is no time in them: it says what loads and motions are.
@@ -648,19 +534,6 @@ fn node_masses(body: &Body, unknowns: &Unknowns) -> Vec<(u32, f64)> {
         .filter(|&first| mass[first] > 0.0)
         .map(|first| (unknowns.node(first), mass[first]))
         .collect()
-}
-
-/// Adds the unknowns of each element of a body that lies in a part, counted from the first of the part.
-pub fn push_cliques(body: &Body, map: &Unknowns, part: &Range<usize>, cliques: &mut Cliques) {
-    let mut unknowns = Vec::new();
-    body.each_element(&mut |nodes| {
-        if part.contains(&map.first(nodes[0])) {
-            let of_node = |&node: &u32| map.of(node).map(|i| (i - part.start) as u32);
-            unknowns.clear();
-            unknowns.extend(nodes.iter().flat_map(of_node));
-            cliques.push(&unknowns);
-        }
-    });
 }
 
 fn initial(
