@@ -7,6 +7,7 @@
 mod compliance;
 mod condensed;
 mod control;
+mod costs;
 mod driver;
 mod error;
 mod exchange;
@@ -28,8 +29,9 @@ use carom_system as system;
 
 pub use carom_signals::Amplitude;
 pub use control::Control;
+pub use costs::{Costs, Phases, Work};
 pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};
-pub use driver::{Costs, Driver, Phases, Work};
+pub use driver::Driver;
 pub use error::Error;
 pub use exchange::Exchange;
 pub use impact::Impact;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
+use crate::costs::Costs;
 use crate::coulomb::FrictionProblem;
-use crate::driver::Costs;
 use crate::error::Error;
 use crate::interface::InterfaceProblem;
 use crate::state::{State, StepReport};

@@ -5,6 +5,7 @@ use std::time::Instant;
 use carom_bodies::{Placement, Stored};
 
 use super::{Driver, Which};
+use crate::costs::Phases;
 use crate::error::Error;
 use crate::state::check_finite;
 use crate::step_map::StepMap;
@@ -64,8 +65,8 @@ impl Driver {
     }
 
     /// Counts as contact the time since `begin` that has not been added to the phases `before` elsewhere.
-    pub(super) fn count_contact(&mut self, begin: Instant, before: super::Phases) {
-        let counted = |phases: &super::Phases| {
+    pub(super) fn count_contact(&mut self, begin: Instant, before: Phases) {
+        let counted = |phases: &Phases| {
             phases.factorisation + phases.forces + phases.sweeps + phases.friction
         };
         let counted = counted(&self.phases) - counted(&before);

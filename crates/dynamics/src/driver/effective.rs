@@ -12,11 +12,11 @@ use carom_algebra::solver::FactorStats;
 use carom_bodies::Placement;
 use carom_contact::Pairing;
 
-use super::Work;
 use super::linking::Linking;
 use super::loads::damping_rate;
 use super::part_matrix::part_matrix;
 use crate::compliance::Compliance;
+use crate::costs::Work;
 use crate::error::Error;
 use crate::operator::{Operator, Operators, factored, single};
 use crate::step_map::StepMap;

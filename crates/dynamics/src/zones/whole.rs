@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Zoned, Zones, ZonesState};
 use crate::control::Control;
-use crate::driver::Costs;
+use crate::costs::Costs;
 use crate::error::Error;
 use crate::ledger::{Balance, Ledger, Tolerated};
 use crate::march::{FailedProblem, Stepper};

@@ -1,0 +1,92 @@
+//! What a run costs: times, factors, sweeps.
+
+use std::time::Duration;
+
+use carom_algebra::solver::FactorStats;
+
+use crate::operator::Operators;
+
+/// Wall time spent so far by phase of the step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Phases {
+    /// Analysis and factorisation.
+    pub factorisation: Duration,
+    /// Internal forces.
+    pub forces: Duration,
+    /// Forward and backward sweeps of the free motion and the correction.
+    pub sweeps: Duration,
+    /// Pairing, columns, interface problem without friction.
+    pub contact: Duration,
+    /// Columns and interface problem of contacts with friction.
+    pub friction: Duration,
+    /// Balance, records, vector updates.
+    pub balance: Duration,
+}
+
+/// Counts of what factors were made and used for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Factors computed.
+    pub factorisations: usize,
+    /// Triangular sweeps, forward or backward.
+    pub sweeps: usize,
+    /// Columns A⁻¹ Nᵀ computed.
+    pub columns: usize,
+}
+
+impl Work {
+    /// Adds what factors were made and used for.
+    pub(crate) fn add_factors(&mut self, operators: &Operators) {
+        for stats in operators.stats() {
+            self.add_factor(stats);
+        }
+    }
+
+    pub(crate) fn add_factor(&mut self, stats: &FactorStats) {
+        self.factorisations += stats.factorisations;
+        self.sweeps += stats.sweeps;
+    }
+}
+
+/// What the run cost so far.
+#[derive(Clone, Debug, Default)]
+pub struct Costs {
+    /// One entry per factor, for the present size of the step.
+    pub factors: Vec<FactorStats>,
+    /// Over all sizes of the step.
+    pub work: Work,
+    /// Bytes of columns and compliance for the present size of the step.
+    pub compliance_bytes: usize,
+    /// Internal-force sweeps.
+    pub force_sweeps: usize,
+    /// Elements whose internal forces were computed, over all sweeps.
+    pub element_updates: u64,
+    /// Times.
+    pub phases: Phases,
+}
+
+impl Costs {
+    /// Adds the costs of another driver.
+    pub(crate) fn add(&mut self, other: Costs) {
+        self.factors.extend(other.factors);
+        let (work, its) = (&mut self.work, other.work);
+        work.factorisations += its.factorisations;
+        work.sweeps += its.sweeps;
+        work.columns += its.columns;
+        self.compliance_bytes += other.compliance_bytes;
+        self.force_sweeps += other.force_sweeps;
+        self.element_updates += other.element_updates;
+        let (phases, its) = (&mut self.phases, other.phases);
+        phases.factorisation += its.factorisation;
+        phases.forces += its.forces;
+        phases.sweeps += its.sweeps;
+        phases.contact += its.contact;
+        phases.friction += its.friction;
+        phases.balance += its.balance;
+    }
+
+    /// Solutions with a factor: pairs of a forward and a backward sweep.
+    pub fn solves(&self) -> u64 {
+        self.work.sweeps as u64 / 2
+    }
+}
