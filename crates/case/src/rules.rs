@@ -28,6 +28,11 @@ pub(crate) fn check(case: &Case) -> Vec<Problem> {
             let problem = Problem::new(format!("load.{name}.on"), message).found(on);
             problems.push(problem.accepted(["no `on`"]));
         }
+        if load.random.is_some() && load.amplitude.is_some() {
+            let message = "a random force is a function of time by itself";
+            let problem = Problem::new(format!("load.{name}.amplitude"), message);
+            problems.push(problem.accepted(["no `amplitude`"]));
+        }
     }
     check_time(case, &mut problems);
     problems

@@ -43,9 +43,17 @@ pub enum Error {
         /// Index of the point.
         at: usize,
     },
+    /// A point that makes no spectral density.
+    #[error(
+        "point {} of the spectral density: frequencies must ascend from above zero, densities not be negative", at + 1
+    )]
+    NotADensity {
+        /// Index of the point.
+        at: usize,
+    },
     /// A synthetic record shorter than the longest period of its spectrum.
     #[error(
-        "a record of {duration} s cannot meet a spectrum at {frequency} Hz: it needs a period at least"
+        "{duration} s are too short for a spectrum at {frequency} Hz: a period is needed at least"
     )]
     TooBrief {
         /// Duration, s.

@@ -21,6 +21,13 @@ impl Random {
         (z >> 11) as f64 / (1_u64 << 53) as f64
     }
 
+    /// Two independent numbers of the normal distribution (Box, Muller 1958).
+    pub(crate) fn gaussian_pair(&mut self) -> [f64; 2] {
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        let (sin, cos) = self.phase().sin_cos();
+        [radius * cos, radius * sin]
+    }
+
     /// A phase, rad.
     pub(crate) fn phase(&mut self) -> f64 {
         TAU * self.uniform()

@@ -2,8 +2,10 @@
 
 use carom_dynamics::{Amplitude, Load, LoadKind, ModelBody, NodalLoad};
 use carom_mesh::{ElementId, Mesh, Surface};
+use carom_signals::{Error, RandomField};
 
 use super::Builder;
+use super::probes::integrals;
 use super::supports::AXES;
 use crate::error::Problem;
 use crate::schema::{self, AmplitudeCourse};
@@ -54,6 +56,10 @@ impl Builder<'_> {
         let mut loads = Vec::new();
         for (name, load) in self.case.load.iter() {
             let path = format!("load.{name}");
+            if let Some(random) = &load.random {
+                loads.extend(self.random_loads(mesh, (name, load), random));
+                continue;
+            }
             let (force, moment) = match (&load.force, &load.moment) {
                 (Some(force), _) => {
                     let path = format!("{path}.force");
@@ -76,6 +82,65 @@ impl Builder<'_> {
             }
         }
         loads
+    }
+
+    /// A random force along a line: one load for each node, with its own function of time.
+    fn random_loads(
+        &mut self,
+        mesh: &Mesh,
+        (name, load): (&str, &schema::Load),
+        random: &schema::RandomForce,
+    ) -> Vec<NodalLoad> {
+        let path = format!("load.{name}");
+        let directions = [("direction", &random.direction), ("along", &random.along)];
+        let [direction, along] = directions
+            .map(|(key, given)| self.normal(mesh, &format!("{path}.random.{key}"), given));
+        let on = load.on.as_deref().unwrap_or_default();
+        let group = self.group(mesh, &format!("{path}.on"), on);
+        let (Some(direction), Some(along), Some(group)) = (direction, along, group) else {
+            return Vec::new();
+        };
+        let mut nodes: Vec<(f64, u32, f64)> = integrals(mesh, group, &|_| 1.0)
+            .into_iter()
+            .map(|(node, measure)| {
+                let x = mesh.nodes[node as usize];
+                ((0..3).map(|i| along[i] * x[i]).sum(), node, measure)
+            })
+            .collect();
+        nodes.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let field = RandomField {
+            spectrum: random
+                .spectrum
+                .iter()
+                .map(|point| [point.frequency.0, point.density])
+                .collect(),
+            correlation_length: random.correlation_length.0,
+            duration: self.case.time.end.0,
+            seed: u64::from(random.seed),
+        };
+        let places: Vec<f64> = nodes.iter().map(|(place, ..)| *place).collect();
+        match field.at(&places) {
+            Ok(amplitudes) => {
+                let loads = nodes.iter().zip(amplitudes);
+                loads
+                    .map(|(&(_, node, measure), amplitude)| NodalLoad {
+                        name: name.to_owned(),
+                        nodes: vec![node],
+                        force: direction.map(|n| measure * n),
+                        moment: [0.0; 3],
+                        amplitude,
+                    })
+                    .collect()
+            }
+            Err(error) => {
+                let path = match &error {
+                    Error::NotADensity { at } => format!("{path}.random.spectrum[{at}]"),
+                    _ => format!("{path}.random.spectrum"),
+                };
+                self.problems.push(Problem::new(path, error.to_string()));
+                Vec::new()
+            }
+        }
     }
 
     /// Acceleration of the ground by direction.

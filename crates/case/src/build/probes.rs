@@ -81,7 +81,11 @@ fn shares(mesh: &Mesh, group: &Group, axisymmetric: bool) -> Vec<(u32, f64)> {
 }
 
 /// ∫ N_a `unit` dΩ of each node of a group.
-fn integrals(mesh: &Mesh, group: &Group, unit: &dyn Fn(&[f64; 3]) -> f64) -> BTreeMap<u32, f64> {
+pub(super) fn integrals(
+    mesh: &Mesh,
+    group: &Group,
+    unit: &dyn Fn(&[f64; 3]) -> f64,
+) -> BTreeMap<u32, f64> {
     let mut shares = BTreeMap::new();
     let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);
     for &element in &group.elements {

@@ -38,7 +38,9 @@ pub use contact::{
     Penetration, Sliding,
 };
 pub use discrete::{Dashpot, DashpotPoint, Ends, PointMass, Spring, SpringPoint, Stop};
-pub use load::{AmplitudeCourse, AmplitudePoint, BaseAcceleration, Load};
+pub use load::{
+    AmplitudeCourse, AmplitudePoint, BaseAcceleration, DensityPoint, Load, RandomForce,
+};
 pub use material::Material;
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
 pub use named::Named;
