@@ -22,7 +22,7 @@ pub struct Unknowns {
     first: Vec<u32>,
     /// Node of each unknown.
     node: Vec<u32>,
-    /// Nodes with rotations, ascending: the order of their frames.
+    /// Nodes with finite rotations, ascending: the order of their frames.
     turning: Vec<u32>,
     /// What carries a node that is carried, by node; empty where none is.
     carriers: Vec<Option<Carrier>>,
@@ -55,7 +55,7 @@ impl Unknowns {
             map.node.extend(own);
             map.first.push(map.node.len() as u32);
             match kind {
-                NodeKind::Translations => {}
+                NodeKind::Translations | NodeKind::SmallRotations => {}
                 NodeKind::Turning => map.turning.push(number as u32),
                 NodeKind::Carried(carrier) => {
                     map.carriers.resize(number + 1, None);
@@ -132,18 +132,19 @@ impl Unknowns {
         self.carrier(node).map_or(node, |carrier| carrier.node)
     }
 
-    /// Nodes with rotations, in the order of their frames.
+    /// Nodes with finite rotations, in the order of their frames.
     #[inline]
     pub fn turning(&self) -> &[u32] {
         &self.turning
     }
 
-    /// Place of the frame of a node with rotations.
+    /// Place of the frame of a node with finite rotations.
     pub fn frame(&self, node: u32) -> Option<usize> {
         self.turning.binary_search(&node).ok()
     }
 
-    /// The rotations of a node in a system vector, about the axes of its frame, with zeros where there are none.
+    /// The rotations of a node in a system vector, about the axes of its frame, or of coordinates where it has none, with zeros
+    /// where there are none.
     pub fn spin(&self, node: u32, values: &[f64]) -> [f64; 3] {
         let mut spin = [0.0; 3];
         for unknown in self.rotations_of(node) {
@@ -204,6 +205,8 @@ impl Unknowns {
 pub enum NodeKind {
     /// Its translations.
     Translations,
+    /// Its translations, and its rotations, which are small: one in the plane, three in space, none on a line.
+    SmallRotations,
     /// Its translations, and its rotations, which may be finite: one in the plane, three in space, none on a line.
     Turning,
     /// None: another node carries it.
@@ -214,9 +217,9 @@ impl NodeKind {
     fn unknowns(self, dim: usize) -> usize {
         match (self, dim) {
             (NodeKind::Carried(_), _) => 0,
-            (NodeKind::Translations, _) | (NodeKind::Turning, 0 | 1) => dim,
-            (NodeKind::Turning, 2) => 3,
-            (NodeKind::Turning, _) => 6,
+            (NodeKind::Translations, _) | (_, 0 | 1) => dim,
+            (NodeKind::SmallRotations | NodeKind::Turning, 2) => 3,
+            (NodeKind::SmallRotations | NodeKind::Turning, _) => 6,
         }
     }
 }
@@ -248,6 +251,16 @@ mod tests {
             assert_eq!(map.of_range(0..4), 0..map.len());
             assert_eq!([0, 1, 2, 3].map(|node| map.moved_by(node)), [0, 2, 2, 2]);
             assert_eq!(map.frame(2), Some(0));
+        }
+    }
+
+    #[test]
+    fn small_rotations_are_unknowns_without_a_frame() {
+        for (dim, count) in [(1, 1), (2, 3), (3, 6)] {
+            let map = Unknowns::new(dim, [NodeKind::SmallRotations]);
+            assert_eq!(map.len(), count);
+            assert_eq!(map.rotations_of(0).len(), count - dim);
+            assert_eq!((map.turning(), map.frame(0)), (&[][..], None));
         }
     }
 

@@ -7,12 +7,13 @@ use carom_algebra::tensor::Mat3;
 use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
+use crate::beam::{Beam, SectionForces};
 use crate::block::Scratch;
 use crate::discrete::{Discrete, DiscreteSpec, VisitRow};
 use crate::distortion::Distortion;
 use crate::rigid::Rigid;
 use crate::solid::{BodySpec, Solid};
-use crate::{Error, Placement, Stored};
+use crate::{Error, Kinematics, Placement, Stored};
 
 /// A body: mass, forces f(u, v), their derivatives, energies.
 #[derive(Debug)]
@@ -21,6 +22,8 @@ use crate::{Error, Placement, Stored};
 pub enum Body {
     /// A solid or a bar.
     Solid(Solid),
+    /// Beams.
+    Beam(Beam),
     /// A rigid body.
     Rigid(Rigid),
     /// Point masses, springs or dashpots.
@@ -28,17 +31,23 @@ pub enum Body {
 }
 
 impl Body {
-    /// Builds a solid or a bar on a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the system.
+    /// Builds a solid, a bar or beams on a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the
+    /// system.
     ///
     /// # Errors
-    /// As [`Solid::new`].
+    /// As [`Solid::new`]; of beams cells that are no bars of two nodes, or have no axes.
     pub fn new(
         mesh: &Mesh,
         spec: BodySpec,
         number: &[u32],
         unknowns: &Unknowns,
     ) -> Result<Body, Error> {
-        Solid::new(mesh, spec, number, unknowns).map(Body::Solid)
+        match spec.kinematics {
+            Kinematics::Beam(section) => {
+                Beam::new(mesh, spec, section, number, unknowns).map(Body::Beam)
+            }
+            _ => Solid::new(mesh, spec, number, unknowns).map(Body::Solid),
+        }
     }
 
     /// Builds discrete elements on the cells of a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of
@@ -59,7 +68,15 @@ impl Body {
     pub fn as_solid(&self) -> Option<&Solid> {
         match self {
             Body::Solid(solid) => Some(solid),
-            Body::Rigid(_) | Body::Discrete(_) => None,
+            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => None,
+        }
+    }
+
+    /// The beams that it is, if it is some.
+    pub fn as_beam(&self) -> Option<&Beam> {
+        match self {
+            Body::Beam(beam) => Some(beam),
+            Body::Solid(_) | Body::Rigid(_) | Body::Discrete(_) => None,
         }
     }
 
@@ -67,14 +84,14 @@ impl Body {
     pub fn as_rigid(&self) -> Option<&Rigid> {
         match self {
             Body::Rigid(rigid) => Some(rigid),
-            Body::Solid(_) | Body::Discrete(_) => None,
+            Body::Solid(_) | Body::Beam(_) | Body::Discrete(_) => None,
         }
     }
 
     /// The discrete elements that it is, if it is some.
     pub fn as_discrete(&self) -> Option<&Discrete> {
         match self {
-            Body::Solid(_) | Body::Rigid(_) => None,
+            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => None,
             Body::Discrete(discrete) => Some(discrete),
         }
     }
@@ -83,7 +100,7 @@ impl Body {
     /// ground, and across their nodes.
     pub fn balances_itself(&self) -> bool {
         match self {
-            Body::Solid(_) | Body::Rigid(_) => true,
+            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => true,
             Body::Discrete(discrete) => !discrete.has_stiffness(),
         }
     }
@@ -91,7 +108,7 @@ impl Body {
     /// Whether it has dashpots ([`Body::add_damping_force`]).
     pub fn has_damping(&self) -> bool {
         match self {
-            Body::Solid(_) | Body::Rigid(_) => false,
+            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => false,
             Body::Discrete(discrete) => discrete.has_damping(),
         }
     }
@@ -100,6 +117,7 @@ impl Body {
     pub fn name(&self) -> &str {
         match self {
             Body::Solid(solid) => solid.name(),
+            Body::Beam(beam) => beam.name(),
             Body::Discrete(discrete) => discrete.name(),
             Body::Rigid(rigid) => rigid.name(),
         }
@@ -109,6 +127,7 @@ impl Body {
     pub fn cells(&self) -> &[ElementId] {
         match self {
             Body::Solid(solid) => solid.cells(),
+            Body::Beam(beam) => beam.cells(),
             Body::Discrete(discrete) => discrete.cells(),
             Body::Rigid(rigid) => rigid.cells(),
         }
@@ -118,24 +137,54 @@ impl Body {
     pub fn is_linear(&self) -> bool {
         match self {
             Body::Solid(solid) => solid.is_linear(),
+            Body::Beam(_) => true,
             Body::Discrete(discrete) => discrete.is_linear(),
             Body::Rigid(_) => false,
         }
     }
 
+    /// Speed of its fastest waves, m/s: of compression, along a beam of extension. None without waves.
+    pub fn wave_speed(&self) -> Option<f64> {
+        match self {
+            Body::Solid(solid) => Some(solid.wave_speed()),
+            Body::Beam(beam) => Some(beam.wave_speed()),
+            Body::Rigid(_) | Body::Discrete(_) => None,
+        }
+    }
+
+    /// Smallest size of an element, m; infinite of a body that does not deform.
+    pub fn smallest_size(&self) -> f64 {
+        match self {
+            Body::Solid(solid) => solid.smallest_size(),
+            Body::Beam(beam) => beam.smallest_size(),
+            Body::Rigid(_) | Body::Discrete(_) => f64::INFINITY,
+        }
+    }
+
+    /// Whether its lumped mass is diagonal in the axes of coordinates.
+    pub fn lumps(&self) -> bool {
+        match self {
+            Body::Beam(beam) => beam.lumps(),
+            Body::Solid(_) | Body::Rigid(_) | Body::Discrete(_) => true,
+        }
+    }
+
+    /// Forces and moments in the sections of each element of beams, in the order of [`Body::cells`]; none of other bodies.
+    pub fn section_forces(&self, u: &[f64]) -> Option<Vec<SectionForces>> {
+        Some(self.as_beam()?.section_forces(u))
+    }
+
     /// Time that a wave needs to pass over its smallest element, s; zero without waves.
     pub fn passage(&self) -> f64 {
-        match self {
-            Body::Solid(solid) => solid.smallest_size() / solid.wave_speed(),
-            Body::Rigid(_) | Body::Discrete(_) => 0.0,
-        }
+        self.wave_speed()
+            .map_or(0.0, |speed| self.smallest_size() / speed)
     }
 
     /// Numbers that it keeps from one step to the next.
     pub fn history_len(&self) -> usize {
         match self {
             Body::Solid(solid) => solid.history_len(),
-            Body::Rigid(_) | Body::Discrete(_) => 0,
+            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => 0,
         }
     }
 
@@ -143,7 +192,7 @@ impl Body {
     pub fn start_history(&self, out: &mut [f64]) {
         match self {
             Body::Solid(solid) => solid.start_history(out),
-            Body::Rigid(_) | Body::Discrete(_) => {}
+            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => {}
         }
     }
 
@@ -155,6 +204,7 @@ impl Body {
     pub fn internal_force(&self, u: &[f64], scratch: &mut Scratch, f: &mut [f64]) -> f64 {
         match self {
             Body::Solid(solid) => solid.internal_force(u, scratch, f),
+            Body::Beam(beam) => beam.internal_force(u, f),
             Body::Discrete(discrete) => discrete.internal_force(u, f),
             Body::Rigid(_) => 0.0,
         }
@@ -177,6 +227,7 @@ impl Body {
     ) -> Result<Stored, Error> {
         match self {
             Body::Solid(solid) => solid.force(at, new, scratch, f),
+            Body::Beam(beam) => Ok(beam.force(at, f)),
             Body::Discrete(discrete) => Ok(discrete.add_spring_force(at, f)),
             Body::Rigid(rigid) => {
                 rigid.add_force(at, f);
@@ -200,6 +251,10 @@ impl Body {
         match self {
             // its forces do not depend on the velocity
             Body::Solid(solid) => solid.add_tangent(at, by_u, matrix),
+            Body::Beam(beam) => {
+                beam.add_tangent(at, by_u, matrix);
+                Ok(())
+            }
             Body::Rigid(rigid) => {
                 rigid.add_tangent(at, by_v, matrix);
                 Ok(())
@@ -215,7 +270,7 @@ impl Body {
     /// [`Body::force`], since all their work is dissipated; their derivative is a part of [`Body::add_tangent`].
     pub fn add_damping_force(&self, v: &[f64], f: &mut [f64]) {
         match self {
-            Body::Solid(_) | Body::Rigid(_) => {}
+            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.add_damping_force(v, f),
         }
     }
@@ -224,6 +279,7 @@ impl Body {
     pub fn add_lumped_mass(&self, mass: &mut [f64]) {
         match self {
             Body::Solid(solid) => solid.add_lumped_mass(mass),
+            Body::Beam(beam) => beam.add_lumped_mass(mass),
             Body::Discrete(discrete) => discrete.add_lumped_mass(mass),
             Body::Rigid(rigid) => rigid.add_mass(mass),
         }
@@ -235,6 +291,7 @@ impl Body {
     pub fn assemble(&self, factors: [f64; 3], part: &Range<usize>, matrix: &mut Csr) {
         match self {
             Body::Solid(solid) => solid.assemble(factors[0], factors[2], part, matrix),
+            Body::Beam(beam) => beam.assemble([factors[0], factors[2]], part, matrix),
             Body::Discrete(discrete) => discrete.assemble(factors, part, matrix),
             Body::Rigid(_) => {}
         }
@@ -244,6 +301,7 @@ impl Body {
     pub fn each_element(&self, visit: &mut dyn FnMut(&[u32])) {
         match self {
             Body::Solid(solid) => solid.each_element(visit),
+            Body::Beam(beam) => beam.each_element(visit),
             Body::Discrete(discrete) => discrete.each_element(visit),
             Body::Rigid(rigid) => visit(&[rigid.node()]),
         }
@@ -253,6 +311,7 @@ impl Body {
     pub fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
         match self {
             Body::Solid(solid) => solid.stresses(u, history),
+            Body::Beam(beam) => beam.stresses(u),
             // neither volume nor stress
             Body::Discrete(discrete) => vec![(0.0, Mat3::zeros()); discrete.cells().len()],
             Body::Rigid(rigid) => vec![(0.0, Mat3::zeros()); rigid.cells().len()],
@@ -264,7 +323,7 @@ impl Body {
     pub fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
         match self {
             Body::Solid(solid) => solid.plastic_strains(history),
-            Body::Rigid(_) | Body::Discrete(_) => None,
+            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => None,
         }
     }
 
@@ -273,6 +332,7 @@ impl Body {
     pub fn frequency_bound(&self) -> f64 {
         match self {
             Body::Solid(solid) => solid.frequency_bound(),
+            Body::Beam(beam) => beam.frequency_bound(),
             Body::Rigid(_) | Body::Discrete(_) => 0.0,
         }
     }
@@ -284,6 +344,7 @@ impl Body {
     pub fn frequency_bound_at(&self, at: &Placement) -> Result<f64, Error> {
         match self {
             Body::Solid(solid) => solid.frequency_bound_at(at),
+            Body::Beam(beam) => Ok(beam.frequency_bound()),
             Body::Rigid(_) | Body::Discrete(_) => Ok(0.0),
         }
     }
@@ -291,7 +352,7 @@ impl Body {
     /// Visits the rows n of springs, as unknowns and coefficients of the elongation: motions that they hold.
     pub fn each_spring(&self, visit: &mut VisitRow) {
         match self {
-            Body::Solid(_) | Body::Rigid(_) => {}
+            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.each_spring(visit),
         }
     }
@@ -301,7 +362,7 @@ impl Body {
     /// (Gershgorin).
     pub fn add_row_sums(&self, stiffness: &mut [f64], damping: &mut [f64]) {
         match self {
-            Body::Solid(_) | Body::Rigid(_) => {}
+            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.add_row_sums(stiffness, damping),
         }
     }
@@ -310,6 +371,7 @@ impl Body {
     pub fn distortion(&self, u: &[f64], point: usize, before: &Distortion) -> Option<Distortion> {
         match self {
             Body::Solid(solid) => solid.distortion(u, point, before),
+            Body::Beam(beam) => Some(beam.distortion(u, before)),
             Body::Rigid(_) | Body::Discrete(_) => None,
         }
     }

@@ -65,7 +65,10 @@ impl Law {
             Kinematics::PlaneStrain { thickness } | Kinematics::PlaneStress { thickness } => {
                 thickness
             }
-            Kinematics::Bar { .. } | Kinematics::Axisymmetric | Kinematics::Solid => 1.0,
+            Kinematics::Bar { .. }
+            | Kinematics::Beam(_)
+            | Kinematics::Axisymmetric
+            | Kinematics::Solid => 1.0,
         };
         Law {
             material,

@@ -32,7 +32,7 @@ pub struct Extreme {
 
 impl Extreme {
     /// The larger; of equals the first.
-    fn or(self, other: Extreme) -> Extreme {
+    pub(crate) fn or(self, other: Extreme) -> Extreme {
         let first = other.value == self.value && other.cell < self.cell;
         match other.value > self.value || first {
             true => other,

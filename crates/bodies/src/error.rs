@@ -43,6 +43,36 @@ pub enum Error {
         /// Name of the body.
         body: String,
     },
+    /// Beams in a mesh of one dimension.
+    #[error("body '{body}': beams bend in a plane or in space; a mesh on a line has bars only")]
+    BeamOnLine {
+        /// Name of the body.
+        body: String,
+    },
+    /// A beam element that has no axes.
+    #[error("body '{body}': element {} {why}", cell.index)]
+    BeamAxes {
+        /// Name of the body.
+        body: String,
+        /// The cell.
+        cell: ElementId,
+        /// What is wrong with it.
+        why: &'static str,
+    },
+    /// Beams that share their volume with another model.
+    #[error("body '{body}': beams cannot be glued to another model in volume")]
+    BeamWeights {
+        /// Name of the body.
+        body: String,
+    },
+    /// Kinematics without solid cells.
+    #[error("body '{body}': {kinematics} elements are no cells of a solid or a rigid body")]
+    NotSolid {
+        /// Name of the body.
+        body: String,
+        /// Name of the kinematics.
+        kinematics: &'static str,
+    },
     /// An axisymmetric model lies partly at negative radius.
     #[error(
         "body '{body}': node {node} has the radius {radius:e} m, negative in an axisymmetric model"
@@ -149,6 +179,10 @@ impl Error {
             | Error::NotDiscrete { body, .. }
             | Error::WrongElement { body, .. }
             | Error::QuadraticBar { body, .. }
+            | Error::BeamOnLine { body }
+            | Error::BeamAxes { body, .. }
+            | Error::BeamWeights { body }
+            | Error::NotSolid { body, .. }
             | Error::NegativeRadius { body, .. }
             | Error::WeightCount { body, .. }
             | Error::NegativeMass { body, .. }

@@ -2,6 +2,8 @@
 
 use carom_materials::Plane;
 
+use crate::beam::BeamSection;
+
 /// How the displacement of an element is restricted, and what its missing dimensions are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kinematics {
@@ -10,6 +12,8 @@ pub enum Kinematics {
         /// Cross-section in m².
         area: f64,
     },
+    /// A beam: extension, shear, bending and torsion, with rotations of the nodes.
+    Beam(BeamSection),
     /// No strain out of the plane.
     PlaneStrain {
         /// Thickness in m.
@@ -30,7 +34,7 @@ impl Kinematics {
     /// Dimension of the elements that this kinematics takes.
     pub fn dim(self) -> usize {
         match self {
-            Kinematics::Bar { .. } => 1,
+            Kinematics::Bar { .. } | Kinematics::Beam(_) => 1,
             Kinematics::PlaneStrain { .. }
             | Kinematics::PlaneStress { .. }
             | Kinematics::Axisymmetric => 2,
@@ -41,7 +45,7 @@ impl Kinematics {
     /// The state of stress beside the elements.
     pub fn plane(self) -> Plane {
         match self {
-            Kinematics::Bar { .. } => Plane::Uniaxial,
+            Kinematics::Bar { .. } | Kinematics::Beam(_) => Plane::Uniaxial,
             Kinematics::PlaneStress { .. } => Plane::Stress,
             Kinematics::PlaneStrain { .. } | Kinematics::Axisymmetric | Kinematics::Solid => {
                 Plane::Full
@@ -53,6 +57,7 @@ impl Kinematics {
     pub fn name(self) -> &'static str {
         match self {
             Kinematics::Bar { .. } => "bar",
+            Kinematics::Beam(_) => "beam",
             Kinematics::PlaneStrain { .. } => "plane-strain",
             Kinematics::PlaneStress { .. } => "plane-stress",
             Kinematics::Axisymmetric => "axisymmetric",
@@ -60,11 +65,12 @@ impl Kinematics {
         }
     }
 
-    /// Area (m²) that a unit of surface measure at `x` stands for: the section of a bar (measure 1 at its end), the
+    /// Area (m²) that a unit of surface measure at `x` stands for: the section of a bar or a beam (measure 1 at its end), the
     /// thickness of a plane body per length, 2πr, or 1.
     pub fn surface_factor(self, x: &[f64; 3]) -> f64 {
         match self {
             Kinematics::Bar { area } => area,
+            Kinematics::Beam(section) => section.properties.area,
             Kinematics::PlaneStrain { thickness } | Kinematics::PlaneStress { thickness } => {
                 thickness
             }

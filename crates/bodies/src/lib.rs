@@ -4,6 +4,7 @@
 //! which of their entries belong to a node is told by the map of [`unknowns`](carom_algebra::unknowns).
 
 mod bar;
+mod beam;
 mod block;
 mod body;
 mod continuum;
@@ -23,6 +24,7 @@ mod stability;
 mod together;
 mod weights;
 
+pub use beam::{Beam, BeamSection, BeamTheory, SectionForces, SectionProperties, SectionShape};
 pub use block::Scratch;
 pub use body::Body;
 pub use discrete::{Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, Link, VisitRow};

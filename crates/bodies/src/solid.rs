@@ -407,6 +407,12 @@ fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
         weights.check(&spec.name, mesh, &spec.cells)?;
     }
     check_formulation(mesh, spec)?;
+    if let Kinematics::Beam(_) = spec.kinematics {
+        return Err(Error::NotSolid {
+            body: spec.name.clone(),
+            kinematics: spec.kinematics.name(),
+        });
+    }
     let dim = spec.kinematics.dim();
     for &cell in &spec.cells {
         let element = mesh.kind(cell).table();

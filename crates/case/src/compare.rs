@@ -165,8 +165,11 @@ fn standard(
 fn finest(base: &Job, input: &Input) -> Result<(Job, Refined), SweepError> {
     let built = base.build().map_err(|problems| base.refuse(problems))?;
     let bodies = built.system.bodies.iter();
-    let solids = bodies.filter_map(|body| body.as_solid());
-    let bars = solids.map(|body| body.kinematics().dim()).max() == Some(1);
+    let dims = bodies.filter_map(|body| match (body.as_solid(), body.as_beam()) {
+        (Some(solid), _) => Some(solid.kinematics().dim()),
+        (None, beam) => beam.map(|_| 1),
+    });
+    let bars = dims.max() == Some(1);
     let halvings = HALVINGS[usize::from(!bars)];
     let factor = 2u32.pow(halvings);
     let step = format!("time.step={:?}", built.system.dt / f64::from(factor));

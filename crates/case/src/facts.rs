@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_bodies::{Body, Discrete, DiscreteKind, Link};
+use carom_bodies::{Beam, BeamTheory, Body, Discrete, DiscreteKind, Link, SectionProperties};
 use carom_contact::{Contact, Integration, Rows, Search, Sliding, Target};
 use carom_dynamics::{LinkKind, ModelLink, ModelZone, System, Zoned, step_count};
 
@@ -43,6 +43,7 @@ pub fn facts(built: &Built) -> Vec<Fact> {
     for (k, body) in system.bodies.iter().enumerate() {
         let Some(body) = body.as_solid() else {
             facts.extend(body.as_discrete().map(discrete_fact));
+            facts.extend(body.as_beam().map(|beam| beam_fact(system, k, beam)));
             continue;
         };
         let (speed, size) = (body.wave_speed(), extent(system, k));
@@ -99,6 +100,33 @@ pub fn facts(built: &Built) -> Vec<Fact> {
         ));
     }
     facts
+}
+
+/// A line for beams: theory, section, mass, waves.
+fn beam_fact(system: &System, body: usize, beam: &Beam) -> Fact {
+    let (section, speed) = (beam.section(), beam.wave_speed());
+    let theory = match section.theory {
+        BeamTheory::Timoshenko => "timoshenko",
+        BeamTheory::EulerBernoulli => "euler-bernoulli",
+    };
+    let SectionProperties {
+        area,
+        second_moments: [y, z],
+        torsion,
+        ..
+    } = section.properties;
+    let bending = match system.dim {
+        2 => format!("I_z {z:.6e} m^4"),
+        _ => format!("I_y {y:.6e} m^4, I_z {z:.6e} m^4, torsion {torsion:.6e} m^4"),
+    };
+    fact(
+        format!("body {}", beam.name()),
+        format!(
+            "{theory} beam, area {area:.6e} m^2, {bending}, {:.6} kg, waves of extension at {speed:.5} m/s, smallest element {:.4e} m",
+            system.body_mass(body),
+            beam.smallest_size()
+        ),
+    )
 }
 
 /// A line for discrete elements: how many, and what they are.

@@ -157,6 +157,8 @@ fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Setti
                 velocity: has(Field::Velocity),
                 acceleration: has(Field::Acceleration),
                 stress: has(Field::Stress),
+                rotation: has(Field::Rotation),
+                section_forces: has(Field::SectionForces),
             }
         }),
         reference: reference(built),

@@ -100,6 +100,12 @@ pub enum Error {
         /// Name of the element.
         element: String,
     },
+    /// Beams in a model with zones.
+    #[error("body '{body}': beams are not available in zones")]
+    BeamInZones {
+        /// Name of the body.
+        body: String,
+    },
     /// A secondary surface without area.
     #[error("contact '{contact}': the matrix of the multiplier on the secondary surface: {cause}")]
     WeakForm {

@@ -349,7 +349,7 @@ fn crossing(system: &System, contact: usize) -> f64 {
     let (secondary, primary) = system.sides[contact];
     let bodies = [Some(secondary), primary].into_iter().flatten();
     let across = bodies.filter_map(|body| {
-        let waves = system.bodies[body].as_solid()?.wave_speed();
+        let waves = system.bodies[body].wave_speed()?;
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for &(node, _) in &system.body_masses[body] {
             for i in 0..3 {

@@ -24,8 +24,8 @@ impl Resultant {
     }
 
     /// Resultant of nodal forces, with moments about the origin of the nodes at the mean of these displacements from the
-    /// frames; in the reference configuration without any. Moments on rotations, about the axes of their frames, are turned
-    /// by the mean of the rotations.
+    /// frames; in the reference configuration without any. Moments on finite rotations, about the axes of their frames, are
+    /// turned by the mean of the rotations.
     pub(crate) fn at(
         system: &System,
         (frames, displacements): (&[Rotation], &[&[f64]]),
@@ -49,6 +49,12 @@ impl Resultant {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
                 sum.linear[i] += force[i];
                 sum.angular[i] += x[j] * force[k] - x[k] * force[j];
+            }
+            if !unknowns.rotations_of(node).is_empty() && unknowns.frame(node).is_none() {
+                let moment = unknowns.spin(node, f);
+                for i in 0..3 {
+                    sum.angular[i] += moment[i];
+                }
             }
         }
         let moments = if f.is_empty() { &[][..] } else { frames };

@@ -6,7 +6,7 @@
 //! kind are few, since between a thousandth of the energy and all of it there are only so many quarters: 31.
 
 use carom_algebra::unknowns::{Kind, Unknowns};
-use carom_bodies::{Distortion, Extreme, Solid};
+use carom_bodies::{Distortion, Extreme};
 use carom_contact::{Rows, Search, Target};
 use carom_mesh::Face;
 use serde::{Deserialize, Serialize};
@@ -207,8 +207,7 @@ impl Watched {
             })
         };
         // ends of bars have no length
-        let body = system.bodies[system.sides[number].0].as_solid();
-        let element = body.map_or(f64::INFINITY, Solid::smallest_size);
+        let element = system.bodies[system.sides[number].0].smallest_size();
         watched.lengths = (0..contact.points.len())
             .map(|point| {
                 let (unknowns, _) = watched.initial.row(point);

@@ -2,6 +2,7 @@
 //!
 //! * [`solve`] gives the exact motion of elastic bars that hit a rigid wall or each other: piecewise-linear
 //!   velocity waves, no time step, any number of bounces.
+//! * [`beam`] has the frequencies and waves of uniform beams, [`beam_on_stop`] the fall of one on a stop.
 //! * [`closed_forms`] holds the formulas of the discrete schemes that are known in closed form.
 //! * [`friction`] holds motions under Coulomb friction that slide and stick.
 //! * [`hertz`] is the contact of spheres and cylinders, at rest and in impact.
@@ -10,6 +11,8 @@
 //! Nothing here is shared with the code that is judged: this crate depends on no other.
 
 mod bar;
+pub mod beam;
+pub mod beam_on_stop;
 pub mod closed_forms;
 mod error;
 pub mod friction;

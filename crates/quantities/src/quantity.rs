@@ -123,6 +123,14 @@ quantity!(
     "An area greater than zero, m²."
 );
 quantity!(
+    SecondMoment,
+    "second moment of area",
+    "m^4",
+    "1943 cm^4",
+    POSITIVE,
+    "A second moment of area greater than zero, m⁴."
+);
+quantity!(
     Duration,
     "time",
     "s",
@@ -324,4 +332,4 @@ macro_rules! into_si {
     };
 }
 
-into_si!(Frequency MomentOfInertia Angle SignedForce SignedMoment Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);
+into_si!(SecondMoment Frequency MomentOfInertia Angle SignedForce SignedMoment Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);

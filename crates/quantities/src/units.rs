@@ -22,6 +22,7 @@ const NAMED: &[(&str, &str, Dimension)] = &[
     ("number", "no unit", dimension(0, 0, 0)),
     ("length", "m", dimension(1, 0, 0)),
     ("area", "m^2", dimension(2, 0, 0)),
+    ("second moment of area", "m^4", dimension(4, 0, 0)),
     ("volume", "m^3", dimension(3, 0, 0)),
     ("time", "s", dimension(0, 0, 1)),
     ("mass", "kg", dimension(0, 1, 0)),

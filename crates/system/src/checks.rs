@@ -71,6 +71,13 @@ impl System {
                 body: body.spec.name.clone(),
             });
         }
+        let lumped = |body: &ModelBody| body.mass == MassKind::Lumped;
+        let mut pairs = self.bodies.iter().zip(bodies);
+        if let Some((body, _)) = pairs.find(|(body, spec)| lumped(spec) && !body.lumps()) {
+            return Err(Error::LumpedBeam {
+                body: body.name().to_owned(),
+            });
+        }
         let dissipates = |body: &&ModelBody| body.spec.material.dissipates();
         if scheme.is_between()
             // a run may end with its static stage, which asks for no stress between two states

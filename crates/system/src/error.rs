@@ -80,6 +80,14 @@ pub enum Error {
         /// Node of the mesh, from 0.
         node: u32,
     },
+    /// A lumped mass of beams that is not diagonal.
+    #[error(
+        "body '{body}': the lumped mass of beams in space is diagonal only where their axes and those of their sections are parallel to the axes of coordinates, without offset; take a consistent mass"
+    )]
+    LumpedBeam {
+        /// Name of the body.
+        body: String,
+    },
     /// Contact nodes that cannot be without mass.
     #[error("body '{body}' cannot have contact nodes without mass: {cause}")]
     Massless {

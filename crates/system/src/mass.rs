@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
-use carom_algebra::unknowns::Unknowns;
+use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_bodies::{Body, MassKind};
 
 use crate::cliques::push_cliques;
@@ -29,6 +29,18 @@ impl Mass {
         for i in 0..y.len() {
             y[i] += self.lumped[i] * x[i];
         }
+    }
+
+    /// M g in N: of a consistent mass the work of gravity (m/s²) over the shapes of the elements, moments included.
+    pub(crate) fn weight(&self, unknowns: &Unknowns, gravity: [f64; 3]) -> Vec<f64> {
+        let along = |unknown: usize| match unknowns.kind(unknown) {
+            Kind::Translation(axis) => gravity[axis],
+            Kind::Rotation(_) => 0.0,
+        };
+        let field: Vec<f64> = (0..unknowns.len()).map(along).collect();
+        let mut load = vec![0.0; unknowns.len()];
+        self.multiply(&field, &mut load);
+        load
     }
 
     /// That of bodies.

@@ -49,6 +49,11 @@ pub(crate) fn redistribute(
             body: spec.spec.name.clone(),
             cause,
         };
+        if bodies[k].as_beam().is_some() {
+            return Err(refused(
+                "nodes of beams have rotations, whose inertia has no other node",
+            ));
+        }
         if spec.mass == MassKind::Consistent {
             return Err(refused(
                 "its mass is consistent: only a lumped one can be redistributed",

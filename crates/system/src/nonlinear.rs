@@ -25,7 +25,8 @@ pub struct Prescribed {
     pub displacement: [Option<Amplitude>; 3],
 }
 
-/// A rotation that follows a function of time about one axis of the frame of a node, which no other rotation moves.
+/// A rotation that follows a function of time about one axis of the frame of a node, which no other rotation moves; where
+/// rotations are small about an axis of coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrescribedTurn {
     /// Node of the mesh.
@@ -118,7 +119,7 @@ pub struct Follows {
     pub unknown: u32,
     /// Place of the function in the list of amplitudes.
     pub amplitude: usize,
-    /// Whether it is a rotation: the function is then an angle.
+    /// Whether it is a finite rotation: the function is then an angle.
     pub turns: bool,
 }
 
@@ -199,10 +200,7 @@ impl NumberedNonlinear {
     ) -> Result<(), Error> {
         let place = self.amplitudes.len();
         self.amplitudes.push(amplitude.clone());
-        let (direction, turns) = match kind {
-            Kind::Translation(axis) => (axis, false),
-            Kind::Rotation(axis) => (axis, true),
-        };
+        let (Kind::Translation(direction) | Kind::Rotation(direction)) = kind;
         let mut own: Vec<u32> = Vec::new();
         for &node in nodes {
             let refused = |why| Error::Nonlinear {
@@ -224,10 +222,11 @@ impl NumberedNonlinear {
             if unknowns.carrier(number[node as usize]).is_some() {
                 own.push(unknown);
             }
+            let finite = unknowns.frame(moving).is_some();
             self.follows.push(Follows {
                 unknown,
                 amplitude: place,
-                turns,
+                turns: finite && matches!(kind, Kind::Rotation(_)),
             });
         }
         Ok(())

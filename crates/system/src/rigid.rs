@@ -52,6 +52,13 @@ pub(crate) fn unknowns(
     mesh_node: &[u32],
 ) -> Result<(Unknowns, Vec<Rotation>), Error> {
     let mut kinds = vec![NodeKind::Translations; mesh_node.len()];
+    for body in &model.bodies {
+        if let Kinematics::Beam(_) = body.spec.kinematics {
+            for node in nodes_of(model, body) {
+                kinds[number[node as usize] as usize] = NodeKind::SmallRotations;
+            }
+        }
+    }
     let mut frames = Vec::new();
     for (body, centre) in model.bodies.iter().zip(centres) {
         let (Some(rigid), Some(centre)) = (body.rigid, *centre) else {

@@ -198,12 +198,7 @@ impl System {
         check_masses(&bodies, &body_masses, &mesh_node)?;
         let masses = (&mut mass, &mut body_masses[..]);
         let massless = redistribute(&model, &bodies, &number, (&x, &unknowns), masses)?;
-        let mut load = vec![0.0; unknowns.len()];
-        for &(node, m) in body_masses.iter().flatten() {
-            for (unknown, gravity) in unknowns.translations_of(node).zip(model.gravity) {
-                load[unknown] += m * gravity;
-            }
-        }
+        let load = mass.weight(&unknowns, model.gravity);
         let nonlinear =
             NumberedNonlinear::new(&model, (&number, &unknowns), (&bodies, &mass), &fixed)?;
         let (mut initial_displacement, initial_velocity) =

@@ -3,6 +3,9 @@
 /// Errors of this crate: a model that cannot be built or run, never a wrong number.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
+    /// A matrix that has no factor or no eigenvalues.
+    #[error(transparent)]
+    Algebra(#[from] carom_algebra::Error),
     /// A body that could not be made.
     #[error(transparent)]
     Body(#[from] carom_bodies::Error),

@@ -50,6 +50,11 @@ mod bars_schemes;
 mod bars_stages;
 mod bars_theta;
 mod base_motion;
+mod beam_deflections;
+mod beam_frequencies;
+mod beam_on_stop;
+mod beam_pulse;
+mod beams;
 mod block_drop;
 mod blocks;
 mod blocks_as_bars;
@@ -161,6 +166,10 @@ registry! {
     bars_stages
     bars_theta
     base_motion
+    beam_deflections
+    beam_frequencies
+    beam_on_stop
+    beam_pulse
     block_drop
     blocks
     blocks_as_bars

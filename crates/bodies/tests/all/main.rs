@@ -6,6 +6,7 @@
 mod allocation;
 mod axisymmetry;
 mod bars;
+mod beams;
 mod derivatives;
 mod discrete;
 mod distortion;

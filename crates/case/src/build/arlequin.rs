@@ -105,6 +105,14 @@ impl Builder<'_> {
         let inner = self.body(&format!("{path}.inner"), &given.inner)?;
         let outer = self.body(&format!("{path}.outer"), &given.outer)?;
         self.same_section(&path, &bodies[inner], &bodies[outer]);
+        if let Kinematics::Beam(_) = bodies[inner].spec.kinematics {
+            let message =
+                "beams cannot be glued in volume: the products of the link carry no rotations";
+            let problem = Problem::new(format!("{path}.inner"), message).found(&given.inner);
+            self.problems
+                .push(problem.accepted(["bars, plane bodies, solids"]));
+            return None;
+        }
         if bodies[inner].spec.kinematics == Kinematics::Axisymmetric {
             let message =
                 "axisymmetric bodies cannot be glued: the products of the link carry no radius";

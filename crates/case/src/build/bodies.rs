@@ -7,7 +7,7 @@ use carom_dynamics::ModelBody;
 use carom_materials::Law;
 use carom_mesh::{ElementId, Mesh};
 
-use super::Builder;
+use super::{Builder, beams};
 use crate::error::Problem;
 use crate::schema::{self, Body, FormulationName, FormulationWith, Mass, Section};
 
@@ -21,7 +21,7 @@ impl Builder<'_> {
         materials: &BTreeMap<String, Law>,
     ) -> Vec<ModelBody> {
         let mut bodies: Vec<ModelBody> = Vec::new();
-        for (name, body) in self.case.body.iter() {
+        for (number, (name, body)) in self.case.body.iter().enumerate() {
             let path = format!("body.{name}");
             let material = materials.get(&body.material).copied();
             if material.is_none() {
@@ -32,9 +32,20 @@ impl Builder<'_> {
             let Some(group) = self.group(mesh, &format!("{path}.region"), &body.region) else {
                 continue;
             };
-            let Some(kinematics) = self.kinematics(mesh, &path, body, group.dim) else {
+            let kinematics = match (&body.section, material) {
+                (Some(Section::Beam(section)), Some(material)) => {
+                    self.beam(mesh, &path, section, material)
+                }
+                (Some(Section::Beam(_)), None) => None,
+                (section, _) => Some(kinematics(section.as_ref())),
+            };
+            self.suits_beams(&path, body);
+            let Some(kinematics) = kinematics else {
                 continue;
             };
+            if !self.takes_cells(mesh, (&path, body), kinematics, group.dim) {
+                continue;
+            }
             let cells = group.elements.clone();
             self.sound(mesh, &path, &cells);
             self.apart(&path, &cells, &bodies);
@@ -57,10 +68,13 @@ impl Builder<'_> {
                 formulation: formulation(body.formulation),
                 weights: None,
             };
-            let rigid = self.rigid(mesh, &path, body, &spec);
+            let rigid = match kinematics {
+                Kinematics::Beam(_) => None,
+                _ => self.rigid(mesh, &path, body, &spec),
+            };
             bodies.push(ModelBody {
                 spec,
-                mass: match body.mass {
+                mass: match self.mass_of(number, body) {
                     Mass::Lumped => MassKind::Lumped,
                     Mass::Consistent => MassKind::Consistent,
                 },
@@ -94,28 +108,18 @@ impl Builder<'_> {
         }
     }
 
-    /// The kinematics that a section gives to cells of dimension `dim`.
-    fn kinematics(
+    /// Whether a kinematics goes with cells of dimension `dim`.
+    fn takes_cells(
         &mut self,
         mesh: &Mesh,
-        path: &str,
-        body: &Body,
+        (path, body): (&str, &Body),
+        kinematics: Kinematics,
         dim: usize,
-    ) -> Option<Kinematics> {
-        let kinematics = match &body.section {
-            None => Kinematics::Solid,
-            Some(Section::Bar(bar)) => Kinematics::Bar { area: bar.area.0 },
-            Some(Section::PlaneStrain(plane)) => Kinematics::PlaneStrain {
-                thickness: plane.thickness.0,
-            },
-            Some(Section::PlaneStress(plane)) => Kinematics::PlaneStress {
-                thickness: plane.thickness.0,
-            },
-            Some(Section::Axisymmetric(_)) => Kinematics::Axisymmetric,
-        };
+    ) -> bool {
         let kind = |dim: usize| ["points", "bars", "plane cells", "solid cells"][dim.min(3)];
         let takes: &[&str] = match dim {
-            1 => &["section.bar"],
+            1 if mesh.dim == 1 => &["section.bar"],
+            1 => &["section.bar", "section.beam"],
             2 => &[
                 "section.plane-strain",
                 "section.plane-stress",
@@ -132,7 +136,7 @@ impl Builder<'_> {
                 "a group of cells of a mesh of {}",
                 super::dimensions(mesh.dim)
             )]))
-        } else if kinematics.dim() == dim {
+        } else if kinematics.dim() == dim && !(mesh.dim == 1 && beams::is_beam(body)) {
             None
         } else if body.section.is_none() {
             let message = format!(
@@ -156,7 +160,7 @@ impl Builder<'_> {
         };
         let sound = problem.is_none();
         self.problems.extend(problem);
-        sound.then_some(kinematics)
+        sound
     }
 
     pub(super) fn sound(&mut self, mesh: &Mesh, path: &str, cells: &[ElementId]) {
@@ -211,6 +215,21 @@ impl Builder<'_> {
                 );
             }
         }
+    }
+}
+
+/// The kinematics of a section that is not one of beams.
+fn kinematics(section: Option<&Section>) -> Kinematics {
+    match section {
+        None | Some(Section::Beam(_)) => Kinematics::Solid,
+        Some(Section::Bar(bar)) => Kinematics::Bar { area: bar.area.0 },
+        Some(Section::PlaneStrain(plane)) => Kinematics::PlaneStrain {
+            thickness: plane.thickness.0,
+        },
+        Some(Section::PlaneStress(plane)) => Kinematics::PlaneStress {
+            thickness: plane.thickness.0,
+        },
+        Some(Section::Axisymmetric(_)) => Kinematics::Axisymmetric,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use carom_bodies::{Kinematics, Solid};
+use carom_bodies::Kinematics;
 use carom_contact::law::Level;
 use carom_contact::law::{Reading, Restitution, Side, Velocity};
 use carom_contact::{Initial, Integration, Law, Sliding};
@@ -133,8 +133,7 @@ impl Builder<'_> {
             let zone = self.plan.zone_of(secondary);
             let parts = zone.map_or(1, |zone| self.plan.zones[zone].substeps);
             let way = approach(system, k).speed * system.dt / f64::from(parts);
-            let body = system.bodies[secondary].as_solid();
-            let element = body.map_or(f64::INFINITY, Solid::smallest_size);
+            let element = system.bodies[secondary].smallest_size();
             if way > element {
                 self.warnings.push(format!(
                     "contact `{}`: in a step its sides approach by {way:.4e} m, more than the smallest element of `{}` ({element:.4e} m), and may pass through each other; take a step of at most {:.4e} s",

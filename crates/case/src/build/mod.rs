@@ -2,6 +2,7 @@
 
 mod advice;
 mod arlequin;
+mod beams;
 mod bodies;
 mod builder;
 mod contacts;

@@ -61,6 +61,10 @@ impl Builder<'_> {
             Refusal::Integration { contact, .. } => {
                 Problem::new(format!("contact.{contact}.integration"), error.to_string())
             }
+            Refusal::LumpedBeam { body } => {
+                let problem = Problem::new(format!("body.{body}.mass"), error.to_string());
+                problem.accepted(["consistent"])
+            }
             Refusal::Massless { body, .. } => {
                 let path = match self.case.body.get(body) {
                     Some(_) => format!("body.{body}.mass"),
@@ -161,6 +165,7 @@ fn key(error: &carom_bodies::Error) -> &'static str {
         Error::FiniteKinematics { .. } => "section",
         Error::LinearFormulation { .. } | Error::NotReduced { .. } => "formulation",
         Error::NoBetween { .. } => "material",
+        Error::BeamAxes { .. } => "section.beam",
         _ => "region",
     }
 }

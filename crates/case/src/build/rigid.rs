@@ -111,7 +111,7 @@ impl Builder<'_> {
             ),
             (
                 "mass",
-                body.mass == Mass::Consistent,
+                body.mass == Some(Mass::Consistent),
                 "a rigid body has one mass, and no mass matrix of its cells",
             ),
         ];

@@ -65,9 +65,17 @@ impl Builder<'_> {
                     self.turns(mesh, &path, (axis, &support.on));
                     let points = points.iter().map(|point| [point.time.0, point.angle.0]);
                     let angle = self.amplitude(&path, points.collect());
-                    if let (Some(angle), Some(&node)) = (angle, nodes.first()) {
-                        turns.push(PrescribedTurn { node, axis, angle });
-                    }
+                    let beams = self.are_of_beams(mesh, &nodes);
+                    // a rigid body has one rotation, beams one at each node
+                    let own = if beams { &nodes[..] } else { &nodes[..1] };
+                    turns.extend(angle.into_iter().flat_map(|angle| {
+                        let turn = move |&node: &u32| PrescribedTurn {
+                            node,
+                            axis,
+                            angle: angle.clone(),
+                        };
+                        own.iter().map(turn)
+                    }));
                 }
                 let nodes = nodes.clone();
                 motions.push(Prescribed {
@@ -85,14 +93,22 @@ impl Builder<'_> {
         (supports, motions, turns)
     }
 
-    /// Refuses a rotation of what has none: only rigid bodies turn.
+    /// Whether all these nodes are nodes of beams.
+    fn are_of_beams(&self, mesh: &Mesh, nodes: &[u32]) -> bool {
+        let beams = self.nodes_of_beams(mesh);
+        nodes.iter().all(|node| beams.binary_search(node).is_ok())
+    }
+
+    /// Refuses a rotation of what has none: rigid bodies and nodes of beams turn.
     fn turns(&mut self, mesh: &Mesh, path: &str, (axis, on): (usize, &str)) {
         let mut bodies = self.case.body.iter();
         let rigid = bodies.any(|(_, body)| body.region == on && body.rigid.is_some());
-        let (message, accepted) = match (rigid, mesh.dim) {
+        let group = mesh.groups.get(on);
+        let beams = group.is_some_and(|group| self.are_of_beams(mesh, &mesh.group_nodes(group)));
+        let (message, accepted) = match (rigid || beams, mesh.dim) {
             (false, _) => (
-                "nodes of a body that deforms have no rotations",
-                "the region of a rigid body",
+                "nodes of a body that deforms have no rotations, except those of beams",
+                "the region of a rigid body, or nodes of beams",
             ),
             (true, 3) => return,
             (true, 2) if axis == 2 => return,

@@ -52,7 +52,7 @@ impl Builder<'_> {
         for (number, (name, body)) in self.case.body.iter().enumerate() {
             let zone = self.plan.zone_of(number);
             let scheme = zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
-            if scheme.get().needs_lumped_mass() && body.mass == Mass::Consistent {
+            if scheme.get().needs_lumped_mass() && body.mass == Some(Mass::Consistent) {
                 let message = "the scheme divides by the mass: it must be diagonal";
                 let problem = Problem::new(format!("body.{name}.mass"), message);
                 self.problems.push(

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::beam::BeamSection;
 use carom_quantities::{
     Angle, AngularVelocity, Area, Coordinate, Delay, Length, MomentOfInertia, Rate, Vector,
     Velocity, Weight,
@@ -16,11 +17,10 @@ pub struct Body {
     pub region: String,
     /// Name of a material of this file.
     pub material: String,
-    /// Section of bars or plane cells: required for bars and plane cells, refused for solids.
+    /// Section of bars, beams or plane cells: required for all of these, refused for solids.
     pub section: Option<Section>,
-    /// Mass matrix.
-    #[serde(default)]
-    pub mass: Mass,
+    /// Mass matrix. Default: lumped; of beams consistent, where the scheme takes it.
+    pub mass: Option<Mass>,
     /// Integration of the internal work of its cells.
     #[serde(default)]
     pub formulation: Formulation,
@@ -104,12 +104,14 @@ pub struct Damping {
     pub stiffness: Option<Delay>,
 }
 
-/// The section of a body of bars or plane cells.
+/// The section of a body of bars, beams or plane cells.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Section {
     /// Bars: axial force only.
     Bar(BarSection),
+    /// Beams: extension, shear, bending and torsion, with rotations of the nodes.
+    Beam(BeamSection),
     /// Plane cells whose strain across the plane is zero.
     PlaneStrain(PlaneSection),
     /// Plane cells whose stress across the plane is zero.
@@ -140,11 +142,11 @@ pub struct PlaneSection {
 pub struct AxisymmetricSection {}
 
 /// How the mass is distributed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mass {
-    /// Diagonal: the row sums of the consistent matrix for linear elements, its scaled diagonal for quadratic elements.
-    #[default]
+    /// Diagonal: the row sums of the consistent matrix for linear elements, its scaled diagonal for quadratic elements and for
+    /// bending.
     Lumped,
     /// The consistent mass matrix of the shape functions.
     Consistent,
@@ -169,8 +171,8 @@ pub struct Initial {
 pub struct Support {
     /// Group whose nodes are held: a side, or the cells of a body.
     pub on: String,
-    /// Directions in which the nodes are held; `rx`, `ry`, `rz` are rotations, of rigid bodies, about the principal axes of inertia
-    /// nearest to x, y, z.
+    /// Directions in which the nodes are held; `rx`, `ry`, `rz` are rotations: of nodes of beams about x, y, z, of rigid bodies
+    /// about the principal axes of inertia nearest to x, y, z.
     #[serde(default)]
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub fix: Vec<Axis>,
@@ -191,11 +193,11 @@ pub struct Movement {
     pub y: Option<MovementCourse>,
     /// Displacement along the third axis. Default: free.
     pub z: Option<MovementCourse>,
-    /// Rotation of a rigid body about its first axis. Default: free.
+    /// Rotation of a rigid body about its first axis, of nodes of beams about x. Default: free.
     pub rx: Option<Vec<TurnPoint>>,
-    /// Rotation of a rigid body about its second axis. Default: free.
+    /// Rotation of a rigid body about its second axis, of nodes of beams about y. Default: free.
     pub ry: Option<Vec<TurnPoint>>,
-    /// Rotation of a rigid body about its third axis, the only one in the plane. Default: free.
+    /// Rotation of a rigid body about its third axis, of nodes of beams about z; the only one in the plane. Default: free.
     pub rz: Option<Vec<TurnPoint>>,
 }
 

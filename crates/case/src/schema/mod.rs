@@ -4,6 +4,7 @@
 //! ([`json_schema`]); every file is checked against that schema, with all its errors, before serde fills the types; and the reference
 //! page of the manual is written from it ([`crate::reference_page`]). A choice is an enum with one key for each variant.
 
+mod beam;
 mod body;
 mod contact;
 mod discrete;
@@ -21,6 +22,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+pub use beam::{
+    BeamSection, BeamShape, BeamTheory, CircleShape, IShape, RectangleShape, SectionProperties,
+    TubeShape,
+};
 pub use body::{
     Axis, AxisymmetricSection, BarSection, Body, Damping as RayleighDamping, Formulation,
     FormulationName, FormulationWith, Initial, Mass, Movement, MovementCourse, MovementPoint,

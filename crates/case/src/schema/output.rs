@@ -64,8 +64,14 @@ pub enum Field {
     Velocity,
     /// Acceleration of the nodes, m/s².
     Acceleration,
-    /// Stress of the cells, Pa.
+    /// Stress of the cells, Pa; of beams the mean over the section.
     Stress,
+    /// Rotation of the nodes of beams, rad; zero elsewhere.
+    Rotation,
+    /// Forces (N) and moments (N m) in the sections of beams, in the axes of the section; zero elsewhere. `section_force`: normal
+    /// force, shear forces along y and z; `section_moment_first`, `section_moment_second`: torque, bending moments about y and z,
+    /// at the first and at the second node.
+    SectionForces,
 }
 
 /// An exact solution, drawn under the result; its distance from the result is in the verdict. Bodies, sizes and speeds are those of the

@@ -124,15 +124,19 @@ impl<'a> Rigid<'a> {
         let part = self.part_of(unknown)?;
         let frame = &self.frames[part];
         let unknowns = &self.system.unknowns;
-        let Kind::Translation(i) = unknowns.kind(unknown) else {
-            return None;
+        let node = unknowns.node(unknown);
+        let (turns, i) = match unknowns.kind(unknown) {
+            Kind::Translation(axis) => (false, axis),
+            Kind::Rotation(axis) if unknowns.frame(node).is_none() => (true, axis),
+            // finite rotations are not linear in the coordinates
+            Kind::Rotation(_) => return None,
         };
-        let place = &self.places[unknowns.node(unknown) as usize];
+        let place = &self.places[node as usize];
         let x = [0, 1, 2].map(|j| (place[j] - frame.centre[j]) / frame.size);
-        let values = self
-            .modes
-            .iter()
-            .map(move |mode| frame.unit * mode.1(&x)[i]);
+        let values = self.modes.iter().map(move |mode| match turns {
+            false => frame.unit * mode.1(&x)[i],
+            true => frame.unit / frame.size * turn_of(mode)[i],
+        });
         Some((part * self.modes.len(), values))
     }
 
@@ -206,13 +210,8 @@ impl<'a> Rigid<'a> {
     fn angle(&self, part: usize, c: &[f64]) -> [f64; 3] {
         let (count, frame) = (self.modes.len(), &self.frames[part]);
         let mut angle = [0.0; 3];
-        for (c, (_, shape)) in c[part * count..].iter().zip(&self.modes) {
-            if shape(&[0.0; 3]) != [0.0; 3] {
-                continue;
-            }
-            let [of_x, of_y, of_z] =
-                [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| shape(&e));
-            for (angle, axis) in angle.iter_mut().zip([of_y[2], of_z[0], of_x[1]]) {
+        for (c, mode) in c[part * count..].iter().zip(&self.modes) {
+            for (angle, axis) in angle.iter_mut().zip(turn_of(mode)) {
                 *angle += c * axis * frame.unit / frame.size;
             }
         }
@@ -363,6 +362,15 @@ pub(super) fn norm(vector: &[f64]) -> f64 {
 
 /// A motion in words, and its displacement at a place relative to the centre.
 type Mode = (&'static str, fn(&[f64; 3]) -> [f64; 3]);
+
+/// Rotation of a motion per unit, about the axes of coordinates.
+fn turn_of((_, shape): &Mode) -> [f64; 3] {
+    if shape(&[0.0; 3]) != [0.0; 3] {
+        return [0.0; 3];
+    }
+    let [of_x, of_y, of_z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| shape(&e));
+    [of_y[2], of_z[0], of_x[1]]
+}
 
 fn modes(dim: usize, axisymmetric: bool) -> Vec<Mode> {
     if axisymmetric {

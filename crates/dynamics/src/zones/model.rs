@@ -2,11 +2,14 @@
 
 use std::sync::Arc;
 
+use carom_bodies::Kinematics;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::scheme::Scheme;
-use crate::system::{self, Model, ModelLink, NodalLoad, Nonlinear, Refused, System, sides};
+use crate::system::{
+    self, Model, ModelBody, ModelLink, NodalLoad, Nonlinear, Refused, System, sides,
+};
 
 /// A group of bodies with its own scheme and step.
 #[derive(Clone, Debug)]
@@ -202,6 +205,12 @@ impl Zoned {
                 why: "zones have no frames of rotations yet; leave out the zones",
             }
             .into());
+        }
+        let beam = |body: &&ModelBody| matches!(body.spec.kinematics, Kinematics::Beam(_));
+        if let Some(body) = self.model.bodies.iter().find(beam) {
+            return Err(Error::BeamInZones {
+                body: body.spec.name.clone(),
+            });
         }
         if let Some(some) = self.model.discrete.first() {
             return Err(Error::DiscreteInZones {

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod allocation;
+mod beams;
 mod dense;
 mod discrete;
 mod edges;

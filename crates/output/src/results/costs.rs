@@ -182,7 +182,7 @@ fn free_of(system: &System, bodies: &[usize]) -> usize {
 }
 
 fn courant_of(system: &System, bodies: impl Iterator<Item = usize>, step: f64) -> Option<f64> {
-    let solids = bodies.filter_map(|body| system.bodies[body].as_solid());
-    let all = solids.map(|body| body.wave_speed() * step / body.smallest_size());
-    all.reduce(f64::max)
+    let passages = bodies.map(|body| system.bodies[body].passage());
+    let all = passages.filter(|passage| *passage > 0.0);
+    all.map(|passage| step / passage).reduce(f64::max)
 }

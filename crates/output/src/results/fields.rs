@@ -10,6 +10,7 @@ use carom_dynamics::{InterfaceState, Motion, Order, State, System};
 use carom_elements::Kind;
 use carom_mesh::Face;
 
+use crate::results::beams::{SECTION_FORCES, rotations, section_forces};
 use crate::results::cells::{cell_stresses, plastic_strains, von_mises};
 use crate::results::{Fields, Zoning};
 use crate::vtu::{Cells, Field, Grid, Values, write};
@@ -250,7 +251,21 @@ impl Volume {
             name,
             values: Values::Vector(values),
         });
-        let point_fields: Vec<Field> = point_fields.collect();
+        let mut point_fields: Vec<Field> = point_fields.collect();
+        let rotation = match fields.rotation {
+            true => rotations(system, &snapshot.motion.u),
+            false => Vec::new(),
+        };
+        if fields.rotation {
+            point_fields.push(Field {
+                name: "rotation",
+                values: Values::Vector(&rotation),
+            });
+        }
+        let forces = match fields.section_forces {
+            true => section_forces(system, &snapshot.motion.u),
+            false => Default::default(),
+        };
         let stress = match fields.stress {
             true => cell_stresses(system, &snapshot.motion.u, &snapshot.motion.history),
             false => Vec::new(),
@@ -289,6 +304,15 @@ impl Volume {
                 values: Values::Scalar(&mises),
             });
         }
+        let forces = SECTION_FORCES.iter().zip(&forces);
+        cell_fields.extend(
+            forces
+                .filter(|_| fields.section_forces)
+                .map(|(name, values)| Field {
+                    name,
+                    values: Values::Vector(values),
+                }),
+        );
         if let Some(plastic) = &plastic {
             cell_fields.push(Field {
                 name: "plastic_strain",

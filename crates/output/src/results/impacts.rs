@@ -156,6 +156,6 @@ fn mean_window(system: &System, zoning: Option<&Zoning>, contact: usize) -> f64 
     }
     let diagonal = (0..3).map(|i| (high[i] - low[i]).powi(2)).sum::<f64>();
     // a body without waves has no front
-    let solid = system.bodies[body].as_solid();
-    solid.map_or(0.0, |solid| WINDOW * diagonal.sqrt() / solid.wave_speed())
+    let speed = system.bodies[body].wave_speed();
+    speed.map_or(0.0, |speed| WINDOW * diagonal.sqrt() / speed)
 }

@@ -7,6 +7,7 @@
 //!
 //! What a run writes is complete whenever it is cut: tables grow by whole rows, all other files appear by one rename.
 
+mod beams;
 mod cells;
 mod conclusion;
 mod costs;

@@ -71,6 +71,10 @@ pub struct Fields {
     pub acceleration: bool,
     /// Mean stress of the cells and its von Mises equivalent, Pa.
     pub stress: bool,
+    /// Rotation of the nodes of beams, rad.
+    pub rotation: bool,
+    /// Forces (N) and moments (N m) in the sections of beams.
+    pub section_forces: bool,
 }
 
 /// An exact solution of a contact, from time 0 of the run.

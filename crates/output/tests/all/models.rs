@@ -159,6 +159,8 @@ pub fn all_fields(every: f64) -> Option<Fields> {
         velocity: true,
         acceleration: true,
         stress: true,
+        rotation: false,
+        section_forces: false,
     })
 }
 

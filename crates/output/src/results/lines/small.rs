@@ -121,6 +121,12 @@ fn of_bodies(
 
 /// What to write for a body that turns or stretches.
 fn instead(system: &System, body: usize) -> String {
+    if let Some(beam) = system.bodies[body].as_beam() {
+        return format!(
+            "model `{}` with solid cells of neo-hooke: rotations of beams are small here",
+            beam.name()
+        );
+    }
     let Some(body) = system.bodies[body].as_solid() else {
         return String::new();
     };

@@ -1,0 +1,501 @@
+//! Beams: straight elements of two nodes with translations and small rotations, after Euler and Bernoulli or Timoshenko.
+//!
+//! The axis of an element runs through the centroids of its ends; a node may stand beside it, at a distance that is fixed in the
+//! section: `u_centroid = u + θ × e`. Forces are `f = K u` with one constant matrix for each element.
+
+mod element;
+mod section;
+
+use std::ops::Range;
+
+use carom_algebra::csr::Csr;
+use carom_algebra::tensor::{Mat3, Vec3};
+use carom_algebra::unknowns::Unknowns;
+use carom_elements::Kind;
+use carom_materials::{Elastic, Plane};
+use carom_mesh::{ElementId, Mesh};
+
+pub use self::section::{BeamSection, BeamTheory, SectionProperties, SectionShape};
+
+use self::element::{Element, Matrix};
+use crate::distortion::{Distortion, Extreme};
+use crate::solid::BodySpec;
+use crate::stability::largest_eigenvalue;
+use crate::{Error, Formulation, Kinematics, Placement, Stored};
+
+/// Sine of the angle between orientation and axis below which they are parallel.
+const PARALLEL: f64 = 1e-6;
+
+/// Entries of the lumped mass off the diagonal, over those on it, that are rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Forces and moments in the sections of an element, on the side from which its axis points outward, in the axes of the section.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SectionForces {
+    /// Normal force, positive in tension, and shear forces along y and z, N.
+    pub force: [f64; 3],
+    /// Torque and bending moments about y and z at the first node, N m.
+    pub moment_first: [f64; 3],
+    /// The same at the second node.
+    pub moment_second: [f64; 3],
+}
+
+/// A body of beam elements on a system.
+#[derive(Debug)]
+pub struct Beam {
+    name: String,
+    section: BeamSection,
+    material: Elastic,
+    cells: Vec<ElementId>,
+    dim: usize,
+    /// System numbers of the nodes of each element.
+    nodes: Vec<[u32; 2]>,
+    /// First unknowns of these nodes.
+    first: Vec<[usize; 2]>,
+    lengths: Vec<f64>,
+    /// Axes x, y, z of each element, as rows.
+    axes: Vec<Mat3>,
+    /// K of each element over its unknowns, row-major.
+    stiffness: Vec<f64>,
+}
+
+impl Beam {
+    /// Builds the elements on the cells of a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the
+    /// system, with small rotations.
+    ///
+    /// # Errors
+    /// Cells that are no bars of two nodes, or on a line; one without length, or whose orientation is missing or along it; a
+    /// law at finite strain; weights.
+    pub(crate) fn new(
+        mesh: &Mesh,
+        spec: BodySpec,
+        section: BeamSection,
+        number: &[u32],
+        unknowns: &Unknowns,
+    ) -> Result<Beam, Error> {
+        check(mesh, &spec)?;
+        let mut beam = Beam {
+            section,
+            material: spec.material.initial(),
+            dim: mesh.dim,
+            nodes: Vec::new(),
+            first: Vec::new(),
+            lengths: Vec::new(),
+            axes: Vec::new(),
+            stiffness: Vec::new(),
+            name: spec.name,
+            cells: spec.cells,
+        };
+        for &cell in &beam.cells {
+            let nodes = mesh.element_nodes(cell);
+            let [from, to] = [nodes[0], nodes[1]].map(|node| Vec3::from(mesh.nodes[node as usize]));
+            let along = to - from;
+            let refused = |why| Error::BeamAxes {
+                body: beam.name.clone(),
+                cell,
+                why,
+            };
+            if along.norm() <= 1e-12 * from.norm().max(to.norm()) {
+                return Err(refused("has no length"));
+            }
+            beam.axes
+                .push(axes(&along.normalize(), &section, mesh.dim).map_err(refused)?);
+            beam.lengths.push(along.norm());
+            let nodes = [nodes[0], nodes[1]].map(|node| number[node as usize]);
+            beam.first.push(nodes.map(|node| unknowns.first(node)));
+            beam.nodes.push(nodes);
+        }
+        for element in 0..beam.nodes.len() {
+            let local = beam.element(element).stiffness();
+            let own = beam.turned(element, &local);
+            beam.stiffness.extend(own);
+        }
+        Ok(beam)
+    }
+
+    /// Name as in the case file.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its section.
+    pub fn section(&self) -> &BeamSection {
+        &self.section
+    }
+
+    /// Cells of the mesh.
+    pub fn cells(&self) -> &[ElementId] {
+        &self.cells
+    }
+
+    /// Speed of waves of extension, m/s.
+    pub fn wave_speed(&self) -> f64 {
+        self.material.wave_speed(Plane::Uniaxial)
+    }
+
+    /// Length of the shortest element, m.
+    pub fn smallest_size(&self) -> f64 {
+        self.lengths.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Unknowns of a node.
+    fn per_node(&self) -> usize {
+        if self.dim == 2 { 3 } else { 6 }
+    }
+
+    fn element(&self, number: usize) -> Element<'_> {
+        Element {
+            length: self.lengths[number],
+            section: &self.section,
+            material: &self.material,
+        }
+    }
+
+    /// The unknowns of an element in a system vector.
+    fn unknowns(&self, element: usize) -> impl Iterator<Item = usize> + '_ {
+        let per = self.per_node();
+        self.first[element]
+            .into_iter()
+            .flat_map(move |first| first..first + per)
+    }
+
+    /// Tᵀ A T over the unknowns of an element, row-major, of a matrix in its own axes.
+    fn turned(&self, element: usize, local: &Matrix) -> Vec<f64> {
+        let t = self.transformation(element);
+        let n = t[0].len();
+        let mut product = vec![0.0; 12 * n];
+        for (row, out) in local.iter().zip(product.chunks_exact_mut(n)) {
+            for (value, t) in row.iter().zip(&t).filter(|(value, _)| **value != 0.0) {
+                for (out, t) in out.iter_mut().zip(t) {
+                    *out += value * t;
+                }
+            }
+        }
+        let mut own = vec![0.0; n * n];
+        for (row, t) in product.chunks_exact(n).zip(&t) {
+            for (out, t) in own.chunks_exact_mut(n).zip(t).filter(|(_, t)| **t != 0.0) {
+                for (out, value) in out.iter_mut().zip(row) {
+                    *out += t * value;
+                }
+            }
+        }
+        own
+    }
+
+    /// Unknowns in the axes of an element, at the centroid, by those of its nodes: twelve rows.
+    fn transformation(&self, element: usize) -> Vec<Vec<f64>> {
+        let (axes, per) = (&self.axes[element], self.per_node());
+        let [y, z] = self.section.offset;
+        let beside = axes.tr_mul(&Vec3::new(0.0, y, z));
+        // directions of the unknowns of a node: translation, and rotation
+        let mut columns: Vec<(Vec3, Vec3)> = Vec::new();
+        for i in 0..self.dim {
+            columns.push((unit(i), Vec3::zeros()));
+        }
+        for i in 3 - (per - self.dim)..3 {
+            columns.push((unit(i).cross(&beside), unit(i)));
+        }
+        let mut rows = vec![vec![0.0; 2 * per]; 12];
+        for node in 0..2 {
+            for (k, (translation, rotation)) in columns.iter().enumerate() {
+                let (translation, rotation) = (axes * translation, axes * rotation);
+                for i in 0..3 {
+                    rows[6 * node + i][per * node + k] = translation[i];
+                    rows[6 * node + 3 + i][per * node + k] = rotation[i];
+                }
+            }
+        }
+        rows
+    }
+
+    /// System numbers of the nodes of each element.
+    pub(crate) fn each_element(&self, visit: &mut dyn FnMut(&[u32])) {
+        for nodes in &self.nodes {
+            visit(nodes);
+        }
+    }
+
+    /// Adds K u to `f` and returns the strain energy (J).
+    pub(crate) fn internal_force(&self, u: &[f64], f: &mut [f64]) -> f64 {
+        let mut energy = 0.0;
+        self.each_force(&|i| u[i], &mut |i, force| {
+            f[i] += force;
+            energy += 0.5 * force * u[i];
+        });
+        energy
+    }
+
+    /// Visits the entries of K u of each element.
+    fn each_force(&self, u: &dyn Fn(usize) -> f64, visit: &mut dyn FnMut(usize, f64)) {
+        let n = 2 * self.per_node();
+        let mut own = [0.0; 12];
+        for (element, k) in self.stiffness.chunks_exact(n * n).enumerate() {
+            for (own, i) in own.iter_mut().zip(self.unknowns(element)) {
+                *own = u(i);
+            }
+            for (i, row) in self.unknowns(element).zip(k.chunks_exact(n)) {
+                visit(i, row.iter().zip(&own).map(|(k, u)| k * u).sum());
+            }
+        }
+    }
+
+    /// Adds the internal forces; see [`Body::force`](crate::Body::force).
+    pub(crate) fn force(&self, at: &Placement, f: &mut [f64]) -> Stored {
+        let strain = match at.from {
+            None => self.internal_force(at.u, f),
+            Some(from) => {
+                let mean = |i: usize| 0.5 * (from[i] + at.u[i]);
+                self.each_force(&mean, &mut |i, force| f[i] += force);
+                let mut energy = 0.0;
+                let u = |i: usize| at.u[i];
+                self.each_force(&u, &mut |i, force| energy += 0.5 * force * at.u[i]);
+                energy
+            }
+        };
+        Stored {
+            strain,
+            ..Stored::default()
+        }
+    }
+
+    /// Adds `by_u` ∂f/∂u to a matrix over all unknowns; see [`Body::add_tangent`](crate::Body::add_tangent).
+    pub(crate) fn add_tangent(&self, at: &Placement, by_u: f64, matrix: &mut Csr) {
+        let share = if at.from.is_some() { 0.5 } else { 1.0 };
+        self.add_stiffness(share * by_u, &(0..usize::MAX), matrix);
+    }
+
+    fn add_stiffness(&self, factor: f64, part: &Range<usize>, matrix: &mut Csr) {
+        let n = 2 * self.per_node();
+        for (element, k) in self.stiffness.chunks_exact(n * n).enumerate() {
+            self.add(element, factor, k, part, matrix);
+        }
+    }
+
+    fn add(&self, element: usize, factor: f64, own: &[f64], part: &Range<usize>, to: &mut Csr) {
+        if !part.contains(&self.first[element][0]) {
+            return;
+        }
+        for (i, row) in self
+            .unknowns(element)
+            .zip(own.chunks_exact(2 * self.per_node()))
+        {
+            for (j, value) in self.unknowns(element).zip(row) {
+                to.add(i - part.start, j - part.start, factor * value);
+            }
+        }
+    }
+
+    /// Adds `stiffness` K + `mass` M (consistent); see [`Body::assemble`](crate::Body::assemble).
+    pub(crate) fn assemble(
+        &self,
+        [stiffness, mass]: [f64; 2],
+        part: &Range<usize>,
+        matrix: &mut Csr,
+    ) {
+        if stiffness != 0.0 {
+            self.add_stiffness(stiffness, part, matrix);
+        }
+        if mass != 0.0 {
+            for element in 0..self.nodes.len() {
+                let own = self.turned(element, &self.element(element).mass());
+                self.add(element, mass, &own, part, matrix);
+            }
+        }
+    }
+
+    /// Adds the diagonal of the lumped mass.
+    pub(crate) fn add_lumped_mass(&self, mass: &mut [f64]) {
+        let n = 2 * self.per_node();
+        for element in 0..self.nodes.len() {
+            let own = self.lumped(element);
+            for (k, i) in self.unknowns(element).enumerate() {
+                mass[i] += own[k * n + k];
+            }
+        }
+    }
+
+    /// The lumped mass of an element over its unknowns, row-major.
+    fn lumped(&self, element: usize) -> Vec<f64> {
+        let mut local = [[0.0; 12]; 12];
+        for (i, m) in self.element(element).lumped().into_iter().enumerate() {
+            local[i][i] = m;
+        }
+        self.turned(element, &local)
+    }
+
+    /// Whether the lumped mass is diagonal in the axes of coordinates. In space it is not where an element stands at an angle to
+    /// them, nor beside its nodes.
+    pub(crate) fn lumps(&self) -> bool {
+        let n = 2 * self.per_node();
+        (0..self.nodes.len()).all(|element| {
+            let own = self.lumped(element);
+            let root = |k: usize| own[k * n + k].sqrt();
+            let mut pairs = (0..n).flat_map(|i| (0..i).map(move |j| (i, j)));
+            pairs.all(|(i, j)| own[i * n + j].abs() <= ROUNDING * root(i) * root(j))
+        })
+    }
+
+    /// Upper bound of the angular frequencies (rad/s) with lumped mass: the largest of an element.
+    pub(crate) fn frequency_bound(&self) -> f64 {
+        let kept: &[usize] = match self.dim {
+            2 => &[0, 1, 5, 6, 7, 11],
+            _ => &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11],
+        };
+        let mut scaled = Vec::new();
+        let of = |element: usize| {
+            let element = self.element(element);
+            let (k, m) = (element.stiffness(), element.lumped());
+            scaled.clear();
+            for &i in kept {
+                scaled.extend(kept.iter().map(|&j| k[i][j] / (m[i] * m[j]).sqrt()));
+            }
+            largest_eigenvalue(&mut scaled)
+        };
+        (0..self.nodes.len()).map(of).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Volume (m³) and mean stress (Pa) of each element: normal and shear forces over the area. Bending and torsion have no mean.
+    pub(crate) fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
+        let area = self.section.properties.area;
+        let of = |(element, forces): (usize, SectionForces)| {
+            let axes = &self.axes[element];
+            let mut local = Mat3::zeros();
+            for (i, force) in forces.force.iter().enumerate() {
+                (local[(0, i)], local[(i, 0)]) = (force / area, force / area);
+            }
+            (
+                area * self.lengths[element],
+                axes.transpose() * local * axes,
+            )
+        };
+        self.section_forces(u)
+            .into_iter()
+            .enumerate()
+            .map(of)
+            .collect()
+    }
+
+    /// Forces and moments in the sections of each element.
+    pub fn section_forces(&self, u: &[f64]) -> Vec<SectionForces> {
+        let of = |element: usize| {
+            let local = self.local(element, u);
+            let k = self.element(element).stiffness();
+            let f = k.map(|row| row.iter().zip(&local).map(|(k, u)| k * u).sum::<f64>());
+            SectionForces {
+                force: [f[6], f[7], f[8]],
+                moment_first: [-f[3], -f[4], -f[5]],
+                moment_second: [f[9], f[10], f[11]],
+            }
+        };
+        (0..self.nodes.len()).map(of).collect()
+    }
+
+    /// The twelve unknowns of an element in its own axes, at the centroid.
+    fn local(&self, element: usize, u: &[f64]) -> [f64; 12] {
+        let axes = &self.axes[element];
+        let [y, z] = self.section.offset;
+        let beside = axes.tr_mul(&Vec3::new(0.0, y, z));
+        let mut local = [0.0; 12];
+        for (local, first) in local.chunks_exact_mut(6).zip(self.first[element]) {
+            let own = &u[first..first + self.per_node()];
+            let (moved, turned) = match self.dim {
+                2 => (Vec3::new(own[0], own[1], 0.0), unit(2) * own[2]),
+                _ => (
+                    Vec3::new(own[0], own[1], own[2]),
+                    Vec3::new(own[3], own[4], own[5]),
+                ),
+            };
+            let (moved, turned) = (axes * (moved + turned.cross(&beside)), axes * turned);
+            local[..3].copy_from_slice(moved.as_slice());
+            local[3..].copy_from_slice(turned.as_slice());
+        }
+        local
+    }
+
+    /// The largest rotation of a section, and the largest strain at the radius of gyration: `|N|/(E A) + |θ₂ - θ₁|/L √(I/A)`.
+    pub(crate) fn distortion(&self, u: &[f64], before: &Distortion) -> Distortion {
+        let properties = &self.section.properties;
+        let [y, z] = properties
+            .second_moments
+            .map(|i| (i / properties.area).sqrt());
+        let mut found = *before;
+        for (cell, length) in self.lengths.iter().enumerate() {
+            let local = self.local(cell, u);
+            let cell = cell as u32;
+            for turn in [&local[3..6], &local[9..12]] {
+                let value = Vec3::new(turn[0], turn[1], turn[2]).norm();
+                found.rotation = found.rotation.or(Extreme { value, cell });
+            }
+            let change = |i: usize| (local[6 + i] - local[i]) / length;
+            let value = change(0).abs() + (change(4) * y).hypot(change(5) * z);
+            found.strain = found.strain.or(Extreme { value, cell });
+        }
+        found
+    }
+}
+
+fn unit(axis: usize) -> Vec3 {
+    Vec3::ith(axis, 1.0)
+}
+
+/// The axes of an element as rows, or why it has none.
+fn axes(x: &Vec3, section: &BeamSection, dim: usize) -> Result<Mat3, &'static str> {
+    let near = match (dim, section.orientation) {
+        (2, _) => unit(2).cross(x),
+        (_, Some(given)) => Vec3::from(given),
+        // all are alike: the axis of coordinates that is farthest from x
+        (_, None) if section.is_round() => unit(x.iamin()),
+        (_, None) => {
+            return Err(
+                "needs an orientation, since its section is not round, or lies beside the nodes",
+            );
+        }
+    };
+    let y = near - x * x.dot(&near);
+    if y.norm() <= PARALLEL * near.norm() {
+        return Err("is parallel to its orientation, which must have a part normal to the axis");
+    }
+    let y = y.normalize();
+    Ok(Mat3::from_rows(&[
+        x.transpose(),
+        y.transpose(),
+        x.cross(&y).transpose(),
+    ]))
+}
+
+fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
+    let body = || spec.name.clone();
+    if spec.cells.is_empty() {
+        return Err(Error::Empty { body: body() });
+    }
+    if mesh.dim < 2 {
+        return Err(Error::BeamOnLine { body: body() });
+    }
+    if spec.weights.is_some() {
+        return Err(Error::BeamWeights { body: body() });
+    }
+    if spec.material.finite().is_some() {
+        return Err(Error::FiniteKinematics {
+            body: body(),
+            kinematics: spec.kinematics.name(),
+        });
+    }
+    if spec.formulation != Formulation::Full {
+        return Err(Error::LinearFormulation { body: body() });
+    }
+    for &cell in &spec.cells {
+        match mesh.kind(cell) {
+            Kind::Bar2 => {}
+            Kind::Bar3 => return Err(Error::QuadraticBar { body: body() }),
+            kind => {
+                return Err(Error::WrongElement {
+                    body: body(),
+                    found: kind.table().name,
+                    kinematics: spec.kinematics.name(),
+                    dim: Kinematics::dim(spec.kinematics),
+                });
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,196 @@
+//! Beams: sections from shapes and properties, and what beams refuse.
+
+use carom_bodies::{BeamSection, BeamTheory, Kinematics, SectionProperties, SectionShape};
+use carom_materials::Law;
+use carom_mesh::Mesh;
+
+use super::Builder;
+use crate::error::Problem;
+use crate::schema::{self, BeamShape, Body, Mass, Section};
+
+impl Builder<'_> {
+    /// The kinematics of beams with this section; `path`: of the body.
+    pub(super) fn beam(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        given: &schema::BeamSection,
+        material: Law,
+    ) -> Option<Kinematics> {
+        let path = format!("{path}.section.beam");
+        if !self.plan.zones.is_empty() {
+            let problem = Problem::new(&path, "beams are not available in zones");
+            self.problems
+                .push(problem.accepted(["a case without zones"]));
+        }
+        let theory = match given.theory {
+            schema::BeamTheory::Timoshenko => BeamTheory::Timoshenko,
+            schema::BeamTheory::EulerBernoulli => BeamTheory::EulerBernoulli,
+        };
+        let shape = match &given.shape {
+            BeamShape::Properties(given) => Err(given),
+            BeamShape::Circle(circle) => Ok(SectionShape::Circle {
+                diameter: circle.diameter.0,
+            }),
+            BeamShape::Tube(tube) => {
+                let (diameter, thickness) = (tube.diameter.0, tube.thickness.0);
+                let at = format!("{path}.shape.tube.thickness");
+                self.below(&at, thickness, (0.5 * diameter, "half of `diameter`"))?;
+                Ok(SectionShape::Tube {
+                    diameter,
+                    thickness,
+                })
+            }
+            BeamShape::Rectangle(rectangle) => Ok(SectionShape::Rectangle {
+                height: rectangle.height.0,
+                width: rectangle.width.0,
+            }),
+            BeamShape::I(shape) => {
+                let at = |key: &str| format!("{path}.shape.i.{key}");
+                let half = 0.5 * shape.height.0;
+                self.below(&at("flange"), shape.flange.0, (half, "half of `height`"))?;
+                // a web as wide as the flanges is a rectangle
+                let width = shape.width.0 * (1.0 + f64::EPSILON);
+                self.below(&at("web"), shape.web.0, (width, "`width`"))?;
+                Ok(SectionShape::I {
+                    height: shape.height.0,
+                    width: shape.width.0,
+                    web: shape.web.0,
+                    flange: shape.flange.0,
+                })
+            }
+        };
+        let properties = match shape {
+            Ok(shape) => shape.properties(material.initial().poisson),
+            Err(given) => self.properties(mesh, &path, given, theory)?,
+        };
+        let orientation = match (&given.orientation, mesh.dim) {
+            (None, _) => None,
+            (Some(given), 3) => Some(self.normal(mesh, &format!("{path}.orientation"), given)?),
+            (Some(given), _) => {
+                let message = "in the plane the axes of a section are known";
+                let problem = Problem::new(format!("{path}.orientation"), message);
+                self.problems.push(
+                    problem
+                        .found(format!("{:?}", given.components()))
+                        .accepted(["no `orientation`"]),
+                );
+                return None;
+            }
+        };
+        let offset = given.offset.map_or([0.0; 2], |offset| offset.map(|e| e.0));
+        if mesh.dim == 2 && offset[1] != 0.0 {
+            let message = "an offset out of the plane";
+            let problem = Problem::new(format!("{path}.offset[1]"), message);
+            self.problems
+                .push(problem.found(format!("{} m", offset[1])).accepted(["0"]));
+        }
+        Some(Kinematics::Beam(BeamSection {
+            theory,
+            properties,
+            orientation,
+            offset,
+        }))
+    }
+
+    /// Refuses a size that is not below another.
+    fn below(&mut self, path: &str, size: f64, (most, name): (f64, &str)) -> Option<()> {
+        if size < most {
+            return Some(());
+        }
+        let problem = Problem::new(path, "the section has no such shape");
+        self.problems.push(
+            problem
+                .found(format!("{size} m"))
+                .accepted([format!("less than {most} m, {name}")]),
+        );
+        None
+    }
+
+    /// Properties as they are given; those that the plane does not need are that of the others.
+    fn properties(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        given: &schema::SectionProperties,
+        theory: BeamTheory,
+    ) -> Option<SectionProperties> {
+        let (space, shears) = (mesh.dim == 3, theory == BeamTheory::Timoshenko);
+        let needed = [
+            ("inertia-z", given.inertia_z.is_none()),
+            ("inertia-y", space && given.inertia_y.is_none()),
+            ("torsion", space && given.torsion.is_none()),
+            ("shear-area-y", shears && given.shear_area_y.is_none()),
+            (
+                "shear-area-z",
+                shears && space && given.shear_area_z.is_none(),
+            ),
+        ];
+        let missing: Vec<String> = needed
+            .iter()
+            .filter(|(_, missing)| *missing)
+            .map(|(key, _)| format!("`{key}`"))
+            .collect();
+        if !missing.is_empty() {
+            let theory = match theory {
+                BeamTheory::Timoshenko => "timoshenko",
+                BeamTheory::EulerBernoulli => "euler-bernoulli",
+            };
+            let message = format!(
+                "beams of the theory {theory} in {} need {}",
+                super::dimensions(mesh.dim),
+                missing.join(", ")
+            );
+            self.problems
+                .push(Problem::new(format!("{path}.shape.properties"), message));
+            return None;
+        }
+        let z = given.inertia_z?.0;
+        let along_y = given.shear_area_y.unwrap_or(given.area).0;
+        Some(SectionProperties {
+            area: given.area.0,
+            second_moments: [given.inertia_y.map_or(z, |y| y.0), z],
+            torsion: given.torsion.map_or(z, |torsion| torsion.0),
+            shear_areas: [along_y, given.shear_area_z.map_or(along_y, |area| area.0)],
+        })
+    }
+
+    /// Refuses keys that beams do not take.
+    pub(super) fn suits_beams(&mut self, path: &str, body: &Body) {
+        if !is_beam(body) {
+            return;
+        }
+        if body.rigid.is_some() {
+            let message = "a rigid body of beams has no cells from which its inertia follows";
+            let problem = Problem::new(format!("{path}.rigid"), message);
+            self.problems
+                .push(problem.accepted(["a rigid body of solid cells", "no `rigid`"]));
+        }
+    }
+
+    /// The mass of a body: that of beams is consistent where nothing else is said and its scheme takes it.
+    pub(super) fn mass_of(&self, number: usize, body: &Body) -> Mass {
+        let zone = self.plan.zone_of(number);
+        let scheme = || zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
+        match body.mass {
+            Some(mass) => mass,
+            None if is_beam(body) && !scheme().get().needs_lumped_mass() => Mass::Consistent,
+            None => Mass::Lumped,
+        }
+    }
+
+    /// Nodes of all beams, sorted.
+    pub(super) fn nodes_of_beams(&self, mesh: &Mesh) -> Vec<u32> {
+        let bodies = self.case.body.iter().filter(|(_, body)| is_beam(body));
+        let groups = bodies.filter_map(|(_, body)| mesh.groups.get(&body.region));
+        let mut nodes: Vec<u32> = groups.flat_map(|group| mesh.group_nodes(group)).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}
+
+/// Whether a body is one of beams.
+pub(super) fn is_beam(body: &Body) -> bool {
+    matches!(body.section, Some(Section::Beam(_)))
+}
