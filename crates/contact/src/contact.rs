@@ -116,7 +116,7 @@ impl Contact {
         matches!(&self.target, Target::Rigid(rigid) if matches!(rigid.shape, Shape::Plane(_)))
     }
 
-    /// Whether the target moves by itself: gaps then have a rate at bodies at rest ([`Rows::rate`]).
+    /// Whether the target moves by itself: gaps then have a rate at bodies at rest ([`Rows::rate`](crate::Rows::rate)).
     pub fn moves(&self) -> bool {
         matches!(&self.target, Target::Rigid(obstacle) if obstacle.motion.moves())
     }
