@@ -23,6 +23,14 @@ pub enum Error {
         /// Name of the element kind found.
         found: &'static str,
     },
+    /// Moments of inertia of a point mass at a node without small rotations.
+    #[error(
+        "point mass '{body}': its moments of inertia need a node with rotations: the node of a beam"
+    )]
+    NoRotation {
+        /// Name of the point mass.
+        body: String,
+    },
     /// Elements of another dimension than the kinematics asks for.
     #[error(
         "body '{body}': {found} elements cannot be {kinematics}, which takes elements of dimension {dim}"
@@ -177,6 +185,7 @@ impl Error {
         match self {
             Error::Empty { body }
             | Error::NotDiscrete { body, .. }
+            | Error::NoRotation { body }
             | Error::WrongElement { body, .. }
             | Error::QuadraticBar { body, .. }
             | Error::BeamOnLine { body }

@@ -27,7 +27,9 @@ mod weights;
 pub use beam::{Beam, BeamSection, BeamTheory, SectionForces, SectionProperties, SectionShape};
 pub use block::Scratch;
 pub use body::Body;
-pub use discrete::{Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, Link, VisitRow};
+pub use discrete::{
+    Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, Link, PointMass, VisitRow,
+};
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};

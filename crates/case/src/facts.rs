@@ -143,7 +143,7 @@ fn discrete_fact(discrete: &Discrete) -> Fact {
         }
     };
     let (kind, text) = match discrete.kind() {
-        DiscreteKind::Mass(mass) => ("mass", format!("{mass:.6} kg")),
+        DiscreteKind::Mass(point) => ("mass", format!("{:.6} kg", point.mass)),
         DiscreteKind::Spring(link) => ("spring", linked(link, ["stiffness", "N/m"])),
         DiscreteKind::Dashpot(link) => ("dashpot", linked(link, ["damping", "N s/m"])),
     };

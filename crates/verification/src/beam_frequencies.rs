@@ -10,11 +10,13 @@
 //! torsion and bending about the other axis: each reference is compared with the nearest frequency found, and the free beam has
 //! six of zero; they are below 1e-4 of the first of bending, since rounding of K leaves √ε of the largest frequency.
 
-use carom_bodies::{BeamSection, BeamTheory};
+use carom_bodies::{BeamSection, BeamTheory, DiscreteKind, DiscreteSpec, PointMass};
+use carom_dynamics::{Model, ModelDiscrete};
+use carom_elements::Kind;
 use carom_exact::beam::End;
 
 use crate::Error;
-use crate::beams::{exact, frequencies, held, section, straight};
+use crate::beams::{exact, frequencies, frequencies_of, held, section, straight};
 use crate::build::newmark;
 use crate::check::{Check, Row, Size};
 
@@ -103,6 +105,50 @@ fn rows(dim: usize, theory: BeamTheory, elements: usize) -> Result<Vec<Row>, Err
     Ok(rows)
 }
 
+/// The two lowest frequencies of a cantilever without weight that carries a disc at its end: those of the 2 x 2 matrices of
+/// the force and the moment at the end, `E I / L³ (12, -6 L; -6 L, 4 L²)`, and of mass and moment of inertia. The weight of
+/// the beam is 2e-6 of that of the disc: tolerance 1e-5.
+fn disc() -> Result<Vec<Row>, Error> {
+    let (mass, inertia) = (1e6, 1e5);
+    let given = section(0.02, BeamTheory::EulerBernoulli);
+    let (mut mesh, body) = straight([[0.0; 3], [0.6 * LENGTH, 0.8 * LENGTH, 0.0]], 1, 2, given)?;
+    let cell = mesh.push(Kind::Point1, &[1]);
+    let disc = DiscreteSpec {
+        name: "disc".to_string(),
+        cells: vec![cell],
+        kind: DiscreteKind::Mass(PointMass {
+            mass,
+            inertia: [0.0, 0.0, inertia],
+        }),
+    };
+    let found = frequencies_of(Model {
+        discrete: vec![ModelDiscrete::new(disc)],
+        supports: vec![held(vec![0], [true; 3], [true; 3])],
+        ..Model::new(vec![body], mesh, newmark(0.25, 0.5), 1e-6)
+    })?;
+    let k = exact(LENGTH, &given, 0).bending / LENGTH.powi(3);
+    let (a, b, c) = (12.0 * k, 6.0 * k * LENGTH, 4.0 * k * LENGTH * LENGTH);
+    // m J w^4 - (a J + c m) w^2 + a c - b^2 = 0
+    let sum = a * inertia + c * mass;
+    let root = (sum * sum - 4.0 * mass * inertia * (a * c - b * b)).sqrt();
+    let squares = [sum - root, sum + root].map(|sum| sum / (2.0 * mass * inertia));
+    let row = |(k, square): (usize, f64)| {
+        let off = |f: &&f64| (**f - square.sqrt()).abs();
+        let nearest = found.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+        let name = format!(
+            "disc at the end of a cantilever: frequency {}, rad/s",
+            k + 1
+        );
+        Row::relative(
+            name,
+            nearest.copied().unwrap_or(f64::NAN),
+            square.sqrt(),
+            1e-5,
+        )
+    };
+    Ok(squares.into_iter().enumerate().map(row).collect())
+}
+
 pub(crate) const CHECK: Check = Check {
     name: "beam-frequencies",
     fact: "beams of 20 elements have the first five frequencies of Euler-Bernoulli's and Timoshenko's beams",
@@ -111,7 +157,7 @@ pub(crate) const CHECK: Check = Check {
             Size::Quick => &[2],
             Size::Full => &[2, 3],
         };
-        let mut all = Vec::new();
+        let mut all = disc()?;
         for &dim in dims {
             for theory in [BeamTheory::EulerBernoulli, BeamTheory::Timoshenko] {
                 all.extend(rows(dim, theory, 20)?);

@@ -75,10 +75,15 @@ pub(crate) fn frequencies(
     supports: Vec<Support>,
     scheme: Scheme,
 ) -> Result<Vec<f64>, Error> {
-    let system = System::new(Model {
+    frequencies_of(Model {
         supports,
         ..Model::new(vec![body], mesh, scheme, 1e-6)
-    })?;
+    })
+}
+
+/// The same of a model.
+pub(crate) fn frequencies_of(model: Model) -> Result<Vec<f64>, Error> {
+    let system = System::new(model)?;
     let free: Vec<usize> = (0..system.unknowns())
         .filter(|&i| !system.fixed[i])
         .collect();

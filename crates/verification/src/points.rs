@@ -37,7 +37,7 @@ impl Points {
         self.discrete.push(ModelDiscrete {
             displacement: Some(u),
             velocity: Some(v),
-            ..self.made("mass", cell, DiscreteKind::Mass(mass))
+            ..self.made("mass", cell, DiscreteKind::Mass(mass.into()))
         });
         (node, cell)
     }

@@ -3,7 +3,7 @@
 //! Problem: a hammer of 2 kg at 5 m/s, a rigid body, strikes the end of a bar of L = 0.25 m, 20 mm by 20 mm, E = 2e11 Pa,
 //! ρ = 8000 kg/m³, c = 5000 m/s, held at its far end; plane cells and hexahedra with ν = 0, one element across, so that the bar
 //! is one of wave theory. The faces meet along a line (the hammer carries the primary surface) or at its own corners (the hammer
-//! carries the secondary one). Theta ½, velocity law, lumped mass, CFL ½. Closed solution: Saint-Venant,
+//! carries the secondary one), at nodes, and by mortar, which has the same resultant on faces that fit. Theta ½, velocity law, lumped mass, CFL ½. Closed solution: Saint-Venant,
 //! `carom_exact::mass_on_bar`: Z V = 80 kN, decay Z/M, a step of 2 Z V as the wave comes back, release after 2.49 transits.
 //!
 //! Tolerances: 1 % of the mean force in each transit without its first and last tenth (and a tenth of a transit before the release),
@@ -12,7 +12,8 @@
 //! momentum balance holds to the tolerance of the iterations, 1e-9; contact makes no energy.
 
 use carom_bodies::{Inertia, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, ModelRigid, ModelTarget, System};
+use carom_contact::{Basis, Integration};
+use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelRigid, ModelTarget, System};
 use carom_exact::mass_on_bar::MassOnBar;
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
@@ -40,6 +41,7 @@ struct Hammer {
     tolerance: f64,
     /// Whether the hammer carries the secondary surface.
     secondary: bool,
+    integration: Integration,
 }
 
 impl Hammer {
@@ -115,7 +117,10 @@ impl Hammer {
             true => (striking, struck),
             false => (struck, striking),
         };
-        let touch = contact(secondary, ModelTarget::Surface(primary), NOW);
+        let touch = ModelContact {
+            integration: self.integration,
+            ..contact(secondary, ModelTarget::Surface(primary), NOW)
+        };
         let dt = 0.5 * LENGTH / self.elements as f64 / SPEED_OF_SOUND;
         let supports = vec![support(&mesh, "bar.right", [true; 3])?];
         let system = System::new(Model {
@@ -193,6 +198,7 @@ pub(crate) const CHECK: Check = Check {
             elements,
             tolerance,
             secondary: false,
+            integration: Integration::Node,
         };
         let other = Hammer {
             name: "plane, hammer secondary",
@@ -204,7 +210,14 @@ pub(crate) const CHECK: Check = Check {
             dim: 3,
             ..plane
         };
-        let rows = [plane, other, space].map(|hammer| hammer.rows());
+        let mortar = Hammer {
+            name: "plane, hammer primary, mortar",
+            integration: Integration::Mortar {
+                basis: Basis::Standard,
+            },
+            ..plane
+        };
+        let rows = [plane, other, space, mortar].map(|hammer| hammer.rows());
         Ok(rows.into_iter().collect::<Result<Vec<_>, _>>()?.concat())
     },
 };

@@ -13,7 +13,7 @@ mod curve;
 use std::ops::Range;
 
 use carom_algebra::csr::Csr;
-use carom_algebra::unknowns::Unknowns;
+use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_mesh::{ElementId, Mesh};
 
 pub use self::curve::{Curve, CurveError};
@@ -48,12 +48,32 @@ impl DiscreteSpec {
 /// What a discrete element is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DiscreteKind {
-    /// A point mass, kg.
-    Mass(f64),
+    /// A point mass.
+    Mass(PointMass),
     /// A spring: force (N) over elongation (m).
     Spring(Link),
     /// A dashpot: force (N) over the rate of elongation (m/s).
     Dashpot(Link),
+}
+
+/// A mass at a node, and its moments of inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointMass {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Moments of inertia about the axes of coordinates, kg m²; in the plane the third one counts. Zero on a node without
+    /// rotations.
+    pub inertia: [f64; 3],
+}
+
+impl From<f64> for PointMass {
+    /// A mass without extent.
+    fn from(mass: f64) -> PointMass {
+        PointMass {
+            mass,
+            inertia: [0.0; 3],
+        }
+    }
 }
 
 /// How the two ends of a spring or a dashpot are linked.
@@ -63,6 +83,33 @@ pub struct Link {
     pub curve: Curve,
     /// Unit vector n from the first end to the second one, or to the ground; none for all directions.
     pub axis: Option<[f64; 3]>,
+}
+
+/// The rotations of the nodes of point masses with extent, and the moment of inertia of each.
+fn rotations(
+    body: &str,
+    point: &PointMass,
+    nodes: &[[u32; 2]],
+    unknowns: &Unknowns,
+) -> Result<Vec<(usize, f64)>, Error> {
+    let mut rotations = Vec::new();
+    if point.inertia == [0.0; 3] {
+        return Ok(rotations);
+    }
+    for &[node, _] in nodes {
+        let own = unknowns.rotations_of(node);
+        if own.is_empty() || unknowns.frame(node).is_some() {
+            return Err(Error::NoRotation {
+                body: body.to_owned(),
+            });
+        }
+        for unknown in own {
+            if let Kind::Rotation(axis) = unknowns.kind(unknown) {
+                rotations.push((unknown, point.inertia[axis]));
+            }
+        }
+    }
+    Ok(rotations)
 }
 
 /// Discrete elements of one kind.
@@ -78,6 +125,8 @@ pub struct Discrete {
     first: Vec<[usize; 2]>,
     /// Nodes of an element.
     per: usize,
+    /// Rotations of all point masses, and the moment of inertia of each, kg m².
+    rotations: Vec<(usize, f64)>,
 }
 
 impl Discrete {
@@ -85,7 +134,8 @@ impl Discrete {
     /// system.
     ///
     /// # Errors
-    /// No cell, cells that are neither all points nor all bars of two nodes, a mass between two nodes.
+    /// No cell, cells that are neither all points nor all bars of two nodes, a mass between two nodes, moments of inertia at a
+    /// node without small rotations.
     pub fn new(
         mesh: &Mesh,
         spec: DiscreteSpec,
@@ -113,7 +163,12 @@ impl Discrete {
         };
         let nodes: Vec<[u32; 2]> = spec.cells.iter().map(ends).collect();
         let first = |ends: &[u32; 2]| ends.map(|node| unknowns.first(node));
+        let rotations = match &spec.kind {
+            DiscreteKind::Mass(point) => rotations(&spec.name, point, &nodes, unknowns)?,
+            DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) => Vec::new(),
+        };
         Ok(Discrete {
+            rotations,
             first: nodes.iter().map(first).collect(),
             nodes,
             name: spec.name,
@@ -347,15 +402,18 @@ impl Discrete {
         }
     }
 
-    /// Adds the point masses (kg) to the entries of a system vector.
+    /// Adds the point masses (kg) and their moments of inertia (kg m²) to the entries of a system vector.
     pub(crate) fn add_lumped_mass(&self, mass: &mut [f64]) {
-        let DiscreteKind::Mass(m) = self.kind else {
+        let DiscreteKind::Mass(point) = self.kind else {
             return;
         };
         for first in &self.first {
             for entry in &mut mass[first[0]..][..self.dim] {
-                *entry += m;
+                *entry += point.mass;
             }
+        }
+        for &(unknown, inertia) in &self.rotations {
+            mass[unknown] += inertia;
         }
     }
 
@@ -371,9 +429,9 @@ impl Discrete {
                 continue;
             }
             let slope = match &self.kind {
-                DiscreteKind::Mass(m) => {
+                DiscreteKind::Mass(point) => {
                     for i in first - part.start..first - part.start + self.dim {
-                        matrix.add(i, i, mass * m);
+                        matrix.add(i, i, mass * point.mass);
                     }
                     continue;
                 }
@@ -384,6 +442,12 @@ impl Discrete {
                 self.each_entry((element, direction), slope, &mut |i, j, k| {
                     matrix.add(i - part.start, j - part.start, k);
                 });
+            }
+        }
+        for &(unknown, inertia) in &self.rotations {
+            if part.contains(&unknown) {
+                let i = unknown - part.start;
+                matrix.add(i, i, mass * inertia);
             }
         }
     }

@@ -171,7 +171,7 @@ fn forces_between_nodes_have_no_resultant_and_the_mass_and_row_sums_are_those_gi
         assert_eq!(damping, [0.0; 12]);
     }
     let mut mass = vec![0.0; 12];
-    body(DiscreteKind::Mass(2.5), false).add_lumped_mass(&mut mass);
+    body(DiscreteKind::Mass(2.5.into()), false).add_lumped_mass(&mut mass);
     assert_eq!((&mass[..9], &mass[9..]), (&[0.0; 9][..], &[2.5; 3][..]));
 }
 
@@ -182,7 +182,7 @@ fn a_mass_between_nodes_is_refused() {
     let spec = DiscreteSpec {
         name: "m".into(),
         cells: vec![mesh.push(Kind::Bar2, &[0, 1])],
-        kind: DiscreteKind::Mass(1.0),
+        kind: DiscreteKind::Mass(1.0.into()),
     };
     let error = Body::discrete(&mesh, spec, &[0, 1], &Unknowns::translations(1, 2)).unwrap_err();
     assert!(matches!(error, Error::NotDiscrete { found: "bar2", .. }));

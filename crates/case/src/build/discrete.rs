@@ -1,6 +1,6 @@
 //! Point masses, springs, dashpots and stops, at nodes of the mesh or at nodes of their own.
 
-use carom_bodies::{Curve, CurveError, DiscreteKind, DiscreteSpec, Link};
+use carom_bodies::{self as bodies, Curve, CurveError, DiscreteKind, DiscreteSpec, Link};
 use carom_contact::law::{Capture, CurvePoint, Defaults, GivenStop, Side};
 use carom_contact::{Initial, Law, Plane};
 use carom_dynamics::{ModelBody, ModelContact, ModelDiscrete, ModelTarget};
@@ -117,7 +117,15 @@ impl Builder<'_> {
                 nodes.into_iter().map(point).collect()
             }
         };
-        let mut made = model(name, cells, DiscreteKind::Mass(mass.mass.0));
+        let inertia = match &mass.inertia {
+            None => [0.0; 3],
+            Some(moments) => self.moments(mesh.dim, &format!("{path}.inertia"), moments)?,
+        };
+        let point = bodies::PointMass {
+            mass: mass.mass.0,
+            inertia,
+        };
+        let mut made = model(name, cells, DiscreteKind::Mass(point));
         // a node of its own is at rest where nothing else is said
         let rest = mass.at.as_ref().map(|_| [0.0; 3]);
         (made.velocity, made.displacement) = (rest, rest);

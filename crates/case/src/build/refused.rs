@@ -144,6 +144,10 @@ impl Builder<'_> {
 
 /// The problem behind an error of a body.
 fn refused_body(cause: &carom_bodies::Error) -> Problem {
+    if let carom_bodies::Error::NoRotation { body } = cause {
+        return Problem::new(format!("mass.{body}.inertia"), cause.to_string())
+            .accepted(["nodes of a beam", "no inertia"]);
+    }
     let path = format!("body.{}.{}", cause.body(), key(cause));
     Problem::new(path, cause.to_string())
 }

@@ -4,6 +4,7 @@ use carom_algebra::rotation::Rotation;
 use carom_bodies::{BodySpec, Inertia, Kinematics};
 use carom_dynamics::ModelRigid;
 use carom_mesh::Mesh;
+use carom_quantities::MomentOfInertia;
 
 use super::Builder;
 use crate::error::Problem;
@@ -77,28 +78,38 @@ impl Builder<'_> {
             inertia.centre = self.vector(mesh, &format!("{path}.rigid.centre"), centre);
         }
         if let Some(moments) = &rigid.inertia {
-            let needed = if mesh.dim == 3 { 3 } else { 1 };
-            if moments.len() != needed {
-                let message = "a wrong number of moments of inertia";
-                let problem = Problem::new(format!("{path}.rigid.inertia"), message);
-                let accepted = match needed {
-                    3 => "three, about the axes of coordinates",
-                    _ => "one, about z",
-                };
-                self.problems.push(
-                    problem
-                        .found(moments.len().to_string())
-                        .accepted([accepted]),
-                );
-                return None;
-            }
-            inertia.moments = match moments[..] {
-                [x, y, z] => [x.0, y.0, z.0],
-                _ => [moments[0].0; 3],
-            };
+            inertia.moments = self.moments(mesh.dim, &format!("{path}.rigid.inertia"), moments)?;
             inertia.axes = Rotation::IDENTITY;
         }
         Some(inertia)
+    }
+
+    /// Moments of inertia about the axes of coordinates, kg m².
+    pub(super) fn moments(
+        &mut self,
+        dim: usize,
+        path: &str,
+        moments: &[MomentOfInertia],
+    ) -> Option<[f64; 3]> {
+        let needed = if dim == 3 { 3 } else { 1 };
+        if moments.len() != needed {
+            let message = "a wrong number of moments of inertia";
+            let problem = Problem::new(path, message);
+            let accepted = match needed {
+                3 => "three, about the axes of coordinates",
+                _ => "one, about z",
+            };
+            self.problems.push(
+                problem
+                    .found(moments.len().to_string())
+                    .accepted([accepted]),
+            );
+            return None;
+        }
+        Some(match moments[..] {
+            [x, y, z] => [x.0, y.0, z.0],
+            _ => [moments[0].0; 3],
+        })
     }
 
     /// Refuses keys of bodies that deform.

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use carom_laws::{Adhesion, Crush, CurvePoint};
 use carom_quantities::{
-    Clearance, Coordinate, Damping, SignedForce, Stiffness, Vector, Velocity, Weight,
+    Clearance, Coordinate, Damping, MomentOfInertia, SignedForce, Stiffness, Vector, Velocity,
+    Weight,
 };
 
 use super::body::Initial;
@@ -18,6 +19,10 @@ use super::obstacle::NormalVector;
 pub struct PointMass {
     /// Mass of each node.
     pub mass: Weight,
+    /// Moments of inertia of each node: three about the axes of coordinates, or one about z in the plane. The nodes must have
+    /// rotations, as those of beams have. Default: none.
+    #[schemars(extend("minItems" = 1, "maxItems" = 3))]
+    pub inertia: Option<Vec<MomentOfInertia>>,
     /// Place of its own node. The node is a group with the name of the mass: supports, springs, contacts and probes use that
     /// name.
     pub at: Option<Vector<Coordinate>>,

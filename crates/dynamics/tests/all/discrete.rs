@@ -25,7 +25,7 @@ fn mass(model: &mut Model, m: f64, at: [f64; 3], velocity: [f64; 3]) -> u32 {
     model.discrete.push(ModelDiscrete {
         velocity: Some(velocity),
         displacement: Some([0.0; 3]),
-        ..made(format!("m{node}"), cell, DiscreteKind::Mass(m))
+        ..made(format!("m{node}"), cell, DiscreteKind::Mass(m.into()))
     });
     node
 }
@@ -273,9 +273,11 @@ fn a_spring_joins_two_bars_and_a_mass_their_ends() {
     let mut model = Model::new(bodies, mesh, TRAPEZOID, 1e-3);
     for end in ends {
         let cell = model.mesh.push(Kind::Point1, &[end]);
-        model
-            .discrete
-            .push(made(format!("m{end}"), cell, DiscreteKind::Mass(3.0)));
+        model.discrete.push(made(
+            format!("m{end}"),
+            cell,
+            DiscreteKind::Mass(3.0.into()),
+        ));
     }
     link(
         &mut model,
