@@ -45,6 +45,11 @@ macro_rules! quantity {
             }
         }
 
+        #[cfg(test)]
+        impl tests::Example for $name {
+            const EXAMPLE: &'static str = $example;
+        }
+
         impl $name {
             /// Reads the SI value alone: `deserialize_with` of a field of type `f64`.
             ///
@@ -333,3 +338,52 @@ macro_rules! into_si {
 }
 
 into_si!(SecondMoment Frequency MomentOfInertia Angle SignedForce SignedMoment Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+    use serde::de::IntoDeserializer;
+    use serde::de::value::{Error, StrDeserializer};
+
+    /// The example that the reference shows.
+    pub(super) trait Example: for<'de> Deserialize<'de> {
+        const EXAMPLE: &'static str;
+    }
+
+    fn reads<T: Example>() {
+        let text: StrDeserializer<Error> = T::EXAMPLE.into_deserializer();
+        if let Err(error) = T::deserialize(text) {
+            panic!("{}: {error}", T::EXAMPLE);
+        }
+    }
+
+    #[test]
+    fn every_quantity_reads_its_own_example() {
+        reads::<super::Coordinate>();
+        reads::<super::Length>();
+        reads::<super::Clearance>();
+        reads::<super::Area>();
+        reads::<super::SecondMoment>();
+        reads::<super::Duration>();
+        reads::<super::Density>();
+        reads::<super::Modulus>();
+        reads::<super::Velocity>();
+        reads::<super::Acceleration>();
+        reads::<super::SurfaceStiffness>();
+        reads::<super::SurfaceDamping>();
+        reads::<super::Force>();
+        reads::<super::SignedForce>();
+        reads::<super::SignedMoment>();
+        reads::<super::Weight>();
+        reads::<super::Stiffness>();
+        reads::<super::Damping>();
+        reads::<super::Stress>();
+        reads::<super::SignedStress>();
+        reads::<super::Delay>();
+        reads::<super::Rate>();
+        reads::<super::Frequency>();
+        reads::<super::MomentOfInertia>();
+        reads::<super::Angle>();
+        reads::<super::AngularVelocity>();
+    }
+}

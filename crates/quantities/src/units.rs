@@ -20,6 +20,7 @@ pub struct Dimension {
 /// Dimensions that have a name, with their SI unit: for messages.
 const NAMED: &[(&str, &str, Dimension)] = &[
     ("number", "no unit", dimension(0, 0, 0)),
+    ("angle", "rad", dimension(0, 0, 0)),
     ("length", "m", dimension(1, 0, 0)),
     ("area", "m^2", dimension(2, 0, 0)),
     ("second moment of area", "m^4", dimension(4, 0, 0)),
@@ -31,6 +32,7 @@ const NAMED: &[(&str, &str, Dimension)] = &[
     ("velocity", "m/s", dimension(1, 0, -1)),
     ("acceleration", "m/s^2", dimension(1, 0, -2)),
     ("force", "N", dimension(1, 1, -2)),
+    ("moment of inertia", "kg*m^2", dimension(2, 1, 0)),
     ("energy", "J", dimension(2, 1, -2)),
     ("moment", "N*m", dimension(2, 1, -2)),
     ("power", "W", dimension(2, 1, -3)),
