@@ -76,17 +76,12 @@ impl Driver {
     fn set_links(&mut self) {
         self.link_force.fill(0.0);
         let system = &*self.system;
-        for zone in 0..system.schemes.len() {
-            let [old, new] = self.maps.link_weights(&system.schemes[zone]);
-            let (before, now) = (&self.state.links.multipliers, &self.multipliers.now);
-            for (i, row) in system.link_rows.iter().enumerate() {
-                let l = old * before[i] + new * now[i];
-                for &(dof, c) in row
-                    .iter()
-                    .filter(|(dof, _)| system.zone_at(*dof as usize) == zone)
-                {
-                    self.link_force[dof as usize] += c * l;
-                }
+        let (before, now) = (&self.state.links.multipliers, &self.multipliers.now);
+        for (i, row) in system.link_rows.iter().enumerate() {
+            for &(dof, c) in row {
+                let scheme = &system.schemes[system.zone_at(dof as usize)];
+                let [old, new] = self.maps.link_weights(scheme);
+                self.link_force[dof as usize] += c * (old * before[i] + new * now[i]);
             }
         }
     }

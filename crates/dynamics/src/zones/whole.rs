@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::ledger::{Balance, Ledger, Tolerated};
 use crate::march::{FailedProblem, Stepper};
 use crate::records::Records;
-use crate::state::{ContactReport, ContactSample, State, StepReport, empty_state};
+use crate::state::{ContactReport, ContactSample, InterfaceState, State, StepReport, empty_state};
 use crate::system::{Motion, System};
 
 /// Zones with the model as one.
@@ -222,31 +222,15 @@ impl Whole {
                 whole.friction.resize(whole.force.len(), [0.0; 2]);
             }
             for &(from, to) in &places.points {
-                let (from, to) = (from as usize, to as usize);
-                whole.force[to] = interface.force[from];
-                whole.carried[to] = interface.carried[from];
-                whole.gap[to] = interface.gap[from];
-                whole.rate[to] = interface.rate[from];
-                whole.opening[to] = interface.opening[from];
-                whole.status[to] = interface.status[from];
-                whole.watched[to] = interface.watched[from];
-                if let Some(friction) = interface.friction.get(from) {
-                    whole.friction[to] = *friction;
-                }
+                take_point((whole, to as usize), (interface, from as usize));
             }
         }
         let Some((contacts, between)) = self.zones.between() else {
             return;
         };
-        let from = &between.interface;
         for &contact in contacts {
             for point in self.system.first_point[contact]..self.system.first_point[contact + 1] {
-                whole.force[point] = from.force[point];
-                whole.carried[point] = from.carried[point];
-                whole.gap[point] = from.gap[point];
-                whole.rate[point] = from.rate[point];
-                whole.status[point] = from.status[point];
-                whole.watched[point] = from.watched[point];
+                take_point((whole, point), (&between.interface, point));
             }
         }
     }
@@ -361,6 +345,20 @@ impl Whole {
                 }
             }
         }
+    }
+}
+
+/// Makes a point of the whole what it is where it is solved for.
+fn take_point((whole, to): (&mut InterfaceState, usize), (own, from): (&InterfaceState, usize)) {
+    whole.force[to] = own.force[from];
+    whole.carried[to] = own.carried[from];
+    whole.gap[to] = own.gap[from];
+    whole.rate[to] = own.rate[from];
+    whole.opening[to] = own.opening[from];
+    whole.status[to] = own.status[from];
+    whole.watched[to] = own.watched[from];
+    if let Some(friction) = own.friction.get(from) {
+        whole.friction[to] = *friction;
     }
 }
 
