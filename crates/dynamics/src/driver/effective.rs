@@ -227,12 +227,6 @@ impl Effective {
         ))
     }
 
-    /// Bytes held for the condensed problem of the links.
-    pub(super) fn condensed_bytes(&self, rows: usize) -> usize {
-        let linking = self.now.as_ref().and_then(|now| now.linking.as_ref());
-        linking.map_or(0, |linking| linking.bytes(rows))
-    }
-
     /// N x of the free motion, from the y of `begin`, of a point whose column is at hand.
     pub(super) fn free(&self, point: u32, y: &[f64]) -> f64 {
         let now = self.now.as_ref();

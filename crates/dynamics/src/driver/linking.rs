@@ -191,11 +191,6 @@ impl Linking {
         })
     }
 
-    /// Bytes held for H.
-    pub(super) fn bytes(&self, rows: usize) -> usize {
-        self.condensed.bytes(rows)
-    }
-
     /// Moves the multipliers by `change` (added to it) so that rows hold which the forces `work`, begun in `half`, miss by themselves.
     /// `defect`: the rows without the motion of these forces. Adds the forces of the multipliers to `work`, and begins anew.
     pub(super) fn hold(

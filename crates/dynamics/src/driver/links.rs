@@ -226,9 +226,4 @@ impl Driver {
         let links = self.system.links.iter().zip(&self.state.links.works);
         links.map(|((name, rows), work)| (name.as_str(), rows.len(), *work))
     }
-
-    /// Bytes held for the condensed problem of the links.
-    pub fn condensed_bytes(&self) -> usize {
-        self.effective.condensed_bytes(self.system.link_rows.len())
-    }
 }
