@@ -13,16 +13,10 @@ use source::Source;
 use crate::files;
 
 /// Folders in which circles are known, and why they still stand. A folder without one must leave the list.
-const KNOWN: [(&str, &str); 2] = [
-    (
-        "crates/system/src/",
-        "the system and the steps of its building import each other; its building becomes a file of its own",
-    ),
-    (
-        "crates/dynamics/src/",
-        "the driver and its stages import each other, and so do a zone's driver and the zones",
-    ),
-];
+const KNOWN: [(&str, &str); 1] = [(
+    "crates/dynamics/src/",
+    "the driver and its stages import each other, and so do a zone's driver and the zones",
+)];
 
 /// A module by the names that lead to it from the root of its crate.
 type Module = Vec<String>;

@@ -1,11 +1,13 @@
-//! What a system refuses: surfaces that overlap, and schemes that cannot take a mass, a step or a law.
+//! What a system refuses: surfaces that overlap, schemes that cannot take a mass, a step or a law, and what forces that are
+//! not linear exclude.
 
 use carom_bodies::MassKind;
 use carom_contact::law::Level;
-use carom_contact::{Contact, Initial};
+use carom_contact::{Contact, Initial, Integration};
 
 use crate::error::Error;
 use crate::model::{ModelBody, ModelContact};
+use crate::refused::Refused;
 use crate::system::System;
 
 impl System {
@@ -126,5 +128,41 @@ impl System {
         } else {
             Ok(())
         }
+    }
+
+    /// Refuses what a model whose forces are not all linear does not accept.
+    pub(crate) fn check_nonlinear(&self) -> Result<(), Error> {
+        if !self.nonlinear.needed {
+            return Ok(());
+        }
+        let refuse = |what: Refused, why| Err(Error::Nonlinear { what, why });
+        self.check_rigid()?;
+        let weak = |contact: &Contact| matches!(contact.integration, Integration::Weak { .. });
+        for (contact, friction) in self.contacts.iter().zip(&self.friction) {
+            let refused = || Refused::Integration(contact.name.clone());
+            if weak(contact) && *friction > 0.0 {
+                return refuse(
+                    refused(),
+                    "the weak form with signs at Gauss points has no friction; take node or mortar",
+                );
+            }
+            let of_rate = contact.law.get().level() == Level::Rate;
+            if weak(contact) && of_rate && self.nonlinear.preload.is_some() {
+                return refuse(
+                    refused(),
+                    "in a static stage laws in the rate hold in the gap, for which r of the weak form has another unit; \
+                     take node or mortar, or the displacement law",
+                );
+            }
+        }
+        for (damping, body) in self.nonlinear.damping.iter().zip(&self.bodies) {
+            if damping.stiffness != 0.0 && !body.is_linear() {
+                return refuse(
+                    Refused::Damping(body.name().to_string()),
+                    "damping proportional to the stiffness would brake rotations at finite strain; take a viscoelastic material",
+                );
+            }
+        }
+        Ok(())
     }
 }

@@ -5,6 +5,7 @@
 
 mod adaptive;
 mod between;
+mod build;
 mod checks;
 mod cliques;
 mod contacts;
@@ -17,6 +18,8 @@ mod massless;
 mod model;
 mod motion;
 mod nonlinear;
+mod numbered;
+mod numbered_loads;
 mod refused;
 mod rigid;
 mod stability;
@@ -26,7 +29,7 @@ pub use adaptive::{Adaptive, Closing};
 pub use cliques::push_cliques;
 pub use contacts::sides;
 pub use error::Error;
-pub use loads::{Load, LoadKind, NodalLoad, NumberedForce, NumberedLoad};
+pub use loads::{Load, LoadKind, NodalLoad};
 pub use maps::Maps;
 pub use mass::Mass;
 pub use model::{
@@ -34,9 +37,9 @@ pub use model::{
     Support,
 };
 pub use motion::Motion;
-pub use nonlinear::{
-    Damping, Follows, Iteration, Nonlinear, NumberedNonlinear, Preload, Prescribed, PrescribedTurn,
-};
+pub use nonlinear::{Damping, Iteration, Nonlinear, Preload, Prescribed, PrescribedTurn};
+pub use numbered::{Follows, NumberedNonlinear};
+pub use numbered_loads::{NumberedForce, NumberedLoad};
 pub use refused::Refused;
 pub use rigid::Order;
 pub use system::{LinkRow, System, on};

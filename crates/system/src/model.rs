@@ -259,3 +259,24 @@ impl ModelTarget {
         ModelTarget::Rigid(obstacle.into())
     }
 }
+
+impl Model {
+    /// Whether it has a pressure or traction, a motion in time, damping, a static stage, friction, mortar, a body at finite
+    /// strain, an obstacle that moves, or a scheme with forces between two states: the energy of its steps is then balanced
+    /// by works, not by the identity of the scheme, and a step of fixed size that fails is taken in halves.
+    pub fn is_nonlinear(&self) -> bool {
+        let finite =
+            |body: &ModelBody| body.rigid.is_some() || body.spec.material.finite().is_some();
+        self.nonlinear.asks()
+            || self.bodies.iter().any(finite)
+            || self.discrete.iter().any(|some| !some.spec.is_linear())
+            || self.scheme.get().is_between()
+            || self.mixes_schemes()
+            || self.contacts.iter().any(needs_newton)
+    }
+}
+
+fn needs_newton(contact: &ModelContact) -> bool {
+    let moves = matches!(&contact.primary, ModelTarget::Rigid(obstacle) if obstacle.motion.moves());
+    contact.friction > 0.0 || moves || matches!(contact.integration, Integration::Mortar { .. })
+}

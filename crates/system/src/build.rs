@@ -1,0 +1,401 @@
+//! From a model to a system: numbers, bodies, masses, contacts, initial values.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use carom_algebra::rotation::Rotation;
+use carom_algebra::unknowns::{Kind, Unknowns};
+use carom_bodies::{Body, Kinematics, Rigid};
+use carom_contact::{Contact, Frames, Places};
+use carom_mesh::Parts;
+use carom_schemes::Scheme;
+
+use crate::contacts::{numbered, renumbered, sides};
+use crate::error::Error;
+use crate::initial::settle;
+use crate::mass::Mass;
+use crate::massless::redistribute;
+use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete};
+use crate::numbered::NumberedNonlinear;
+use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
+use crate::system::{LinkRow, System, part_of};
+
+impl System {
+    /// Numbers the nodes by connected part and builds bodies, masses and contacts.
+    ///
+    /// # Errors
+    /// A step that is not positive; a body that cannot be built; a scheme that cannot take the mass, the step or the
+    /// contact law.
+    pub fn new(model: Model) -> Result<Arc<System>, Error> {
+        if !(model.dt > 0.0 && model.dt.is_finite()) {
+            return Err(Error::Step { dt: model.dt });
+        }
+        if let Some(rules) = &model.adaptive
+            && !(rules.smallest > 0.0 && rules.smallest <= model.dt)
+        {
+            return Err(Error::Adaptive {
+                smallest: rules.smallest,
+                largest: model.dt,
+            });
+        }
+        let (system, bodies, contacts) = System::assemble(model)?;
+        system.check_overlaps(&contacts)?;
+        system.check_massless(&contacts)?;
+        for zone in 0..system.schemes.len() {
+            system.check_scheme(zone, &bodies)?;
+        }
+        system.check_zones()?;
+        system.check_nonlinear()?;
+        system.check_integration()?;
+        Ok(Arc::new(system))
+    }
+
+    /// All bodies and contacts of a model in one numbering, to look at and not to be driven: whether the scheme takes the
+    /// laws, the masses and the step is not asked. A model in zones has no scheme as a whole.
+    ///
+    /// # Errors
+    /// A body that cannot be built.
+    pub fn whole(model: Model) -> Result<Arc<System>, Error> {
+        let (system, ..) = System::assemble(model)?;
+        Ok(Arc::new(system))
+    }
+
+    fn assemble(mut model: Model) -> Result<(System, Vec<ModelBody>, Vec<ModelContact>), Error> {
+        model.remove_penetrations()?;
+        let dim = model.mesh.dim;
+        let centres = add_centres(&mut model);
+        let (number, mesh_node, parts) = numbering(&model, &centres);
+        let x: Vec<[f64; 3]> = mesh_node
+            .iter()
+            .map(|&node| model.mesh.nodes[node as usize])
+            .collect();
+        let (unknowns, initial_frames) = unknowns(&model, &centres, &number, &mesh_node)?;
+        let body = |(body, centre): (&ModelBody, &Option<u32>)| {
+            let (spec, unknowns) = (body.spec.clone(), &unknowns);
+            match (body.rigid, centre) {
+                (Some(rigid), Some(centre)) => {
+                    let node = (number[*centre as usize], unknowns);
+                    let rigid = Rigid::new(spec.name, spec.cells, rigid.inertia, node);
+                    Ok(Body::Rigid(rigid))
+                }
+                _ => Body::new(&model.mesh, spec, &number, unknowns),
+            }
+        };
+        let discrete = |some: &ModelDiscrete| {
+            Body::discrete(&model.mesh, some.spec.clone(), &number, &unknowns)
+        };
+        let bodies = model
+            .bodies
+            .iter()
+            .zip(&centres)
+            .map(body)
+            .chain(model.discrete.iter().map(discrete))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut fixed = vec![false; unknowns.len()];
+        for support in &model.supports {
+            let numbers = support.nodes.iter().map(|&node| number[node as usize]);
+            for node in numbers.filter(|&node| node != u32::MAX) {
+                for unknown in unknowns.of(unknowns.moved_by(node)) {
+                    fixed[unknown] |= support.holds(unknowns.kind(unknown));
+                }
+            }
+        }
+        hold_axisymmetric(&model, (&bodies, &unknowns), &mut fixed);
+        let mut mass = Mass::of(&bodies, &model.bodies, &unknowns);
+        let mut body_masses: Vec<_> = bodies
+            .iter()
+            .map(|body| node_masses(body, &unknowns))
+            .collect();
+        check_masses(&bodies, &body_masses, &mesh_node)?;
+        let masses = (&mut mass, &mut body_masses[..]);
+        let massless = redistribute(&model, &bodies, &number, (&x, &unknowns), masses)?;
+        let load = mass.weight(&unknowns, model.gravity);
+        let nonlinear =
+            NumberedNonlinear::new(&model, (&number, &unknowns), (&bodies, &mass), &fixed)?;
+        let (mut initial_displacement, initial_velocity) =
+            initial(&model, &body_masses, &fixed, (&unknowns, &initial_frames));
+        for follows in &nonlinear.follows {
+            fixed[follows.unknown as usize] = true;
+            initial_displacement[follows.unknown as usize] = 0.0;
+        }
+        let mut contacts: Vec<Contact> = model
+            .contacts
+            .iter()
+            .map(|contact| numbered(contact, &model, &number, &x))
+            .collect();
+        let ways = model.contacts.iter().map(|contact| contact.initial);
+        let places = Places {
+            unknowns: &unknowns,
+            time: 0.0,
+            x: &x,
+            u: &initial_displacement,
+            frames: Frames {
+                start: &initial_frames,
+                ..Frames::default()
+            },
+        };
+        settle(&mut contacts, ways, &places, (&mesh_node, model.length()))?;
+        let mut first_point = vec![0];
+        for contact in &contacts {
+            first_point.push(first_point[first_point.len() - 1] + contact.points.len());
+        }
+        let sides = model
+            .contacts
+            .iter()
+            .map(|contact| sides(contact, &model))
+            .collect();
+        let faces_of = |contact: &ModelContact| {
+            let faces = contact.secondary.faces.iter();
+            faces.map(|face| renumbered(face, &number)).collect()
+        };
+        let secondary_faces = model.contacts.iter().map(faces_of).collect();
+        let origin = match model.contacts.is_empty() {
+            true => nearest_corner(&x),
+            false => [0.0; 3],
+        };
+        let parts: Vec<Range<usize>> = parts
+            .into_iter()
+            .map(|part| unknowns.of_range(part))
+            .collect();
+        let part_of_body = bodies.iter().map(|body| {
+            let mut first = None;
+            body.each_element(&mut |nodes| {
+                first.get_or_insert(unknowns.first(nodes[0]));
+            });
+            part_of(&parts, first.unwrap_or(0))
+        });
+        let part_of_body: Vec<usize> = part_of_body.collect();
+        let (schemes, zone_of_body, spans) = schemes(&model, &bodies, &part_of_body, &parts)?;
+        let (links, link_rows) = links(&model, &number, &unknowns);
+        let rows = model.links.iter().flat_map(|link| &link.rows);
+        let inner_terms = rows.map(|row| row.inner.len()).collect();
+        let system = System {
+            part_of_body,
+            origin,
+            tolerance: 1e-12 * model.length(),
+            axisymmetric: model
+                .bodies
+                .iter()
+                .any(|body| body.spec.kinematics == Kinematics::Axisymmetric),
+            dim,
+            x,
+            mesh_node,
+            number,
+            parts,
+            unknowns,
+            has_springs: bodies.iter().any(|body| !body.balances_itself()),
+            has_dashpots: bodies.iter().any(Body::has_damping),
+            bodies,
+            body_masses,
+            mass,
+            massless,
+            fixed,
+            load,
+            contacts,
+            secondary_faces,
+            sides,
+            first_point,
+            scheme: schemes[0],
+            schemes,
+            zone_of_body,
+            links,
+            link_rows,
+            inner_terms,
+            spans,
+            dt: model.dt,
+            adaptive: model.adaptive,
+            nonlinear,
+            friction: model.contacts.iter().map(|c| c.friction).collect(),
+            initial_frames,
+            initial_displacement,
+            initial_velocity,
+            mesh: model.mesh,
+        };
+        Ok((system, model.bodies, model.contacts))
+    }
+}
+
+/// System numbers of the mesh nodes, mesh nodes of the system numbers, and node ranges of the connected parts. `centres`: nodes of
+/// the rigid bodies.
+fn numbering(model: &Model, centres: &[Option<u32>]) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
+    let count = model.mesh.nodes.len();
+    let cells = model.bodies.iter().flat_map(|body| &body.spec.cells);
+    let discrete = model.discrete.iter().flat_map(|some| &some.spec.cells);
+    let joined = Parts::new(&model.mesh, cells.chain(discrete).copied());
+    // parts come in the order of their first node, which leads
+    let mut nodes: Vec<(u32, u32)> = (0..count as u32)
+        .filter_map(|node| Some((joined.of(node)?, node)))
+        .collect();
+    for (body, centre) in model.bodies.iter().zip(centres) {
+        let first = body.spec.cells.first();
+        let first = first.map(|&cell| model.mesh.element_nodes(cell)[0]);
+        if let Some(centre) = *centre {
+            let leader = first.and_then(|node| joined.of(node)).unwrap_or(centre);
+            nodes.push((leader, centre));
+        }
+    }
+    nodes.sort_unstable();
+    let mut number = vec![u32::MAX; count];
+    let mut parts: Vec<Range<usize>> = Vec::new();
+    for (system, &(leader, node)) in nodes.iter().enumerate() {
+        number[node as usize] = system as u32;
+        match parts.last_mut() {
+            Some(part) if nodes[part.start].0 == leader => part.end = system + 1,
+            _ => parts.push(system..system + 1),
+        }
+    }
+    (
+        number,
+        nodes.into_iter().map(|(_, node)| node).collect(),
+        parts,
+    )
+}
+
+/// The place nearest to zero in the box around some places, m.
+fn nearest_corner(x: &[[f64; 3]]) -> [f64; 3] {
+    [0, 1, 2].map(|i| {
+        let along = x.iter().map(|x| x[i]);
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        0.0_f64.min(high).max(low)
+    })
+}
+
+/// Name and range of the rows of each link, and the rows.
+fn links(
+    model: &Model,
+    number: &[u32],
+    unknowns: &Unknowns,
+) -> (Vec<(String, Range<usize>)>, Vec<LinkRow>) {
+    let mut rows: Vec<LinkRow> = Vec::new();
+    let mut links = Vec::new();
+    for link in &model.links {
+        let first = rows.len();
+        for row in &link.rows {
+            let term = |sign: f64| {
+                move |term: &carom_arlequin::Term| {
+                    let first = unknowns.first(number[term.node as usize]) as u32;
+                    (first + term.component, sign * term.coefficient)
+                }
+            };
+            let inner = row.inner.iter().map(term(1.0));
+            rows.push(inner.chain(row.outer.iter().map(term(-1.0))).collect());
+        }
+        links.push((link.name.clone(), first..rows.len()));
+    }
+    (links, rows)
+}
+
+/// The schemes, each once, the number of each body's, and the unknowns by scheme.
+type Schemes = (Vec<Scheme>, Vec<usize>, Vec<(Range<usize>, usize)>);
+
+/// # Errors
+/// Bodies of one connected part that have different schemes.
+fn schemes(
+    model: &Model,
+    bodies: &[Body],
+    part_of_body: &[usize],
+    parts: &[Range<usize>],
+) -> Result<Schemes, Error> {
+    let mut of_part: Vec<Option<Scheme>> = vec![None; parts.len()];
+    for (k, body) in model.bodies.iter().enumerate() {
+        let own = model.scheme_of(k);
+        let of_part = of_part[part_of_body[k]].get_or_insert(own);
+        if *of_part != own {
+            return Err(Error::SchemesOfPart {
+                body: body.spec.name.clone(),
+                schemes: [of_part.get().name(), own.get().name()],
+            });
+        }
+    }
+    let mut schemes: Vec<Scheme> = Vec::new();
+    let mut spans: Vec<(Range<usize>, usize)> = Vec::new();
+    let mut zone_of_part = Vec::new();
+    for (part, scheme) in parts.iter().zip(of_part) {
+        // point masses by themselves
+        let scheme = scheme.unwrap_or(model.scheme);
+        let known = schemes.iter().position(|one| *one == scheme);
+        let zone = known.unwrap_or_else(|| {
+            schemes.push(scheme);
+            schemes.len() - 1
+        });
+        zone_of_part.push(zone);
+        match spans.last_mut() {
+            Some((span, of)) if *of == zone => span.end = part.end,
+            _ => spans.push((part.clone(), zone)),
+        }
+    }
+    if schemes.is_empty() {
+        schemes.push(model.scheme);
+    }
+    let zones = (0..bodies.len()).map(|body| {
+        let part = part_of_body[body];
+        zone_of_part.get(part).copied().unwrap_or(0)
+    });
+    Ok((schemes, zones.collect(), spans))
+}
+
+fn node_masses(body: &Body, unknowns: &Unknowns) -> Vec<(u32, f64)> {
+    let mut mass = vec![0.0; unknowns.len()];
+    body.add_lumped_mass(&mut mass);
+    let first = (0..unknowns.len()).filter(|&i| unknowns.kind(i) == Kind::Translation(0));
+    first
+        .filter(|&first| mass[first] > 0.0)
+        .map(|first| (unknowns.node(first), mass[first]))
+        .collect()
+}
+
+fn initial(
+    model: &Model,
+    masses: &[Vec<(u32, f64)>],
+    fixed: &[bool],
+    (unknowns, frames): (&Unknowns, &[Rotation]),
+) -> (Vec<f64>, Vec<f64>) {
+    let (mut u, mut v) = (vec![0.0; fixed.len()], vec![0.0; fixed.len()]);
+    let bodies = model.bodies.iter();
+    let bodies = bodies.map(|body| (Some(body.displacement), Some(body.velocity)));
+    let discrete = model.discrete.iter();
+    let discrete = discrete.map(|some| (some.displacement, some.velocity));
+    for ((displacement, velocity), masses) in bodies.chain(discrete).zip(masses) {
+        for &(node, _) in masses {
+            for (i, dof) in unknowns.translations_of(node).enumerate() {
+                if !fixed[dof] {
+                    u[dof] = displacement.map_or(u[dof], |given| given[i]);
+                    v[dof] = velocity.map_or(v[dof], |given| given[i]);
+                }
+            }
+        }
+    }
+    spin(model, masses, (unknowns, frames), &mut v);
+    for (v, _) in v.iter_mut().zip(fixed).filter(|(_, fixed)| **fixed) {
+        *v = 0.0;
+    }
+    (u, v)
+}
+
+/// Refuses springs and dashpots at nodes without mass: nothing says how they move.
+fn check_masses(
+    bodies: &[Body],
+    masses: &[Vec<(u32, f64)>],
+    mesh_node: &[u32],
+) -> Result<(), Error> {
+    let mut heavy = vec![false; mesh_node.len()];
+    for &(node, _) in masses.iter().flatten() {
+        heavy[node as usize] = true;
+    }
+    for body in bodies.iter().filter(|body| body.as_discrete().is_some()) {
+        let mut light = None;
+        body.each_element(&mut |nodes| {
+            let mut without = nodes.iter().filter(|node| !heavy[**node as usize]);
+            light = light.or(without.next().copied());
+        });
+        if let Some(node) = light {
+            return Err(Error::NoMass {
+                element: body.name().to_owned(),
+                node: mesh_node[node as usize],
+            });
+        }
+    }
+    Ok(())
+}
