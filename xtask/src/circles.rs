@@ -12,16 +12,10 @@ use source::Source;
 
 use crate::files;
 
-/// Folders in which circles are known, and why they still stand. A folder without one must leave the list.
-const KNOWN: [(&str, &str); 1] = [(
-    "crates/dynamics/src/",
-    "the driver and its stages import each other, and so do a zone's driver and the zones",
-)];
-
 /// A module by the names that lead to it from the root of its crate.
 type Module = Vec<String>;
 
-/// Circles that are not known, and known ones that are gone.
+/// The circles of each crate.
 pub fn check(root: &Path) -> Vec<String> {
     let files = match files::list(root) {
         Ok(files) => files,
@@ -37,23 +31,14 @@ pub fn check(root: &Path) -> Vec<String> {
         let tree = crates.entry(folder).or_default();
         tree.files.insert(module, (name, Source::new(&text)));
     }
-    let found: Vec<Vec<String>> = crates.values_mut().flat_map(Tree::circles).collect();
-    let lies_in =
-        |folder: &str, circle: &[String]| circle.iter().all(|name| name.starts_with(folder));
-    let is_known = |circle: &[String]| KNOWN.iter().any(|(folder, _)| lies_in(folder, circle));
-    let new = found.iter().filter(|circle| !is_known(circle));
-    let new = new.map(|circle| {
+    let circles = crates.values_mut().flat_map(Tree::circles);
+    let told = circles.map(|circle| {
         format!(
             "files import each other in a circle: {}",
             circle.join(" → ")
         )
     });
-    let gone = KNOWN
-        .iter()
-        .filter(|(folder, _)| !found.iter().any(|circle| lies_in(folder, circle)));
-    let gone =
-        gone.map(|(folder, _)| format!("xtask/src/circles.rs: no circle is left in {folder}"));
-    new.chain(gone).collect()
+    told.collect()
 }
 
 /// Folder of the crate and module of a source file; `None` of files that are no part of a library.

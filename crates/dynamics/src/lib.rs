@@ -16,10 +16,12 @@ mod ledger;
 mod march;
 mod operator;
 mod records;
+mod report;
 mod resultant;
 mod small;
 mod state;
 mod sum;
+mod watch;
 mod zones;
 
 use carom_nonsmooth::{coulomb, interface};
@@ -32,6 +34,7 @@ pub use control::Control;
 pub use costs::{Costs, Phases, Work};
 pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};
 pub use driver::Driver;
+pub use driver::linked::Origin;
 pub use error::Error;
 pub use exchange::Exchange;
 pub use impact::Impact;
@@ -39,16 +42,15 @@ pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Tolerated};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, march, step_count};
 pub use records::{ContactRecord, Records};
+pub use report::{ContactReport, ContactSample, StepReport};
 pub use resultant::Resultant;
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use small::{Largest, SmallSliding, SmallStrain, Smallness};
-pub use state::{ContactReport, ContactSample, InterfaceState, State, StepReport};
+pub use state::{InterfaceState, State};
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::{
     Adaptive, Closing, Damping, Iteration, Load, LoadKind, Mass, Model, ModelBody, ModelContact,
     ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget, Motion, NodalLoad, Nonlinear,
     Order, Preload, Prescribed, PrescribedTurn, Refused, Support, System,
 };
-pub use zones::{
-    LinkKind, ModelZone, Origin, Sample, Whole, Zoned, Zones, ZonesState, mortar_rows,
-};
+pub use zones::{LinkKind, ModelZone, Sample, Whole, Zoned, Zones, ZonesState, mortar_rows};

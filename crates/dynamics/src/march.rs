@@ -6,7 +6,8 @@ use crate::costs::Costs;
 use crate::coulomb::FrictionProblem;
 use crate::error::Error;
 use crate::interface::InterfaceProblem;
-use crate::state::{State, StepReport};
+use crate::report::StepReport;
+use crate::state::State;
 use crate::system::System;
 
 /// What a run is made with: one driver, or the drivers of all zones as one.

@@ -3,10 +3,9 @@
 use carom_bodies::Body;
 use serde::{Deserialize, Serialize};
 
-use crate::driver::Pushed;
 use crate::impact::{Given, Impact, OpenImpact};
+use crate::report::ContactReport;
 use crate::small::Smallness;
-use crate::state::{ContactReport, State};
 use crate::step_map::Impulse;
 use crate::sum::Sum;
 use crate::system::System;
@@ -64,6 +63,15 @@ pub struct ContactRecord {
     later: f64,
     /// Force of an obstacle that moves.
     pub(crate) pushed: Pushed,
+}
+
+/// Force of a moving obstacle at the end of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Pushed {
+    /// On the bodies, friction included, N.
+    pub(crate) force: [f64; 3],
+    /// Power of its turn, W.
+    pub(crate) turn: f64,
 }
 
 /// Elements and steps to a period, the least that mesh and step carry: two to a half-wave. What a point does in a shorter time is
@@ -284,15 +292,15 @@ impl Records {
         self.impacts.iter().cloned().chain(flying)
     }
 
-    /// All impacts, those whose contact is closed at the end of the run included.
-    pub fn all_impacts(&self, system: &System, state: &State) -> Vec<Impact> {
+    /// All impacts until `time` (s), those whose contact is closed then included. `v`: velocities then, m/s.
+    pub(crate) fn all_impacts(&self, system: &System, time: f64, v: &[f64]) -> Vec<Impact> {
         let contacts = self.contacts.iter().enumerate();
         let closed = contacts.filter_map(|(contact, record)| {
             let open = record.open.as_ref()?;
             open.released().is_none().then(|| Impact {
                 unfinished: true,
                 restitution: None,
-                ..open.impact(system, contact, state.time, &state.motion.v)
+                ..open.impact(system, contact, time, v)
             })
         });
         self.ended().chain(closed).collect()

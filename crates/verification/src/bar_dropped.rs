@@ -65,7 +65,7 @@ fn bounces(elements: usize, count: usize) -> Result<(Vec<Row>, f64), Error> {
     let mut driver = driver(elements, material)?;
     march(&mut driver, end, &mut [], &|| false)?;
     let state = driver.state();
-    let impacts = state.records.all_impacts(driver.system(), state);
+    let impacts = state.impacts(driver.system());
     let row = |what: &str| format!("n = {elements}: {what}");
     let (mut rows, mut largest) = (Vec::new(), 0.0_f64);
     for (k, contact) in contacts.iter().enumerate() {

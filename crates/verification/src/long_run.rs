@@ -140,7 +140,7 @@ pub fn bounces(
         &|| false,
     )?;
     let state = driver.state();
-    let impacts = state.records.all_impacts(driver.system(), state);
+    let impacts = state.impacts(driver.system());
     // chatter splits contacts: the last one begins with the first impact from the middle of the flight before it on
     let exact = PERIOD * (periods - 1) as f64 + 1.0;
     let last = impacts.iter().find(|impact| impact.start > exact - 1.0);

@@ -1,35 +1,9 @@
 //! Contacts that are paired where the step is predicted to lead.
 
-use super::candidates::looks_ahead;
-use super::contacts::Paired;
-use super::{Driver, Vectors};
+use super::Driver;
 use crate::error::Error;
 
 impl Driver {
-    /// Whether a contact is paired where the step is predicted to lead.
-    pub(super) fn looks_ahead(&self, contact: usize) -> bool {
-        let map = self.map_of(contact);
-        let contact = &self.system.contacts[contact];
-        !self.between() && looks_ahead(map, contact, &self.law(contact))
-    }
-
-    /// Moves the gaps of the points from `first` on, paired at the configuration in `place`, to another one.
-    pub(super) fn move_gaps(&mut self, first: usize, to: Paired) {
-        let Vectors {
-            x,
-            push,
-            place,
-            work,
-            ..
-        } = &mut self.vectors;
-        let motion = &self.state.motion;
-        self.maps.whole(|map| to.row(map), motion, [x, push], work);
-        for (way, from) in work.iter_mut().zip(place) {
-            *way -= *from;
-        }
-        self.pairing.rows.move_from(first, work);
-    }
-
     /// Predicts the displacement at the end of the step: an iteration with the forces of contacts and links of the step
     /// before.
     pub(super) fn look_ahead(&mut self) -> Result<(), Error> {

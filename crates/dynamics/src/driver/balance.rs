@@ -7,11 +7,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use carom_bodies::Body;
 use carom_contact::law::Level;
 
-use super::identity::End;
-use super::start::energies;
+use super::identity::{End, energies};
 use super::{Driver, Which};
 use crate::error::Error;
 use crate::ledger::{Beyond, Energies, Squares, Tolerated};
@@ -173,39 +171,6 @@ impl Driver {
             if new.status[point] != carom_contact::law::Status::Open {
                 let law = &self.system.point(point).0.law;
                 new.crush[point] = law.crushed(old.crush[point], new.gap[point]);
-            }
-        }
-    }
-
-    /// The identity by which the ledger counts: that of the scheme where all forces are linear, otherwise as far as it is inertia
-    /// alone. The forces of bodies that are not linear give the energy that the scheme balances no other form; all else that the scheme
-    /// takes is found from its works.
-    pub(super) fn identity_of_ledger(&self) -> EnergyIdentity {
-        if self.maps.only().is_none() {
-            // the energies of the zones are added, each with its factor
-            return EnergyIdentity {
-                inertia: 1.0,
-                ..EnergyIdentity::default()
-            };
-        }
-        let identity = self.identity.unwrap_or_default();
-        match self.system.is_nonlinear() {
-            false => identity,
-            true => {
-                let keeps = self.system.scheme.get().keeps_acceleration();
-                let own = EnergyIdentity {
-                    inertia: if keeps { identity.inertia } else { 0.0 },
-                    ..EnergyIdentity::default()
-                };
-                // the other terms are quadratic in K
-                match self.system.bodies.iter().all(Body::is_linear) {
-                    true => EnergyIdentity {
-                        lag: identity.lag,
-                        memory: identity.memory,
-                        ..own
-                    },
-                    false => own,
-                }
             }
         }
     }
@@ -434,14 +399,6 @@ impl Driver {
         );
         if maps.is_static() {
             self.next.ledger.end_static_step();
-        }
-    }
-
-    /// Factor of Nᵀ P in the contact forces that the ledger counts.
-    pub(super) fn contact_factor(&self) -> f64 {
-        match self.vectors.push.is_empty() {
-            true => self.maps.contact(),
-            false => 1.0,
         }
     }
 

@@ -3,15 +3,13 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_contact::law::{Level, Status};
-use carom_contact::{Contact, Law, Rows};
+use carom_contact::law::Status;
 
 use super::Driver;
+use super::paired::sums_compliances;
 use crate::coulomb::Slip;
 use crate::error::Error;
-use crate::interface::{Candidate, Failure, InterfaceProblem};
-use crate::step_map::{Row, StepMap};
-use crate::system::{Motion, System};
+use crate::interface::{Failure, InterfaceProblem};
 
 /// Additions of missed candidates within one iteration.
 const ADDITIONS: usize = 10;
@@ -112,51 +110,6 @@ impl Driver {
         }
     }
 
-    /// What the laws of the candidates know; of adaptive steps their gaps without contact forces too. `tangents`: how many rows of
-    /// tangents follow that of each point in the stacked rows; none where the points have rows of their own.
-    pub(super) fn describe_candidates(&mut self, tangents: Option<u32>) {
-        let mut data = std::mem::take(&mut self.candidate_data);
-        data.clear();
-        self.free_gaps.clear();
-        for k in 0..self.candidates.len() {
-            let point = self.candidates[k];
-            let free = match tangents {
-                Some(tangents) => self.free_along(point * (1 + tangents), &self.stacked),
-                None => self.free_along(point, &self.pairing.rows),
-            };
-            data.push(self.candidate(point as usize, free));
-            if self.system.adaptive.is_some() {
-                let gap = self.gap_at_the_end(point as usize, free);
-                self.free_gaps.push(gap);
-            }
-        }
-        self.candidate_data = data;
-    }
-
-    /// What the law of a candidate knows. `free`: N x of the motion of the iteration without contact forces.
-    fn candidate(&self, point: usize, free: f64) -> Candidate {
-        let contact = self.system.point(point).0;
-        let (gap, rate) = self.now(point, false);
-        let [closing, approach] = self.added(point, free);
-        Candidate {
-            law: self.law(contact),
-            local: self.local(point, gap + closing),
-            rate_free: rate + approach,
-            status: self.next.interface.status[point],
-            faces_itself: contact.faces_itself(),
-            instant: self.factors(self.system.contact_of(point)),
-        }
-    }
-
-    /// N x of the motion of the iteration without contact forces, of the row of that number in `rows`.
-    pub(super) fn free_along(&self, number: u32, rows: &Rows) -> f64 {
-        let free = self.effective.free(number, &self.vectors.half);
-        match self.jumps() {
-            true => free + rows.product(number as usize, &self.vectors.jump),
-            false => free,
-        }
-    }
-
     /// Forces and statuses of the candidates, whose forces are added to the begun solve.
     fn solve_candidates(&mut self) -> Result<(), Error> {
         if self.candidates.is_empty() {
@@ -241,32 +194,6 @@ impl Driver {
         }
     }
 
-    /// Gap of a point at the end of the step without contact forces, m.
-    fn gap_at_the_end(&self, point: usize, free: f64) -> f64 {
-        let number = self.system.contact_of(point);
-        let paired = self.paired_at(number);
-        let ahead = |map: &StepMap| map.displacement.since(&paired.row(map));
-        let xc = [&self.vectors.x[..], &self.vectors.push];
-        let rows = &self.pairing.rows;
-        let motion = &self.state.motion;
-        let way = self.maps.on((rows, point), ahead, motion, xc);
-        rows.gap(point) + way + self.map_of(number).displacement.x * free
-    }
-
-    /// Factors of x in gap and rate that the law of a contact constrains, over those of the problem: of the first map.
-    fn factors(&self, contact: usize) -> [f64; 2] {
-        let (map, [gap, rate]) = (self.map_of(contact), self.constrained(contact).1);
-        if self.maps.only().is_some() {
-            return [gap, rate];
-        }
-        let first = self.maps.first();
-        let over = |own: f64, first: f64| if first == 0.0 { 1.0 } else { own / first };
-        [
-            gap * over(map.gap.x, first.gap.x),
-            rate * over(map.rate.x, first.rate.x),
-        ]
-    }
-
     /// No contact force at all.
     fn release(&mut self) {
         let interface = &mut self.next.interface;
@@ -332,42 +259,5 @@ impl Driver {
                 }
             }
         }
-    }
-}
-
-/// Whether laws in the rate hold for a velocity on which contact forces act through the mass too: the interface problem then
-/// sums the compliances of the step and of the mass.
-pub(super) fn sums_compliances(system: &System, map: &StepMap) -> bool {
-    map.rate.c != 0.0 && system.scheme.get().takes(Level::Rate)
-}
-
-/// Gap and rate that a law constrains, and their factors of x over those of the map.
-pub(super) fn instant(map: &StepMap, law: &Law) -> ([Row; 2], [f64; 2]) {
-    match law.get().level() {
-        Level::GapAndRate => (map.compliant(), map.compliant_factors()),
-        Level::Gap | Level::Rate => ([map.gap, map.rate], [1.0; 2]),
-    }
-}
-
-/// Whether a contact is paired where the step is predicted to lead, for a law that looks ahead, and not where the present
-/// velocity does. In a step much longer than a wave takes across an element the velocity of the shortest waves times dt/2
-/// leads much further than any node gets, and the turning of the rows would be that of an explicit step of the mass m of the
-/// surface nodes alone, unstable beyond dt² |P ∂²g/∂u²| = 4 m.
-pub(super) fn looks_ahead(map: &StepMap, contact: &Contact, law: &Law) -> bool {
-    map.force.x != 0.0 && contact.turns() && law.get().capture() > 0.0
-}
-
-/// The gap by which a law tells whether a point is closed (S_d): at the captured instant, `gap`, or at the start, a `way`
-/// (m) before it, whichever is less. A point that is closed and leaves stays with its law, which alone knows whether
-/// the step turns it back.
-pub(super) fn least_gap(gap: f64, way: f64) -> f64 {
-    gap - way.max(0.0)
-}
-
-/// The part of the way from the start of the step to `end` at which a law takes the geometry.
-pub(super) fn part_way(motion: &Motion, end: &[f64], law: &Law, out: &mut [f64]) {
-    let part = law.get().capture();
-    for (i, q) in out.iter_mut().enumerate() {
-        *q = (1.0 - part) * motion.u[i] + part * end[i];
     }
 }

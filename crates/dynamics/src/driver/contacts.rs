@@ -2,62 +2,14 @@
 
 use std::sync::Arc;
 
-use carom_contact::law::{Displacement, End, Level, Local, Status};
-use carom_contact::{Balance, Contact, Law, Sliding};
+use carom_contact::law::{End, Level, Local, Status};
+use carom_contact::{Balance, Sliding};
 
-use super::candidates::{instant, least_gap, part_way};
+use super::paired::{Paired, instant, least_gap, looks_ahead, part_way};
 use super::{Driver, Vectors};
 use crate::step_map::{Row, StepMap};
 
-/// The configuration in which a contact is paired.
-#[derive(Clone, Copy)]
-pub(super) enum Paired {
-    /// The newest known before the unknown, and a part of the way of the step on with its velocity.
-    Captured(f64),
-    /// The middle of the step.
-    Middle,
-    /// That in which laws in the gap hold.
-    Gap,
-    /// That in which laws with a compliance hold.
-    Compliant,
-}
-
-impl Paired {
-    /// As a row of a map.
-    pub(super) fn row(self, map: &StepMap) -> Row {
-        match self {
-            Paired::Captured(part) => Row {
-                v: map.placed.v + part * map.moves,
-                ..map.placed
-            },
-            Paired::Middle => {
-                let end = &map.displacement;
-                Row {
-                    u: 0.5 + 0.5 * end.u,
-                    v: 0.5 * end.v,
-                    a: 0.5 * end.a,
-                    x: 0.5 * end.x,
-                    ..Row::default()
-                }
-            }
-            Paired::Gap => map.gap,
-            Paired::Compliant => map.compliant()[0],
-        }
-    }
-}
-
 impl Driver {
-    /// The law of a contact in the attempt under way. In a static stage nothing has a rate: a law in the rate holds in the
-    /// gap there, as the displacement law.
-    pub(super) fn law(&self, contact: &Contact) -> Law {
-        match contact.law.get().level() {
-            Level::Rate if self.maps.is_static() => {
-                Law::Displacement(Displacement { projection: false })
-            }
-            _ => contact.law,
-        }
-    }
-
     /// The configuration in which a contact is paired: of a law in the gap the one that it constrains, of a law in the rate
     /// the captured one, which is known; of a scheme between two states their middle. With small sliding gaps are linear in
     /// the displacement, and are those of a configuration that is known.
@@ -77,16 +29,6 @@ impl Driver {
             Level::Gap => Paired::Gap,
             Level::GapAndRate => Paired::Compliant,
         }
-    }
-
-    /// The map of the secondary side of a contact.
-    pub(super) fn map_of(&self, contact: usize) -> &StepMap {
-        &self.maps.all()[self.system.zone_of(contact)]
-    }
-
-    /// Whether internal forces and contacts belong to the way of the step.
-    pub(super) fn between(&self) -> bool {
-        !self.maps.is_static() && self.system.scheme.get().is_between()
     }
 
     /// Derivative of the paired configuration by the unknown; zero where all of it is known before the step.
@@ -171,17 +113,6 @@ impl Driver {
             contact.pair_fully(&at(work), search, initial);
         }
         self.pairing.append_moved(initial, place);
-    }
-
-    /// How long after the start of the step a contact is paired, s.
-    pub(super) fn paired_after(&self, number: usize) -> f64 {
-        let law = self.law(&self.system.contacts[number]);
-        match law.get().level() {
-            _ if self.between() => 0.5 * self.dt,
-            Level::Rate => law.get().capture() * self.dt,
-            Level::Gap => self.dt,
-            Level::GapAndRate => self.map_of(number).instant(self.dt),
-        }
     }
 
     /// Gap and rate that the law of a point constrains, at the x of the iteration. `pushed`: with what the contact forces of the
@@ -390,10 +321,45 @@ impl Driver {
         }
     }
 
-    /// Contact, place in it and mesh node of a contact point.
-    pub(super) fn name(&self, point: usize) -> String {
-        let (contact, place) = self.system.point(point);
-        let node = self.system.mesh_node[contact.points[place].node() as usize];
-        format!("contact `{}`, point {place}, node {node}", contact.name)
+    /// Pairs all contacts as the state has them.
+    pub(super) fn pair_now(&mut self) {
+        self.pairing.clear();
+        self.pairing.span = [0.0; 2];
+        self.vectors.end.clear();
+        self.vectors.place.clone_from(&self.state.motion.u);
+        for contact in 0..self.system.contacts.len() {
+            self.append(contact, self.state.time);
+        }
+        self.candidates.clear();
+    }
+
+    /// Whether all is linear in the unknown, so that one iteration is all.
+    pub(super) fn is_affine(&self) -> bool {
+        let mut contacts = 0..self.system.contacts.len();
+        !self.effective.iterates() && contacts.all(|k| self.turning(k) == 0.0)
+    }
+
+    /// Whether a contact is paired where the step is predicted to lead.
+    pub(super) fn looks_ahead(&self, contact: usize) -> bool {
+        let map = self.map_of(contact);
+        let contact = &self.system.contacts[contact];
+        !self.between() && looks_ahead(map, contact, &self.law(contact))
+    }
+
+    /// Moves the gaps of the points from `first` on, paired at the configuration in `place`, to another one.
+    pub(super) fn move_gaps(&mut self, first: usize, to: Paired) {
+        let Vectors {
+            x,
+            push,
+            place,
+            work,
+            ..
+        } = &mut self.vectors;
+        let motion = &self.state.motion;
+        self.maps.whole(|map| to.row(map), motion, [x, push], work);
+        for (way, from) in work.iter_mut().zip(place) {
+            *way -= *from;
+        }
+        self.pairing.rows.move_from(first, work);
     }
 }

@@ -1,28 +1,12 @@
-//! Parts that supports leave free in a static stage, and that contacts may hold.
-//!
-//! Their stiffness is singular. The matrix of the iterations has a proximal term on them,
-//!
-//! `A = K + σ |diag K|`, about the last iterate: it acts on the motion of the iteration, not on x,
-//!
-//! so that where the iterations end nothing of it is left: the balance of forces is tested without it. Iterations shrink
-//! errors by σ/(σ + k), k the stiffness with which contacts hold the part over |diag K|. A round body whose edge has straight sides
-//! rolls with a k of 1e-8 to 1e-6 and of either sign; mixing of the iterations finds its equilibrium all the same, stable or
-//! not, if it is not misled: turns are finite ([`super::rigid`]), and motions that nothing holds stay within what an
-//! iteration knows of the surfaces. A motion that nothing holds and nothing loads stays as it is.
-//!
-//! What is loaded along such a motion is moved on to the next contact; where none is on its way there is no equilibrium
-//! near, and the body and its motion are named. Held is what a support or the row of a contact that carries a force holds.
-//!
-//! The proximal point algorithm: R. T. Rockafellar (1976), SIAM J. Control Optim. 14; here one Newton iteration to each of its.
+//! Parts that supports leave free in a static stage, and that contacts may hold: which they are, and what the iterations know of
+//! them. [`super::approach`] has what is done about them.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use carom_contact::Target;
 
-use super::Driver;
-use super::rigid::{INDEPENDENT, Rigid, Span, norm};
-use crate::coulomb::Slip;
+use super::rigid::Rigid;
 use crate::error::Error;
 use crate::system::System;
 
@@ -35,32 +19,21 @@ pub(super) const GROWTH: f64 = 8.0;
 /// Largest σ.
 pub(super) const LARGEST: f64 = 1.0;
 
-/// Largest turn on the way to a contact, rad: places move along straight lines.
-const TURN: f64 = 0.1;
-
-/// Largest way of a node in an iteration along motions that nothing holds, over the size of the elements: about as far as
-/// normals and pairs of faceted surfaces say what comes.
-const REACH: f64 = 0.25;
-
-/// Change of the load along motions that nothing holds, over that load, from one iteration to the next, up to which it does
-/// not depend on where the part is.
-const STEADY: f64 = 1e-6;
-
 /// Parts that float, and σ in the attempt under way.
 pub(super) struct Floating {
     /// Their unknowns, ascending.
     pub(super) parts: Arc<[Range<usize>]>,
     pub(super) weight: f64,
     /// Mean over its elements of the least distance of two nodes of one, m, part by part.
-    sizes: Vec<f64>,
+    pub(super) sizes: Vec<f64>,
     /// Loads along motions that nothing held an iteration ago; empty in the first.
-    load: Vec<f64>,
+    pub(super) load: Vec<f64>,
     /// The same when contact with something else carried a part last; empty if none did.
-    carried: Vec<f64>,
+    pub(super) carried: Vec<f64>,
     /// For how many iterations contact has carried a part that is loaded along a motion with no contact on its way.
-    tipping: usize,
+    pub(super) tipping: usize,
     /// Size of that load in the first of them.
-    tipped: f64,
+    pub(super) tipped: f64,
 }
 
 impl Floating {
@@ -154,269 +127,9 @@ fn touches(system: &System, part: &Range<usize>) -> bool {
 }
 
 /// Name of the body at the first node of a part.
-fn body_of(system: &System, part: &Range<usize>) -> String {
+pub(super) fn body_of(system: &System, part: &Range<usize>) -> String {
     let first = system.unknowns.node(part.start);
     let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(node, _)| *node == first);
     let body = system.body_masses.iter().position(owns).unwrap_or(0);
     system.bodies[body].name().to_string()
-}
-
-impl Driver {
-    /// Whether parts float in the attempt under way.
-    pub(super) fn floats(&self) -> bool {
-        self.maps.is_static() && !self.floating.parts.is_empty()
-    }
-
-    /// Moves parts that are loaded along a rigid motion that nothing holds to the next contact on their way; whether that was
-    /// any way at all. The load of parts that hang together with nothing else is that of an equilibrium, whatever is
-    /// deformed. Contact with something else has forces of the iteration, which change as it goes on: there a load
-    /// counts once it does not.
-    ///
-    /// # Errors
-    /// No contact on the way; forces that cannot be taken where it ends.
-    pub(super) fn approach(&mut self, scale: f64) -> Result<bool, Error> {
-        let (system, parts) = (Arc::clone(&self.system), Arc::clone(&self.floating.parts));
-        let rigid = Rigid::new(&system, &parts, Some(&self.places()));
-        let Some(c) = self.certain_load(&rigid, scale) else {
-            return match self.tips(&rigid) {
-                true => Err(self.unheld(&rigid, &self.floating.carried)),
-                false => Ok(false),
-            };
-        };
-        let Some(way) = self.way_to_contact(&rigid, &c) else {
-            return Err(self.unheld(&rigid, &c));
-        };
-        let way = way.min(TURN / rigid.turn(&c).max(f64::MIN_POSITIVE));
-        if way * norm(&c) <= self.gap_tolerance() {
-            return Ok(false);
-        }
-        let motion: Vec<f64> = c.iter().map(|c| way * c).collect();
-        for (i, u) in rigid.motion(&motion).chain(rigid.arc(&motion)) {
-            if !system.fixed[i] {
-                self.vectors.x[i] += u;
-            }
-        }
-        self.floating.load.clear();
-        self.evaluate(false)?;
-        self.pair(false);
-        Ok(true)
-    }
-
-    /// Loads along rigid motions that nothing holds, as far as they are more than the iteration's; none within the tolerance.
-    fn certain_load(&mut self, rigid: &Rigid, scale: f64) -> Option<Vec<f64>> {
-        let mut c = self.unheld_load(rigid);
-        let before = std::mem::replace(&mut self.floating.load, c.clone());
-        let change = before.iter().zip(&c).map(|(before, c)| c - before);
-        let change: Vec<f64> = change.collect();
-        let steady = !before.is_empty() && norm(&change) <= STEADY * norm(&c);
-        let grounded = self.grounded(rigid);
-        if !grounded.is_empty() {
-            self.floating.carried.clone_from(&c);
-        }
-        if !steady {
-            for part in grounded {
-                c[rigid.coordinates(part)].fill(0.0);
-            }
-        }
-        let least = (self.system.nonlinear.iteration.tolerance * scale).max(self.rounding());
-        (norm(&c) > least).then_some(c)
-    }
-
-    /// Whether contact carries a part that has gone on, for as many iterations as may be taken, along a motion with no contact on
-    /// its way, and its load has not become less than half.
-    fn tips(&mut self, rigid: &Rigid) -> bool {
-        let load = norm(&self.floating.load);
-        let carried = self.floating.load == self.floating.carried && load > self.left_over;
-        if !carried {
-            return false;
-        }
-        let free = self.way_to_contact(rigid, &self.floating.load).is_none();
-        let floating = &mut self.floating;
-        if !free || load < 0.5 * floating.tipped {
-            (floating.tipping, floating.tipped) = (0, 0.0);
-            return false;
-        }
-        if floating.tipping == 0 {
-            floating.tipped = load;
-        }
-        floating.tipping += 1;
-        floating.tipping >= self.system.nonlinear.iteration.passes
-    }
-
-    /// The error of iterations that ended out of balance: the load along a motion that nothing holds, where most is that and
-    /// no contact carries the part, or comes to.
-    pub(super) fn unbalanced(&self, passes: usize, imbalance: f64) -> Error {
-        let system = &*self.system;
-        if self.floats() {
-            let rigid = Rigid::new(system, &self.floating.parts, Some(&self.places()));
-            let c = self.unheld_load(&rigid);
-            let mut loose = c.clone();
-            for part in self.grounded(&rigid) {
-                loose[rigid.coordinates(part)].fill(0.0);
-            }
-            let free = || {
-                let most = norm(&c) > 0.5 * imbalance;
-                most && self.way_to_contact(&rigid, &c).is_none()
-            };
-            if norm(&loose) > self.left_over || free() {
-                // what fell off is named by how it left its contact
-                return match self.floating.carried.is_empty() {
-                    true => self.unheld(&rigid, &c),
-                    false => self.unheld(&rigid, &self.floating.carried),
-                };
-            }
-        }
-        self.no_equilibrium(passes)
-    }
-
-    fn unheld(&self, rigid: &Rigid, c: &[f64]) -> Error {
-        let (part, motion) = rigid.name(c);
-        Error::Unheld {
-            step: self.state.step + 1,
-            time: self.state.time + self.dt,
-            body: body_of(&self.system, part),
-            motion: motion.to_string(),
-        }
-    }
-
-    /// Displacement of the nodes at the x of the iteration, m.
-    fn places(&self) -> Vec<f64> {
-        let mut places = vec![0.0; self.vectors.x.len()];
-        let (motion, x) = (&self.state.motion, &self.vectors.x);
-        self.maps.whole(
-            |map| map.displacement,
-            motion,
-            [x, &self.vectors.push],
-            &mut places,
-        );
-        places
-    }
-
-    /// Loads and contact forces along the rigid motions, less what is held: internal forces have no resultant.
-    fn unheld_load(&self, rigid: &Rigid) -> Vec<f64> {
-        let vectors = &self.vectors;
-        let left = (0..vectors.x.len()).filter(|&i| !self.system.fixed[i]);
-        let mut c = rigid.of(left.map(|i| (i, vectors.residual[i] + vectors.contact[i])));
-        self.held(rigid).take_from(&mut c);
-        c
-    }
-
-    /// Parts that hang together by contact forces with something that does not float.
-    fn grounded(&self, rigid: &Rigid) -> Vec<usize> {
-        let count = self.floating.parts.len();
-        // one set more: all that does not float
-        let mut set: Vec<usize> = (0..=count).collect();
-        for point in self.carrying() {
-            let (contact, _) = self.system.point(point);
-            let (unknowns, _) = self.pairing.rows.row(point);
-            let parts = unknowns
-                .iter()
-                .map(|&i| rigid.part_of(i as usize).unwrap_or(count));
-            let mut parts: Vec<usize> = parts.collect();
-            if matches!(contact.target, Target::Rigid(_)) {
-                parts.push(count);
-            }
-            for pair in parts.windows(2) {
-                let [from, to] = [pair[0], pair[1]].map(|part| set[part]);
-                for set in set.iter_mut().filter(|set| **set == from) {
-                    *set = to;
-                }
-            }
-        }
-        (0..count).filter(|&part| set[part] == set[count]).collect()
-    }
-
-    /// Shortens the motion of the iteration along rigid motions that nothing holds to the reach of what it knows of the
-    /// surfaces; whether it was longer. Contacts that carry forces, and the forces inside, know nothing of these motions.
-    pub(super) fn restrain(&mut self) -> bool {
-        let mut shortened = false;
-        let system = Arc::clone(&self.system);
-        let rigid = Rigid::new(&system, &self.floating.parts, Some(&self.places()));
-        let mut c = rigid.nearest(&self.vectors.dx);
-        self.held(&rigid).take_from(&mut c);
-        for (part, size) in self.floating.sizes.iter().enumerate() {
-            let reach = rigid.reach(part, &c);
-            let beyond = (1.0 - REACH * size / reach.max(f64::MIN_POSITIVE)).max(0.0);
-            shortened |= beyond > 0.0;
-            c[rigid.coordinates(part)]
-                .iter_mut()
-                .for_each(|c| *c *= beyond);
-        }
-        for (i, u) in rigid.motion(&c) {
-            if !system.fixed[i] {
-                self.vectors.dx[i] -= u;
-            }
-        }
-        shortened
-    }
-
-    /// Adds to x what finite turns of the parts have beyond the linear motion `share` dx from `before`.
-    pub(super) fn turn(&mut self, share: f64) {
-        let system = Arc::clone(&self.system);
-        let mut places = vec![0.0; self.vectors.x.len()];
-        let motion = &self.state.motion;
-        self.maps.whole(
-            |map| map.displacement,
-            motion,
-            [&self.vectors.before, &self.vectors.push],
-            &mut places,
-        );
-        let rigid = Rigid::new(&system, &self.floating.parts, Some(&places));
-        let mut c = rigid.nearest(&self.vectors.dx);
-        c.iter_mut().for_each(|c| *c *= share);
-        for (i, u) in rigid.arc(&c) {
-            self.vectors.x[i] += u;
-        }
-    }
-
-    /// What supports, springs and contacts that carry a force hold of the rigid motions.
-    fn held(&self, rigid: &Rigid) -> Span {
-        let mut held = Span::default();
-        for i in self.floating.parts.iter().flat_map(Range::clone) {
-            if self.system.fixed[i] {
-                held.add(rigid.of([(i, 1.0)]));
-            }
-        }
-        for body in &self.system.bodies {
-            body.each_spring(&mut |row| {
-                held.add(rigid.of(row.iter().copied()));
-            });
-        }
-        let tangents = &self.pairing.tangents[..self.system.tangents()];
-        for point in self.carrying() {
-            held.add(rigid.row(&self.pairing.rows, point));
-            if self.slips.get(point) == Some(&Slip::Stick) {
-                for rows in tangents {
-                    held.add(rigid.row(rows, point));
-                }
-            }
-        }
-        held
-    }
-
-    /// Points that carry a force.
-    fn carrying(&self) -> impl Iterator<Item = usize> + '_ {
-        let forces = self.next.interface.force.iter().enumerate();
-        forces
-            .filter(|(_, force)| **force != 0.0)
-            .map(|(point, _)| point)
-    }
-
-    /// Multiple of a rigid motion at which the first of the open points closes; none where none comes closer.
-    fn way_to_contact(&self, rigid: &Rigid, c: &[f64]) -> Option<f64> {
-        let mut way: Option<f64> = None;
-        for point in 0..self.system.points() {
-            if self.next.interface.force[point] != 0.0 || self.pairing.rows.gap(point).is_infinite()
-            {
-                continue;
-            }
-            let row = rigid.row(&self.pairing.rows, point);
-            let rate: f64 = row.iter().zip(c).map(|(n, c)| n * c).sum();
-            if rate < -INDEPENDENT * norm(&row) * norm(c) {
-                let until = self.now(point, true).0.max(0.0) / -rate;
-                way = Some(way.map_or(until, |way| way.min(until)));
-            }
-        }
-        way
-    }
 }

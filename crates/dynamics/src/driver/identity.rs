@@ -4,14 +4,14 @@
 use std::sync::Arc;
 
 use carom_algebra::reduce::dot;
+use carom_bodies::Body;
 
 use super::Driver;
-use super::start::energies;
 use crate::ledger::{Energies, Squares, reactions};
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
 use crate::step_map::Impulse;
-use crate::system::Motion;
+use crate::system::{Motion, System};
 
 /// How contact forces work in the energy balance.
 #[derive(Clone, Copy)]
@@ -230,11 +230,44 @@ impl Driver {
         );
         [supports, Resultant::of(&system, half)]
     }
+
+    /// The identity by which the ledger counts: that of the scheme where all forces are linear, otherwise as far as it is inertia
+    /// alone. The forces of bodies that are not linear give the energy that the scheme balances no other form; all else that the scheme
+    /// takes is found from its works.
+    pub(super) fn identity_of_ledger(&self) -> EnergyIdentity {
+        if self.maps.only().is_none() {
+            // the energies of the zones are added, each with its factor
+            return EnergyIdentity {
+                inertia: 1.0,
+                ..EnergyIdentity::default()
+            };
+        }
+        let identity = self.identity.unwrap_or_default();
+        match self.system.is_nonlinear() {
+            false => identity,
+            true => {
+                let keeps = self.system.scheme.get().keeps_acceleration();
+                let own = EnergyIdentity {
+                    inertia: if keeps { identity.inertia } else { 0.0 },
+                    ..EnergyIdentity::default()
+                };
+                // the other terms are quadratic in K
+                match self.system.bodies.iter().all(Body::is_linear) {
+                    true => EnergyIdentity {
+                        lag: identity.lag,
+                        memory: identity.memory,
+                        ..own
+                    },
+                    false => own,
+                }
+            }
+        }
+    }
 }
 
 /// What changed from the old to the new motion, as far as the identity asks for it. Leaves Δu in `travel`.
 fn squares(
-    system: &crate::System,
+    system: &System,
     identity: &EnergyIdentity,
     (old, new): (&Motion, &Motion),
     (travel, change, work): (&mut [f64], &mut [f64], &mut [f64]),
@@ -267,5 +300,34 @@ fn squares(
 fn difference(old: &[f64], new: &[f64], change: &mut [f64]) {
     for i in 0..change.len() {
         change[i] = new[i] - old[i];
+    }
+}
+
+/// Energies and momentum of a motion with this strain energy (J): |a|²_M where it is asked for, angular momentum about the origin
+/// of the nodes at these displacements, or in the reference configuration.
+pub(super) fn energies(
+    system: &System,
+    motion: &Motion,
+    (strain, with_acceleration, u): (f64, bool, Option<&[f64]>),
+    work: &mut [f64],
+) -> Energies {
+    system.mass.multiply(&motion.v, work);
+    let kinetic = 0.5 * dot(&motion.v, work);
+    let momentum = match u {
+        Some(u) => Resultant::at(system, (&motion.frames, &[u]), work),
+        None => Resultant::of(system, work),
+    };
+    let mut acceleration = 0.0;
+    if with_acceleration {
+        system.mass.multiply(&motion.a, work);
+        acceleration = dot(&motion.a, work);
+    }
+    Energies {
+        kinetic,
+        strain,
+        acceleration,
+        memory: 0.0,
+        lagged: 0.0,
+        momentum,
     }
 }

@@ -5,10 +5,12 @@
 //! holds at the end of the step.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_bodies::{Body, Placement};
+use serde::{Deserialize, Serialize};
 
 use super::Driver;
 use crate::error::Error;
@@ -17,7 +19,6 @@ use crate::scheme::{Scheme, Theta};
 use crate::state::{State, check_finite};
 use crate::step_map::StepMap;
 use crate::system::{LinkRow, Motion, System, on, push_cliques};
-use crate::zones::Origin;
 
 /// How forces on rows run over some steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -225,6 +226,28 @@ impl Driver {
         }
         Ok(operators)
     }
+
+    /// Makes ready what the forces of links do not change, of a step that is linear in the unknown.
+    ///
+    /// # Errors
+    /// As [`Driver::step`].
+    pub(crate) fn prepare(&mut self) -> Result<(), Error> {
+        (self.failed, self.failed_friction) = (None, None);
+        self.prepared = false;
+        self.begin_stage()?;
+        let scheme = self.system.scheme.get();
+        if !self.system.nonlinear.follows.is_empty() || scheme.projects_predictor() {
+            return Ok(());
+        }
+        let (begin, before) = (Instant::now(), self.phases);
+        self.take_matrices()?;
+        if self.is_affine() {
+            self.begin_iterations(false)?;
+            self.prepared = true;
+        }
+        self.count_contact(begin, before);
+        Ok(())
+    }
 }
 
 /// How a zone answers to multipliers that grow, without contact and linearised.
@@ -310,5 +333,28 @@ impl Ramp<'_> {
         self.map.displacement.whole(motion, &x, &none, &mut end.u);
         self.map.velocity.whole(motion, &x, &none, &mut end.v);
         self.map.acceleration.whole(motion, &x, &none, &mut end.a);
+    }
+}
+
+/// Where a zone was linearised; empty of a linear zone.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Origin {
+    /// Displacement, m.
+    pub u: Vec<f64>,
+    /// Histories of its materials.
+    pub history: Vec<f64>,
+}
+
+impl Origin {
+    /// The present state of a zone.
+    pub(crate) fn of(driver: &Driver) -> Origin {
+        let mut bodies = driver.system().bodies.iter();
+        match bodies.all(|body| body.is_linear()) {
+            true => Origin::default(),
+            false => Origin {
+                u: driver.state().motion.u.clone(),
+                history: driver.state().motion.history.clone(),
+            },
+        }
     }
 }

@@ -318,3 +318,27 @@ impl Linking {
         }
     }
 }
+
+/// Multipliers of the attempt under way.
+#[derive(Default)]
+pub(super) struct Multipliers {
+    /// L at the end of the step, N per unit of the rows.
+    pub(super) now: Vec<f64>,
+    /// What the iteration changes in them: to hold the rows without contact, and with the contact forces.
+    pub(super) change: [Vec<f64>; 2],
+    /// The multipliers before an iteration.
+    pub(super) before: Vec<f64>,
+    pub(super) defect: Vec<f64>,
+}
+
+impl Multipliers {
+    pub(super) fn new(system: &System) -> Multipliers {
+        let zeros = || vec![0.0; system.link_rows.len()];
+        Multipliers {
+            now: zeros(),
+            change: [zeros(), zeros()],
+            before: zeros(),
+            defect: zeros(),
+        }
+    }
+}

@@ -3,35 +3,11 @@
 use std::sync::Arc;
 
 use super::Driver;
-use super::linking::{add_forces, of_mass};
+use super::linking::{Multipliers, add_forces, of_mass};
 use crate::error::Error;
 use crate::operator::Operators;
 use crate::step_map::StepMap;
-use crate::system::{LinkRow, System, on};
-
-/// Multipliers of the attempt under way.
-#[derive(Default)]
-pub(super) struct Multipliers {
-    /// L at the end of the step, N per unit of the rows.
-    now: Vec<f64>,
-    /// What the iteration changes in them: to hold the rows without contact, and with the contact forces.
-    pub(super) change: [Vec<f64>; 2],
-    /// The multipliers before an iteration.
-    before: Vec<f64>,
-    defect: Vec<f64>,
-}
-
-impl Multipliers {
-    pub(super) fn new(system: &System) -> Multipliers {
-        let zeros = || vec![0.0; system.link_rows.len()];
-        Multipliers {
-            now: zeros(),
-            change: [zeros(), zeros()],
-            before: zeros(),
-            defect: zeros(),
-        }
-    }
-}
+use crate::system::{LinkRow, on};
 
 impl Driver {
     /// Whether the system has links of its own.

@@ -18,7 +18,7 @@ use carom_algebra::dense::DenseCholesky;
 use carom_algebra::reduce::{dot, norm_squared};
 use carom_contact::law::Status;
 
-use super::Driver;
+use crate::state::InterfaceState;
 
 /// Iterations that are mixed.
 const DEPTH: usize = 4;
@@ -31,10 +31,10 @@ const SLOW: f64 = 0.1;
 const INDEPENDENT: f64 = 1e-8;
 
 /// Largest Σ |α_i|.
-const LARGEST: f64 = 100.0;
+pub(super) const LARGEST: f64 = 100.0;
 
 /// The same where parts float: motions that contacts hardly hold, whose lengths are limited otherwise.
-const LARGEST_OF_FLOATING: f64 = 1e4;
+pub(super) const LARGEST_OF_FLOATING: f64 = 1e4;
 
 /// One iteration.
 #[derive(Clone, Default)]
@@ -118,39 +118,37 @@ impl Mixing {
             (sum <= largest).then_some(weights)
         })
     }
-}
 
-impl Driver {
-    /// Mixes the iteration that has been computed with those before it.
-    pub(super) fn mix(&mut self) {
-        let largest = match self.floats() {
-            true => LARGEST_OF_FLOATING,
-            false => LARGEST,
-        };
-        let interface = &mut self.next.interface;
-        let mixing = &mut self.mixing;
-        if mixing.status != interface.status {
-            mixing.status.clone_from(&interface.status);
-            mixing.clear();
+    /// Mixes an iteration, its motion `dx` from x and its contact forces, with those before it; whether it did. `largest`: of Σ |α_i|.
+    pub(super) fn mix(
+        &mut self,
+        (x, dx): (&[f64], &mut [f64]),
+        interface: &mut InterfaceState,
+        largest: f64,
+    ) -> bool {
+        if self.status != interface.status {
+            self.status.clone_from(&interface.status);
+            self.clear();
         }
-        let last = mixing.next();
-        last.motion.clone_from(&self.vectors.dx);
-        last.end.clone_from(&self.vectors.dx);
-        for (end, x) in last.end.iter_mut().zip(&self.vectors.x) {
+        let last = self.next();
+        last.motion.clear();
+        last.motion.extend_from_slice(dx);
+        last.end.clone_from(&last.motion);
+        for (end, x) in last.end.iter_mut().zip(x) {
             *end += x;
         }
         last.force.clone_from(&interface.force);
         last.friction.clone_from(&interface.friction);
-        let Some(weights) = mixing.weights(largest) else {
-            return;
+        let Some(weights) = self.weights(largest) else {
+            return false;
         };
         let of = |entry: &dyn Fn(&Iterate) -> f64| {
-            let all = weights.iter().zip(&mixing.kept);
+            let all = weights.iter().zip(&self.kept);
             all.map(|(weight, iterate)| weight * entry(iterate))
                 .sum::<f64>()
         };
-        for (i, dx) in self.vectors.dx.iter_mut().enumerate() {
-            *dx = of(&|iterate| iterate.end[i]) - self.vectors.x[i];
+        for (i, dx) in dx.iter_mut().enumerate() {
+            *dx = of(&|iterate| iterate.end[i]) - x[i];
         }
         for (point, force) in interface.force.iter_mut().enumerate() {
             *force = of(&|iterate| iterate.force[point]);
@@ -160,7 +158,7 @@ impl Driver {
                 *t = of(&|iterate| iterate.friction[point][k]);
             }
         }
-        self.take_weak();
+        true
     }
 }
 

@@ -13,13 +13,16 @@
 //! with the same bits.
 
 mod ahead;
+mod approach;
 mod attempt;
 mod balance;
 mod candidates;
 mod carried;
 mod contacts;
+mod describe;
 mod effective;
 mod floating;
+mod forces;
 mod friction;
 mod held;
 mod identity;
@@ -32,6 +35,7 @@ mod loads;
 mod matrices;
 mod mixing;
 mod obstacles;
+mod paired;
 mod part_matrix;
 mod predictor;
 mod projection;
@@ -39,43 +43,40 @@ pub(crate) mod record;
 mod residual;
 mod restoring;
 mod rigid;
+mod scratch;
 mod solve;
 mod springs;
 mod stable;
 mod start;
 mod step;
 mod supports;
+mod tangents;
 mod weak;
 
 use std::sync::Arc;
 
 use carom_bodies::{Scratch, Stored};
-use carom_contact::{Contact, Pairing, Search};
+use carom_contact::law::{Displacement, Level};
+use carom_contact::{Contact, Law, Pairing, Search};
 
 use crate::costs::{Costs, Phases};
 use crate::coulomb::{Coulomb, FrictionProblem, Slip};
-use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
-use crate::march::{FailedProblem, Stepper};
+use crate::report::StepReport;
 use crate::scheme::EnergyIdentity;
-use crate::small::Watch;
-use crate::state::{ContactReport, State, StepReport, empty_state};
-use crate::system::Maps;
-use crate::system::System;
+use crate::state::State;
+use crate::step_map::StepMap;
+use crate::system::{Maps, System};
+use crate::watch::Watch;
 use carried::Carried;
 use effective::Effective;
 use floating::Floating;
 use impulse::Impulses;
-use links::Multipliers;
+use linking::Multipliers;
 use mixing::Mixing;
-use predictor::Predictor;
-use projection::Projected;
-use restoring::Restoring;
-use solve::Pace;
+use scratch::{Pace, Predictor, Projected, Restoring, Vectors};
 use supports::Jump;
 use weak::{WeakForms, WithWeak};
-
-pub(crate) use obstacles::Pushed;
 
 /// Takes steps.
 pub struct Driver {
@@ -140,159 +141,7 @@ pub struct Driver {
     phases: Phases,
 }
 
-/// System vectors of the iterations.
-#[derive(Default)]
-struct Vectors {
-    /// The unknown.
-    x: Vec<f64>,
-    dx: Vec<f64>,
-    /// What supports that move add to the unknown in the first iteration.
-    jump: Vec<f64>,
-    /// Whether any of it is not zero.
-    jumps: bool,
-    /// Loads, inertia, internal and damping forces at x, N.
-    load: Vec<f64>,
-    inertia: Vec<f64>,
-    internal: Vec<f64>,
-    damping: Vec<f64>,
-    /// Internal forces in the balance of the step, N.
-    balanced: Vec<f64>,
-    /// The residual without the forces of links, N; empty without links.
-    unlinked: Vec<f64>,
-    /// Acceleration that the contact forces give by themselves, m/s²; empty of schemes that do not use it.
-    push: Vec<f64>,
-    contact: Vec<f64>,
-    residual: Vec<f64>,
-    half: Vec<f64>,
-    /// The unknown before an iteration.
-    before: Vec<f64>,
-    /// A configuration or an acceleration.
-    place: Vec<f64>,
-    /// Velocity at the instant of the internal forces.
-    rate: Vec<f64>,
-    /// Displacement at the end of the step at the x of the iteration; empty without rotations.
-    end: Vec<f64>,
-    /// Displacement at the end of the step, predicted; empty where no contact is paired ahead.
-    ahead: Vec<f64>,
-    work: Vec<f64>,
-    /// Histories of the bodies at the end of the attempt.
-    history: Vec<f64>,
-}
-
 impl Driver {
-    /// Sets the initial state.
-    ///
-    /// # Errors
-    /// A matrix that is not positive definite, elements that are turned inside out, a static stage of a body that
-    /// neither supports nor contacts could hold.
-    pub fn new(system: Arc<System>) -> Result<Driver, Error> {
-        let (n, points) = (system.unknowns(), system.points());
-        let zeros = || vec![0.0; n];
-        let state = empty_state(&system);
-        let scheme = system.scheme.get();
-        let maps = Maps::new(&system, system.dt, system.dt);
-        let projects = |contact: &Contact| contact.law.projects();
-        let stages = scheme.projects_predictor()
-            || scheme.restores_contact_work()
-            || candidates::sums_compliances(&system, maps.first());
-        let staged = stages && points > 0 || system.contacts.iter().any(projects);
-        let push = match maps.first().uses_contact_acceleration() {
-            true => zeros(),
-            false => Vec::new(),
-        };
-        let mut driver = Driver {
-            dt: 0.0,
-            maps,
-            identity: None,
-            effective: Effective::new(),
-            floating: Floating::new(&system)?,
-            forced: None,
-            unplanned: None,
-            impulses: match staged {
-                true => Some(Impulses::new(&system)?),
-                false => None,
-            },
-            projected: Projected::new(points),
-            predictor: Predictor::default(),
-            restoring: Restoring::default(),
-            interface: Interface::default(),
-            pairing: Pairing::default(),
-            initial: vec![Pairing::default(); system.contacts.len()],
-            search: system.contacts.iter().map(|_| Search::default()).collect(),
-            watch: Watch::new(&system),
-            candidates: Vec::new(),
-            candidate_data: Vec::new(),
-            free_gaps: Vec::new(),
-            coulomb: Coulomb::default(),
-            weak: WeakForms::new(&system)?,
-            with_weak: WithWeak::default(),
-            stacked: carom_contact::Rows::default(),
-            slips: Vec::new(),
-            scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
-            force_sweeps: 0,
-            residuals: Vec::new(),
-            pace: Pace::default(),
-            mixing: Mixing::default(),
-            carried: Carried::default(),
-            jump: Jump::default(),
-            failed: None,
-            failed_friction: None,
-            report: StepReport {
-                contacts: vec![ContactReport::default(); system.contacts.len()],
-                ..StepReport::default()
-            },
-            vectors: Vectors {
-                x: zeros(),
-                dx: zeros(),
-                jump: zeros(),
-                jumps: false,
-                load: zeros(),
-                inertia: zeros(),
-                internal: zeros(),
-                damping: zeros(),
-                balanced: zeros(),
-                unlinked: Vec::new(),
-                push,
-                contact: zeros(),
-                residual: zeros(),
-                half: zeros(),
-                before: zeros(),
-                place: zeros(),
-                rate: zeros(),
-                end: Vec::new(),
-                ahead: Vec::new(),
-                work: zeros(),
-                history: state.motion.history.clone(),
-            },
-            next: state.clone(),
-            state,
-            stored: Stored::default(),
-            link_force: match system.link_rows.is_empty() {
-                true => Vec::new(),
-                false => zeros(),
-            },
-            multipliers: Multipliers::new(&system),
-            prepared: false,
-            left_over: 0.0,
-            phases: Phases::default(),
-            system,
-        };
-        let system = Arc::clone(&driver.system);
-        driver.restart(&system.initial_displacement, &system.initial_velocity)?;
-        Ok(driver)
-    }
-
-    /// A solver that goes on from a saved state.
-    ///
-    /// # Errors
-    /// As [`Driver::new`].
-    pub fn resume(system: Arc<System>, state: State) -> Result<Driver, Error> {
-        let mut driver = Driver::new(system)?;
-        driver.next.clone_from(&state);
-        driver.state = state;
-        Ok(driver)
-    }
-
     /// The system.
     pub fn system(&self) -> &System {
         &self.system
@@ -325,6 +174,85 @@ impl Driver {
             phases: self.phases,
         }
     }
+
+    /// Whether parts float in the attempt under way.
+    pub(super) fn floats(&self) -> bool {
+        self.maps.is_static() && !self.floating.parts.is_empty()
+    }
+
+    /// The law of a contact in the attempt under way. In a static stage nothing has a rate: a law in the rate holds in the
+    /// gap there, as the displacement law.
+    pub(super) fn law(&self, contact: &Contact) -> Law {
+        match contact.law.get().level() {
+            Level::Rate if self.maps.is_static() => {
+                Law::Displacement(Displacement { projection: false })
+            }
+            _ => contact.law,
+        }
+    }
+
+    /// The map of the secondary side of a contact.
+    pub(super) fn map_of(&self, contact: usize) -> &StepMap {
+        &self.maps.all()[self.system.zone_of(contact)]
+    }
+
+    /// Whether internal forces and contacts belong to the way of the step.
+    pub(super) fn between(&self) -> bool {
+        !self.maps.is_static() && self.system.scheme.get().is_between()
+    }
+
+    /// How long after the start of the step a contact is paired, s.
+    pub(super) fn paired_after(&self, number: usize) -> f64 {
+        let law = self.law(&self.system.contacts[number]);
+        match law.get().level() {
+            _ if self.between() => 0.5 * self.dt,
+            Level::Rate => law.get().capture() * self.dt,
+            Level::Gap => self.dt,
+            Level::GapAndRate => self.map_of(number).instant(self.dt),
+        }
+    }
+
+    /// Contact, place in it and mesh node of a contact point.
+    pub(super) fn name(&self, point: usize) -> String {
+        let (contact, place) = self.system.point(point);
+        let node = self.system.mesh_node[contact.points[place].node() as usize];
+        format!("contact `{}`, point {place}, node {node}", contact.name)
+    }
+
+    /// Whether the step from the present state is static.
+    pub(super) fn is_static(&self) -> bool {
+        let preload = self.system.nonlinear.preload;
+        preload.is_some_and(|preload| self.state.step < preload.steps)
+    }
+
+    /// Whether supports jump in the iteration.
+    pub(super) fn jumps(&self) -> bool {
+        self.vectors.jumps
+    }
+
+    /// The map of the step of this size from the present state, of an explicit scheme before one of the size `next` (both s).
+    pub(super) fn size(&mut self, dt: f64, next: f64) {
+        self.dt = dt;
+        if self.is_static() {
+            self.maps.rest();
+            self.identity = None;
+            return;
+        }
+        self.maps.resize(&self.system.schemes, (dt, next));
+        // zones of different schemes are balanced by works
+        self.identity = match &self.system.schemes[..] {
+            [scheme] => scheme.get().energy_identity(dt),
+            _ => None,
+        };
+    }
+
+    /// Factor of Nᵀ P in the contact forces that the ledger counts.
+    pub(super) fn contact_factor(&self) -> f64 {
+        match self.vectors.push.is_empty() {
+            true => self.maps.contact(),
+            false => 1.0,
+        }
+    }
 }
 
 /// A configuration of the step.
@@ -334,36 +262,4 @@ enum Which {
     Place,
     /// The end of the step.
     Next,
-}
-
-impl Stepper for Driver {
-    fn step(&mut self) -> Result<(), Error> {
-        self.step()
-    }
-
-    fn system(&self) -> &System {
-        self.system()
-    }
-
-    fn state(&self) -> &State {
-        self.state()
-    }
-
-    fn report(&self) -> &StepReport {
-        self.report()
-    }
-
-    fn saved(&self) -> Result<Vec<u8>, Error> {
-        self.state().to_bytes()
-    }
-
-    fn costs(&self) -> Costs {
-        self.costs()
-    }
-
-    fn failed_problem(&self) -> Option<FailedProblem<'_>> {
-        let friction = self.failed_friction.as_ref();
-        let normal = self.failed.as_ref().map(FailedProblem::Normal);
-        normal.or(friction.map(FailedProblem::Friction))
-    }
 }

@@ -1,18 +1,9 @@
 //! The work of obstacles that move.
 
 use carom_contact::Target;
-use serde::{Deserialize, Serialize};
 
 use super::Driver;
-
-/// Force of a moving obstacle at the end of a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Pushed {
-    /// On the bodies, friction included, N.
-    force: [f64; 3],
-    /// Power of its turn, W.
-    turn: f64,
-}
+use crate::records::Pushed;
 
 impl Driver {
     /// Force of an obstacle that moves, and the power of its turn, in the step that was taken: of the normal and of the

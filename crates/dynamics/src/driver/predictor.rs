@@ -6,27 +6,6 @@
 use super::Driver;
 use crate::error::Error;
 
-/// Points and forces of the stage.
-#[derive(Default)]
-pub(super) struct Predictor {
-    points: Vec<u32>,
-    /// R of each point, kg m.
-    forces: Vec<f64>,
-    /// Gap of each contact point at u + dt v, m.
-    gaps: Vec<f64>,
-    values: Vec<f64>,
-    present: Vec<f64>,
-    /// The acceleration of the state before the step.
-    kept: Vec<f64>,
-}
-
-impl Predictor {
-    /// Gap of a contact point at u + dt v, m; `None` without this stage.
-    pub(super) fn gap(&self, point: usize) -> Option<f64> {
-        self.gaps.get(point).copied()
-    }
-}
-
 impl Driver {
     /// Projects the predictor.
     pub(super) fn project_predictor(&mut self) -> Result<(), Error> {

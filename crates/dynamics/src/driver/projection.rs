@@ -14,51 +14,12 @@ use std::sync::Arc;
 use carom_algebra::reduce::dot;
 use carom_contact::law::Status;
 
-use super::start::energies;
+use super::identity::energies;
+use super::scratch::Projected;
 use super::{Driver, Vectors};
 use crate::error::Error;
 use crate::ledger::{Jump, reactions};
 use crate::resultant::Resultant;
-
-/// What the impulses after a step did, those of a projection or of another stage; one entry per contact point.
-#[derive(Default)]
-pub(super) struct Projected {
-    /// Impulse, N s.
-    pub(super) impulse: Vec<f64>,
-    /// Work of the impulse, J.
-    pub(super) work: Vec<f64>,
-    pub(super) points: Vec<u32>,
-    /// Quantity of each of the points that the impulses change.
-    pub(super) values: Vec<f64>,
-    present: Vec<f64>,
-}
-
-impl Projected {
-    pub(super) fn new(points: usize) -> Projected {
-        Projected {
-            impulse: vec![0.0; points],
-            work: vec![0.0; points],
-            ..Projected::default()
-        }
-    }
-
-    /// Forgets the step before.
-    pub(super) fn clear(&mut self) {
-        self.points.clear();
-        self.impulse.fill(0.0);
-        self.work.fill(0.0);
-    }
-
-    /// Impulse of a point, N s.
-    pub(super) fn impulse(&self, point: usize) -> f64 {
-        self.impulse.get(point).copied().unwrap_or(0.0)
-    }
-
-    /// Work of that impulse, J.
-    pub(super) fn work(&self, point: usize) -> f64 {
-        self.work.get(point).copied().unwrap_or(0.0)
-    }
-}
 
 impl Driver {
     /// Projects the end of the step if points of laws with projection have closed in it.

@@ -7,7 +7,8 @@ use carom_contact::Rows;
 
 use super::Driver;
 use crate::records::Step;
-use crate::state::{ContactReport, InterfaceState, State};
+use crate::report::ContactReport;
+use crate::state::{InterfaceState, State};
 use crate::step_map::Impulse;
 use crate::system::System;
 

@@ -6,15 +6,8 @@
 use carom_contact::law::Status;
 
 use super::Driver;
-use super::projection::Projected;
+use super::scratch::Projected;
 use crate::ledger::Jump;
-
-/// Work that the points which close take in the step.
-#[derive(Default)]
-pub(super) struct Restoring {
-    /// w of each point with an impulse, J.
-    works: Vec<f64>,
-}
 
 impl Driver {
     /// Gives the velocity back what the contact took, if the scheme does so.

@@ -4,43 +4,14 @@
 //! body by θ²/2. What is missing is added: `u = (exp(θ×) - 1 - θ×) d`, d from the centre of the part.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use carom_algebra::unknowns::Kind;
 use carom_contact::Rows;
 
-use super::Driver;
 use crate::system::System;
 
 /// What of a unit vector counts as independent of others.
 pub(super) const INDEPENDENT: f64 = 1e-6;
-
-impl Driver {
-    /// Begins with the rigid motion of each part that is nearest to its velocity. The motion of no acceleration may turn elements
-    /// inside out where velocities alternate from step to step, as a trapezoidal rule leaves them in stiff modes: the
-    /// displacements of these modes stay what they are.
-    pub(super) fn predict_rigidly(&mut self) {
-        let system = Arc::clone(&self.system);
-        let motion = &self.state.motion;
-        // explicit zones have their place already
-        let factor = |i: usize| self.maps.of(i).displacement.x;
-        let rigid = Rigid::new(&system, &system.parts, Some(&motion.u));
-        let mut c = rigid.nearest(&motion.v);
-        c.iter_mut().for_each(|c| *c *= self.dt);
-        let vectors = &mut self.vectors;
-        let place = &mut vectors.place;
-        self.maps.known(|map| map.displacement, motion, place);
-        let moved = |i: usize| !system.fixed[i] && factor(i) != 0.0;
-        for i in (0..motion.u.len()).filter(|&i| moved(i)) {
-            vectors.x[i] = (motion.u[i] - vectors.place[i]) / factor(i);
-        }
-        for (i, u) in rigid.motion(&c).chain(rigid.arc(&c)) {
-            if moved(i) {
-                vectors.x[i] += u / factor(i);
-            }
-        }
-    }
-}
 
 /// Rigid motions of parts: u = Σ c_j r_j, those of a part one after the other.
 pub(super) struct Rigid<'a> {

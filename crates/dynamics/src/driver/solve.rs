@@ -4,12 +4,13 @@
 
 use std::ops::Range;
 use std::sync::Arc;
-use std::time::Instant;
 
 use carom_contact::Search;
 
 use super::Driver;
+use super::mixing::{LARGEST, LARGEST_OF_FLOATING};
 use super::residual::Standing;
+use super::rigid::Rigid;
 use crate::error::Error;
 use crate::step_map::StepMap;
 
@@ -33,17 +34,6 @@ const MOVES: usize = 10;
 
 /// Imbalance over what may be rounding from which on iterations are mixed: below, their changes are noise.
 const NOISY: f64 = 10.0;
-
-/// How fast the iterations go.
-#[derive(Default)]
-pub(super) struct Pace {
-    /// Iterations of this attempt with the factor at hand.
-    pub(super) age: usize,
-    /// The iteration in which it was made.
-    pub(super) made: usize,
-    /// Contraction with a factor made within the iterations of a step, between two states; zero while unknown.
-    pub(super) fresh: f64,
-}
 
 impl Driver {
     /// Finds x and the contact forces of the step.
@@ -87,7 +77,7 @@ impl Driver {
                 (self.pace.age, self.pace.made) = (0, pass);
             }
             self.pace.age += 1;
-            self.keep_forces();
+            self.carried.keep(&self.next.interface);
             self.solve_interface()?;
             // a motion that contacts hardly hold is far above the noise of the forces
             if !jumps && (self.floats() || standing.imbalance > NOISY * standing.rounding) {
@@ -108,7 +98,7 @@ impl Driver {
     }
 
     /// First guess, residual and pairing of the attempt.
-    fn begin_iterations(&mut self, rigidly: bool) -> Result<(), Error> {
+    pub(super) fn begin_iterations(&mut self, rigidly: bool) -> Result<(), Error> {
         self.residuals.clear();
         (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
         self.floating.begin();
@@ -138,28 +128,6 @@ impl Driver {
         Ok(())
     }
 
-    /// Makes ready what the forces of links do not change, of a step that is linear in the unknown.
-    ///
-    /// # Errors
-    /// As [`Driver::step`].
-    pub(crate) fn prepare(&mut self) -> Result<(), Error> {
-        (self.failed, self.failed_friction) = (None, None);
-        self.prepared = false;
-        self.begin_stage()?;
-        let scheme = self.system.scheme.get();
-        if !self.system.nonlinear.follows.is_empty() || scheme.projects_predictor() {
-            return Ok(());
-        }
-        let (begin, before) = (Instant::now(), self.phases);
-        self.take_matrices()?;
-        if self.is_affine() {
-            self.begin_iterations(false)?;
-            self.prepared = true;
-        }
-        self.count_contact(begin, before);
-        Ok(())
-    }
-
     /// The one iteration of a step that is linear in the unknown.
     fn solve_at_once(&mut self) -> Result<(), Error> {
         self.residuals.push(0.0);
@@ -177,11 +145,6 @@ impl Driver {
         Ok(())
     }
 
-    /// Whether supports jump in the iteration.
-    pub(super) fn jumps(&self) -> bool {
-        self.vectors.jumps
-    }
-
     /// Whether iterations may end. `before`: the imbalance one iteration ago. Within what rounding leaves they end where they
     /// gain no more, not where they get there: what is left would be of one sign step after step, and add up. Not so under the
     /// forces of links, whose passes need answers that are smooth in them.
@@ -196,12 +159,6 @@ impl Driver {
         let gains = gains && self.link_force.is_empty();
         let tolerance = self.system.nonlinear.iteration.tolerance;
         (imbalance <= tolerance || imbalance <= rounding && !gains) && defect <= 1.0
-    }
-
-    /// Whether all is linear in the unknown, so that one iteration is all.
-    pub(super) fn is_affine(&self) -> bool {
-        let mut contacts = 0..self.system.contacts.len();
-        !self.effective.iterates() && contacts.all(|k| self.turning(k) == 0.0)
     }
 
     /// Begins with the motion of no acceleration, or with the one before it; motions that are prescribed come as a jump in
@@ -332,7 +289,8 @@ impl Driver {
             }
             if shortening < SHORTENINGS {
                 share *= 0.5;
-                self.halve_forces();
+                self.carried.halve(&mut self.next.interface);
+                self.take_weak();
             }
         }
         if jumps {
@@ -351,6 +309,43 @@ impl Driver {
             }
             Some(outcome) => outcome,
             None => Err(self.no_equilibrium(0)),
+        }
+    }
+
+    /// Mixes the iteration that has been computed with those before it.
+    fn mix(&mut self) {
+        let largest = match self.floats() {
+            true => LARGEST_OF_FLOATING,
+            false => LARGEST,
+        };
+        let way = (&self.vectors.x[..], &mut self.vectors.dx[..]);
+        if self.mixing.mix(way, &mut self.next.interface, largest) {
+            self.take_weak();
+        }
+    }
+
+    /// Begins with the rigid motion of each part that is nearest to its velocity. The motion of no acceleration may turn elements
+    /// inside out where velocities alternate from step to step, as a trapezoidal rule leaves them in stiff modes: the
+    /// displacements of these modes stay what they are.
+    pub(super) fn predict_rigidly(&mut self) {
+        let system = Arc::clone(&self.system);
+        let motion = &self.state.motion;
+        // explicit zones have their place already
+        let factor = |i: usize| self.maps.of(i).displacement.x;
+        let rigid = Rigid::new(&system, &system.parts, Some(&motion.u));
+        let mut c = rigid.nearest(&motion.v);
+        c.iter_mut().for_each(|c| *c *= self.dt);
+        let vectors = &mut self.vectors;
+        let place = &mut vectors.place;
+        self.maps.known(|map| map.displacement, motion, place);
+        let moved = |i: usize| !system.fixed[i] && factor(i) != 0.0;
+        for i in (0..motion.u.len()).filter(|&i| moved(i)) {
+            vectors.x[i] = (motion.u[i] - vectors.place[i]) / factor(i);
+        }
+        for (i, u) in rigid.motion(&c).chain(rigid.arc(&c)) {
+            if moved(i) {
+                vectors.x[i] += u / factor(i);
+            }
         }
     }
 }

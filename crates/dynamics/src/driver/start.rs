@@ -2,21 +2,150 @@
 
 use std::sync::Arc;
 
-use carom_algebra::reduce::dot;
+use carom_bodies::{Scratch, Stored};
+use carom_contact::{Contact, Pairing, Search};
 
-use super::identity::End;
+use super::carried::Carried;
+use super::effective::Effective;
+use super::floating::Floating;
+use super::identity::{End, energies};
+use super::impulse::Impulses;
+use super::linking::Multipliers;
+use super::mixing::Mixing;
+use super::paired::sums_compliances;
+use super::scratch::{Pace, Predictor, Projected, Restoring, Vectors};
+use super::supports::Jump;
+use super::weak::{WeakForms, WithWeak};
 use super::{Driver, Which};
 use crate::control::Control;
+use crate::costs::Phases;
+use crate::coulomb::Coulomb;
 use crate::error::Error;
 use crate::exchange::Exchange;
+use crate::interface::Interface;
 use crate::ledger::{Energies, Ledger, reactions};
 use crate::operator::Operators;
 use crate::records::Records;
+use crate::report::{ContactReport, StepReport};
 use crate::resultant::Resultant;
-use crate::state::empty_state;
-use crate::system::{Motion, System};
+use crate::state::{State, empty_state};
+use crate::system::{Maps, System};
+use crate::watch::Watch;
 
 impl Driver {
+    /// Sets the initial state.
+    ///
+    /// # Errors
+    /// A matrix that is not positive definite, elements that are turned inside out, a static stage of a body that
+    /// neither supports nor contacts could hold.
+    pub fn new(system: Arc<System>) -> Result<Driver, Error> {
+        let (n, points) = (system.unknowns(), system.points());
+        let zeros = || vec![0.0; n];
+        let state = empty_state(&system);
+        let scheme = system.scheme.get();
+        let maps = Maps::new(&system, system.dt, system.dt);
+        let projects = |contact: &Contact| contact.law.projects();
+        let stages = scheme.projects_predictor()
+            || scheme.restores_contact_work()
+            || sums_compliances(&system, maps.first());
+        let staged = stages && points > 0 || system.contacts.iter().any(projects);
+        let push = match maps.first().uses_contact_acceleration() {
+            true => zeros(),
+            false => Vec::new(),
+        };
+        let mut driver = Driver {
+            dt: 0.0,
+            maps,
+            identity: None,
+            effective: Effective::new(),
+            floating: Floating::new(&system)?,
+            forced: None,
+            unplanned: None,
+            impulses: match staged {
+                true => Some(Impulses::new(&system)?),
+                false => None,
+            },
+            projected: Projected::new(points),
+            predictor: Predictor::default(),
+            restoring: Restoring::default(),
+            interface: Interface::default(),
+            pairing: Pairing::default(),
+            initial: vec![Pairing::default(); system.contacts.len()],
+            search: system.contacts.iter().map(|_| Search::default()).collect(),
+            watch: Watch::new(&system),
+            candidates: Vec::new(),
+            candidate_data: Vec::new(),
+            free_gaps: Vec::new(),
+            coulomb: Coulomb::default(),
+            weak: WeakForms::new(&system)?,
+            with_weak: WithWeak::default(),
+            stacked: carom_contact::Rows::default(),
+            slips: Vec::new(),
+            scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
+            force_sweeps: 0,
+            residuals: Vec::new(),
+            pace: Pace::default(),
+            mixing: Mixing::default(),
+            carried: Carried::default(),
+            jump: Jump::default(),
+            failed: None,
+            failed_friction: None,
+            report: StepReport {
+                contacts: vec![ContactReport::default(); system.contacts.len()],
+                ..StepReport::default()
+            },
+            vectors: Vectors {
+                x: zeros(),
+                dx: zeros(),
+                jump: zeros(),
+                jumps: false,
+                load: zeros(),
+                inertia: zeros(),
+                internal: zeros(),
+                damping: zeros(),
+                balanced: zeros(),
+                unlinked: Vec::new(),
+                push,
+                contact: zeros(),
+                residual: zeros(),
+                half: zeros(),
+                before: zeros(),
+                place: zeros(),
+                rate: zeros(),
+                end: Vec::new(),
+                ahead: Vec::new(),
+                work: zeros(),
+                history: state.motion.history.clone(),
+            },
+            next: state.clone(),
+            state,
+            stored: Stored::default(),
+            link_force: match system.link_rows.is_empty() {
+                true => Vec::new(),
+                false => zeros(),
+            },
+            multipliers: Multipliers::new(&system),
+            prepared: false,
+            left_over: 0.0,
+            phases: Phases::default(),
+            system,
+        };
+        let system = Arc::clone(&driver.system);
+        driver.restart(&system.initial_displacement, &system.initial_velocity)?;
+        Ok(driver)
+    }
+
+    /// A solver that goes on from a saved state.
+    ///
+    /// # Errors
+    /// As [`Driver::new`].
+    pub fn resume(system: Arc<System>, state: State) -> Result<Driver, Error> {
+        let mut driver = Driver::new(system)?;
+        driver.next.clone_from(&state);
+        driver.state = state;
+        Ok(driver)
+    }
+
     /// Begins anew from another initial motion: displacement in m and velocity in m/s, one entry per unknown. Held
     /// unknowns are where their supports are, whatever is given; the velocity of those that move as prescribed is the one
     /// before the support takes hold of them, in the first step. With a static stage velocities are those of its end.
@@ -258,46 +387,5 @@ impl Driver {
         }
         self.state.motion.v.clone_from(&system.initial_velocity);
         self.begin()
-    }
-
-    /// Pairs all contacts as the state has them.
-    pub(super) fn pair_now(&mut self) {
-        self.pairing.clear();
-        self.pairing.span = [0.0; 2];
-        self.vectors.end.clear();
-        self.vectors.place.clone_from(&self.state.motion.u);
-        for contact in 0..self.system.contacts.len() {
-            self.append(contact, self.state.time);
-        }
-        self.candidates.clear();
-    }
-}
-
-/// Energies and momentum of a motion with this strain energy (J): |a|²_M where it is asked for, angular momentum about the origin
-/// of the nodes at these displacements, or in the reference configuration.
-pub(super) fn energies(
-    system: &System,
-    motion: &Motion,
-    (strain, with_acceleration, u): (f64, bool, Option<&[f64]>),
-    work: &mut [f64],
-) -> Energies {
-    system.mass.multiply(&motion.v, work);
-    let kinetic = 0.5 * dot(&motion.v, work);
-    let momentum = match u {
-        Some(u) => Resultant::at(system, (&motion.frames, &[u]), work),
-        None => Resultant::of(system, work),
-    };
-    let mut acceleration = 0.0;
-    if with_acceleration {
-        system.mass.multiply(&motion.a, work);
-        acceleration = dot(&motion.a, work);
-    }
-    Energies {
-        kinetic,
-        strain,
-        acceleration,
-        memory: 0.0,
-        lagged: 0.0,
-        momentum,
     }
 }

@@ -5,9 +5,12 @@
 
 use super::Driver;
 use crate::control::{Control, Event};
+use crate::costs::Costs;
 use crate::error::Error;
+use crate::march::{FailedProblem, Stepper};
+use crate::report::StepReport;
 use crate::state::State;
-use crate::system::Closing;
+use crate::system::{Closing, System};
 
 /// Attempts at one step after which a closing cuts it no more.
 const CUTS: u32 = 10;
@@ -173,12 +176,6 @@ impl Driver {
         }
     }
 
-    /// Whether the step from the present state is static.
-    pub(super) fn is_static(&self) -> bool {
-        let preload = self.system.nonlinear.preload;
-        preload.is_some_and(|preload| self.state.step < preload.steps)
-    }
-
     /// Sets the size that the next step is tried with, s, for tests: what an event after the last step would do.
     pub fn force_size(&mut self, dt: f64) {
         self.unplanned = Some(dt);
@@ -230,5 +227,37 @@ impl Driver {
             time: self.state.time,
             dt: self.dt,
         }
+    }
+}
+
+impl Stepper for Driver {
+    fn step(&mut self) -> Result<(), Error> {
+        self.step()
+    }
+
+    fn system(&self) -> &System {
+        self.system()
+    }
+
+    fn state(&self) -> &State {
+        self.state()
+    }
+
+    fn report(&self) -> &StepReport {
+        self.report()
+    }
+
+    fn saved(&self) -> Result<Vec<u8>, Error> {
+        self.state().to_bytes()
+    }
+
+    fn costs(&self) -> Costs {
+        self.costs()
+    }
+
+    fn failed_problem(&self) -> Option<FailedProblem<'_>> {
+        let friction = self.failed_friction.as_ref();
+        let normal = self.failed.as_ref().map(FailedProblem::Normal);
+        normal.or(friction.map(FailedProblem::Friction))
     }
 }

@@ -7,9 +7,6 @@
 //! `M_ff Δv_f = -M_fh Δv_h`, with the impulse `J = M Δv` of the supports (zero on f) and its work `J · (v + ½ Δv)`, which is
 //! the change of the kinetic energy.
 
-use std::sync::Arc;
-
-use super::Driver;
 use crate::error::Error;
 use crate::operator::Operators;
 use crate::resultant::Resultant;
@@ -32,53 +29,6 @@ pub(super) struct Jump {
     change: Vec<f64>,
     momentum: Vec<f64>,
     jumps: bool,
-}
-
-impl Driver {
-    /// Runs an attempt from the velocity after the jump; the state keeps the one before it.
-    pub(super) fn attempt_after_jump(
-        &mut self,
-        attempt: impl FnOnce(&mut Driver) -> Result<(), Error>,
-    ) -> Result<(), Error> {
-        if !self.jump()? {
-            return attempt(self);
-        }
-        std::mem::swap(&mut self.state.motion.v, &mut self.jump.velocity);
-        let outcome = attempt(self);
-        std::mem::swap(&mut self.state.motion.v, &mut self.jump.velocity);
-        outcome
-    }
-
-    /// Computes the jump at the start of the step; tells whether there is one.
-    fn jump(&mut self) -> Result<bool, Error> {
-        let system = Arc::clone(&self.system);
-        let (motion, dt, jump) = (&self.state.motion, self.dt, &mut self.jump);
-        (jump.impulse, jump.work, jump.jumps) = (Resultant::default(), 0.0, false);
-        if self.maps.is_static() || system.nonlinear.follows.is_empty() {
-            return Ok(false);
-        }
-        let n = system.unknowns();
-        jump.change.clear();
-        jump.change.resize(n, 0.0);
-        jump.momentum.resize(n, 0.0);
-        let end = &mut jump.momentum;
-        let time = self.state.time;
-        system.nonlinear.prescribe([time, time + dt], end);
-        for follows in &system.nonlinear.follows {
-            let i = follows.unknown as usize;
-            let change = (end[i] - motion.u[i]) / dt - motion.v[i];
-            let rounding = ROUNDING * (end[i].abs() + motion.u[i].abs()) / dt;
-            if change.abs() > rounding {
-                jump.change[i] = change;
-                jump.jumps = true;
-            }
-        }
-        if jump.jumps {
-            jump.carry_along(&system)?;
-            jump.add_up(&system, motion);
-        }
-        Ok(jump.jumps)
-    }
 }
 
 impl Jump {
@@ -125,5 +75,48 @@ impl Jump {
             self.velocity[i] += self.change[i];
         }
         self.impulse = Resultant::at(system, (&motion.frames, &[&motion.u]), &self.momentum);
+    }
+
+    /// Computes the jump at the start of a dynamic step of `dt` from `time` (both s); tells whether there is one.
+    ///
+    /// # Errors
+    /// A mass that is not positive definite.
+    pub(super) fn find(
+        &mut self,
+        system: &System,
+        motion: &Motion,
+        [time, dt]: [f64; 2],
+    ) -> Result<bool, Error> {
+        self.clear();
+        let n = system.unknowns();
+        self.change.clear();
+        self.change.resize(n, 0.0);
+        self.momentum.resize(n, 0.0);
+        let end = &mut self.momentum;
+        system.nonlinear.prescribe([time, time + dt], end);
+        for follows in &system.nonlinear.follows {
+            let i = follows.unknown as usize;
+            let change = (end[i] - motion.u[i]) / dt - motion.v[i];
+            let rounding = ROUNDING * (end[i].abs() + motion.u[i].abs()) / dt;
+            if change.abs() > rounding {
+                self.change[i] = change;
+                self.jumps = true;
+            }
+        }
+        if self.jumps {
+            self.carry_along(system)?;
+            self.add_up(system, motion);
+        }
+        Ok(self.jumps)
+    }
+
+    /// No jump.
+    pub(super) fn clear(&mut self) {
+        (self.impulse, self.work, self.jumps) = (Resultant::default(), 0.0, false);
+    }
+
+    /// Exchanges the velocity before the jump and that after it.
+    pub(super) fn exchange(&mut self, velocity: &mut Vec<f64>) {
+        std::mem::swap(velocity, &mut self.velocity);
     }
 }

@@ -7,19 +7,20 @@
 
 use std::sync::Arc;
 
-use carom_contact::law::{Level, Local, Status};
-use carom_contact::{Integration, Pairing, Search};
+use carom_contact::law::{Local, Status};
+use carom_contact::{Pairing, Search};
 use serde::{Deserialize, Serialize};
 
-use super::whole::Places;
-use super::{Zoned, Zones};
+use super::model::{ModelZone, Zoned};
+use super::places::Places;
 use crate::driver::Driver;
-use crate::driver::linked::Growth;
+use crate::driver::linked::{Growth, Origin};
 use crate::driver::record::contact_report;
 use crate::error::Error;
 use crate::interface::{Candidate, Interface};
 use crate::records::{Records, Step};
-use crate::state::{ContactReport, InterfaceState, empty_state};
+use crate::report::ContactReport;
+use crate::state::{InterfaceState, empty_state};
 use crate::step_map::Impulse;
 use crate::system::{LinkRow, System, on};
 
@@ -83,7 +84,7 @@ impl Between {
         }
         let system = System::whole(zoned.model.clone())?;
         let mut taken = vec![false; system.unknowns()];
-        let of_zone = |(driver, zone): (&Driver, &super::ModelZone)| {
+        let of_zone = |(driver, zone): (&Driver, &ModelZone)| {
             Places::new(driver.system(), (&zone.bodies, &[]), &system, &mut taken)
         };
         let places: Vec<Places> = drivers.iter().zip(&zoned.zones).map(of_zone).collect();
@@ -210,7 +211,7 @@ impl Between {
         &mut self,
         drivers: &mut [Driver],
         substeps: &[u32],
-        origins: &[super::Origin],
+        origins: &[Origin],
     ) -> Result<(), Error> {
         let row = |&point: &u32| {
             let (dofs, coefficients) = self.pairing.rows.row(point as usize);
@@ -419,62 +420,5 @@ impl Between {
             self.system.first_point[contact]..self.system.first_point[contact + 1]
         });
         points.any(touches)
-    }
-}
-
-/// Why zones of unequal steps do not take a contact.
-fn refused(zoned: &Zoned, contact: usize) -> Option<&'static str> {
-    let of_model = &zoned.model.contacts[contact];
-    if of_model.law.get().level() != Level::Rate {
-        return Some("take a law in the rate, or equal steps");
-    }
-    if of_model.friction > 0.0 {
-        return Some("friction needs equal steps");
-    }
-    if let Integration::Weak { .. } = of_model.integration {
-        return Some("the weak form needs equal steps; take node or mortar");
-    }
-    let plain = |zone: usize| {
-        let map = zoned.zones[zone].scheme.get().step_map(zoned.model.dt);
-        map.contact_impulse == Impulse::weights(0.0, 1.0) && map.impulse == map.contact_impulse
-    };
-    match zoned.zones_of(contact).into_iter().all(plain) {
-        true => None,
-        false => Some(
-            "with unequal steps both zones need a scheme whose contact force is a mean over the step: theta or energy-momentum",
-        ),
-    }
-}
-
-impl Zoned {
-    /// Refuses contacts that zones of unequal steps cannot have between them.
-    pub(super) fn check_across(&self) -> Result<(), Error> {
-        for contact in self.contacts_across() {
-            if let Some(cause) = refused(self, contact) {
-                let [one, other] = self.zones_of(contact);
-                return Err(Error::AcrossZones {
-                    contact: self.model.contacts[contact].name.clone(),
-                    one: self.zones[one].name.clone(),
-                    other: self.zones[other].name.clone(),
-                    cause,
-                });
-            }
-        }
-        Ok(())
-    }
-}
-
-impl Zones {
-    /// Contacts between zones, and what they go on from; none where all contacts are inside zones.
-    pub fn between(&self) -> Option<(&[usize], &BetweenState)> {
-        let between = self.between.as_ref()?;
-        Some((&between.contacts, &between.state))
-    }
-
-    /// What a contact between zones did in the last outer step.
-    pub fn report_between(&self, contact: usize) -> Option<&ContactReport> {
-        let between = self.between.as_ref()?;
-        let known = between.contacts.contains(&contact);
-        known.then(|| &between.reports[contact])
     }
 }

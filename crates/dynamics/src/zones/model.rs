@@ -2,14 +2,11 @@
 
 use std::sync::Arc;
 
-use carom_bodies::Kinematics;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::scheme::Scheme;
-use crate::system::{
-    self, Model, ModelBody, ModelLink, NodalLoad, Nonlinear, Refused, System, sides,
-};
+use crate::system::{Model, ModelLink, NodalLoad, Nonlinear, System, sides};
 
 /// A group of bodies with its own scheme and step.
 #[derive(Clone, Debug)]
@@ -194,65 +191,5 @@ impl Zoned {
             ..load.clone()
         });
         loads.filter(|load| !load.nodes.is_empty()).collect()
-    }
-
-    /// Refuses what zones that step apart do not take.
-    pub(super) fn check(&self) -> Result<(), Error> {
-        let mut bodies = self.model.bodies.iter();
-        if let Some(body) = bodies.find(|body| body.rigid.is_some()) {
-            return Err(system::Error::Nonlinear {
-                what: Refused::Rigid(body.spec.name.clone()),
-                why: "zones have no frames of rotations yet; leave out the zones",
-            }
-            .into());
-        }
-        let beam = |body: &&ModelBody| matches!(body.spec.kinematics, Kinematics::Beam(_));
-        if let Some(body) = self.model.bodies.iter().find(beam) {
-            return Err(Error::BeamInZones {
-                body: body.spec.name.clone(),
-            });
-        }
-        if let Some(some) = self.model.discrete.first() {
-            return Err(Error::DiscreteInZones {
-                element: some.spec.name.clone(),
-            });
-        }
-        if self.model.nonlinear.preload.is_some() {
-            return Err(system::Error::Nonlinear {
-                what: Refused::StaticStage,
-                why: "links between zones join velocities, which it has none of; leave out the stage or the zones",
-            }
-            .into());
-        }
-        self.check_steps()
-    }
-
-    /// Refuses schemes that no link takes, and numbers of inner steps that do not go together.
-    pub(super) fn check_steps(&self) -> Result<(), Error> {
-        let linked = |zone: &usize| self.links.iter().any(|link| link.zones.contains(zone));
-        let mut many = None;
-        for (k, zone) in self.zones.iter().enumerate() {
-            let refuse = |accepted| {
-                Err(Error::Substeps {
-                    zone: zone.name.clone(),
-                    found: zone.substeps,
-                    accepted,
-                })
-            };
-            if zone.substeps == 0 || zone.far == Some(0) {
-                return refuse("at least one");
-            }
-            if zone.substeps > 1 && *many.get_or_insert(zone.substeps) != zone.substeps {
-                return refuse("one, or as many as the other zones with more than one");
-            }
-            if linked(&k) && zone.scheme.get().link_weights().is_none() {
-                return Err(system::Error::LinkScheme {
-                    zone: zone.name.clone(),
-                    scheme: zone.scheme.get().name(),
-                }
-                .into());
-            }
-        }
-        Ok(())
     }
 }

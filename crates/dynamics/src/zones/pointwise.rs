@@ -1,6 +1,7 @@
 //! An outer step whose multipliers hold the rows at every inner instant (Gravouil, Combescure 2001).
 
-use super::{MOST_PASSES, Zones, record, sample};
+use super::Zones;
+use super::passes::{MOST_PASSES, record, sample};
 use crate::error::Error;
 use crate::system::on;
 

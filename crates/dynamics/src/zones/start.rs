@@ -6,14 +6,13 @@ use carom_algebra::dense::DenseCholesky;
 
 use super::between::Between;
 use super::moves::Moves;
-use super::origin::Origin;
-use super::{LinkKind, Zoned, Zones, ZonesState};
-use crate::condensed::{Answer, Condensed, DENSE, Joined, Matrix};
+use super::response::answer;
+use super::{Zoned, Zones};
+use crate::condensed::{Answer, Condensed, DENSE, Joined};
 use crate::driver::Driver;
-use crate::driver::linked::Growth;
+use crate::driver::linked::Origin;
 use crate::error::Error;
-use crate::operator::{Operators, assembled};
-use crate::state::State;
+use crate::operator::Operators;
 use crate::system::{LinkRow, System, on};
 
 impl Zones {
@@ -128,125 +127,6 @@ impl Zones {
             self.start_from(origins);
         }
         Ok(())
-    }
-
-    /// Makes the factor of H anew in the joined form, whatever the number of rows: to compare the two.
-    ///
-    /// # Errors
-    /// Redundant rows.
-    pub fn join(&mut self) -> Result<(), Error> {
-        self.factor = Some(self.joined()?);
-        Ok(())
-    }
-
-    fn joined(&self) -> Result<Condensed, Error> {
-        let zones = self.drivers.iter().zip(&self.rows);
-        let answers: Vec<Answer> = zones
-            .map(|(driver, rows)| {
-                let (mass, stiffness, velocity) = driver.effective();
-                let scale = velocity * driver.link_weights()[1];
-                answer((driver.system(), rows), [mass, stiffness], scale)
-            })
-            .collect();
-        let joined = Joined::new(&answers, self.norms.len())?;
-        Ok(Condensed::Joined(Box::new(joined)))
-    }
-
-    /// Makes and factors H of the multipliers that a pass looks for.
-    pub(super) fn factorise(&mut self) -> Result<(), Error> {
-        let n = self.norms.len();
-        let alike = self.substeps.iter().all(|m| *m == 1);
-        if n > DENSE && alike {
-            return self.join();
-        }
-        if n == 0 {
-            return Ok(());
-        }
-        let (mut h, mut outer) = (vec![0.0; n * n], vec![0.0; n * n]);
-        for (k, driver) in self.drivers.iter_mut().enumerate() {
-            let rows = &self.rows[k];
-            let steps = match self.kind {
-                LinkKind::GravouilCombescure => 1,
-                LinkKind::PrakashHjelmstad => self.substeps[k],
-            };
-            let own = driver.ramp((rows, (steps, Growth::Linear)), &self.origins[k])?;
-            for (i, (row, _)) in rows.iter().enumerate() {
-                for (j, (column, _)) in rows.iter().enumerate() {
-                    let place = *row as usize * n + *column as usize;
-                    let entry = 0.5 * (own[i * rows.len() + j] + own[j * rows.len() + i]);
-                    h[place] += entry;
-                    if self.substeps[k] == 1 {
-                        outer[place] += entry;
-                    }
-                }
-            }
-        }
-        self.outer = outer;
-        let factor = DenseCholesky::new(n, &h);
-        let factor = factor.map_err(|cause| Error::Redundant { rows: n, cause })?;
-        self.factor = Some(Condensed::Dense(factor));
-        Ok(())
-    }
-
-    /// The state of all zones.
-    pub fn state(&self) -> ZonesState {
-        ZonesState {
-            step: self.step,
-            time: self.time(),
-            multipliers: self.multipliers[0].clone(),
-            earlier: self.earlier.clone(),
-            forces: self.mixes.iter().map(|[_, last, _]| last.clone()).collect(),
-            link_works: self.works[1].clone(),
-            origins: self.origins.clone(),
-            between: self.between.as_ref().map(|between| between.state.clone()),
-            zones: self.drivers.iter().map(|d| d.state().clone()).collect(),
-        }
-    }
-
-    /// Goes on from a state, which must be of the same zones.
-    pub fn resume(&mut self, state: &ZonesState) {
-        self.step = state.step;
-        self.multipliers[0].clone_from(&state.multipliers);
-        self.earlier.clone_from(&state.earlier);
-        for ([_, last, before], force) in self.mixes.iter_mut().zip(&state.forces) {
-            last.clone_from(force);
-            before.clone_from(force);
-        }
-        self.works[1].clone_from(&state.link_works);
-        if state.origins != self.origins {
-            self.start_from(state.origins.clone());
-        }
-        for (driver, state) in self.drivers.iter_mut().zip(&state.zones) {
-            driver.go_back(state);
-        }
-        if let (Some(between), Some(state)) = (&mut self.between, &state.between) {
-            between.state.clone_from(state);
-        }
-    }
-
-    /// Name of each link and the range of its rows among the multipliers.
-    pub fn links(&self) -> &[(String, std::ops::Range<usize>)] {
-        &self.links
-    }
-}
-
-/// A zone in H, with A = `mass` M + `stiffness` K.
-fn answer<'a>(
-    (system, rows): (&'a System, &[(u32, LinkRow)]),
-    [mass, stiffness]: [f64; 2],
-    scale: f64,
-) -> Answer<'a> {
-    let span = 0..system.unknowns();
-    let matrix = match stiffness == 0.0 && system.mass.consistent.is_none() {
-        true => Matrix::Diagonal(system.mass.lumped.iter().map(|m| mass * m).collect()),
-        false => Matrix::Sparse(assembled(system, &span, [mass, 0.0], &|_| stiffness)),
-    };
-    Answer {
-        system,
-        span,
-        rows: rows.to_vec(),
-        matrix,
-        scale,
     }
 }
 
@@ -421,12 +301,5 @@ impl MassLinks<'_> {
         let factor = DenseCholesky::new(count, &matrix);
         let factor = factor.map_err(|cause| Error::Redundant { rows: count, cause })?;
         Ok(Condensed::Dense(factor))
-    }
-}
-
-impl ZonesState {
-    /// The state of one zone.
-    pub fn zone(&self, zone: usize) -> &State {
-        &self.zones[zone]
     }
 }

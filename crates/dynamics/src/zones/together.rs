@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use carom_mesh::{Mesh, Surface};
 
-use super::Zoned;
+use super::model::{ModelZone, Zoned};
 use crate::error::Error;
 use crate::system::{self, Model, ModelLink, ModelScheme, ModelTarget, System};
 
@@ -21,7 +21,7 @@ impl Zoned {
             Ok(()) => Ok(None),
             Err(own) => Err(error.unwrap_or(own)),
         };
-        let equal = |zone: &super::ModelZone| zone.substeps == 1 && zone.far.unwrap_or(1) == 1;
+        let equal = |zone: &ModelZone| zone.substeps == 1 && zone.far.unwrap_or(1) == 1;
         if !self.zones.iter().all(equal) || self.bends() {
             return apart(None);
         }
@@ -37,7 +37,7 @@ impl Zoned {
     /// Whether links join bodies whose matrix changes within steps, or a static stage comes before them.
     fn bends(&self) -> bool {
         let linked = |zone: &usize| self.links.iter().any(|link| link.zones.contains(zone));
-        let bends = |zone: &super::ModelZone| {
+        let bends = |zone: &ModelZone| {
             let mut bodies = zone.bodies.iter().map(|&body| &self.model.bodies[body]);
             !zone.scheme.get().is_explicit()
                 && bodies.any(|body| body.spec.material.finite().is_some())

@@ -4,11 +4,11 @@
 //! Nothing here influences the steps. The largest terms of the balance are those of the sum over the zones, which no
 //! zone knows: they are saved beside the state of the zones.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::places::Places;
 use super::{Zoned, Zones, ZonesState};
 use crate::control::Control;
 use crate::costs::Costs;
@@ -16,7 +16,8 @@ use crate::error::Error;
 use crate::ledger::{Balance, Ledger, Tolerated};
 use crate::march::{FailedProblem, Stepper};
 use crate::records::Records;
-use crate::state::{ContactReport, ContactSample, InterfaceState, State, StepReport, empty_state};
+use crate::report::{ContactReport, ContactSample, StepReport};
+use crate::state::{InterfaceState, State, empty_state};
 use crate::system::{Motion, System};
 
 /// Zones with the model as one.
@@ -36,18 +37,6 @@ pub struct Whole {
     placed: Vec<usize>,
     state: State,
     report: StepReport,
-}
-
-/// Where the numbers of a zone are in the whole: its number and that of the whole.
-pub(super) struct Places {
-    /// Unknowns.
-    unknowns: Vec<(u32, u32)>,
-    /// Those that no zone before it has.
-    pub(super) own: Vec<(u32, u32)>,
-    /// Contact points.
-    points: Vec<(u32, u32)>,
-    /// Histories of the bodies.
-    histories: Vec<(Range<usize>, Range<usize>)>,
 }
 
 /// What a run in zones goes on from.
@@ -368,44 +357,6 @@ fn forces_mut(motion: &mut Motion) -> [&mut Vec<f64>; 3] {
         &mut motion.contact_force,
         &mut motion.link_force,
     ]
-}
-
-impl Places {
-    /// `taken`: unknowns of the whole that a zone before this one has.
-    pub(super) fn new(
-        zone: &System,
-        (bodies, contacts): (&[usize], &[usize]),
-        whole: &System,
-        taken: &mut [bool],
-    ) -> Places {
-        let numbers = zone.mesh_node.iter().zip(0..);
-        let unknowns: Vec<(u32, u32)> = numbers
-            .flat_map(|(&node, own)| {
-                let number = whole.number[node as usize];
-                let [own, of_whole] = [zone.unknowns.of(own), whole.unknowns.of(number)];
-                own.zip(of_whole).map(|(own, of)| (own as u32, of as u32))
-            })
-            .collect();
-        let mut own = unknowns.clone();
-        own.retain(|(_, to)| !std::mem::replace(&mut taken[*to as usize], true));
-        let mut points = Vec::new();
-        for (k, contact) in contacts.iter().enumerate() {
-            let from = zone.first_point[k]..zone.first_point[k + 1];
-            let to = whole.first_point[*contact]..whole.first_point[*contact + 1];
-            points.extend(from.zip(to).map(|(from, to)| (from as u32, to as u32)));
-        }
-        let histories = [zone, whole].map(|system| &system.nonlinear.histories);
-        let histories = bodies.iter().zip(histories[0]).map(|(&body, own)| {
-            let of_whole = &histories[1][body];
-            (own.clone(), of_whole.clone())
-        });
-        Places {
-            histories: histories.collect(),
-            unknowns,
-            own,
-            points,
-        }
-    }
 }
 
 impl Stepper for Whole {

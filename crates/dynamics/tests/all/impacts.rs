@@ -107,7 +107,7 @@ impl Row {
             driver.step().unwrap();
         }
         let (system, state) = (driver.system(), driver.state());
-        (state.records.all_impacts(system, state), driver)
+        (state.impacts(system), driver)
     }
 }
 
@@ -233,7 +233,7 @@ fn an_oblique_impact_with_friction_has_the_approach_and_restitution_of_the_norma
         newton.step().unwrap();
     }
     let (system, state) = (newton.system(), newton.state());
-    let impacts = state.records.all_impacts(system, state);
+    let impacts = state.impacts(system);
     let [impact] = &impacts[..] else {
         panic!("{impacts:?}");
     };

@@ -98,7 +98,7 @@ impl Impacts {
 
     /// Adds the impacts that still go on, or whose flight does not last yet, and closes the file. Nothing to do the second time.
     pub(crate) fn finish(&mut self, system: &System, state: &State) -> Result<(), Error> {
-        let all = state.records.all_impacts(system, state);
+        let all = state.impacts(system);
         for impact in all.iter().skip(self.written) {
             self.push(system, impact)?;
         }

@@ -1,0 +1,80 @@
+//! What the contact problem of an iteration is given: what the laws of its candidates know.
+
+use carom_contact::Rows;
+
+use super::Driver;
+use crate::interface::Candidate;
+use crate::step_map::StepMap;
+
+impl Driver {
+    /// What the laws of the candidates know; of adaptive steps their gaps without contact forces too. `tangents`: how many rows of
+    /// tangents follow that of each point in the stacked rows; none where the points have rows of their own.
+    pub(super) fn describe_candidates(&mut self, tangents: Option<u32>) {
+        let mut data = std::mem::take(&mut self.candidate_data);
+        data.clear();
+        self.free_gaps.clear();
+        for k in 0..self.candidates.len() {
+            let point = self.candidates[k];
+            let free = match tangents {
+                Some(tangents) => self.free_along(point * (1 + tangents), &self.stacked),
+                None => self.free_along(point, &self.pairing.rows),
+            };
+            data.push(self.candidate(point as usize, free));
+            if self.system.adaptive.is_some() {
+                let gap = self.gap_at_the_end(point as usize, free);
+                self.free_gaps.push(gap);
+            }
+        }
+        self.candidate_data = data;
+    }
+
+    /// What the law of a candidate knows. `free`: N x of the motion of the iteration without contact forces.
+    fn candidate(&self, point: usize, free: f64) -> Candidate {
+        let contact = self.system.point(point).0;
+        let (gap, rate) = self.now(point, false);
+        let [closing, approach] = self.added(point, free);
+        Candidate {
+            law: self.law(contact),
+            local: self.local(point, gap + closing),
+            rate_free: rate + approach,
+            status: self.next.interface.status[point],
+            faces_itself: contact.faces_itself(),
+            instant: self.factors(self.system.contact_of(point)),
+        }
+    }
+
+    /// N x of the motion of the iteration without contact forces, of the row of that number in `rows`.
+    pub(super) fn free_along(&self, number: u32, rows: &Rows) -> f64 {
+        let free = self.effective.free(number, &self.vectors.half);
+        match self.jumps() {
+            true => free + rows.product(number as usize, &self.vectors.jump),
+            false => free,
+        }
+    }
+
+    /// Gap of a point at the end of the step without contact forces, m.
+    fn gap_at_the_end(&self, point: usize, free: f64) -> f64 {
+        let number = self.system.contact_of(point);
+        let paired = self.paired_at(number);
+        let ahead = |map: &StepMap| map.displacement.since(&paired.row(map));
+        let xc = [&self.vectors.x[..], &self.vectors.push];
+        let rows = &self.pairing.rows;
+        let motion = &self.state.motion;
+        let way = self.maps.on((rows, point), ahead, motion, xc);
+        rows.gap(point) + way + self.map_of(number).displacement.x * free
+    }
+
+    /// Factors of x in gap and rate that the law of a contact constrains, over those of the problem: of the first map.
+    fn factors(&self, contact: usize) -> [f64; 2] {
+        let (map, [gap, rate]) = (self.map_of(contact), self.constrained(contact).1);
+        if self.maps.only().is_some() {
+            return [gap, rate];
+        }
+        let first = self.maps.first();
+        let over = |own: f64, first: f64| if first == 0.0 { 1.0 } else { own / first };
+        [
+            gap * over(map.gap.x, first.gap.x),
+            rate * over(map.rate.x, first.rate.x),
+        ]
+    }
+}

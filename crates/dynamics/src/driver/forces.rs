@@ -1,0 +1,148 @@
+//! Forces of an iteration: loads, damping, internal forces.
+
+use std::time::Instant;
+
+use carom_bodies::{Placement, Stored};
+
+use super::loads::factor;
+use super::{Driver, Vectors, Which};
+use crate::error::Error;
+use crate::step_map::StepMap;
+use crate::system::{Maps, NumberedForce};
+
+impl Driver {
+    /// Loads in the balance of the step, which holds at an instant of its own in each zone, at the configuration in `place`, N.
+    pub(super) fn evaluate_loads_of_step(&mut self) {
+        let (start, dt) = (self.state.time, self.dt);
+        let after = |zone: usize, maps: &Maps| maps.all()[zone].instant(dt);
+        let first = after(0, &self.maps);
+        let zones = self.maps.all().len();
+        if (1..zones).all(|zone| after(zone, &self.maps) == first) {
+            return self.evaluate_loads(start + first);
+        }
+        for zone in 0..zones {
+            self.evaluate_loads(start + after(zone, &self.maps));
+            let Vectors { load, work, .. } = &mut self.vectors;
+            for (span, _) in self.system.spans.iter().filter(|(_, of)| *of == zone) {
+                work[span.clone()].copy_from_slice(&load[span.clone()]);
+            }
+        }
+        let Vectors { load, work, .. } = &mut self.vectors;
+        load.copy_from_slice(work);
+    }
+
+    /// Loads at a time and at the configuration in `place`, N.
+    pub(super) fn evaluate_loads(&mut self, time: f64) {
+        let system = &*self.system;
+        let ramp = system.nonlinear.ramp(time);
+        let (load, place) = (&mut self.vectors.load, &self.vectors.place);
+        for (sum, dead) in load.iter_mut().zip(&system.load) {
+            *sum = ramp * dead;
+        }
+        for given in &system.nonlinear.loads {
+            let factor = factor(&given.amplitude, ramp, time);
+            match &given.force {
+                NumberedForce::Dead(forces) => {
+                    for &(unknown, force) in forces {
+                        load[unknown as usize] += factor * force;
+                    }
+                }
+                NumberedForce::Follower(given, pressure) => {
+                    given.add_force(factor * pressure, place, load);
+                }
+            }
+        }
+    }
+
+    /// Forces of dashpots and of Rayleigh's damping at the velocity of the iteration, N.
+    pub(super) fn evaluate_damping(&mut self) {
+        let system = &*self.system;
+        let vectors = &mut self.vectors;
+        if !system.has_damping() {
+            return;
+        }
+        vectors.damping.fill(0.0);
+        if self.maps.is_static() {
+            return;
+        }
+        for body in &system.bodies {
+            body.add_damping_force(&vectors.rate, &mut vectors.damping);
+        }
+        vectors.work.copy_from_slice(&vectors.rate);
+        for (k, damping) in system.nonlinear.damping.iter().enumerate() {
+            if damping.mass != 0.0 {
+                for &(node, m) in &system.body_masses[k] {
+                    for unknown in system.unknowns.translations_of(node) {
+                        vectors.damping[unknown] += damping.mass * m * vectors.work[unknown];
+                    }
+                }
+            }
+            if damping.stiffness != 0.0 {
+                for v in vectors.work.iter_mut() {
+                    *v *= damping.stiffness;
+                }
+                let scratch = &mut self.scratch[k];
+                system.bodies[k].internal_force(&vectors.work, scratch, &mut vectors.damping);
+                for v in vectors.work.iter_mut() {
+                    *v /= damping.stiffness;
+                }
+            }
+        }
+    }
+
+    /// Internal forces of all bodies where `place` says, into `internal`; histories into the scratch history. `dt`: time since
+    /// the start of the step, s.
+    ///
+    /// # Errors
+    /// An element turned inside out, a material without stress.
+    pub(super) fn internal(
+        &mut self,
+        (place, from): (Which, bool),
+        dt: impl Fn(&StepMap) -> f64,
+    ) -> Result<Stored, Error> {
+        let begin = Instant::now();
+        let system = &*self.system;
+        let Vectors {
+            place: configuration,
+            rate,
+            internal,
+            history,
+            ..
+        } = &mut self.vectors;
+        let (u, v) = match place {
+            Which::Place => (&configuration[..], &rate[..]),
+            Which::Next => (&self.next.motion.u[..], &self.next.motion.v[..]),
+        };
+        let from = from.then_some(&self.state.motion.u[..]);
+        internal.fill(0.0);
+        self.force_sweeps += 1;
+        let mut sum = Stored::default();
+        for (k, body) in system.bodies.iter().enumerate() {
+            let range = system.nonlinear.histories[k].clone();
+            let at = Placement {
+                u,
+                v,
+                from,
+                dt: dt(&self.maps.all()[system.zone_of_body[k]]),
+                old: &self.state.motion.history[range.clone()],
+            };
+            let stored = body.force(&at, &mut history[range], &mut self.scratch[k], internal)?;
+            sum.strain += stored.strain;
+            sum.hardening += stored.hardening;
+            sum.dissipated += stored.dissipated;
+        }
+        self.phases.forces += begin.elapsed();
+        Ok(sum)
+    }
+
+    /// Strain energy U(u), J, of linear bodies, and f(u), N, into `work`. `u`: in `place`.
+    pub(super) fn linear_forces(&mut self) -> f64 {
+        let Vectors { place, work, .. } = &mut self.vectors;
+        work.fill(0.0);
+        self.force_sweeps += 1;
+        let bodies = self.system.bodies.iter().zip(&mut self.scratch);
+        bodies
+            .map(|(body, scratch)| body.internal_force(place, scratch, work))
+            .sum()
+    }
+}

@@ -1,0 +1,119 @@
+//! What stages of a step leave for the stages after them: scratch, which no step needs from the one before.
+
+/// System vectors of the iterations.
+#[derive(Default)]
+pub(super) struct Vectors {
+    /// The unknown.
+    pub(super) x: Vec<f64>,
+    pub(super) dx: Vec<f64>,
+    /// What supports that move add to the unknown in the first iteration.
+    pub(super) jump: Vec<f64>,
+    /// Whether any of it is not zero.
+    pub(super) jumps: bool,
+    /// Loads, inertia, internal and damping forces at x, N.
+    pub(super) load: Vec<f64>,
+    pub(super) inertia: Vec<f64>,
+    pub(super) internal: Vec<f64>,
+    pub(super) damping: Vec<f64>,
+    /// Internal forces in the balance of the step, N.
+    pub(super) balanced: Vec<f64>,
+    /// The residual without the forces of links, N; empty without links.
+    pub(super) unlinked: Vec<f64>,
+    /// Acceleration that the contact forces give by themselves, m/s²; empty of schemes that do not use it.
+    pub(super) push: Vec<f64>,
+    pub(super) contact: Vec<f64>,
+    pub(super) residual: Vec<f64>,
+    pub(super) half: Vec<f64>,
+    /// The unknown before an iteration.
+    pub(super) before: Vec<f64>,
+    /// A configuration or an acceleration.
+    pub(super) place: Vec<f64>,
+    /// Velocity at the instant of the internal forces.
+    pub(super) rate: Vec<f64>,
+    /// Displacement at the end of the step at the x of the iteration; empty without rotations.
+    pub(super) end: Vec<f64>,
+    /// Displacement at the end of the step, predicted; empty where no contact is paired ahead.
+    pub(super) ahead: Vec<f64>,
+    pub(super) work: Vec<f64>,
+    /// Histories of the bodies at the end of the attempt.
+    pub(super) history: Vec<f64>,
+}
+
+/// How fast the iterations go.
+#[derive(Default)]
+pub(super) struct Pace {
+    /// Iterations of this attempt with the factor at hand.
+    pub(super) age: usize,
+    /// The iteration in which it was made.
+    pub(super) made: usize,
+    /// Contraction with a factor made within the iterations of a step, between two states; zero while unknown.
+    pub(super) fresh: f64,
+}
+
+/// Points and forces of the stage.
+#[derive(Default)]
+pub(super) struct Predictor {
+    pub(super) points: Vec<u32>,
+    /// R of each point, kg m.
+    pub(super) forces: Vec<f64>,
+    /// Gap of each contact point at u + dt v, m.
+    pub(super) gaps: Vec<f64>,
+    pub(super) values: Vec<f64>,
+    pub(super) present: Vec<f64>,
+    /// The acceleration of the state before the step.
+    pub(super) kept: Vec<f64>,
+}
+
+impl Predictor {
+    /// Gap of a contact point at u + dt v, m; `None` without this stage.
+    pub(super) fn gap(&self, point: usize) -> Option<f64> {
+        self.gaps.get(point).copied()
+    }
+}
+
+/// What the impulses after a step did, those of a projection or of another stage; one entry per contact point.
+#[derive(Default)]
+pub(super) struct Projected {
+    /// Impulse, N s.
+    pub(super) impulse: Vec<f64>,
+    /// Work of the impulse, J.
+    pub(super) work: Vec<f64>,
+    pub(super) points: Vec<u32>,
+    /// Quantity of each of the points that the impulses change.
+    pub(super) values: Vec<f64>,
+    pub(super) present: Vec<f64>,
+}
+
+impl Projected {
+    pub(super) fn new(points: usize) -> Projected {
+        Projected {
+            impulse: vec![0.0; points],
+            work: vec![0.0; points],
+            ..Projected::default()
+        }
+    }
+
+    /// Forgets the step before.
+    pub(super) fn clear(&mut self) {
+        self.points.clear();
+        self.impulse.fill(0.0);
+        self.work.fill(0.0);
+    }
+
+    /// Impulse of a point, N s.
+    pub(super) fn impulse(&self, point: usize) -> f64 {
+        self.impulse.get(point).copied().unwrap_or(0.0)
+    }
+
+    /// Work of that impulse, J.
+    pub(super) fn work(&self, point: usize) -> f64 {
+        self.work.get(point).copied().unwrap_or(0.0)
+    }
+}
+
+/// Work that the points which close take in the step.
+#[derive(Default)]
+pub(super) struct Restoring {
+    /// w of each point with an impulse, J.
+    pub(super) works: Vec<f64>,
+}

@@ -1,0 +1,195 @@
+//! The looks of a driver at what is assumed small ([`crate::small`]).
+
+use carom_algebra::unknowns::{Kind, Unknowns};
+use carom_bodies::Distortion;
+use carom_contact::{Rows, Search, Target};
+use carom_mesh::Face;
+
+use crate::state::State;
+use crate::system::System;
+
+/// What a driver looks with.
+#[derive(Debug)]
+pub(crate) struct Watch {
+    contacts: Vec<Option<Watched>>,
+    rows: Rows,
+    /// No displacement; empty where no contact is watched.
+    still: Vec<f64>,
+}
+
+/// A contact of small sliding.
+#[derive(Debug)]
+struct Watched {
+    search: Search,
+    /// Where all nodes are at their reference places.
+    initial: Rows,
+    /// Length of the faces of each point, m.
+    lengths: Vec<f64>,
+}
+
+impl Watch {
+    pub(crate) fn new(system: &System) -> Watch {
+        let mut still = Vec::new();
+        let contacts = 0..system.contacts.len();
+        let watched = contacts.map(|k| Watched::new(system, k, &mut still));
+        Watch {
+            contacts: watched.collect(),
+            rows: Rows::default(),
+            still,
+        }
+    }
+
+    /// Looks at a state, the end of the given step, if it is time to.
+    pub(crate) fn look(&mut self, system: &System, step: u64, state: &mut State) {
+        let energy = state.ledger.balance.strain;
+        let found = &mut state.records.small;
+        if !found.is_due(step, &state.ledger) {
+            return;
+        }
+        found.looks += 1;
+        found.energy = found.energy.max(energy);
+        let (u, time, looks) = (&state.motion.u[..], state.time, found.looks as usize);
+        for (body, found) in system.bodies.iter().zip(&mut found.bodies) {
+            let before = Distortion {
+                rotation: found.rotation.extreme(),
+                strain: found.strain.extreme(),
+            };
+            if let Some(Distortion { rotation, strain }) = body.distortion(u, looks, &before) {
+                found.rotation.take(rotation.value, rotation.cell, time);
+                found.strain.take(strain.value, strain.cell, time);
+            }
+        }
+        for (k, watched) in self.contacts.iter_mut().enumerate() {
+            if let Some(watched) = watched {
+                if system.contacts[k].moves() {
+                    watched.pair_initially(system, k, (state.time, &self.still));
+                }
+                watched.look(system, k, &mut self.rows, state);
+            }
+        }
+    }
+}
+
+impl Watched {
+    fn new(system: &System, number: usize, still: &mut Vec<f64>) -> Option<Watched> {
+        let contact = &system.contacts[number];
+        if !contact.pairs_once() {
+            return None;
+        }
+        let mut watched = Watched {
+            search: Search::default(),
+            initial: Rows::default(),
+            lengths: Vec::new(),
+        };
+        still.resize(system.unknowns(), 0.0);
+        watched.pair_initially(system, number, (0.0, still));
+        let own = shortest(system, &system.secondary_faces[number]);
+        let other = match &contact.target {
+            Target::Surface(faces) => shortest(system, faces),
+            Target::Rigid(_) => vec![f64::INFINITY; system.x.len()],
+        };
+        let least = |lengths: &[f64], nodes: &mut dyn Iterator<Item = u32>| {
+            nodes.fold(f64::INFINITY, |least, node| {
+                least.min(lengths[node as usize])
+            })
+        };
+        // ends of bars have no length
+        let element = system.bodies[system.sides[number].0].smallest_size();
+        watched.lengths = (0..contact.points.len())
+            .map(|point| {
+                let (unknowns, _) = watched.initial.row(point);
+                let mut nodes = unknowns.iter().map(|&i| system.unknowns.node(i as usize));
+                let length = least(&other, &mut nodes);
+                let mut carriers = contact.points[point].carriers().map(|(node, _)| node);
+                let length = match length.is_finite() {
+                    true => length,
+                    false => least(&own, &mut carriers),
+                };
+                if length.is_finite() { length } else { element }
+            })
+            .collect();
+        Some(watched)
+    }
+
+    /// Pairs the points at their reference places, with an obstacle where it is at a time (s).
+    fn pair_initially(&mut self, system: &System, number: usize, (time, still): (f64, &[f64])) {
+        self.initial.clear();
+        let places = system.places(time, still, &system.initial_frames);
+        let contact = &system.contacts[number];
+        contact.pair(&places, &mut self.search, &mut self.initial);
+    }
+
+    fn look(&mut self, system: &System, number: usize, rows: &mut Rows, state: &mut State) {
+        let contact = &system.contacts[number];
+        let places = system.places(state.time, &state.motion.u, &state.motion.frames);
+        rows.clear();
+        contact.pair(&places, &mut self.search, rows);
+        let slides = matches!(contact.target, Target::Surface(_));
+        let first = system.first_point[number];
+        for point in 0..rows.len() {
+            let length = self.lengths[point];
+            let force = state.interface.force[first + point];
+            let (small, gap) = (state.interface.gap[first + point], rows.gap(point));
+            let found = &mut state.records.small.contacts[number];
+            let node = system.mesh_node[contact.points[point].node() as usize];
+            let time = state.time;
+            if force > 0.0 {
+                if slides {
+                    let way = slide(&self.initial, point, (&system.unknowns, &state.motion.u));
+                    found.slide.take(way / length, node, time);
+                }
+                if gap.is_finite() {
+                    let angle = angle(&self.initial.normal(point), &rows.normal(point));
+                    found.turn.take(angle, node, time);
+                }
+                found
+                    .invented
+                    .take((gap - small.max(0.0)) / length, node, time);
+            } else if gap < 0.0 {
+                let depth = (small - gap).min(-gap);
+                found.lost.take(depth / length, node, time);
+            }
+        }
+    }
+}
+
+/// Way of a point along the surface that it was paired with, m: the relative displacement that a row is the normal part of.
+fn slide(rows: &Rows, point: usize, (map, u): (&Unknowns, &[f64])) -> f64 {
+    let normal = rows.normal(point);
+    let (unknowns, coefficients) = rows.row(point);
+    // an entry of the row is s n_i, of a node with the share s in the relative motion: s = Σ_i (s n_i) n_i
+    let mut way = [0.0; 3];
+    for (&unknown, c) in unknowns.iter().zip(coefficients) {
+        let Kind::Translation(axis) = map.kind(unknown as usize) else {
+            continue;
+        };
+        let share = c * normal[axis];
+        let moved = map.vector(map.node(unknown as usize), u);
+        for (way, u) in way.iter_mut().zip(moved) {
+            *way += share * u;
+        }
+    }
+    let along: f64 = (0..3).map(|i| way[i] * normal[i]).sum();
+    let across = [0, 1, 2].map(|i| way[i] - along * normal[i]);
+    across.iter().map(|w| w * w).sum::<f64>().sqrt()
+}
+
+/// Angle between unit vectors, rad.
+fn angle(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    let difference = [0, 1, 2].map(|i| a[i] - b[i]);
+    let chord = difference.iter().map(|d| d * d).sum::<f64>().sqrt();
+    2.0 * (0.5 * chord).min(1.0).asin()
+}
+
+/// For each node the length of the smallest of these faces that has it, m; infinite where none has, or where they are points.
+fn shortest(system: &System, faces: &[Face]) -> Vec<f64> {
+    let mut lengths = vec![f64::INFINITY; system.x.len()];
+    for face in faces.iter().filter(|face| face.kind.table().dim > 0) {
+        let length = face.length(&system.x);
+        for &node in face.corners() {
+            let shortest = &mut lengths[node as usize];
+            *shortest = shortest.min(length);
+        }
+    }
+    lengths
+}

@@ -1,0 +1,92 @@
+//! Passes over an outer step: when the rows hold, and how the multipliers are corrected where they do not.
+
+use std::ops::Range;
+
+use super::{Sample, Zones};
+use crate::driver::Driver;
+use crate::error::Error;
+use crate::system::LinkRow;
+
+/// Defect of a row at which it holds, as a part of the largest velocity.
+const TOLERANCE: f64 = 1e-12;
+
+/// Most passes over an outer step.
+pub(super) const MOST_PASSES: usize = 30;
+
+impl Zones {
+    /// Whether the rows hold, or would after a change of the multipliers by rounding; corrects the multipliers `which`
+    /// (0 pointwise, 1 of the outer step) if not.
+    pub(super) fn corrected(&mut self, which: usize) -> Result<bool, Error> {
+        let speed = self.speed();
+        let rows = self.defect.iter().zip(&self.norms);
+        let worst = rows.fold(0.0, |worst: f64, (d, n)| worst.max(d.abs() / n));
+        if worst <= TOLERANCE * speed {
+            return Ok(true);
+        }
+        let Some(factor) = &mut self.factor else {
+            return Ok(true);
+        };
+        factor.solve(&mut self.defect);
+        let [old, new] = &mut self.multipliers;
+        let target = match which {
+            0 => &mut self.pointwise[1],
+            _ => new,
+        };
+        // at rest all velocities are rounding; then the forces tell what is small
+        let forces = largest(old).max(largest(target));
+        if largest(&self.defect) <= TOLERANCE * forces {
+            return Ok(true);
+        }
+        self.moves.next(&mut self.defect);
+        for (l, move_) in target.iter_mut().zip(&self.defect) {
+            *l += move_;
+        }
+        Ok(false)
+    }
+
+    /// Largest velocity of all zones, at the end of the step or at its start.
+    fn speed(&self) -> f64 {
+        let of = |driver: &Driver| {
+            largest(driver.next_velocity()).max(largest(&driver.state().motion.v))
+        };
+        self.drivers.iter().map(of).fold(0.0, f64::max)
+    }
+
+    pub(super) fn parted(&self) -> Error {
+        let rows = self.defect.iter().zip(&self.norms);
+        Error::Link {
+            step: self.step + 1,
+            passes: self.passes,
+            defect: rows.fold(0.0, |worst: f64, (d, n)| worst.max(d.abs() / n)),
+        }
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+/// Adds the work of the links in the step of a zone just completed.
+pub(super) fn record(
+    driver: &Driver,
+    rows: &[(u32, LinkRow)],
+    [now, last, _]: &mut [Vec<f64>; 3],
+    (links, works): (&[(String, Range<usize>)], &mut [f64]),
+) {
+    for (row, terms) in rows {
+        let row = *row as usize;
+        let link = links.partition_point(|(_, range)| range.end <= row);
+        works[link] += driver.row_work(terms, last[row], now[row]);
+    }
+    last.copy_from_slice(now);
+}
+
+pub(super) fn sample(zone: usize, driver: &Driver, samples: &mut Vec<Sample>) {
+    let report = driver.report();
+    samples.push(Sample {
+        zone,
+        time: report.time,
+        dt: report.dt,
+        contacts: report.contacts.clone(),
+    });
+}

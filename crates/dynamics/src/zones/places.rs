@@ -1,0 +1,55 @@
+//! Where the numbers of a zone are in the model as one.
+
+use std::ops::Range;
+
+use crate::system::System;
+
+/// Where the numbers of a zone are in the whole: its number and that of the whole.
+pub(super) struct Places {
+    /// Unknowns.
+    pub(super) unknowns: Vec<(u32, u32)>,
+    /// Those that no zone before it has.
+    pub(super) own: Vec<(u32, u32)>,
+    /// Contact points.
+    pub(super) points: Vec<(u32, u32)>,
+    /// Histories of the bodies.
+    pub(super) histories: Vec<(Range<usize>, Range<usize>)>,
+}
+
+impl Places {
+    /// `taken`: unknowns of the whole that a zone before this one has.
+    pub(super) fn new(
+        zone: &System,
+        (bodies, contacts): (&[usize], &[usize]),
+        whole: &System,
+        taken: &mut [bool],
+    ) -> Places {
+        let numbers = zone.mesh_node.iter().zip(0..);
+        let unknowns: Vec<(u32, u32)> = numbers
+            .flat_map(|(&node, own)| {
+                let number = whole.number[node as usize];
+                let [own, of_whole] = [zone.unknowns.of(own), whole.unknowns.of(number)];
+                own.zip(of_whole).map(|(own, of)| (own as u32, of as u32))
+            })
+            .collect();
+        let mut own = unknowns.clone();
+        own.retain(|(_, to)| !std::mem::replace(&mut taken[*to as usize], true));
+        let mut points = Vec::new();
+        for (k, contact) in contacts.iter().enumerate() {
+            let from = zone.first_point[k]..zone.first_point[k + 1];
+            let to = whole.first_point[*contact]..whole.first_point[*contact + 1];
+            points.extend(from.zip(to).map(|(from, to)| (from as u32, to as u32)));
+        }
+        let histories = [zone, whole].map(|system| &system.nonlinear.histories);
+        let histories = bodies.iter().zip(histories[0]).map(|(&body, own)| {
+            let of_whole = &histories[1][body];
+            (own.clone(), of_whole.clone())
+        });
+        Places {
+            histories: histories.collect(),
+            unknowns,
+            own,
+            points,
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! What zones that step apart do not take.
+
+use carom_bodies::Kinematics;
+use carom_contact::Integration;
+use carom_contact::law::Level;
+
+use super::model::Zoned;
+use crate::error::Error;
+use crate::step_map::Impulse;
+use crate::system::{self, ModelBody, Refused};
+
+impl Zoned {
+    /// Refuses contacts that zones of unequal steps cannot have between them.
+    pub(super) fn check_across(&self) -> Result<(), Error> {
+        for contact in self.contacts_across() {
+            if let Some(cause) = refused(self, contact) {
+                let [one, other] = self.zones_of(contact);
+                return Err(Error::AcrossZones {
+                    contact: self.model.contacts[contact].name.clone(),
+                    one: self.zones[one].name.clone(),
+                    other: self.zones[other].name.clone(),
+                    cause,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses what zones that step apart do not take.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        let mut bodies = self.model.bodies.iter();
+        if let Some(body) = bodies.find(|body| body.rigid.is_some()) {
+            return Err(system::Error::Nonlinear {
+                what: Refused::Rigid(body.spec.name.clone()),
+                why: "zones have no frames of rotations yet; leave out the zones",
+            }
+            .into());
+        }
+        let beam = |body: &&ModelBody| matches!(body.spec.kinematics, Kinematics::Beam(_));
+        if let Some(body) = self.model.bodies.iter().find(beam) {
+            return Err(Error::BeamInZones {
+                body: body.spec.name.clone(),
+            });
+        }
+        if let Some(some) = self.model.discrete.first() {
+            return Err(Error::DiscreteInZones {
+                element: some.spec.name.clone(),
+            });
+        }
+        if self.model.nonlinear.preload.is_some() {
+            return Err(system::Error::Nonlinear {
+                what: Refused::StaticStage,
+                why: "links between zones join velocities, which it has none of; leave out the stage or the zones",
+            }
+            .into());
+        }
+        self.check_steps()
+    }
+
+    /// Refuses schemes that no link takes, and numbers of inner steps that do not go together.
+    pub(super) fn check_steps(&self) -> Result<(), Error> {
+        let linked = |zone: &usize| self.links.iter().any(|link| link.zones.contains(zone));
+        let mut many = None;
+        for (k, zone) in self.zones.iter().enumerate() {
+            let refuse = |accepted| {
+                Err(Error::Substeps {
+                    zone: zone.name.clone(),
+                    found: zone.substeps,
+                    accepted,
+                })
+            };
+            if zone.substeps == 0 || zone.far == Some(0) {
+                return refuse("at least one");
+            }
+            if zone.substeps > 1 && *many.get_or_insert(zone.substeps) != zone.substeps {
+                return refuse("one, or as many as the other zones with more than one");
+            }
+            if linked(&k) && zone.scheme.get().link_weights().is_none() {
+                return Err(system::Error::LinkScheme {
+                    zone: zone.name.clone(),
+                    scheme: zone.scheme.get().name(),
+                }
+                .into());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why zones of unequal steps do not take a contact.
+fn refused(zoned: &Zoned, contact: usize) -> Option<&'static str> {
+    let of_model = &zoned.model.contacts[contact];
+    if of_model.law.get().level() != Level::Rate {
+        return Some("take a law in the rate, or equal steps");
+    }
+    if of_model.friction > 0.0 {
+        return Some("friction needs equal steps");
+    }
+    if let Integration::Weak { .. } = of_model.integration {
+        return Some("the weak form needs equal steps; take node or mortar");
+    }
+    let plain = |zone: usize| {
+        let map = zoned.zones[zone].scheme.get().step_map(zoned.model.dt);
+        map.contact_impulse == Impulse::weights(0.0, 1.0) && map.impulse == map.contact_impulse
+    };
+    match zoned.zones_of(contact).into_iter().all(plain) {
+        true => None,
+        false => Some(
+            "with unequal steps both zones need a scheme whose contact force is a mean over the step: theta or energy-momentum",
+        ),
+    }
+}
