@@ -7,6 +7,7 @@
 //! Signs: gap positive when open, gap rate positive when opening, force and pressure positive in compression.
 
 mod contact;
+mod crossing;
 mod initial;
 mod mortar;
 mod obstacle;

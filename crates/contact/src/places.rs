@@ -2,7 +2,7 @@
 
 use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::{Mat3, Vec3};
-use carom_algebra::unknowns::{Carrier, Kind, Unknowns};
+use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_elements::MAX_FACE_NODES;
 use carom_mesh::Face;
 
@@ -56,7 +56,7 @@ impl Places<'_> {
         match self.unknowns.carrier(node) {
             None => place,
             Some(carrier) => {
-                let [start, turned] = self.turn(carrier);
+                let [start, turned] = self.turn(own);
                 let arm = start * turned * Vec3::from(carrier.arm);
                 [0, 1, 2].map(|i| place[i] + arm[i])
             }
@@ -97,39 +97,56 @@ impl Places<'_> {
         let Some(carrier) = self.unknowns.carrier(node) else {
             return;
         };
-        let moment = self.moment(carrier, direction);
-        for unknown in self.unknowns.rotations_of(own) {
+        let [start, turned] = self.turn(own);
+        let arm = turned * Vec3::from(carrier.arm);
+        let moment = arm.cross(&start.tr_mul(&Vec3::from(*direction)));
+        self.each_rotation(own, &self.balanced(own, &turned, &moment), &mut visit);
+    }
+
+    /// Calls `visit` with the rotations that turn a node, if any, and what a moment on it does to them. `moment`: about the axes
+    /// of coordinates, of a unit force in m.
+    pub fn each_moment(&self, node: u32, moment: &[f64; 3], mut visit: impl FnMut(usize, f64)) {
+        let (own, moment) = (self.unknowns.moved_by(node), Vec3::from(*moment));
+        let moment = match self.unknowns.frame(own) {
+            None => moment,
+            Some(_) => {
+                let [start, turned] = self.turn(own);
+                self.balanced(own, &turned, &start.tr_mul(&moment))
+            }
+        };
+        self.each_rotation(own, &moment, &mut visit);
+    }
+
+    fn each_rotation(&self, node: u32, moment: &Vec3, visit: &mut dyn FnMut(usize, f64)) {
+        for unknown in self.unknowns.rotations_of(node) {
             if let Kind::Rotation(axis) = self.unknowns.kind(unknown) {
                 visit(unknown, moment[axis]);
             }
         }
     }
 
-    /// Moment of a unit force at a carried node, about the axes of the frame.
-    fn moment(&self, carrier: &Carrier, direction: &[f64; 3]) -> Vec3 {
-        let [start, turned] = self.turn(carrier);
-        let arm = turned * Vec3::from(carrier.arm);
-        let moment = arm.cross(&start.tr_mul(&Vec3::from(*direction)));
+    /// A moment about the axes of the frame at the start of the step, about those in which moments balance.
+    fn balanced(&self, node: u32, turned: &Mat3, moment: &Vec3) -> Vec3 {
         let Some(balance) = self.frames.balance else {
-            return turned.tr_mul(&moment);
+            return turned.tr_mul(moment);
         };
-        let increment: Vec3 = self.unknowns.spin(carrier.node, balance.end).into();
+        let increment: Vec3 = self.unknowns.spin(node, balance.end).into();
         match balance.fraction == 0.5 {
-            true => moment - (increment * 0.5).cross(&moment),
+            true => moment - (increment * 0.5).cross(moment),
             false => {
                 let turned = Rotation::cayley(&(increment * balance.fraction));
-                turned.matrix().tr_mul(&moment)
+                turned.matrix().tr_mul(moment)
             }
         }
     }
 
     /// Matrix of the frame at the start of the step, and of what the increment turns in it: cay(θ), or in the middle
     /// A⁻¹ = (I + cay(θ))/2 of the whole increment θ, twice that of the middle.
-    fn turn(&self, carrier: &Carrier) -> [Mat3; 2] {
-        let frame = self.unknowns.frame(carrier.node);
+    fn turn(&self, node: u32) -> [Mat3; 2] {
+        let frame = self.unknowns.frame(node);
         let start = frame.and_then(|frame| self.frames.start.get(frame));
         let start = start.copied().unwrap_or_default().matrix();
-        let increment: Vec3 = self.unknowns.spin(carrier.node, self.u).into();
+        let increment: Vec3 = self.unknowns.spin(node, self.u).into();
         let turned = match self.frames.middle {
             false => Rotation::cayley(&increment).matrix(),
             true => (Mat3::identity() + Rotation::cayley(&(increment * 2.0)).matrix()) * 0.5,

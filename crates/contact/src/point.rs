@@ -17,6 +17,11 @@ pub struct Point {
     pub area: f64,
     /// Its share in the surface of the contact; the shares add up to 1.
     pub share: f64,
+    /// Distance of the surface from the place of the point, m: zero but around axes of beams. Gaps are less by it, and friction
+    /// acts at this distance.
+    pub radius: f64,
+    /// Whether it is the place between its two nodes that is nearest to the target, wherever that is.
+    crosses: bool,
 }
 
 impl Point {
@@ -28,9 +33,37 @@ impl Point {
             count: 1,
             area,
             share,
+            radius: 0.0,
+            crosses: false,
         };
         (point.nodes[0], point.shape[0]) = (node, 1.0);
         point
+    }
+
+    /// The point at another distance from the surface, m.
+    pub fn around(self, radius: f64) -> Point {
+        Point { radius, ..self }
+    }
+
+    /// The place of the axis of a beam that is nearest to another one which it crosses. `area` in m².
+    pub fn crossing(axis: &Face, area: f64) -> Point {
+        Point {
+            area,
+            radius: axis.radius.unwrap_or(0.0),
+            crosses: true,
+            ..Point::on_face(axis, &[0.0; 3])
+        }
+    }
+
+    /// Whether it stands at no fixed place between its nodes ([`Point::crossing`]).
+    pub fn crosses(&self) -> bool {
+        self.crosses
+    }
+
+    /// The point at another place between its two nodes, by the reference coordinate of the line.
+    pub(crate) fn moved_to(mut self, xi: f64) -> Point {
+        (self.shape[0], self.shape[1]) = (0.5 * (1.0 - xi), 0.5 * (1.0 + xi));
+        self
     }
 
     /// The Gauss points of faces, face after face: those of the rule that is exact for N_a N_b on an affine face, as
@@ -52,7 +85,7 @@ impl Point {
             }
             let rule = table.mass_rule;
             for (xi, weight) in rule.points.iter().zip(rule.weights) {
-                let mut point = Point::on_face(face, xi);
+                let mut point = Point::on_face(face, xi).around(face.radius.unwrap_or(0.0));
                 let mut gradients = [[0.0; 3]; MAX_FACE_NODES];
                 (table.gradient)(xi, &mut gradients[..corners.len()]);
                 let places = &places[..corners.len()];
@@ -78,6 +111,8 @@ impl Point {
             count: nodes.len(),
             area: 0.0,
             share: 0.0,
+            radius: 0.0,
+            crosses: false,
         };
         point.nodes[..nodes.len()].copy_from_slice(nodes);
         (face.kind.table().shape)(xi, &mut point.shape[..nodes.len()]);
@@ -127,6 +162,7 @@ mod tests {
             nodes: face_nodes(nodes),
             parent: ElementId { block: 0, index: 0 },
             axis: [1.0, 0.0, 0.0],
+            radius: None,
         }
     }
 

@@ -149,25 +149,40 @@ impl Rows {
 
     /// Adds to the row of the point pushed last the motion of a node along `direction`.
     pub(crate) fn add_node(&mut self, places: &Places, node: u32, direction: &[f64; 3]) {
+        // nodes that one node carries share its unknowns
         let carried = places.unknowns.carrier(node).is_some();
-        let begin = self.offsets[self.offsets.len() - 2] as usize;
         places.each_derivative(node, direction, |unknown, n| {
-            if n == 0.0 {
-                return;
-            }
-            let own = self.dofs[begin..].iter();
-            // nodes that one node carries share its unknowns
-            let place = own
-                .take_while(|_| carried)
-                .position(|dof| *dof == unknown as u32);
-            match place {
-                Some(place) => self.coefficients[begin + place] += n,
-                None => {
-                    self.dofs.push(unknown as u32);
-                    self.coefficients.push(n);
-                }
-            }
+            self.add(unknown as u32, n, carried);
         });
+        self.close();
+    }
+
+    /// Adds to the row of the point pushed last what a moment on a node does, of a unit force in m.
+    pub(crate) fn add_moment(&mut self, places: &Places, node: u32, moment: &[f64; 3]) {
+        let carried = places.unknowns.carrier(node).is_some();
+        places.each_moment(node, moment, |unknown, n| {
+            self.add(unknown as u32, n, carried);
+        });
+        self.close();
+    }
+
+    /// Adds an entry to the row under way, or to its entry of the unknown where it may have one.
+    fn add(&mut self, unknown: u32, n: f64, repeats: bool) {
+        if n == 0.0 {
+            return;
+        }
+        let begin = self.offsets[self.offsets.len() - 2] as usize;
+        let mut own = self.dofs[begin..].iter().take_while(|_| repeats);
+        match own.position(|dof| *dof == unknown) {
+            Some(place) => self.coefficients[begin + place] += n,
+            None => {
+                self.dofs.push(unknown);
+                self.coefficients.push(n);
+            }
+        }
+    }
+
+    fn close(&mut self) {
         if let Some(end) = self.offsets.last_mut() {
             *end = self.dofs.len() as u32;
         }

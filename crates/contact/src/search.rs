@@ -285,6 +285,18 @@ impl Search {
         Some((foot(item), &faces[item as usize]))
     }
 
+    /// The first of the items that are closest to a place, or to what is at most `beside` (m) from it, by their distances.
+    pub(crate) fn nearest(
+        &self,
+        x: &[f64; 3],
+        beside: f64,
+        measure: impl FnMut(u32) -> f64,
+    ) -> Option<u32> {
+        let tree = self.tree.as_ref()?;
+        let found = tree.closest(x, f64::INFINITY, self.moved + beside, measure);
+        found.map(|(item, _)| item)
+    }
+
     /// Whether a face is in a view.
     pub(crate) fn shows(&self, view: Option<View>, item: u32, foot: &Projection) -> bool {
         view.is_none_or(|view| view.shows(item, foot, &self.normals))
@@ -396,7 +408,7 @@ impl Way {
 }
 
 /// The closest point of one of the faces.
-fn foot_on<'a>(
+pub(crate) fn foot_on<'a>(
     places: &Places,
     faces: &'a [Face],
     item: u32,

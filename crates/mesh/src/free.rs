@@ -31,6 +31,7 @@ impl Surface {
                 nodes: face_nodes(&nodes),
                 parent: id,
                 axis: [0.0; 3],
+                radius: None,
             }
         };
         let faces: Vec<Face> = facets.elements.iter().map(face).collect();

@@ -4,6 +4,7 @@
 //! one. A [`Surface`] is a group of facets, each matched to the cell that it bounds. [`project()`] finds the gap of a
 //! point over one face, [`BoxTree`] the faces worth asking.
 
+mod axes;
 mod bounds;
 mod curved;
 mod element_id;

@@ -2,7 +2,7 @@
 //!
 //! One face at a time: which face of a surface is nearest is decided by whoever loops over candidates. The sign:
 //! the normal m of a face points away from its own body, and the gap of a point x over its projection y is
-//! g = m·(x - y), positive when open.
+//! g = m·(x - y), positive when open. Around an axis with a radius R it is g = |x - y| - R, with m = (x - y)/|x - y|.
 
 use carom_elements::{Kind, MAX_FACE_NODES, MAX_NODES, map};
 
@@ -21,12 +21,12 @@ pub struct Projection {
     pub point: [f64; 3],
     /// Unit normal m of the face at y, out of the body that the face belongs to.
     pub normal: [f64; 3],
-    /// g = m·(x - y) in m, positive when open.
+    /// g = m·(x - y) in m, less the radius around an axis, positive when open.
     pub gap: f64,
-    /// |x - y| in m; equal to |g| where the point projects inside.
+    /// |x - y| in m; equal to |g| where the point projects inside a face without radius.
     pub distance: f64,
     /// Whether x - y is normal to the face: false where the foot of the perpendicular lies beyond an edge (by more
-    /// than 1e-9 in reference units) and y is the nearest point of that edge. Always true for a point.
+    /// than 1e-9 in reference units) and y is the nearest point of that edge. Always true for a point, and around an axis.
     pub inside: bool,
 }
 
@@ -64,12 +64,27 @@ pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Project
         _ => map::measure(positions, &dn[..element.nodes], element.dim).1,
     };
     let to_point = difference(point, &foot);
+    let distance = dot(&to_point, &to_point).sqrt();
+    if let Some(radius) = face.radius.filter(|_| face.is_round()) {
+        return Projection {
+            xi,
+            point: foot,
+            // in the axis any normal will do
+            normal: match distance > 0.0 {
+                true => to_point.map(|r| r / distance),
+                false => normal,
+            },
+            gap: distance - radius,
+            distance,
+            inside: true,
+        };
+    }
     Projection {
         xi,
         point: foot,
         normal,
-        gap: dot(&normal, &to_point),
-        distance: dot(&to_point, &to_point).sqrt(),
+        gap: dot(&normal, &to_point) - face.radius.unwrap_or(0.0),
+        distance,
         inside: (element.contains)(&free, SLACK),
     }
 }
@@ -208,6 +223,7 @@ mod tests {
             nodes: crate::face_nodes(&[0, 1, 2, 3, 4, 5, 6, 7, 8]),
             parent: ElementId { block: 0, index: 0 },
             axis,
+            radius: None,
         }
     }
 

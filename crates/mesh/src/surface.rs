@@ -32,12 +32,20 @@ pub struct Face {
     /// For a point, the end of a bar: unit vector along the bar, outward, in the reference position. Zero for
     /// other kinds, whose normal follows from their nodes.
     pub axis: [f64; 3],
+    /// Distance of the surface from the face, m: of the axis of a beam, or of a point of it, all around it, of a point with an
+    /// axis along that. `None` where the face is the surface itself.
+    pub radius: Option<f64>,
 }
 
 impl Face {
     /// The nodes of the face, in its own order.
     pub fn corners(&self) -> &[u32] {
         &self.nodes[..self.kind.table().nodes]
+    }
+
+    /// Whether the surface is all around it, at its radius: normals then point from the face to the other side.
+    pub fn is_round(&self) -> bool {
+        self.radius.is_some() && self.axis == [0.0; 3]
     }
 
     /// Mean length of its edges, the lines between their ends, in m; of a line its own, of a point zero. `x`: coordinates by
@@ -96,6 +104,7 @@ impl Surface {
                     nodes: nodes_of(mesh, cell, i),
                     parent: cell,
                     axis: axis(mesh, cell, i),
+                    radius: None,
                 });
             }
         }
@@ -120,6 +129,7 @@ impl Surface {
             nodes: face_nodes(&[node]),
             parent,
             axis,
+            radius: None,
         };
         let mut nodes: Vec<u32> = points.iter().map(|(node, _)| *node).collect();
         nodes.sort_unstable();
@@ -409,6 +419,7 @@ mod tests {
             nodes: face_nodes(&nodes),
             parent: ElementId { block: 0, index: 0 },
             axis: [0.0; 3],
+            radius: None,
         };
         let faces = vec![face];
         (mesh, Surface { faces, nodes })

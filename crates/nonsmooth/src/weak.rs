@@ -169,6 +169,7 @@ mod tests {
             nodes: face_nodes(nodes),
             parent: ElementId { block: 0, index: 0 },
             axis: [0.0; 3],
+            radius: None,
         };
         let faces = [
             face(Kind::Tri3, &[0, 1, 2]),

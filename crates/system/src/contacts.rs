@@ -1,5 +1,6 @@
 //! Contacts in the numbers of a system: bodies of each side, points, and which law may hold where.
 
+use carom_bodies::Kinematics;
 use carom_contact::{Contact, Integration, Mortar, Point, Sight, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
 
@@ -43,14 +44,44 @@ impl System {
             | Integration::Node
             | Integration::Mortar { .. } => None,
         };
-        let mut contacts = self.contacts.iter();
-        match contacts.find_map(|contact| Some((contact, cause(contact)?))) {
+        let mut contacts = self.contacts.iter().zip(&self.secondary_faces);
+        let cause = |(contact, faces): (&Contact, &[Face])| {
+            cause(contact).or_else(|| unfit_around_axes(contact, faces))
+        };
+        match contacts.find_map(|pair| Some((pair.0, cause((pair.0, &pair.1[..]))?))) {
             None => Ok(()),
             Some((contact, cause)) => Err(Error::Integration {
                 contact: contact.name.clone(),
                 cause,
             }),
         }
+    }
+}
+
+/// Why a contact with surfaces around axes cannot be as it is, if it cannot.
+fn unfit_around_axes(contact: &Contact, secondary: &[Face]) -> Option<&'static str> {
+    let target = match &contact.target {
+        Target::Surface(faces) => &faces[..],
+        Target::Rigid(_) => &[],
+    };
+    let mut faces = secondary.iter().chain(target);
+    if !faces.any(Face::is_round) {
+        return None;
+    }
+    match contact.integration {
+        Integration::Mortar { .. } => Some("surfaces around axes of beams have no mortar method"),
+        _ if contact.sight.is_some() => {
+            Some("beams do not face themselves, and a depth means nothing to them")
+        }
+        _ if target
+            .iter()
+            .any(|face| face.is_round() && face.radius == Some(0.0)) =>
+        {
+            Some(
+                "beams without a radius are no primary side: their axis has no inside that a point could be kept out of",
+            )
+        }
+        _ => None,
     }
 }
 
@@ -93,13 +124,26 @@ pub(crate) fn numbered(
     // of a point mass a force stands for itself
     let solid = kinematics.and_then(|body| model.bodies.get(body));
     let kinematics = solid.map(|body| body.spec.kinematics);
-    let factor = |x: &[f64; 3]| kinematics.map_or(1.0, |k| k.surface_factor(x));
+    let runs_along = surface.faces.first().is_some_and(is_axis);
+    let factor = |x: &[f64; 3]| match kinematics {
+        Some(Kinematics::Beam(section)) if runs_along => section.width(),
+        other => other.map_or(1.0, |k| k.surface_factor(x)),
+    };
     let faces = |surface: &Surface| -> Vec<Face> {
         let faces = surface.faces.iter();
         faces.map(|face| renumbered(face, number)).collect()
     };
     let (points, mortar) = match contact.integration {
-        Integration::Node => (nodes(surface, &model.mesh, number, factor), None),
+        Integration::Node => {
+            let crosses = model.mesh.dim == 3
+                && matches!(&contact.primary, ModelTarget::Surface(other) if other.faces.iter().all(is_axis));
+            let mut points = nodes(surface, &model.mesh, number, factor);
+            if crosses {
+                let axes = surface.faces.iter().filter(|face| is_axis(face));
+                points.extend(axes.map(|face| crossing(&renumbered(face, number))));
+            }
+            (shared(points), None)
+        }
         Integration::Points | Integration::Weak { .. } => {
             (Point::of_faces(&faces(surface), x, factor), None)
         }
@@ -133,7 +177,27 @@ pub(crate) fn numbered(
     }
 }
 
-/// The nodes of a surface with the areas that they stand for.
+/// Whether a face is a part of the axis of a beam, not the end or a point of it.
+fn is_axis(face: &Face) -> bool {
+    face.is_round() && face.corners().len() == 2
+}
+
+/// The point of an axis that crosses another; it stands for the square of its diameter.
+fn crossing(axis: &Face) -> Point {
+    let diameter = 2.0 * axis.radius.unwrap_or(0.0);
+    Point::crossing(axis, diameter * diameter)
+}
+
+/// The points with their shares in the surface.
+fn shared(mut points: Vec<Point>) -> Vec<Point> {
+    let total: f64 = points.iter().map(|point| point.area).sum();
+    for point in &mut points {
+        point.share = point.area / total;
+    }
+    points
+}
+
+/// The nodes of a surface with the areas that they stand for, and the radii around them.
 fn nodes(
     surface: &Surface,
     mesh: &Mesh,
@@ -141,12 +205,21 @@ fn nodes(
     factor: impl Fn(&[f64; 3]) -> f64,
 ) -> Vec<Point> {
     let areas = surface.tributary_areas(mesh, factor);
-    let area = |(&node, area): (&u32, f64)| (number[node as usize], area);
-    let areas: Vec<(u32, f64)> = surface.nodes.iter().zip(areas).map(area).collect();
-    let total: f64 = areas.iter().map(|(_, area)| area).sum();
-    let points = areas.iter();
+    let mut radii = vec![0.0_f64; surface.nodes.len()];
+    for face in &surface.faces {
+        for k in face
+            .corners()
+            .iter()
+            .filter_map(|&node| surface.index_of(node))
+        {
+            radii[k] = radii[k].max(face.radius.unwrap_or(0.0));
+        }
+    }
+    let points = surface.nodes.iter().zip(areas).zip(radii);
     points
-        .map(|&(node, area)| Point::at_node(node, area, area / total))
+        .map(|((&node, area), radius)| {
+            Point::at_node(number[node as usize], area, 0.0).around(radius)
+        })
         .collect()
 }
 

@@ -110,6 +110,9 @@ impl System {
         };
         let faces = self.secondary_faces[contact].iter().chain(primary);
         let sizes = faces.map(|face| {
+            if let Some(radius) = face.radius.filter(|radius| *radius > 0.0) {
+                return 2.0 * radius;
+            }
             let nodes = face.corners().iter();
             let nodes: Vec<u32> = nodes.map(|&node| self.mesh_node[node as usize]).collect();
             height(&self.mesh, face.parent, face.kind, &nodes)

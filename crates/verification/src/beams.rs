@@ -28,6 +28,7 @@ pub(crate) fn section(size: f64, theory: BeamTheory) -> BeamSection {
         properties: shape.properties(STEEL.poisson),
         orientation: None,
         offset: [0.0; 2],
+        radius: None,
     }
 }
 

@@ -50,6 +50,7 @@ mod bars_schemes;
 mod bars_stages;
 mod bars_theta;
 mod base_motion;
+mod beam_contact;
 mod beam_deflections;
 mod beam_frequencies;
 mod beam_on_stop;
@@ -166,6 +167,7 @@ registry! {
     bars_stages
     bars_theta
     base_motion
+    beam_contact
     beam_deflections
     beam_frequencies
     beam_on_stop

@@ -60,6 +60,18 @@ pub enum SectionShape {
 }
 
 impl SectionShape {
+    /// Distance of the surface from the axis, m: of a round section, and in the plane along y.
+    pub fn radius(&self, dim: usize) -> Option<f64> {
+        match *self {
+            SectionShape::Circle { diameter } | SectionShape::Tube { diameter, .. } => {
+                Some(0.5 * diameter)
+            }
+            SectionShape::Rectangle { height, .. } | SectionShape::I { height, .. } => {
+                (dim == 2).then_some(0.5 * height)
+            }
+        }
+    }
+
     /// The properties of the shape for a material with this Poisson ratio.
     ///
     /// Shear coefficients of circle, tube and rectangle: Cowper (1966), J. Appl. Mech. 33. Torsion of the rectangle: the series
@@ -140,9 +152,19 @@ pub struct BeamSection {
     pub orientation: Option<[f64; 3]>,
     /// From the node to the centroid along y and z, m.
     pub offset: [f64; 2],
+    /// Distance of the surface from the axis in contacts, m, the same all around; none where no contact knows it.
+    pub radius: Option<f64>,
 }
 
 impl BeamSection {
+    /// Width of the surface around the axis that a contact law per area counts, m: the diameter, or that of a square of the same
+    /// area where there is no radius.
+    pub fn width(&self) -> f64 {
+        let diameter = self.radius.map(|radius| 2.0 * radius);
+        let diameter = diameter.filter(|diameter| *diameter > 0.0);
+        diameter.unwrap_or(self.properties.area.sqrt())
+    }
+
     /// Whether all directions normal to the axis are alike.
     pub fn is_round(&self) -> bool {
         let same = |[y, z]: [f64; 2]| (y - z).abs() <= 1e-12 * y.abs();

@@ -30,6 +30,7 @@ fn section(theory: BeamTheory, orientation: Option<[f64; 3]>, offset: [f64; 2]) 
         properties: RECTANGLE.properties(STEEL.poisson),
         orientation,
         offset,
+        radius: None,
     }
 }
 

@@ -18,11 +18,6 @@ impl Builder<'_> {
         material: Law,
     ) -> Option<Kinematics> {
         let path = format!("{path}.section.beam");
-        if !self.plan.zones.is_empty() {
-            let problem = Problem::new(&path, "beams are not available in zones");
-            self.problems
-                .push(problem.accepted(["a case without zones"]));
-        }
         let theory = match given.theory {
             schema::BeamTheory::Timoshenko => BeamTheory::Timoshenko,
             schema::BeamTheory::EulerBernoulli => BeamTheory::EulerBernoulli,
@@ -90,6 +85,10 @@ impl Builder<'_> {
             properties,
             orientation,
             offset,
+            radius: given
+                .radius
+                .map(|radius| radius.0)
+                .or(shape.ok().and_then(|shape| shape.radius(mesh.dim))),
         }))
     }
 

@@ -31,11 +31,11 @@ impl Builder<'_> {
             let at_point = mass.is_some();
             let secondary = mass.or_else(|| {
                 let path = format!("{path}.secondary");
-                self.surface(mesh, &cells, &path, &contact.secondary)
+                self.contact_surface(mesh, (bodies, &cells), &path, &contact.secondary)
             });
             let primary = match (&contact.primary, &contact.obstacle) {
                 (Some(primary), _) => self
-                    .surface(mesh, &cells, &format!("{path}.primary"), primary)
+                    .contact_surface(mesh, (bodies, &cells), &format!("{path}.primary"), primary)
                     .map(ModelTarget::Surface),
                 (None, Some(obstacle)) => {
                     self.obstacle(mesh, &path, obstacle).map(ModelTarget::Rigid)

@@ -117,9 +117,12 @@ pub(super) fn sides(
 fn side(mesh: &Mesh, bodies: &[ModelBody], surface: &Surface) -> Side {
     let mut side = Side::default();
     for face in &surface.faces {
-        side.size = side
-            .size
-            .max(height(mesh, face.parent, face.kind, face.corners()));
+        let diameter = face.radius.map(|radius| 2.0 * radius);
+        let size = match diameter.filter(|diameter| *diameter > 0.0) {
+            Some(diameter) => diameter,
+            None => height(mesh, face.parent, face.kind, face.corners()),
+        };
+        side.size = side.size.max(size);
     }
     let owner = surface.faces.first().and_then(|face| {
         bodies

@@ -31,6 +31,11 @@ impl Builder<'_> {
                 generated(name, part),
             ));
         }
+        if let Some(dimension) = mesh.dimension {
+            for (_, _, part) in &mut parts {
+                self.raise(part, dimension as usize);
+            }
+        }
         let mut parts = parts.into_iter();
         let Some((_, first_name, mut whole)) = parts.next() else {
             if let Some(mesh) = self.empty_mesh() {
@@ -62,6 +67,18 @@ impl Builder<'_> {
         } else {
             None
         }
+    }
+
+    /// Gives a part the dimension that the case asks for.
+    fn raise(&mut self, part: &mut Mesh, dimension: usize) {
+        if part.dim > dimension {
+            let message = format!("the mesh has {}", dimensions(part.dim));
+            let problem = Problem::new("mesh.dimension", message).found(dimension);
+            self.problems
+                .push(problem.accepted([format!("at least {}", part.dim)]));
+            return;
+        }
+        part.dim = dimension;
     }
 
     /// The mesh with every element cut as often as the case says.

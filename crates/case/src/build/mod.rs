@@ -24,6 +24,7 @@ mod refused;
 mod rigid;
 mod signals;
 mod supports;
+mod surfaces;
 mod ties;
 mod time;
 mod unfit;

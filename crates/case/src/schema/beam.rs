@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use carom_quantities::{Area, Coordinate, Length, SecondMoment};
+use carom_quantities::{Area, Clearance, Coordinate, Length, SecondMoment};
 
 use super::obstacle::NormalVector;
 
@@ -23,6 +23,9 @@ pub struct BeamSection {
     pub orientation: Option<NormalVector>,
     /// Centroid from the node, along y and z. Default: in the node.
     pub offset: Option<[Coordinate; 2]>,
+    /// Distance of the surface from the axis in contacts, the same all around; 0 where a beam strikes with the flat face of its end.
+    /// Default: half the diameter of a round section; in the plane half the height of a rectangle or an I.
+    pub radius: Option<Clearance>,
 }
 
 /// Theory of bending.

@@ -17,6 +17,11 @@ pub struct Mesh {
     /// Unit of the coordinates in `file`.
     #[serde(default)]
     pub unit: LengthUnit,
+    /// Dimension of the space, where it is more than that of the coordinates: nodes that all lie on the x axis make a mesh of one
+    /// dimension, in which nothing bends. Default: the number of axes along which coordinates of the file differ from zero, or
+    /// that points of generated parts have.
+    #[schemars(extend("minimum" = 1, "maximum" = 3))]
+    pub dimension: Option<u32>,
     /// Number of uniform refinements. Each divides every element by two in each of its directions: two refinements make
     /// 16 elements of a quadrilateral, 64 of a hexahedron. Groups keep their names; curved borders keep the shape of
     /// the coarse mesh. For linear elements except wedges and pyramids.

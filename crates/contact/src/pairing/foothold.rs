@@ -17,6 +17,8 @@ pub struct Foothold {
     pub r: [f64; 3],
     /// Whether r is normal to the face.
     pub inside: bool,
+    /// Of a point that crosses the face, the derivative of its place along its own line, m; zero of others.
+    pub along: [f64; 3],
 }
 
 impl Foothold {

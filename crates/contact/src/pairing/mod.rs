@@ -12,6 +12,7 @@ mod merge;
 mod mortar;
 mod overlap;
 mod pair;
+mod round;
 mod share;
 mod stencil;
 mod tie;

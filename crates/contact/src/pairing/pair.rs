@@ -5,6 +5,7 @@ use carom_mesh::{Face, Projection};
 
 use super::Pairing;
 use super::stencil::Stencil;
+use crate::crossing::Opposite;
 use crate::{Contact, Distance, Integration, Places, Point, Rows, Search, Target};
 
 impl Contact {
@@ -25,22 +26,24 @@ impl Contact {
         }
         self.renew(places, search);
         for (k, point) in self.points.iter().enumerate() {
-            let x = point.place(places);
+            let offset = self.offset(k) - point.radius;
             match &self.target {
                 Target::Rigid(obstacle) => {
-                    let placed = obstacle.at(places.time);
+                    let (x, placed) = (point.place(places), obstacle.at(places.time));
                     let Distance { gap, normal, .. } = placed.distance(&x);
-                    rows.push(gap + self.offset(k), normal);
+                    rows.push(gap + offset, normal);
                     rows.set_rate(placed.gap_rate(&x, &normal));
                     add_point(places, point, &normal, rows);
                 }
-                Target::Surface(faces) => match search.facing(places, faces, self.view(k), &x) {
-                    Some((foot, face)) => {
-                        rows.push(foot.gap + self.offset(k), foot.normal);
-                        add_row(places, point, &foot, face, rows);
+                Target::Surface(faces) => {
+                    match search.opposite(places, faces, (point, self.view(k))) {
+                        Some(Opposite { point, foot, face }) => {
+                            rows.push(foot.gap + offset, foot.normal);
+                            add_row(places, &point, &foot, face, rows);
+                        }
+                        None => rows.push(f64::INFINITY, [0.0; 3]),
                     }
-                    None => rows.push(f64::INFINITY, [0.0; 3]),
-                },
+                }
             }
         }
     }
@@ -110,6 +113,7 @@ mod tests {
                 nodes: face_nodes(&[first, first + 1, first + 6, first + 5]),
                 parent: ElementId { block: 0, index: i },
                 axis: [0.0; 3],
+                radius: None,
             }
         });
         (x, faces.collect())

@@ -7,6 +7,8 @@ use carom_mesh::{Face, Projection};
 use super::block::{Block, Form, UNKNOWNS};
 use super::curvature::Shape;
 use super::foothold::Foothold;
+use super::round;
+use crate::crossing::Opposite;
 use crate::sight::View;
 use crate::{Contact, Places, Point, Rows, Search, Target};
 
@@ -49,17 +51,16 @@ impl Stencil {
         search: &mut Search,
         (point, view, span): (&Point, Option<View>, [f64; 2]),
     ) -> Option<Stencil> {
-        let x = point.place(places);
         match &contact.target {
             Target::Rigid(obstacle) => {
-                let placed = obstacle.at(places.time);
+                let (x, placed) = (point.place(places), obstacle.at(places.time));
                 let found = placed.distance(&x);
                 if found.gap == f64::INFINITY {
                     return None;
                 }
                 let stencil = Stencil {
                     point: *point,
-                    gap: found.gap,
+                    gap: found.gap - point.radius,
                     normal: found.normal,
                     first: [0; 2 * NODES],
                     carried: false,
@@ -76,8 +77,10 @@ impl Stencil {
                 Some(stencil.numbered(places))
             }
             Target::Surface(faces) => {
-                let (foot, face) = search.facing(places, faces, view, &x)?;
-                Some(Stencil::on_face(places, point, &x, &foot, face))
+                let Opposite { point, foot, face } =
+                    search.opposite(places, faces, (point, view))?;
+                let x = point.place(places);
+                Some(Stencil::on_face(places, &point, &x, &foot, face))
             }
         }
     }
@@ -97,7 +100,7 @@ impl Stencil {
         (face.kind.table().shape)(&foot.xi, &mut shape[..face.corners().len()]);
         let stencil = Stencil {
             point: *point,
-            gap: foot.gap,
+            gap: foot.gap - point.radius,
             normal: foot.normal,
             first: [0; 2 * NODES],
             carried: false,
@@ -108,6 +111,7 @@ impl Stencil {
                 shape,
                 r: [0, 1, 2].map(|i| x[i] - foot.point[i]),
                 inside: foot.inside,
+                along: along(places, point),
             }),
         };
         stencil.numbered(places)
@@ -141,9 +145,20 @@ impl Stencil {
                 n = (Vec3::from(n) + turning[i]).into();
             }
             rows.add_node(places, node, &n);
+            let arm = Vec3::from(self.normal) * (c * self.reach(i));
             for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
                 rows.add_node(places, node, &t.map(|t| c * t));
+                rows.add_moment(places, node, &arm.cross(&Vec3::from(*t)).into());
             }
+        }
+    }
+
+    /// Way along the normal from a node of [`Stencil::relative`] to the surface around it, m.
+    fn reach(&self, node: usize) -> f64 {
+        match &self.foot {
+            _ if node < self.point.carriers().count() => -self.point.radius,
+            Foot::Face(foot) => foot.face.radius.unwrap_or(0.0),
+            Foot::Obstacle { .. } => 0.0,
         }
     }
 
@@ -229,6 +244,9 @@ impl Stencil {
     /// Adds factor · ∂²g/∂u² to a block over [`Stencil::unknowns`].
     pub fn add_curvature(&self, factor: f64, block: &mut Block) {
         match &self.foot {
+            Foot::Face(foot) if foot.face.is_round() => {
+                round::add_curvature(&self.point, foot, factor, block);
+            }
             Foot::Face(foot) if foot.dim() == 0 => (),
             Foot::Face(foot) => self.shape(foot).curvature(factor, block),
             Foot::Obstacle { hessian, .. } => self.obstacle_curvature(factor, hessian, block),
@@ -236,7 +254,9 @@ impl Stencil {
     }
 
     fn shape<'a>(&'a self, foot: &'a Foothold) -> Shape<'a> {
-        Shape::new(&self.point, self.gap, &self.normal, foot)
+        // from the foot to the place of the point, whatever radius is around that
+        let height = self.gap + self.point.radius + foot.face.radius.unwrap_or(0.0);
+        Shape::new(&self.point, height, &self.normal, foot)
     }
 
     fn obstacle_curvature(&self, factor: f64, hessian: &[[f64; 3]; 3], block: &mut Block) {
@@ -246,6 +266,18 @@ impl Stencil {
             }
         }
     }
+}
+
+/// Derivative of the place of a point by the reference coordinate of its line, of one that crosses.
+fn along(places: &Places, point: &Point) -> [f64; 3] {
+    let mut along = [0.0; 3];
+    for ((node, _), sign) in point.carriers().zip([-0.5, 0.5]) {
+        if point.crosses() {
+            let x = places.of(node);
+            (0..3).for_each(|i| along[i] += sign * x[i]);
+        }
+    }
+    along
 }
 
 /// Unit vectors square to the normal and to each other; `dim - 1` of them are used.

@@ -13,6 +13,7 @@ pub fn face(kind: Kind, nodes: &[u32]) -> Face {
         nodes: face_nodes(nodes),
         parent: ElementId { block: 0, index: 0 },
         axis: [0.0; 3],
+        radius: None,
     }
 }
 

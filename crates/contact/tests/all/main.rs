@@ -8,6 +8,7 @@ mod derivatives;
 mod fixture;
 mod mortar;
 mod moving;
+mod round;
 mod search;
 mod sight;
 mod steep;

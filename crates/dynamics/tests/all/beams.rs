@@ -34,6 +34,7 @@ fn beam(dim: usize, scheme: Scheme, mass: MassKind) -> Model {
         properties: shape.properties(0.3),
         orientation: (dim == 3).then_some([0.0, 1.0, 0.2]),
         offset: [0.0; 2],
+        radius: None,
     };
     let cells = mesh.groups["a"].elements.clone();
     let spec = BodySpec::new("a", cells, Kinematics::Beam(section), STEEL);

@@ -17,6 +17,7 @@ fn patch<const N: usize>(kind: Kind, nodes: &[[u32; N]], x: Vec<[f64; 3]>) -> Pa
         nodes: face_nodes(nodes),
         parent: ElementId { block: 0, index: 0 },
         axis: [0.0; 3],
+        radius: None,
     };
     let faces: Vec<Face> = nodes.iter().map(face).collect();
     (Point::of_faces(&faces, &x, |_| 1.0), x)

@@ -77,8 +77,10 @@ pub(crate) fn film_figure(scene: &Scene, frames: &[Frame]) -> Result<String, Err
         .iter()
         .map(|frame| flatten(scene.dim, frame, largest))
         .collect();
-    let points = drawn.iter().flatten().flat_map(|flat| &flat.points);
-    let bounds = points.fold(
+    let points = drawn.iter().flatten().flat_map(|flat| flat.points.clone());
+    let rims = frames.iter().flat_map(|frame| frame.rims.iter().flatten());
+    let rims = rims.map(|x| project(scene.dim, x).0);
+    let bounds = points.chain(rims).fold(
         [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
         |[low, high], x| {
             [

@@ -98,7 +98,7 @@ impl Film {
             return None;
         }
         let outlines = Outlines::new(system);
-        if outlines.patches.is_empty() {
+        if outlines.patches.is_empty() && outlines.rims.is_empty() {
             return None;
         }
         let shown = self.shown();
@@ -161,7 +161,7 @@ fn size(system: &System) -> f64 {
 struct Outlines {
     /// Nodes in turn around each patch, and its cell.
     patches: Vec<(Vec<u32>, usize)>,
-    /// Outer edges of plane bodies.
+    /// Outer edges of plane bodies, and cells that are lines.
     rims: Vec<Vec<u32>>,
 }
 
@@ -184,6 +184,12 @@ impl Outlines {
                 let nodes = system.mesh.element_nodes(element);
                 let number = |local: &usize| system.number[nodes[*local] as usize];
                 let table = system.mesh.kind(element).table();
+                if table.dim == 1 {
+                    let all: Vec<u32> = (0..nodes.len()).map(|local| number(&local)).collect();
+                    outlines.rims.push(along(&all));
+                    cell += 1;
+                    continue;
+                }
                 for face in table.faces {
                     let own: Vec<u32> = face.nodes.iter().map(number).collect();
                     let mut key = own.clone();

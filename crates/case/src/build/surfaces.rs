@@ -1,0 +1,117 @@
+//! Surfaces of contacts: sides of cells, and what is around the axes of beams.
+
+use carom_bodies::{BeamSection, Kinematics};
+use carom_dynamics::ModelBody;
+use carom_mesh::{ElementId, Group, Mesh, Surface};
+
+use super::Builder;
+use crate::error::Problem;
+
+/// Cells of a body of beams that a surface may be around.
+struct Axes<'a> {
+    body: &'a str,
+    section: &'a BeamSection,
+    cells: &'a [ElementId],
+}
+
+impl Builder<'_> {
+    /// The surface of a contact: sides of cells, or the round surface around lines and points of beams. `cells`: of all bodies.
+    pub(super) fn contact_surface(
+        &mut self,
+        mesh: &Mesh,
+        (bodies, cells): (&[ModelBody], &[ElementId]),
+        path: &str,
+        name: &str,
+    ) -> Option<Surface> {
+        let group = self.group(mesh, path, name)?;
+        let axes = axes(mesh, bodies, group);
+        let flat = group.dim == 0 && axes.iter().all(|axes| axes.section.radius == Some(0.0));
+        if axes.is_empty() || flat {
+            // beams beside solids: only cells of one dimension more can have the sides
+            let dim = |cell: &&ElementId| mesh.kind(**cell).table().dim == group.dim + 1;
+            let over: Vec<ElementId> = cells.iter().filter(dim).copied().collect();
+            let over = if over.is_empty() { cells } else { &over };
+            return self.surface(mesh, over, path, name);
+        }
+        let known: Vec<bool> = axes.iter().map(|axes| self.has_surface(axes)).collect();
+        if known.contains(&false) {
+            return None;
+        }
+        let own: Vec<ElementId> = axes.iter().flat_map(|axes| axes.cells).copied().collect();
+        let radius = |cell: ElementId| {
+            let owner = axes
+                .iter()
+                .find(|axes| axes.cells.binary_search(&cell).is_ok());
+            owner.and_then(|axes| axes.section.radius).unwrap_or(0.0)
+        };
+        match Surface::of_axes(mesh, group, &own, radius) {
+            Ok(surface) => Some(surface),
+            Err(error) => {
+                let problem = Problem::new(path, error.to_string()).found(name);
+                self.problems
+                    .push(problem.accepted(["lines and points of beams"]));
+                None
+            }
+        }
+    }
+
+    /// Refuses beams of which a contact does not know where their surface is.
+    fn has_surface(&mut self, axes: &Axes) -> bool {
+        let path = format!("body.{}.section.beam", axes.body);
+        if axes.section.offset != [0.0; 2] {
+            let message = "contacts of beams whose axis is beside their nodes are not available";
+            let problem = Problem::new(format!("{path}.offset"), message);
+            self.problems.push(
+                problem
+                    .found(format!("{:?} m", axes.section.offset))
+                    .accepted(["no `offset`", "a stop between nodes"]),
+            );
+            return false;
+        }
+        if axes.section.radius.is_none() {
+            let message = "a contact must know how far the surface of the beam is from its axis, and this shape does not say";
+            let problem = Problem::new(path, message);
+            self.problems.push(problem.accepted([
+                "`radius`",
+                "shape.circle",
+                "shape.tube",
+                "in the plane: shape.rectangle, shape.i",
+            ]));
+            return false;
+        }
+        true
+    }
+}
+
+/// The beams of which a group is cells or points; none if it is anything else.
+fn axes<'a>(mesh: &Mesh, bodies: &'a [ModelBody], group: &Group) -> Vec<Axes<'a>> {
+    let mut found = Vec::new();
+    let mut left: Vec<ElementId> = group.elements.clone();
+    for body in bodies {
+        let Kinematics::Beam(section) = &body.spec.kinematics else {
+            continue;
+        };
+        let cells = &body.spec.cells;
+        let has = |&id: &ElementId| match group.dim {
+            0 => {
+                let node = mesh.element_nodes(id)[0];
+                let mut ends = cells.iter().flat_map(|&cell| mesh.element_nodes(cell));
+                ends.any(|&end| end == node)
+            }
+            _ => cells.binary_search(&id).is_ok(),
+        };
+        let before = left.len();
+        left.retain(|id| !has(id));
+        if left.len() < before {
+            found.push(Axes {
+                body: &body.spec.name,
+                section,
+                cells,
+            });
+        }
+    }
+    match left.is_empty() {
+        true => found,
+        false => Vec::new(),
+    }
+}

@@ -1,0 +1,97 @@
+//! Second derivative of the gap between a point, or the axis of a beam, and another axis with a round surface.
+//!
+//! The gap is the least distance d = |r| less the radii, r = x(ζ_A) - y(ζ_B), over the places ζ on the lines that are free to move:
+//! not held at an end, and of the secondary side only where it crosses. With n = r/d, τ̃_k = ∂r/∂ζ_k, r·τ̃_k = 0, and r̂ the relative
+//! motion of places that are held
+//!
+//! `d″ = (r̂ · (I - n ⊗ n) r̂ - q_k (τ̃_k·τ̃_l)⁻¹ q_l)/d`, `q_k = τ̃_k·r̂ + r·δτ̃_k`.
+
+use carom_algebra::tensor::Vec3;
+use carom_elements::MAX_FACE_NODES as NODES;
+
+use super::block::{Block, Form};
+use super::foothold::Foothold;
+use crate::Point;
+
+/// Adds factor · d″ to a block over the nodes of the point and then of the face. In the axis, where there is no normal, nothing.
+pub fn add_curvature(point: &Point, foot: &Foothold, factor: f64, block: &mut Block) {
+    let r = Vec3::from(foot.r);
+    let d = r.norm();
+    if d == 0.0 {
+        return;
+    }
+    let mut relative = [0.0; 2 * NODES];
+    let shares = point.carriers().map(|(_, s)| s);
+    let opposite = foot.shape[..foot.element().nodes].iter().map(|n| -n);
+    let mut count = 0;
+    for (to, share) in relative.iter_mut().zip(shares.chain(opposite)) {
+        *to = share;
+        count += 1;
+    }
+    let relative = &relative[..count];
+    let across = (carom_algebra::tensor::Mat3::identity() - r * r.transpose() / (d * d)) / d;
+    let across = [0, 1, 2].map(|i| [0, 1, 2].map(|j| across[(i, j)]));
+    for (a, s) in relative.iter().enumerate() {
+        for (b, t) in relative.iter().enumerate() {
+            block.add_nodes(a, b, factor * s * t, &across);
+        }
+    }
+    let lines = [own_line(point, foot), line_of_face(point, foot)];
+    let forms = lines.map(|line| line.map(|line| (line.tangent, line.form(relative, &r))));
+    let add = |value: f64, one: &Form, other: &Form, block: &mut Block| {
+        block.add(-0.5 * factor * value / d, one, other);
+    };
+    match &forms {
+        [None, None] => {}
+        [Some((t, q)), None] | [None, Some((t, q))] => add(1.0 / t.norm_squared(), q, q, block),
+        [Some((t, q)), Some((s, p))] => {
+            let (tt, ts, ss) = (t.norm_squared(), t.dot(s), s.norm_squared());
+            let det = tt * ss - ts * ts;
+            add(ss / det, q, q, block);
+            add(-2.0 * ts / det, q, p, block);
+            add(tt / det, p, p, block);
+        }
+    }
+}
+
+/// A line along which a place of the gap is free to move.
+struct Line {
+    /// τ̃ in m.
+    tangent: Vec3,
+    /// Of its two nodes in the stencil the first.
+    first: usize,
+    /// ∂τ̃/∂x of the second node; of the first one it is the opposite.
+    share: f64,
+}
+
+impl Line {
+    /// q over the nodes of the stencil.
+    fn form(&self, relative: &[f64], r: &Vec3) -> Form {
+        let mut form = [Vec3::zeros(); 2 * NODES];
+        for (form, share) in form.iter_mut().zip(relative) {
+            *form = self.tangent * *share;
+        }
+        form[self.first] -= r * self.share;
+        form[self.first + 1] += r * self.share;
+        form
+    }
+}
+
+/// That of a point that crosses.
+fn own_line(point: &Point, foot: &Foothold) -> Option<Line> {
+    point.crosses().then(|| Line {
+        tangent: Vec3::from(foot.along),
+        first: 0,
+        share: 0.5,
+    })
+}
+
+/// That of the face, unless the foot is held at an end.
+fn line_of_face(point: &Point, foot: &Foothold) -> Option<Line> {
+    let free = foot.dim() == 1 && foot.xi[0].abs() < 1.0;
+    free.then(|| Line {
+        tangent: (Vec3::from(foot.x[0]) - Vec3::from(foot.x[1])) * 0.5,
+        first: point.carriers().count(),
+        share: -0.5,
+    })
+}

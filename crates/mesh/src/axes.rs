@@ -1,0 +1,109 @@
+//! Surfaces around the axes of beams: lines and points that are cells, or nodes of cells, not sides of them.
+
+use std::collections::BTreeMap;
+
+use carom_elements::Kind;
+
+use crate::{ElementId, Error, Face, Group, Mesh, Surface, face_nodes};
+
+impl Surface {
+    /// The round surface around the axes of cells that are lines: around the lines of a group, or around its points, which may
+    /// be ends of cells or nodes between them. The parent of a face is the cell that it is, or the first that has the point.
+    ///
+    /// `radius`: of a cell, m.
+    ///
+    /// # Errors
+    /// [`Error::FacetOnNoCell`] for a line that is no cell, or a point that no cell has; [`Error::FacetDimension`] for facets
+    /// that are neither lines nor points.
+    pub fn of_axes(
+        mesh: &Mesh,
+        facets: &Group,
+        cells: &[ElementId],
+        radius: impl Fn(ElementId) -> f64,
+    ) -> Result<Surface, Error> {
+        if facets.dim > 1 {
+            return Err(Error::FacetDimension {
+                facets: facets.dim,
+                cells: 1,
+            });
+        }
+        let (mut by_ends, mut by_node) = (BTreeMap::new(), BTreeMap::new());
+        for &cell in cells.iter().rev() {
+            let nodes = mesh.element_nodes(cell);
+            by_ends.insert(sorted(nodes), cell);
+            by_node.extend(nodes.iter().map(|&node| (node, cell)));
+        }
+        let face = |&id: &ElementId| {
+            let nodes = mesh.element_nodes(id);
+            let parent = match facets.dim {
+                0 => nodes.first().and_then(|node| by_node.get(node)),
+                _ => by_ends.get(&sorted(nodes)),
+            };
+            let &parent = parent.ok_or_else(|| Error::FacetOnNoCell {
+                nodes: nodes.to_vec(),
+                centre: mesh.nodes[nodes[0] as usize],
+            })?;
+            Ok(Face {
+                kind: if facets.dim == 0 {
+                    Kind::Point1
+                } else {
+                    mesh.kind(id)
+                },
+                nodes: face_nodes(nodes),
+                parent,
+                axis: [0.0; 3],
+                radius: Some(radius(parent)),
+            })
+        };
+        Ok(Surface {
+            faces: facets
+                .elements
+                .iter()
+                .map(face)
+                .collect::<Result<_, Error>>()?,
+            nodes: mesh.group_nodes(facets),
+        })
+    }
+}
+
+fn sorted(nodes: &[u32]) -> Vec<u32> {
+    let mut nodes = nodes.to_vec();
+    nodes.sort_unstable();
+    nodes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{generate, project};
+
+    #[test]
+    fn the_gap_of_a_point_over_an_axis_is_its_distance_less_the_radius() {
+        let mesh = generate::line("a", [0.0; 3], [2.0, 0.0, 0.0], 2, 3);
+        let cells = &mesh.groups["a"].elements;
+        let radius = |cell: ElementId| 0.1 + 0.1 * f64::from(cell.index);
+        let surface = Surface::of_axes(&mesh, &mesh.groups["a"], cells, radius).unwrap();
+        assert_eq!(surface.nodes, [0, 1, 2]);
+        let second = &surface.faces[1];
+        let x = [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
+        let beside = project(second, &x, &[1.25, 0.3, -0.4]);
+        assert!((beside.gap - 0.3).abs() < 1e-15 && beside.inside);
+        assert!((beside.normal[1] - 0.6).abs() < 1e-15 && (beside.normal[2] + 0.8).abs() < 1e-15);
+        // beyond the end the surface is that of a ball
+        let beyond = project(second, &x, &[2.3, 0.0, 0.4]);
+        assert!((beyond.gap - 0.3).abs() < 1e-15 && beyond.inside);
+    }
+
+    #[test]
+    fn points_between_cells_are_faces_and_lines_that_are_no_cells_are_not() {
+        let mut mesh = generate::line("a", [0.0; 3], [2.0, 0.0, 0.0], 2, 3);
+        let point = mesh.push(Kind::Point1, &[1]);
+        let line = mesh.push(Kind::Bar2, &[0, 2]);
+        let cells = mesh.groups["a"].elements.clone();
+        let of = |group| Surface::of_axes(&mesh, &group, &cells, |_| 0.1);
+        let middle = of(Group::new(0, vec![point])).unwrap();
+        assert_eq!((middle.nodes, middle.faces[0].parent), (vec![1], cells[0]));
+        let error = of(Group::new(1, vec![line]));
+        assert!(matches!(error, Err(Error::FacetOnNoCell { .. })));
+    }
+}
