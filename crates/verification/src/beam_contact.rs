@@ -386,7 +386,7 @@ fn crossing(elements: usize) -> Result<Vec<Row>, Error> {
         expected,
         1e-9,
     )];
-    let errors = [5, 15].map(|elements| {
+    let errors = [15, 45].map(|elements| {
         force_at_rest(elements).map(|(found, expected)| (found / expected - 1.0).abs())
     });
     let [coarse, fine] = errors;
