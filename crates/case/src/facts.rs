@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use carom_bodies::{Beam, BeamTheory, Body, Discrete, DiscreteKind, Link, SectionProperties};
 use carom_contact::{Contact, Integration, Rows, Search, Sliding, Target};
-use carom_dynamics::{LinkKind, ModelLink, ModelZone, System, Zoned, step_count};
+use carom_dynamics::{ModelLink, System, step_count};
+use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::build::Built;
 

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_dynamics::{Driver, ModelZone, Observer, Outcome, Stepper, Whole, march};
+use carom_dynamics::{Driver, Observer, Outcome, Stepper, march};
 use carom_output::summary::Zones;
 use carom_output::{Ending, Fields, Probe, Reference, Results, Settings, Summary, Zoning};
+use carom_zones::{ModelZone, Whole};
 use thiserror::Error as ThisError;
 
 use crate::build::Built;
@@ -60,7 +61,8 @@ pub fn run(
         }
         None => unreachable!("only zones step apart"),
         Some(zoned) => {
-            let mut whole = Whole::new(zoned, system()).map_err(Failed::Start)?;
+            let mut whole =
+                Whole::new(zoned, system()).map_err(|error| Failed::Start(error.into()))?;
             let mut results = Results::create(settings(input, case, built, folder), system())?;
             let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
             let outcome = march(&mut whole, built.end, observers, stop);

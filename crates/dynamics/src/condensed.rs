@@ -16,10 +16,10 @@ use crate::error::Error;
 use crate::system::{LinkRow, System};
 
 /// Rows above which the joined form is taken where it can be: a dense H has 8 MB there.
-pub(crate) const DENSE: usize = 1000;
+pub const DENSE: usize = 1000;
 
 /// A factor of H.
-pub(crate) enum Condensed {
+pub enum Condensed {
     /// H itself.
     Dense(DenseCholesky),
     /// The rows with the unknowns of the implicit zones.
@@ -28,7 +28,7 @@ pub(crate) enum Condensed {
 
 impl Condensed {
     /// r ← H⁻¹ r.
-    pub(crate) fn solve(&mut self, r: &mut [f64]) {
+    pub fn solve(&mut self, r: &mut [f64]) {
         match self {
             Condensed::Dense(factor) => factor.solve(r),
             Condensed::Joined(joined) => joined.solve(r),
@@ -36,7 +36,7 @@ impl Condensed {
     }
 
     /// Bytes held.
-    pub(crate) fn bytes(&self, rows: usize) -> usize {
+    pub fn bytes(&self, rows: usize) -> usize {
         match self {
             Condensed::Dense(_) => 8 * rows * rows,
             Condensed::Joined(joined) => joined.factor.bytes(),
@@ -45,14 +45,14 @@ impl Condensed {
 }
 
 /// The rows in one sparse matrix with the implicit zones.
-pub(crate) struct Joined {
+pub struct Joined {
     factor: QuasiDefinite,
     unknowns: usize,
     x: Vec<f64>,
 }
 
 /// A of connected parts.
-pub(crate) enum Matrix {
+pub enum Matrix {
     /// Lumped mass of an explicit scheme.
     Diagonal(Vec<f64>),
     /// Any other.
@@ -60,15 +60,17 @@ pub(crate) enum Matrix {
 }
 
 /// Connected parts in H: velocity `scale` A⁻¹ Cᵀ L.
-pub(crate) struct Answer<'a> {
-    pub(crate) system: &'a System,
+pub struct Answer<'a> {
+    /// Their system.
+    pub system: &'a System,
     /// Their unknowns.
-    pub(crate) span: Range<usize>,
+    pub span: Range<usize>,
     /// Number and terms of the rows that act on them; no term is outside.
-    pub(crate) rows: Vec<(u32, LinkRow)>,
+    pub rows: Vec<(u32, LinkRow)>,
     /// A over these unknowns.
-    pub(crate) matrix: Matrix,
-    pub(crate) scale: f64,
+    pub matrix: Matrix,
+    /// Factor of A⁻¹ Cᵀ L in the velocity.
+    pub scale: f64,
 }
 
 impl Answer<'_> {
@@ -94,7 +96,7 @@ impl Joined {
     ///
     /// # Errors
     /// Rows that say the same twice.
-    pub(crate) fn new(answers: &[Answer], count: usize) -> Result<Joined, Error> {
+    pub fn new(answers: &[Answer], count: usize) -> Result<Joined, Error> {
         let mut first = vec![0];
         for answer in answers {
             first.push(first[first.len() - 1] + answer.own());

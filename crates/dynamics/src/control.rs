@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// Why a step was dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Event {
+pub enum Event {
     /// A contact closes within it.
     Closing,
     /// Energy grew.
@@ -49,7 +49,7 @@ pub struct Control {
 
 impl Control {
     /// At the start.
-    pub(crate) fn start(dt: f64) -> Control {
+    pub fn start(dt: f64) -> Control {
         Control {
             dt,
             taken: dt,
@@ -59,7 +59,7 @@ impl Control {
     }
 
     /// The instant after one more step of this size from step `step` at `time`, s.
-    pub(crate) fn instant(&self, step: u64, time: f64, dt: f64) -> f64 {
+    pub fn instant(&self, step: u64, time: f64, dt: f64) -> f64 {
         let (first, start) = match dt == self.taken {
             true => self.origin,
             false => (step, time),
@@ -69,7 +69,7 @@ impl Control {
 
     /// Drops an attempt of size `dt`; returns the size of the next one (`cut`: where a closing falls, s), or `None` below
     /// the smallest.
-    pub(crate) fn drop(&mut self, rules: &Adaptive, event: Event, dt: f64) -> Option<f64> {
+    pub fn drop(&mut self, rules: &Adaptive, event: Event, dt: f64) -> Option<f64> {
         let next = match event {
             Event::Closing => {
                 self.cut += 1;
@@ -95,7 +95,7 @@ impl Control {
     }
 
     /// The size planned for the step after one that has no event, s. `largest`: the step of the model.
-    pub(crate) fn next(&self, rules: &Adaptive, largest: f64) -> f64 {
+    pub fn next(&self, rules: &Adaptive, largest: f64) -> f64 {
         match self.quiet + 1 >= rules.patience {
             true => (2.0 * self.dt).min(largest),
             false => self.dt,
@@ -103,7 +103,7 @@ impl Control {
     }
 
     /// Takes a step of size `dt` from step `step` at `time`. `largest`: the step of the model.
-    pub(crate) fn take(
+    pub fn take(
         &mut self,
         rules: Option<&Adaptive>,
         (step, time, dt): (u64, f64, f64),

@@ -36,7 +36,7 @@ pub struct Work {
 
 impl Work {
     /// Adds what factors were made and used for.
-    pub(crate) fn add_factors(&mut self, operators: &Operators) {
+    pub fn add_factors(&mut self, operators: &Operators) {
         for stats in operators.stats() {
             self.add_factor(stats);
         }
@@ -67,7 +67,7 @@ pub struct Costs {
 
 impl Costs {
     /// Adds the costs of another driver.
-    pub(crate) fn add(&mut self, other: Costs) {
+    pub fn add(&mut self, other: Costs) {
         self.factors.extend(other.factors);
         let (work, its) = (&mut self.work, other.work);
         work.factorisations += its.factorisations;

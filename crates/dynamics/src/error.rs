@@ -94,18 +94,6 @@ pub enum Error {
         /// The critical step 2/ω, s.
         critical: f64,
     },
-    /// Discrete elements in a model with zones.
-    #[error("`{element}`: point masses, springs and dashpots are not available in zones")]
-    DiscreteInZones {
-        /// Name of the element.
-        element: String,
-    },
-    /// Beams in a model with zones.
-    #[error("body '{body}': beams are not available in zones")]
-    BeamInZones {
-        /// Name of the body.
-        body: String,
-    },
     /// A secondary surface without area.
     #[error("contact '{contact}': the matrix of the multiplier on the secondary surface: {cause}")]
     WeakForm {
@@ -114,48 +102,6 @@ pub enum Error {
         /// Cause.
         cause: carom_algebra::Error,
     },
-    /// A zone that could not be built.
-    #[error("zone '{zone}': {cause}")]
-    Zone {
-        /// Name of the zone.
-        zone: String,
-        /// Cause.
-        cause: Box<Error>,
-    },
-    /// A contact whose sides are in different zones.
-    #[error(
-        "contact '{contact}': its two sides are in the zones '{one}' and '{other}', which step apart: {cause}"
-    )]
-    AcrossZones {
-        /// Name of the contact.
-        contact: String,
-        /// Zone of the secondary side.
-        one: String,
-        /// Zone of the primary side.
-        other: String,
-        /// Why this contact cannot be between them.
-        cause: &'static str,
-    },
-    /// A contact between zones without solution.
-    #[error("step {step}, contact '{contact}' between zones: {cause}")]
-    Between {
-        /// Number of the outer step.
-        step: u64,
-        /// Name of the contact.
-        contact: String,
-        /// Cause.
-        cause: crate::interface::Failure,
-    },
-    /// Numbers of inner steps that do not go together.
-    #[error("zone '{zone}' takes {found} steps per outer step: {accepted}")]
-    Substeps {
-        /// Name of the zone.
-        zone: String,
-        /// Steps given.
-        found: u32,
-        /// What would do.
-        accepted: &'static str,
-    },
     /// Rows of links that say the same twice.
     #[error("the {rows} rows of the links are redundant: {cause}")]
     Redundant {
@@ -163,18 +109,6 @@ pub enum Error {
         rows: usize,
         /// Cause.
         cause: carom_algebra::Error,
-    },
-    /// Multipliers of links that were not found.
-    #[error(
-        "step {step}: the velocities of the zones still differ by {defect:e} m/s at a link after {passes} passes"
-    )]
-    Link {
-        /// Number of the outer step.
-        step: u64,
-        /// Passes made.
-        passes: usize,
-        /// Largest defect of a row per sum of its coefficients, m/s.
-        defect: f64,
     },
     /// A function of time that is none.
     #[error(transparent)]
@@ -236,6 +170,9 @@ pub enum Error {
         /// Cause.
         cause: String,
     },
+    /// A stepper of another crate failed.
+    #[error(transparent)]
+    Stepper(Box<dyn std::error::Error + Send + Sync>),
     /// An observer failed: the results could not be written.
     #[error("{0}")]
     Observer(#[source] Box<dyn std::error::Error + Send + Sync>),

@@ -147,7 +147,7 @@ impl Exchange {
     }
 
     /// Makes this the exchange of zones: the largest of theirs.
-    pub(crate) fn gather<'a>(&mut self, zones: impl Iterator<Item = &'a Exchange>) {
+    pub fn gather<'a>(&mut self, zones: impl Iterator<Item = &'a Exchange>) {
         for zone in zones {
             self.largest_residual = self.largest_residual.max(zone.largest_residual);
             self.largest_momentum = self.largest_momentum.max(zone.largest_momentum);

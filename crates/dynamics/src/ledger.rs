@@ -356,7 +356,7 @@ impl Ledger {
 
     /// What the energy that the scheme balances has gained since the start beyond the work from outside, J; not by the size of
     /// the step alone.
-    pub(crate) fn free_energy(&self) -> f64 {
+    pub fn free_energy(&self) -> f64 {
         let gained = self.balance.balanced() - self.initial.balanced();
         gained - self.balance.work_given() + self.resized.get()
     }
@@ -384,7 +384,7 @@ impl Ledger {
 
     /// Makes this the ledger of several systems together, which have these balances at the start and now. The largest terms
     /// are those of the sums.
-    pub(crate) fn gather(&mut self, initial: Balance, balance: Balance, tolerated: Tolerated) {
+    pub fn gather(&mut self, initial: Balance, balance: Balance, tolerated: Tolerated) {
         (self.initial, self.balance, self.tolerated) = (initial, balance, tolerated);
         self.follow();
     }

@@ -5,7 +5,7 @@
 //! printing.
 
 mod compliance;
-mod condensed;
+pub mod condensed;
 mod control;
 mod costs;
 mod driver;
@@ -14,15 +14,14 @@ mod exchange;
 mod impact;
 mod ledger;
 mod march;
-mod operator;
-mod records;
+pub mod operator;
+pub mod records;
 mod report;
 mod resultant;
 mod small;
-mod state;
+pub mod state;
 mod sum;
 mod watch;
-mod zones;
 
 use carom_nonsmooth::{coulomb, interface};
 pub use carom_schemes as scheme;
@@ -30,11 +29,12 @@ use carom_schemes::step_map;
 use carom_system as system;
 
 pub use carom_signals::Amplitude;
-pub use control::Control;
+pub use control::{Control, Event};
 pub use costs::{Costs, Phases, Work};
 pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};
 pub use driver::Driver;
-pub use driver::linked::Origin;
+pub use driver::linked;
+pub use driver::record::contact_report;
 pub use error::Error;
 pub use exchange::Exchange;
 pub use impact::Impact;
@@ -53,4 +53,3 @@ pub use system::{
     ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget, Motion, NodalLoad, Nonlinear,
     Order, Preload, Prescribed, PrescribedTurn, Refused, Support, System,
 };
-pub use zones::{LinkKind, ModelZone, Sample, Whole, Zoned, Zones, ZonesState, mortar_rows};

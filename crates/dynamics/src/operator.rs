@@ -160,7 +160,7 @@ impl Operator {
 }
 
 /// The operators of groups of connected parts: of a part alone, or of parts that contact forces join.
-pub(crate) struct Operators {
+pub struct Operators {
     pub(crate) groups: Vec<Group>,
     parts: Vec<Range<usize>>,
     /// Group of each part, and where its unknowns begin there.
@@ -219,7 +219,7 @@ impl Operators {
     ///
     /// # Errors
     /// The matrix of a part is not positive definite.
-    pub(crate) fn new(
+    pub fn new(
         system: &System,
         mass_factor: f64,
         stiffness_factor: f64,
@@ -267,14 +267,14 @@ impl Operators {
     }
 
     /// `begin` on every group; `r` of the whole system.
-    pub(crate) fn begin(&mut self, r: &[f64], y: &mut [f64]) {
+    pub fn begin(&mut self, r: &[f64], y: &mut [f64]) {
         for group in &mut self.groups {
             group.begin(r, y);
         }
     }
 
     /// `end` on every group; `x` of the whole system.
-    pub(crate) fn end(&mut self, y: &mut [f64], x: &mut [f64]) {
+    pub fn end(&mut self, y: &mut [f64], x: &mut [f64]) {
         for group in &mut self.groups {
             group.end(y, x);
         }
@@ -386,7 +386,7 @@ pub(crate) fn factored(
 }
 
 /// `mass` M + `damping` C + `stiffness_factors` K of one part, C that of dashpots, with a factor of K for each body.
-pub(crate) fn assembled(
+pub fn assembled(
     system: &System,
     part: &Range<usize>,
     [mass, damping]: [f64; 2],

@@ -163,29 +163,29 @@ fn passage(system: &System, contact: usize) -> f64 {
 }
 
 /// What a step adds to the record of a contact.
-pub(crate) struct Step<'a> {
+pub struct Step<'a> {
     /// Time at its start and end, s.
-    pub(crate) span: [f64; 2],
+    pub span: [f64; 2],
     /// Its length, s: the difference of the two but for rounding; 0 of a static step, in which forces give no impulse.
-    pub(crate) dt: f64,
+    pub dt: f64,
     /// How forces make impulses in the scheme.
-    pub(crate) impulse: Impulse,
+    pub impulse: Impulse,
     /// Normal forces of all points at the start and of the step, N.
-    pub(crate) forces: [&'a [f64]; 2],
+    pub forces: [&'a [f64]; 2],
     /// What the contact did.
-    pub(crate) report: &'a ContactReport,
+    pub report: &'a ContactReport,
     /// Work of the contact's forces and impulses, J.
-    pub(crate) work: f64,
+    pub work: f64,
     /// Energy lost in crush until its end, J.
-    pub(crate) crushed: f64,
+    pub crushed: f64,
     /// Of a projection after the step: impulse in N s, and change of the force that the next step begins with in N; each
     /// as a sum over the points and as a vector on the secondary body.
-    pub(crate) jump: [(f64, [f64; 3]); 2],
+    pub jump: [(f64, [f64; 3]); 2],
 }
 
 impl Records {
     /// Nothing yet.
-    pub(crate) fn of(system: &System) -> Records {
+    pub fn of(system: &System) -> Records {
         Records {
             contacts: vec![ContactRecord::default(); system.contacts.len()],
             impacts: Vec::new(),
@@ -206,13 +206,7 @@ impl Records {
     }
 
     /// Adds a step of one contact. `velocities`: at its start and at its end.
-    pub(crate) fn add(
-        &mut self,
-        system: &System,
-        contact: usize,
-        step: &Step,
-        velocities: [&[f64]; 2],
-    ) {
+    pub fn add(&mut self, system: &System, contact: usize, step: &Step, velocities: [&[f64]; 2]) {
         let (report, dt) = (step.report, step.dt);
         let record = &mut self.contacts[contact];
         let impulse = step.impulse;

@@ -78,7 +78,7 @@ impl StepReport {
     }
 
     /// Adds a part that ends at `time` (s) after `dt` (s), in which the contacts did what `contacts` says now.
-    pub(crate) fn add_part(&mut self, time: f64, dt: f64) {
+    pub fn add_part(&mut self, time: f64, dt: f64) {
         self.samples.push(ContactSample {
             time,
             dt,
@@ -87,7 +87,7 @@ impl StepReport {
     }
 
     /// Writes what the contacts did in the step from its parts, if it has some.
-    pub(crate) fn join_parts(&mut self) {
+    pub fn join_parts(&mut self) {
         for (contact, whole) in self.contacts.iter_mut().enumerate() {
             let parts = self.samples.iter();
             join(parts.map(|part| (part.dt, &part.contacts[contact])), whole);

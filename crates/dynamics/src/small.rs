@@ -100,7 +100,7 @@ impl Smallness {
     }
 
     /// Takes what a zone has found; its bodies and contacts by their numbers in the whole.
-    pub(crate) fn gather(&mut self, zone: &Smallness, (bodies, contacts): (&[usize], &[usize])) {
+    pub fn gather(&mut self, zone: &Smallness, (bodies, contacts): (&[usize], &[usize])) {
         for (found, &body) in zone.bodies.iter().zip(bodies) {
             self.bodies[body] = *found;
         }

@@ -105,7 +105,7 @@ impl InterfaceState {
     }
 
     /// Counts the time without force after a step of `dt` (s), from that of the state before.
-    pub(crate) fn count_flights(&mut self, before: &[f64], dt: f64) {
+    pub fn count_flights(&mut self, before: &[f64], dt: f64) {
         let points = self.flight.iter_mut().zip(&self.force).zip(before);
         for ((flight, force), before) in points {
             *flight = match *force == 0.0 {
@@ -141,7 +141,7 @@ impl State {
 
     /// Whether a contact point carries a force or may do so within `dt` (s), at twice its present rate. `tolerance`: gap
     /// that counts as closed, m.
-    pub(crate) fn may_touch(&self, dt: f64, tolerance: f64) -> bool {
+    pub fn may_touch(&self, dt: f64, tolerance: f64) -> bool {
         let interface = &self.interface;
         let points = interface.gap.iter().zip(&interface.rate);
         let touches = |((gap, rate), force): ((&f64, &f64), &f64)| {
@@ -151,7 +151,7 @@ impl State {
     }
 
     /// Refuses a state of another size than the system's.
-    pub(crate) fn check(&self, system: &System) -> Result<(), Error> {
+    pub fn check(&self, system: &System) -> Result<(), Error> {
         let (n, points) = (system.unknowns(), system.points());
         let motion = &self.motion;
         let vectors = [
@@ -186,7 +186,7 @@ impl State {
 }
 
 /// At rest, nothing done yet.
-pub(crate) fn empty_state(system: &System) -> State {
+pub fn empty_state(system: &System) -> State {
     let (zeros, points) = (vec![0.0; system.unknowns()], system.points());
     let remembers = |scheme: &Scheme| scheme.get().step_map(system.dt).has_memory();
     let remembers = system.schemes.iter().any(remembers);

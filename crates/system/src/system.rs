@@ -156,6 +156,11 @@ impl System {
         self.first_point[self.contacts.len()]
     }
 
+    /// Contact points of a contact in the arrays over all points.
+    pub fn points_of(&self, contact: usize) -> Range<usize> {
+        self.first_point[contact]..self.first_point[contact + 1]
+    }
+
     /// Index of the contact of a contact point.
     pub fn contact_of(&self, point: usize) -> usize {
         self.first_point.partition_point(|&first| first <= point) - 1

@@ -9,7 +9,7 @@
 //! formulations, to the rounding of their steps; so is the cost, half of the single fine mesh at most.
 
 use carom_arlequin::{Profile, Weighting};
-use carom_dynamics::LinkKind;
+use carom_zones::LinkKind;
 
 use crate::Error;
 use crate::bars::{Run, SLOW};

@@ -21,8 +21,9 @@
 //! note's 1 %. Since the set-up was chosen by its result, these losses are regressions, as is the work on the shortest
 //! pulse where the note says nothing or does not hold: all to 1 % of the figure.
 
+use carom_dynamics::Scheme;
 use carom_dynamics::scheme::Newmark;
-use carom_dynamics::{LinkKind, Scheme, Zones};
+use carom_zones::{LinkKind, Zones};
 
 use crate::Error;
 use crate::build::CENTRAL;

@@ -8,9 +8,10 @@
 
 use carom_arlequin::{Coupling, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
-use carom_dynamics::{LinkKind, Model, ModelLink, ModelZone, Zoned, Zones};
+use carom_dynamics::{Model, ModelLink};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
+use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
 
 use crate::Error;
 use crate::build::{CENTRAL, body, group, theta};

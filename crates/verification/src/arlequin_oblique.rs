@@ -15,9 +15,10 @@
 //! them, are regressions, to 1 % of the figure.
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{Driver, LinkKind, Model, ModelLink, ModelZone, Support, Zoned, Zones};
+use carom_dynamics::{Driver, Model, ModelLink, Support};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
+use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
 
 use crate::Error;
 use crate::build::{CENTRAL, glued, plane_motion, theta};

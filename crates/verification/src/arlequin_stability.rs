@@ -11,7 +11,8 @@
 //!
 //! Tolerance: 1e-6, of the project's theory note. A control with θ < ½ inside shows that growth is seen.
 
-use carom_dynamics::{LinkKind, Scheme, Zones, ZonesState};
+use carom_dynamics::Scheme;
+use carom_zones::{LinkKind, Zones, ZonesState};
 
 use crate::Error;
 use crate::build::{CENTRAL, newmark, theta};

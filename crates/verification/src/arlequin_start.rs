@@ -10,7 +10,7 @@
 //! random walk of that leaves differences of 6e-12 h, and the fine elements make forces of 8 times as much: 1e-10.
 
 use carom_arlequin::Row as Coupled;
-use carom_dynamics::{LinkKind, Zones};
+use carom_zones::{LinkKind, Zones};
 
 use crate::Error;
 use crate::check::{Check, Row};

@@ -5,9 +5,10 @@ use carom_bodies::{BodySpec, CellWeights, Kinematics};
 use carom_contact::law::{Adhesion, Capture, Compliance, Damped, Displacement, Reading, Velocity};
 use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
-use carom_dynamics::{Driver, ModelBody, ModelContact, ModelTarget, Scheme, Support, Zones};
+use carom_dynamics::{Driver, ModelBody, ModelContact, ModelTarget, Scheme, Support};
 use carom_materials::{Elastic, Law as Material, NeoHooke};
 use carom_mesh::{Group, Mesh, Surface};
+use carom_zones::Zones;
 
 use crate::Error;
 

@@ -21,6 +21,9 @@ pub enum Error {
     /// A system was refused or a step failed.
     #[error(transparent)]
     Dynamics(#[from] carom_dynamics::Error),
+    /// Zones were refused or an outer step failed.
+    #[error(transparent)]
+    Zones(#[from] carom_zones::Error),
     /// A system could not be built.
     #[error(transparent)]
     System(#[from] carom_system::Error),

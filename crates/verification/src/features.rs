@@ -9,11 +9,12 @@ use std::sync::Arc;
 use carom_arlequin::trace;
 use carom_contact::{Basis, Integration, Law, Sliding};
 use carom_dynamics::{
-    Adaptive, Amplitude, Closing, Driver, LinkKind, Load, LoadKind, Model, ModelLink, ModelZone,
-    Preload, Scheme, State, Stepper, System, Whole, Zoned,
+    Adaptive, Amplitude, Closing, Driver, Load, LoadKind, Model, ModelLink, Preload, Scheme, State,
+    Stepper, System,
 };
 use carom_materials::{Branch, J2Plasticity, Law as Material, Maxwell, NeoHooke};
 use carom_mesh::{ElementId, Mesh};
+use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
 use crate::Error;
 use crate::battery::laws;
@@ -352,7 +353,18 @@ pub(crate) fn label(scheme: Scheme) -> String {
 pub(crate) fn reason(error: &Error) -> Option<String> {
     match error {
         Error::Dynamics(error) => reason_of_run(error),
+        Error::Zones(error) => reason_of_zones(error),
         Error::System(error) => reason_of(error),
+        _ => None,
+    }
+}
+
+fn reason_of_zones(error: &carom_zones::Error) -> Option<String> {
+    use carom_zones::Error as E;
+    match error {
+        E::Zone { cause, .. } => reason_of_run(cause),
+        E::Dynamics(error) => reason_of_run(error),
+        E::System(error) => reason_of(error),
         _ => None,
     }
 }
@@ -360,7 +372,6 @@ pub(crate) fn reason(error: &Error) -> Option<String> {
 fn reason_of_run(error: &carom_dynamics::Error) -> Option<String> {
     use carom_dynamics::Error as E;
     match error {
-        E::Zone { cause, .. } => reason_of_run(cause),
         E::System(error) => reason_of(error),
         _ => None,
     }

@@ -3,11 +3,9 @@
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
 use carom_contact::Law;
-use carom_dynamics::{
-    Balance, Costs, LinkKind, Model, ModelBody, ModelLink, ModelTarget, ModelZone, Scheme, Zoned,
-    Zones,
-};
+use carom_dynamics::{Balance, Costs, Model, ModelBody, ModelLink, ModelTarget, Scheme};
 use carom_mesh::{Mesh, generate};
+use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
 
 use crate::Error;
 use crate::bars::{SLOW, Set};

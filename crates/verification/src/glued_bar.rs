@@ -2,11 +2,10 @@
 
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
-use carom_dynamics::{
-    Driver, LinkKind, Model, ModelLink, ModelZone, Scheme, Support, Zoned, Zones,
-};
+use carom_dynamics::{Driver, Model, ModelLink, Scheme, Support};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
+use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
 
 use crate::Error;
 use crate::build::{CENTRAL, body, group, support, theta};

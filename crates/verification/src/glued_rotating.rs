@@ -16,9 +16,10 @@ use std::f64::consts::PI;
 
 use carom_bodies::Kinematics;
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{LinkKind, Model, ModelLink, ModelZone, Nonlinear, Scheme, Zoned, Zones};
+use carom_dynamics::{Model, ModelLink, Nonlinear, Scheme};
 use carom_materials::{Elastic, Law, NeoHooke};
 use carom_mesh::{Mesh, generate};
+use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
 
 use crate::Error;
 use crate::build::{glued, newmark, plane_motion, theta};

@@ -4,7 +4,7 @@
 //! outer step, is attempted, dropped, and attempted again with the same size. Closed solution: a dropped step leaves nothing behind. Reference: the run without rejections,
 //! a second formulation. Tolerance: none, bytes are equal or not.
 
-use carom_dynamics::Whole;
+use carom_zones::Whole;
 
 use crate::Error;
 use crate::check::Check;

@@ -8,11 +8,9 @@
 
 use carom_arlequin::trace;
 use carom_bodies::{BodySpec, Kinematics};
-use carom_dynamics::{
-    Adaptive, Closing, Driver, LinkKind, Model, ModelBody, ModelLink, ModelZone, Scheme, System,
-    Zoned,
-};
+use carom_dynamics::{Adaptive, Closing, Driver, Model, ModelBody, ModelLink, Scheme, System};
 use carom_mesh::generate;
+use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::Error;
 use crate::bars::CLASSIC;

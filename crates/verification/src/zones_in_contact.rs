@@ -7,7 +7,8 @@
 //! the middle of the contact: 1 %, since the oscillations behind the front have a mean that falls as 1/n).
 
 use carom_dynamics::scheme::{CentralDifference, Newmark};
-use carom_dynamics::{Driver, LinkKind, ModelZone, Scheme, State, Stepper, System, Whole, Zoned};
+use carom_dynamics::{Driver, Scheme, State, Stepper, System};
+use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
 use crate::Error;
 use crate::bars::Run;

@@ -33,7 +33,8 @@ mod zones;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use carom_dynamics::{LinkKind, Model, Nonlinear, System, Zoned};
+use carom_dynamics::{Model, Nonlinear, System};
+use carom_zones::{LinkKind, Zoned};
 
 use crate::error::Problem;
 use crate::input::Input;
@@ -196,13 +197,13 @@ impl Builder<'_> {
         let system = match &zoned {
             None => System::new(model)
                 .map(|system| (system, false))
-                .map_err(carom_dynamics::Error::from),
+                .map_err(carom_zones::Error::from),
             Some(zoned) => of_zones(zoned, model),
         };
         let (system, apart) = match system {
             Ok((system, apart)) => (system, apart),
             Err(error) => {
-                self.problems.push(self.refused(&error));
+                self.problems.push(self.refused_zones(&error));
                 return None;
             }
         };
@@ -242,7 +243,7 @@ impl Builder<'_> {
 }
 
 /// The system of a model in zones, and whether these step apart.
-fn of_zones(zoned: &Zoned, model: Model) -> Result<(Arc<System>, bool), carom_dynamics::Error> {
+fn of_zones(zoned: &Zoned, model: Model) -> Result<(Arc<System>, bool), carom_zones::Error> {
     // errors that lie in one zone name it
     zoned.systems()?;
     match zoned.together()? {

@@ -1,6 +1,6 @@
 //! Zones as the case says them, names resolved.
 
-use carom_dynamics::{LinkKind, ModelZone};
+use carom_zones::{LinkKind, ModelZone};
 
 use crate::schema::Scheme;
 

@@ -25,6 +25,16 @@ impl Builder<'_> {
                     "no static stage",
                 ])
             }
+            other => Problem::new("time", other.to_string()),
+        }
+    }
+
+    /// The problem behind an error of zones.
+    pub(super) fn refused_zones(&self, error: &carom_zones::Error) -> Problem {
+        use carom_zones::Error;
+        match error {
+            Error::Dynamics(error) => self.refused(error),
+            Error::System(error) => self.refused_system(error),
             Error::AcrossZones { contact, .. } => {
                 Problem::new(format!("contact.{contact}"), error.to_string()).accepted([
                     "one zone for both sides",

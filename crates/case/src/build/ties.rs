@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use carom_arlequin::{Error, Rows, trace};
-use carom_dynamics::{ModelBody, mortar_rows};
+use carom_dynamics::ModelBody;
 use carom_mesh::{Mesh, Surface};
+use carom_zones::mortar_rows;
 
 use super::Builder;
 use super::arlequin::Joints;

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use carom_contact::law::{Defaults, Level};
-use carom_dynamics::{Adaptive, Closing, Error, ModelBody, Scheme, System, step_count};
+use carom_dynamics::{Adaptive, Closing, ModelBody, Scheme, System, step_count};
 use carom_mesh::Mesh;
+use carom_zones::Error;
 
 use super::Builder;
 use crate::error::Problem;
@@ -203,7 +204,7 @@ impl Builder<'_> {
                 Some(steps.fold(f64::INFINITY, f64::min))
             }
             Err(error) => {
-                self.problems.push(self.refused(&error));
+                self.problems.push(self.refused_zones(&error));
                 None
             }
         }

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use carom_dynamics::{LinkKind, ModelContact, ModelTarget};
+use carom_dynamics::{ModelContact, ModelTarget};
 use carom_mesh::ElementId;
+use carom_zones::LinkKind;
 
 use super::Builder;
 use super::plan::{Plan, Zone};

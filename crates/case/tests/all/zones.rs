@@ -2,7 +2,8 @@
 
 use carom_arlequin::Row;
 use carom_case::{Built, Input, build, parse};
-use carom_dynamics::{LinkKind, Stepper, Whole, Zones};
+use carom_dynamics::Stepper;
+use carom_zones::{LinkKind, Whole, Zones};
 
 /// A file with two bars with fine tips that meet at x = 0; the fine cells are a quarter of the coarse ones.
 fn bars(end: &str) -> String {

@@ -22,7 +22,7 @@ use crate::system::{LinkRow, Motion, System, on, push_cliques};
 
 /// How forces on rows run over some steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Growth {
+pub enum Growth {
     /// They grow linearly from 0 to 1.
     Linear,
     /// They are 1.
@@ -31,17 +31,17 @@ pub(crate) enum Growth {
 
 impl Driver {
     /// Makes the solver take forces of links from its next start on, which is with this force (N).
-    pub(crate) fn link(&mut self, force: &[f64]) {
+    pub fn link(&mut self, force: &[f64]) {
         self.link_force = force.to_vec();
     }
 
     /// Makes the solver forget links until its next `link`.
-    pub(crate) fn unlink(&mut self) {
+    pub fn unlink(&mut self) {
         self.link_force.clear();
     }
 
     /// Sets Cᵀ Λ of the step, N.
-    pub(crate) fn set_link_force(&mut self, rows: &[(u32, LinkRow)], multipliers: &[f64]) {
+    pub fn set_link_force(&mut self, rows: &[(u32, LinkRow)], multipliers: &[f64]) {
         self.link_force.fill(0.0);
         for (row, terms) in rows {
             for &(dof, c) in terms {
@@ -51,7 +51,7 @@ impl Driver {
     }
 
     /// Adds forces of other rows to those of the links, N.
-    pub(crate) fn add_link_rows(&mut self, rows: &[(u32, LinkRow)], forces: &[f64]) {
+    pub fn add_link_rows(&mut self, rows: &[(u32, LinkRow)], forces: &[f64]) {
         if self.link_force.is_empty() {
             self.link_force.resize(self.system.unknowns(), 0.0);
         }
@@ -66,7 +66,7 @@ impl Driver {
     ///
     /// # Errors
     /// As [`Driver::step`]; a step of a zone is not halved.
-    pub(crate) fn complete(&mut self) -> Result<(), Error> {
+    pub fn complete(&mut self) -> Result<(), Error> {
         self.report.attempts = 1;
         if self.prepared {
             self.take_stages()?;
@@ -88,12 +88,12 @@ impl Driver {
     }
 
     /// Velocity at the end of the step just completed, which is not accepted yet.
-    pub(crate) fn next_velocity(&self) -> &[f64] {
+    pub fn next_velocity(&self) -> &[f64] {
         &self.next.motion.v
     }
 
     /// Accepts the step just completed.
-    pub(crate) fn take(&mut self) {
+    pub fn take(&mut self) {
         let (step, time) = (self.state.step, self.state.time);
         let mut control = self.next.control;
         control.take(None, (step, time, self.dt), self.system.dt);
@@ -101,19 +101,19 @@ impl Driver {
     }
 
     /// Makes the state that of an earlier instant.
-    pub(crate) fn go_back(&mut self, state: &State) {
+    pub fn go_back(&mut self, state: &State) {
         self.prepared = false;
         self.state.clone_from(state);
     }
 
     /// Makes `dt` (s) the size of the next steps.
-    pub(crate) fn resize(&mut self, dt: f64) {
+    pub fn resize(&mut self, dt: f64) {
         self.prepared = false;
         self.size(dt, dt);
     }
 
     /// Weights of L at the start and the end of a step in Λ.
-    pub(crate) fn link_weights(&self) -> [f64; 2] {
+    pub fn link_weights(&self) -> [f64; 2] {
         self.system
             .scheme
             .get()
@@ -123,14 +123,14 @@ impl Driver {
 
     /// Work of the force of one row in the step just completed, J: `before` and `now` are the row's Λ of the step before and
     /// of this one.
-    pub(crate) fn row_work(&self, terms: &LinkRow, before: f64, now: f64) -> f64 {
+    pub fn row_work(&self, terms: &LinkRow, before: f64, now: f64) -> f64 {
         let impulse = &self.maps.first().impulse;
         let travel = on(terms, &self.next.motion.u) - on(terms, &self.state.motion.u);
         (impulse.old * before + impulse.new * now) * travel
     }
 
     /// Factors of M and K in the effective matrix, and of its solution in the velocity at the end of a step.
-    pub(crate) fn effective(&self) -> (f64, f64, f64) {
+    pub fn effective(&self) -> (f64, f64, f64) {
         let map = self.linear_map();
         (map.inertia.x, map.force.x, map.velocity.x)
     }
@@ -144,7 +144,7 @@ impl Driver {
     }
 
     /// Loads at the present instant, after a start, N.
-    pub(crate) fn load(&self) -> &[f64] {
+    pub fn load(&self) -> &[f64] {
         &self.vectors.load
     }
 
@@ -153,7 +153,7 @@ impl Driver {
     ///
     /// # Errors
     /// An effective matrix that is not positive definite.
-    pub(crate) fn ramp(
+    pub fn ramp(
         &mut self,
         (rows, steps): (&[(u32, LinkRow)], (u32, Growth)),
         origin: &Origin,
@@ -231,7 +231,7 @@ impl Driver {
     ///
     /// # Errors
     /// As [`Driver::step`].
-    pub(crate) fn prepare(&mut self) -> Result<(), Error> {
+    pub fn prepare(&mut self) -> Result<(), Error> {
         (self.failed, self.failed_friction) = (None, None);
         self.prepared = false;
         self.begin_stage()?;
@@ -251,17 +251,17 @@ impl Driver {
 }
 
 /// How a zone answers to multipliers that grow, without contact and linearised.
-pub(crate) struct Ramp<'a> {
-    pub(crate) system: &'a System,
-    pub(crate) map: &'a StepMap,
-    pub(crate) operators: &'a mut Operators,
+struct Ramp<'a> {
+    system: &'a System,
+    map: &'a StepMap,
+    operators: &'a mut Operators,
     /// K u.
-    pub(crate) forces: &'a mut dyn FnMut(&[f64], &mut [f64]),
+    forces: &'a mut dyn FnMut(&[f64], &mut [f64]),
 }
 
 impl Ramp<'_> {
     /// See [`Driver::ramp`]; `weights`: of L at the start and the end of a step.
-    pub(crate) fn matrix(
+    fn matrix(
         &mut self,
         rows: &[(u32, LinkRow)],
         (steps, growth): (u32, Growth),
@@ -347,7 +347,7 @@ pub struct Origin {
 
 impl Origin {
     /// The present state of a zone.
-    pub(crate) fn of(driver: &Driver) -> Origin {
+    pub fn of(driver: &Driver) -> Origin {
         let mut bodies = driver.system().bodies.iter();
         match bodies.all(|body| body.is_linear()) {
             true => Origin::default(),

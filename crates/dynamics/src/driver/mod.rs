@@ -28,7 +28,7 @@ mod held;
 mod identity;
 mod impulse;
 mod landing;
-pub(crate) mod linked;
+pub mod linked;
 mod linking;
 mod links;
 mod loads;

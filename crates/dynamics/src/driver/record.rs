@@ -1,6 +1,5 @@
 //! The records and the report of a step.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use carom_contact::Rows;
@@ -25,7 +24,7 @@ impl Driver {
             let rows = &self.pairing.rows;
             let (old, new) = (&self.state.interface, &self.next.interface);
             let mut report = contact_report(&system, k, rows, old, new, self.dt);
-            report.mixed = self.weak.mixed(k, &new.force[points(&system, k)]);
+            report.mixed = self.weak.mixed(k, &new.force[system.points_of(k)]);
             self.report_friction(k, &mut report);
             let work = self.contact_work(k);
             let pushed = self.pushed(k);
@@ -35,7 +34,7 @@ impl Driver {
                 let changed = old.carried[point] - old.force[point];
                 projected.impulse(point) + dt * impulse.old * changed
             };
-            report.impulsive = points(&system, k).map(carried_on).sum();
+            report.impulsive = system.points_of(k).map(carried_on).sum();
             let span = [self.state.time, self.next.time];
             let State {
                 motion,
@@ -50,7 +49,7 @@ impl Driver {
                 impulse,
                 forces: [&old.force, &interface.force],
                 report: &report,
-                work: work + points(&system, k).map(|p| projected.work(p)).sum::<f64>(),
+                work: work + system.points_of(k).map(|p| projected.work(p)).sum::<f64>(),
                 crushed: crush_energy(&system, k, interface),
                 jump: [
                     total(&system, k, rows, |point| projected.impulse(point)),
@@ -92,7 +91,7 @@ impl Driver {
             };
             force * (place(new) - place(old) + self.dt * rows.rate(point))
         };
-        points(&self.system, contact).map(of_point).sum()
+        self.system.points_of(contact).map(of_point).sum()
     }
 
     fn weights_of_work(&self, contact: usize) -> super::identity::WorkWeights {
@@ -138,8 +137,38 @@ impl Driver {
     }
 }
 
+/// Energy that the crush of one contact has taken so far, J: a function of the largest penetrations.
+fn crush_energy(system: &System, contact: usize, interface: &InterfaceState) -> f64 {
+    let (first, contact) = (system.first_point[contact], &system.contacts[contact]);
+    let of_point = |(k, point): (usize, &carom_contact::Point)| {
+        point.share * contact.law.crush_energy(interface.crush[first + k])
+    };
+    contact.points.iter().enumerate().map(of_point).sum()
+}
+
+/// Sum of a normal force or impulse over the points of a contact, and its resultant on the secondary body.
+pub(crate) fn total(
+    system: &System,
+    contact: usize,
+    rows: &Rows,
+    of_point: impl Fn(usize) -> f64,
+) -> (f64, [f64; 3]) {
+    let (mut sum, mut resultant) = (0.0, [0.0; 3]);
+    for point in system.points_of(contact) {
+        let value = of_point(point);
+        if value == 0.0 {
+            continue;
+        }
+        sum += value;
+        for (sum, n) in resultant.iter_mut().zip(rows.resultant(point)) {
+            *sum += value * n;
+        }
+    }
+    (sum, resultant)
+}
+
 /// What a contact did in a step of `dt` (s).
-pub(crate) fn contact_report(
+pub fn contact_report(
     system: &System,
     contact: usize,
     rows: &Rows,
@@ -151,7 +180,7 @@ pub(crate) fn contact_report(
         gap: f64::INFINITY,
         ..ContactReport::default()
     };
-    for point in points(system, contact) {
+    for point in system.points_of(contact) {
         let force = new.force[point];
         report.force += force;
         for (sum, n) in report.resultant.iter_mut().zip(rows.resultant(point)) {
@@ -166,39 +195,4 @@ pub(crate) fn contact_report(
     }
     report.normal = report.resultant;
     report
-}
-
-/// Energy that the crush of one contact has taken so far, J: a function of the largest penetrations.
-fn crush_energy(system: &System, contact: usize, interface: &InterfaceState) -> f64 {
-    let (first, contact) = (system.first_point[contact], &system.contacts[contact]);
-    let of_point = |(k, point): (usize, &carom_contact::Point)| {
-        point.share * contact.law.crush_energy(interface.crush[first + k])
-    };
-    contact.points.iter().enumerate().map(of_point).sum()
-}
-
-/// Contact points of a contact.
-fn points(system: &System, contact: usize) -> Range<usize> {
-    system.first_point[contact]..system.first_point[contact + 1]
-}
-
-/// Sum of a normal force or impulse over the points of a contact, and its resultant on the secondary body.
-pub(crate) fn total(
-    system: &System,
-    contact: usize,
-    rows: &Rows,
-    of_point: impl Fn(usize) -> f64,
-) -> (f64, [f64; 3]) {
-    let (mut sum, mut resultant) = (0.0, [0.0; 3]);
-    for point in points(system, contact) {
-        let value = of_point(point);
-        if value == 0.0 {
-            continue;
-        }
-        sum += value;
-        for (sum, n) in resultant.iter_mut().zip(rows.resultant(point)) {
-            *sum += value * n;
-        }
-    }
-    (sum, resultant)
 }

@@ -4,14 +4,10 @@ use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
-use carom_dynamics::{
-    Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Stepper, System, Zones,
-};
+use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
 use carom_testing::allocations;
-
-use crate::whole;
 
 /// A cube resting on a plane under gravity: contact all the time, statuses settled.
 fn resting_cube(scheme: Scheme, law: Law, integration: Integration) -> Driver {
@@ -95,24 +91,4 @@ fn a_step_in_contact_allocates_nothing() {
         assert_eq!(fewest, 0, "{scheme:?}");
         assert!(closed > 0, "{scheme:?}: in contact");
     }
-}
-
-#[test]
-fn the_whole_of_zones_needs_no_memory_beyond_that_of_their_steps() {
-    let zoned = whole::bar();
-    let mut zones = Zones::new(&zoned).unwrap();
-    let mut whole = whole::whole(&zoned);
-    let counted = |step: &mut dyn FnMut()| {
-        let before = allocations();
-        step();
-        allocations() - before
-    };
-    for step in 0..100 {
-        let alone = counted(&mut || zones.step().unwrap());
-        let gathered = counted(&mut || whole.step().unwrap());
-        // the first step makes the places of the samples
-        // (what is made once for all drivers, the zones alone have made)
-        assert!(step == 0 || gathered <= alone, "{step}: {gathered} {alone}");
-    }
-    assert!(whole.report().contacts[0].closed > 0, "in contact");
 }

@@ -5,7 +5,6 @@
 
 mod allocation;
 mod beams;
-mod dense;
 mod discrete;
 mod edges;
 mod floating;
@@ -16,7 +15,6 @@ mod initial;
 mod interface;
 mod material_work;
 mod momentum;
-mod monolithic;
 mod mortar;
 mod newton;
 mod quadrature;
@@ -28,8 +26,6 @@ mod stability;
 mod stops;
 mod supports;
 mod trough;
-mod whole;
 
 #[global_allocator]
 static COUNTER: carom_testing::Counter = carom_testing::Counter;
-mod zones_nonlinear;

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use carom_dynamics::{Costs, Driver, ModelLink, ModelZone, Stepper, System, Whole, Zoned};
+use carom_dynamics::{Costs, Driver, ModelLink, Stepper, System};
+use carom_zones::{ModelZone, Whole, Zoned};
 
 use crate::results::{Ending, Results};
 use crate::summary::{Counts, Link, Newton, Zone, ZoneCosts, Zones};

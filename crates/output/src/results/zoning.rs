@@ -1,6 +1,7 @@
 //! What the output knows of a model in zones beside its system.
 
-use carom_dynamics::{ModelBody, System, Zoned};
+use carom_dynamics::{ModelBody, System};
+use carom_zones::Zoned;
 
 use crate::plot::Shape;
 

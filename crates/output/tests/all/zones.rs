@@ -9,13 +9,13 @@ use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting
 use carom_bodies::{BodySpec, CellWeights, Kinematics};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
-    LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Stepper,
-    System, Whole, Zoned, march,
+    Model, ModelBody, ModelContact, ModelLink, ModelTarget, Scheme, Stepper, System, march,
 };
 use carom_mesh::{ElementId, Surface, generate};
 use carom_output::compare::Recorder;
 use carom_output::summary::{self, Zones};
 use carom_output::{Ending, Grade, Results, Summary, Zoning, checkpoint};
+use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
 use crate::models::{self, AREA, LENGTH, SPEED, STEEL};
 use crate::{grids, tables};

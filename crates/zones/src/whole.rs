@@ -8,17 +8,18 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::places::Places;
-use super::{Zoned, Zones, ZonesState};
-use crate::control::Control;
-use crate::costs::Costs;
 use crate::error::Error;
-use crate::ledger::{Balance, Ledger, Tolerated};
-use crate::march::{FailedProblem, Stepper};
-use crate::records::Records;
-use crate::report::{ContactReport, ContactSample, StepReport};
-use crate::state::{InterfaceState, State, empty_state};
-use crate::system::{Motion, System};
+use crate::model::Zoned;
+use crate::places::Places;
+use crate::zones::{Zones, ZonesState};
+use carom_dynamics::Control;
+use carom_dynamics::Costs;
+use carom_dynamics::records::Records;
+use carom_dynamics::state::{InterfaceState, State, empty_state};
+use carom_dynamics::{Balance, Ledger, Tolerated};
+use carom_dynamics::{ContactReport, ContactSample, StepReport};
+use carom_dynamics::{FailedProblem, Stepper};
+use carom_system::{Motion, System};
 
 /// Zones with the model as one.
 pub struct Whole {
@@ -64,7 +65,7 @@ impl Whole {
     /// # Errors
     /// As [`Whole::new`]; bytes that are no state, or one of another model.
     pub fn resume(zoned: &Zoned, system: Arc<System>, bytes: &[u8]) -> Result<Whole, Error> {
-        let refused = |cause: String| Error::State { cause };
+        let refused = |cause: String| Error::from(carom_dynamics::Error::State { cause });
         let saved: Saved = postcard::from_bytes(bytes).map_err(|e| refused(e.to_string()))?;
         let mut zones = Zones::new(zoned)?;
         let (found, expected) = (saved.zones.zones.len(), zones.drivers.len());
@@ -361,7 +362,7 @@ fn forces_mut(motion: &mut Motion) -> [&mut Vec<f64>; 3] {
 
 impl Stepper for Whole {
     /// One outer step.
-    fn step(&mut self) -> Result<(), Error> {
+    fn step(&mut self) -> Result<(), carom_dynamics::Error> {
         self.zones.step()?;
         let (before, time) = (self.state.step, self.state.time);
         self.gather();
@@ -383,13 +384,13 @@ impl Stepper for Whole {
         &self.report
     }
 
-    fn saved(&self) -> Result<Vec<u8>, Error> {
+    fn saved(&self) -> Result<Vec<u8>, carom_dynamics::Error> {
         let saved = Saved {
             zones: self.zones.state(),
             control: self.state.control,
             ledger: self.state.ledger.clone(),
         };
-        postcard::to_stdvec(&saved).map_err(|cause| Error::State {
+        postcard::to_stdvec(&saved).map_err(|cause| carom_dynamics::Error::State {
             cause: cause.to_string(),
         })
     }

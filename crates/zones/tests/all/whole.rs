@@ -7,11 +7,11 @@ use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Law, Plane};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
-    LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme, Stepper,
-    System, Whole, Zoned,
+    Model, ModelBody, ModelContact, ModelLink, ModelTarget, Scheme, Stepper, System,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
+use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
 const INNER: u32 = 4;
 

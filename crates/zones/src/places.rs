@@ -2,23 +2,23 @@
 
 use std::ops::Range;
 
-use crate::system::System;
+use carom_system::System;
 
 /// Where the numbers of a zone are in the whole: its number and that of the whole.
-pub(super) struct Places {
+pub(crate) struct Places {
     /// Unknowns.
-    pub(super) unknowns: Vec<(u32, u32)>,
+    pub(crate) unknowns: Vec<(u32, u32)>,
     /// Those that no zone before it has.
-    pub(super) own: Vec<(u32, u32)>,
+    pub(crate) own: Vec<(u32, u32)>,
     /// Contact points.
-    pub(super) points: Vec<(u32, u32)>,
+    pub(crate) points: Vec<(u32, u32)>,
     /// Histories of the bodies.
-    pub(super) histories: Vec<(Range<usize>, Range<usize>)>,
+    pub(crate) histories: Vec<(Range<usize>, Range<usize>)>,
 }
 
 impl Places {
     /// `taken`: unknowns of the whole that a zone before this one has.
-    pub(super) fn new(
+    pub(crate) fn new(
         zone: &System,
         (bodies, contacts): (&[usize], &[usize]),
         whole: &System,

@@ -4,14 +4,14 @@ use carom_bodies::Kinematics;
 use carom_contact::Integration;
 use carom_contact::law::Level;
 
-use super::model::Zoned;
 use crate::error::Error;
-use crate::step_map::Impulse;
-use crate::system::{self, ModelBody, Refused};
+use crate::model::Zoned;
+use carom_schemes::step_map::Impulse;
+use carom_system::{self as system, ModelBody, Refused};
 
 impl Zoned {
     /// Refuses contacts that zones of unequal steps cannot have between them.
-    pub(super) fn check_across(&self) -> Result<(), Error> {
+    pub(crate) fn check_across(&self) -> Result<(), Error> {
         for contact in self.contacts_across() {
             if let Some(cause) = refused(self, contact) {
                 let [one, other] = self.zones_of(contact);
@@ -27,7 +27,7 @@ impl Zoned {
     }
 
     /// Refuses what zones that step apart do not take.
-    pub(super) fn check(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         let mut bodies = self.model.bodies.iter();
         if let Some(body) = bodies.find(|body| body.rigid.is_some()) {
             return Err(system::Error::Nonlinear {
@@ -58,7 +58,7 @@ impl Zoned {
     }
 
     /// Refuses schemes that no link takes, and numbers of inner steps that do not go together.
-    pub(super) fn check_steps(&self) -> Result<(), Error> {
+    pub(crate) fn check_steps(&self) -> Result<(), Error> {
         let linked = |zone: &usize| self.links.iter().any(|link| link.zones.contains(zone));
         let mut many = None;
         for (k, zone) in self.zones.iter().enumerate() {

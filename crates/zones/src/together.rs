@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use carom_mesh::{Mesh, Surface};
 
-use super::model::{ModelZone, Zoned};
 use crate::error::Error;
-use crate::system::{self, Model, ModelLink, ModelScheme, ModelTarget, System};
+use crate::model::{ModelZone, Zoned};
+use carom_system::{self as system, Model, ModelLink, ModelScheme, ModelTarget, System};
 
 impl Zoned {
     /// The zones as one system, which one driver takes through its steps; `None` where they step apart: with unequal steps, with links of bodies

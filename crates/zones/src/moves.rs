@@ -11,7 +11,7 @@ use carom_algebra::reduce::dot;
 
 /// Moves of the passes over one step.
 #[derive(Default)]
-pub(super) struct Moves {
+pub(crate) struct Moves {
     moves: Vec<Vec<f64>>,
     /// |s|² of each.
     squares: Vec<f64>,
@@ -20,12 +20,12 @@ pub(super) struct Moves {
 
 impl Moves {
     /// Forgets those of another step.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.used = 0;
     }
 
     /// Makes the next move of H⁻¹ r.
-    pub(super) fn next(&mut self, z: &mut [f64]) {
+    pub(crate) fn next(&mut self, z: &mut [f64]) {
         z.iter_mut().for_each(|z| *z = -*z);
         let used = self.used;
         for j in 0..used {

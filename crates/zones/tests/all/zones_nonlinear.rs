@@ -4,13 +4,18 @@ use carom_arlequin::{Row, trace};
 use carom_bodies::{BodySpec, Kinematics};
 use carom_dynamics::scheme::{CentralDifference, EnergyMomentum, Newmark, Theta};
 use carom_dynamics::{
-    Amplitude, Driver, LinkKind, Load, LoadKind, Model, ModelBody, ModelLink, ModelZone, Nonlinear,
-    Scheme, Support, System, Zoned, Zones, mortar_rows,
+    Amplitude, Driver, Load, LoadKind, Model, ModelBody, ModelLink, Nonlinear, Scheme, Support,
+    System,
 };
-use carom_materials::{J2Plasticity, Law, NeoHooke, StVenantKirchhoff};
+use carom_materials::{Elastic, J2Plasticity, Law, NeoHooke, StVenantKirchhoff};
 use carom_mesh::{ElementId, Mesh, Surface, generate};
+use carom_zones::{LinkKind, ModelZone, Zoned, Zones, mortar_rows};
 
-use crate::newton::SOFT;
+const SOFT: Elastic = Elastic {
+    density: 2.0,
+    young: 8.0,
+    poisson: 0.3,
+};
 
 const HALF: Scheme = Scheme::Theta(Theta { theta: 0.5 });
 const TRAPEZOID: Scheme = Scheme::Newmark(Newmark {

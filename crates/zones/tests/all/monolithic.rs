@@ -9,11 +9,11 @@ use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Newmark, Theta};
 use carom_dynamics::{
-    Driver, LinkKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget, ModelZone, Scheme,
-    State, Zoned, Zones, ZonesState,
+    Driver, Model, ModelBody, ModelContact, ModelLink, ModelTarget, Scheme, State,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
+use carom_zones::{LinkKind, ModelZone, Zoned, Zones, ZonesState};
 
 use crate::dense::{Dense, Matrix, Random, dot, error};
 

@@ -2,21 +2,21 @@
 
 use std::ops::Range;
 
-use super::{Sample, Zones};
-use crate::driver::Driver;
 use crate::error::Error;
-use crate::system::LinkRow;
+use crate::zones::{Sample, Zones};
+use carom_dynamics::Driver;
+use carom_system::LinkRow;
 
 /// Defect of a row at which it holds, as a part of the largest velocity.
 const TOLERANCE: f64 = 1e-12;
 
 /// Most passes over an outer step.
-pub(super) const MOST_PASSES: usize = 30;
+pub(crate) const MOST_PASSES: usize = 30;
 
 impl Zones {
     /// Whether the rows hold, or would after a change of the multipliers by rounding; corrects the multipliers `which`
     /// (0 pointwise, 1 of the outer step) if not.
-    pub(super) fn corrected(&mut self, which: usize) -> Result<bool, Error> {
+    pub(crate) fn corrected(&mut self, which: usize) -> Result<bool, Error> {
         let speed = self.speed();
         let rows = self.defect.iter().zip(&self.norms);
         let worst = rows.fold(0.0, |worst: f64, (d, n)| worst.max(d.abs() / n));
@@ -52,7 +52,7 @@ impl Zones {
         self.drivers.iter().map(of).fold(0.0, f64::max)
     }
 
-    pub(super) fn parted(&self) -> Error {
+    pub(crate) fn parted(&self) -> Error {
         let rows = self.defect.iter().zip(&self.norms);
         Error::Link {
             step: self.step + 1,
@@ -67,7 +67,7 @@ fn largest(values: &[f64]) -> f64 {
 }
 
 /// Adds the work of the links in the step of a zone just completed.
-pub(super) fn record(
+pub(crate) fn record(
     driver: &Driver,
     rows: &[(u32, LinkRow)],
     [now, last, _]: &mut [Vec<f64>; 3],
@@ -81,7 +81,7 @@ pub(super) fn record(
     last.copy_from_slice(now);
 }
 
-pub(super) fn sample(zone: usize, driver: &Driver, samples: &mut Vec<Sample>) {
+pub(crate) fn sample(zone: usize, driver: &Driver, samples: &mut Vec<Sample>) {
     let report = driver.report();
     samples.push(Sample {
         zone,

@@ -2,12 +2,13 @@
 
 use carom_algebra::dense::DenseCholesky;
 
-use super::{LinkKind, Zones};
-use crate::condensed::{Answer, Condensed, DENSE, Joined, Matrix};
-use crate::driver::linked::Growth;
 use crate::error::Error;
-use crate::operator::assembled;
-use crate::system::{LinkRow, System};
+use crate::model::LinkKind;
+use crate::zones::Zones;
+use carom_dynamics::condensed::{Answer, Condensed, DENSE, Joined, Matrix};
+use carom_dynamics::linked::Growth;
+use carom_dynamics::operator::assembled;
+use carom_system::{LinkRow, System};
 
 impl Zones {
     /// Makes the factor of H anew in the joined form, whatever the number of rows: to compare the two.
@@ -33,7 +34,7 @@ impl Zones {
     }
 
     /// Makes and factors H of the multipliers that a pass looks for.
-    pub(super) fn factorise(&mut self) -> Result<(), Error> {
+    pub(crate) fn factorise(&mut self) -> Result<(), Error> {
         let n = self.norms.len();
         let alike = self.substeps.iter().all(|m| *m == 1);
         if n > DENSE && alike {
@@ -63,13 +64,13 @@ impl Zones {
         }
         self.outer = outer;
         let factor = DenseCholesky::new(n, &h);
-        let factor = factor.map_err(|cause| Error::Redundant { rows: n, cause })?;
+        let factor = factor.map_err(|cause| carom_dynamics::Error::Redundant { rows: n, cause })?;
         self.factor = Some(Condensed::Dense(factor));
         Ok(())
     }
 
     /// Makes H anew if its origins are not those it was made from.
-    pub(super) fn renew_condensed(&mut self) -> Result<(), Error> {
+    pub(crate) fn renew_condensed(&mut self) -> Result<(), Error> {
         if std::mem::take(&mut self.stale) {
             self.factorise()?;
         }
@@ -78,7 +79,7 @@ impl Zones {
 }
 
 /// A zone in H, with A = `mass` M + `stiffness` K.
-pub(super) fn answer<'a>(
+pub(crate) fn answer<'a>(
     (system, rows): (&'a System, &[(u32, LinkRow)]),
     [mass, stiffness]: [f64; 2],
     scale: f64,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
-use crate::scheme::Scheme;
-use crate::system::{Model, ModelLink, NodalLoad, Nonlinear, System, sides};
+use carom_schemes::Scheme;
+use carom_system::{Model, ModelLink, NodalLoad, Nonlinear, System, sides};
 
 /// A group of bodies with its own scheme and step.
 #[derive(Clone, Debug)]
@@ -76,7 +76,7 @@ impl Zoned {
     }
 
     /// Zones of the two sides of a contact.
-    pub(super) fn zones_of(&self, contact: usize) -> [usize; 2] {
+    pub(crate) fn zones_of(&self, contact: usize) -> [usize; 2] {
         let zone_of = |body: usize| {
             let mut zones = self.zones.iter();
             let zone = zones.position(|zone| zone.bodies.contains(&body));
@@ -88,7 +88,7 @@ impl Zoned {
     }
 
     /// The contacts of each zone, without those between zones.
-    pub(super) fn contacts(&self) -> Vec<Vec<usize>> {
+    pub(crate) fn contacts(&self) -> Vec<Vec<usize>> {
         let mut of_zone = vec![Vec::new(); self.zones.len()];
         for k in 0..self.model.contacts.len() {
             let [one, other] = self.zones_of(k);
@@ -100,7 +100,7 @@ impl Zoned {
     }
 
     /// The contacts whose sides are in different zones.
-    pub(super) fn contacts_across(&self) -> Vec<usize> {
+    pub(crate) fn contacts_across(&self) -> Vec<usize> {
         let across = |k: &usize| {
             let [one, other] = self.zones_of(*k);
             one != other
@@ -109,7 +109,7 @@ impl Zoned {
     }
 
     /// The model of one zone with its own step.
-    pub(super) fn zone(&self, zone: usize, contacts: &[usize]) -> Model {
+    pub(crate) fn zone(&self, zone: usize, contacts: &[usize]) -> Model {
         let part = &self.zones[zone];
         let whole = &self.model;
         Model {

@@ -1,14 +1,14 @@
 //! An outer step whose multipliers hold the rows at every inner instant (Gravouil, Combescure 2001).
 
-use super::Zones;
-use super::passes::{MOST_PASSES, record, sample};
 use crate::error::Error;
-use crate::system::on;
+use crate::passes::{MOST_PASSES, record, sample};
+use crate::zones::Zones;
+use carom_system::on;
 
 impl Zones {
     /// Rows that hold at every inner instant, with the free velocities of the outer zones interpolated between their start
     /// and their end: `Σ_c C v_j + s_j + H_s L_j = 0`, `s_j = (1 - j/m) (C v - H_s L_0) + (j/m) C v_f`.
-    pub(super) fn step_pointwise(&mut self) -> Result<(), Error> {
+    pub(crate) fn step_pointwise(&mut self) -> Result<(), Error> {
         let n = self.norms.len();
         let [start, end] = &mut self.free;
         start.fill(0.0);

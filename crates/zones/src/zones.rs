@@ -1,49 +1,23 @@
-//! Zones: groups of bodies with their own scheme and step, which meet only in the multipliers of their links.
-//!
-//! A link gives rows `Σ C v = 0` between velocities of zones at the same instant, and its multipliers L act as `Cᵀ L`. The
-//! condensed problem of an outer step is `H ΔL = Σ C v`, with H the velocity that multipliers leave in the rows when
-//! nothing touches: made and factored once. Contact makes the answer of a zone nonlinear; the passes over the step with the
-//! same H end when the rows hold to rounding, in few passes where contacts are some elements away from the links.
-//!
-//! Sources: Gravouil, Combescure (2001); Prakash, Hjelmstad (2004); Ben Dhia et al. (2003), equations (11)-(12). The form
-//! for any pair of schemes with weights of the multipliers in time is this project's.
-
-mod between;
-mod model;
-mod moves;
-mod origin;
-mod passes;
-mod places;
-mod pointwise;
-mod refusals;
-mod response;
-mod start;
-mod step;
-mod tie;
-mod together;
-mod whole;
+//! The drivers of all zones and the links between them: what they hold, their state.
 
 use serde::{Deserialize, Serialize};
 
-use crate::condensed::Condensed;
-use crate::driver::Driver;
-use crate::driver::linked::Origin;
-use crate::ledger::Balance;
-use crate::report::ContactReport;
-use crate::state::State;
-use crate::system::LinkRow;
-use between::Between;
-pub use between::BetweenState;
-pub use model::{LinkKind, ModelZone, Zoned};
-use moves::Moves;
-pub use tie::mortar_rows;
-pub use whole::Whole;
+use crate::between::{Between, BetweenState};
+use crate::model::LinkKind;
+use crate::moves::Moves;
+use carom_dynamics::Balance;
+use carom_dynamics::ContactReport;
+use carom_dynamics::Driver;
+use carom_dynamics::condensed::Condensed;
+use carom_dynamics::linked::Origin;
+use carom_dynamics::state::State;
+use carom_system::LinkRow;
 
 /// The condensed problem of some numbers of inner steps.
-struct Kept {
-    substeps: Vec<u32>,
-    factor: Option<Condensed>,
-    outer: Vec<f64>,
+pub(crate) struct Kept {
+    pub(crate) substeps: Vec<u32>,
+    pub(crate) factor: Option<Condensed>,
+    pub(crate) outer: Vec<f64>,
 }
 
 /// What the contacts of a zone did at one of its instants.
@@ -84,53 +58,53 @@ pub struct ZonesState {
 
 /// The drivers of all zones, and the links between them.
 pub struct Zones {
-    drivers: Vec<Driver>,
+    pub(crate) drivers: Vec<Driver>,
     /// Inner steps of each zone to the outer step that is taken.
-    substeps: Vec<u32>,
+    pub(crate) substeps: Vec<u32>,
     /// The same where contacts may close, and where they cannot.
-    choices: [Vec<u32>; 2],
+    pub(crate) choices: [Vec<u32>; 2],
     /// Contacts of the model by zone.
-    contacts: Vec<Vec<usize>>,
+    pub(crate) contacts: Vec<Vec<usize>>,
     /// By zone, number of the row and its terms there.
-    rows: Vec<Vec<(u32, LinkRow)>>,
+    pub(crate) rows: Vec<Vec<(u32, LinkRow)>>,
     /// Contacts between zones.
-    between: Option<Between>,
+    pub(crate) between: Option<Between>,
     /// Σ |c| of each row.
-    norms: Vec<f64>,
+    pub(crate) norms: Vec<f64>,
     /// Range of the rows of each link.
-    links: Vec<(String, std::ops::Range<usize>)>,
-    kind: LinkKind,
-    dt: f64,
-    step: u64,
+    pub(crate) links: Vec<(String, std::ops::Range<usize>)>,
+    pub(crate) kind: LinkKind,
+    pub(crate) dt: f64,
+    pub(crate) step: u64,
     /// L at the start and at the end of the step.
-    multipliers: [Vec<f64>; 2],
+    pub(crate) multipliers: [Vec<f64>; 2],
     /// L one and two outer steps before the start of the step.
-    earlier: [Vec<f64>; 2],
+    pub(crate) earlier: [Vec<f64>; 2],
     /// H of the multipliers that a pass looks for.
-    factor: Option<Condensed>,
+    pub(crate) factor: Option<Condensed>,
     /// Where the zones were linearised for H, and whether H is to be made anew.
-    origins: Vec<Origin>,
-    stale: bool,
+    pub(crate) origins: Vec<Origin>,
+    pub(crate) stale: bool,
     /// Part of H of the zones with one step, row-major: for pointwise multipliers.
-    outer: Vec<f64>,
+    pub(crate) outer: Vec<f64>,
     /// Both for other numbers of inner steps.
-    kept: Vec<Kept>,
-    saved: Vec<Option<State>>,
-    samples: Vec<Sample>,
+    pub(crate) kept: Vec<Kept>,
+    pub(crate) saved: Vec<Option<State>>,
+    pub(crate) samples: Vec<Sample>,
     /// Passes of the last step, over all steps, and factorisations of H.
-    passes: usize,
-    all_passes: u64,
-    defect: Vec<f64>,
-    free: [Vec<f64>; 2],
-    pointwise: [Vec<f64>; 2],
+    pub(crate) passes: usize,
+    pub(crate) all_passes: u64,
+    pub(crate) defect: Vec<f64>,
+    pub(crate) free: [Vec<f64>; 2],
+    pub(crate) pointwise: [Vec<f64>; 2],
     /// Λ of each zone in the step that it takes, in its last one, and in its last one before the outer step.
-    mixes: Vec<[Vec<f64>; 3]>,
+    pub(crate) mixes: Vec<[Vec<f64>; 3]>,
     /// Moves of the multipliers in the passes so far.
-    moves: Moves,
+    pub(crate) moves: Moves,
     /// Work of each link on both its sides in the outer step, and before it, J.
-    works: [Vec<f64>; 2],
+    pub(crate) works: [Vec<f64>; 2],
     /// Every which outer step is dropped once, in tests.
-    forced: Option<u64>,
+    pub(crate) forced: Option<u64>,
 }
 
 impl Zones {

@@ -3,15 +3,15 @@
 //! H only steers the passes; what they end at does not depend on it. It is made anew, where the zones are, after a step
 //! that took many passes: after a large rotation, or where a zone has yielded.
 
-use super::Zones;
-use crate::driver::linked::Origin;
+use crate::zones::Zones;
+use carom_dynamics::linked::Origin;
 
 /// Passes of a step after which H is made anew.
 const MANY: usize = 8;
 
 impl Zones {
     /// Takes the present states as origins if the step just accepted took many passes and they are new.
-    pub(super) fn judge_origins(&mut self) {
+    pub(crate) fn judge_origins(&mut self) {
         if self.passes <= MANY {
             return;
         }
@@ -22,7 +22,7 @@ impl Zones {
     }
 
     /// Makes these the origins of H from the next step on.
-    pub(super) fn start_from(&mut self, origins: Vec<Origin>) {
+    pub(crate) fn start_from(&mut self, origins: Vec<Origin>) {
         self.origins = origins;
         self.kept.clear();
         self.stale = true;

@@ -4,16 +4,17 @@ use std::sync::Arc;
 
 use carom_algebra::dense::DenseCholesky;
 
-use super::between::Between;
-use super::moves::Moves;
-use super::response::answer;
-use super::{Zoned, Zones};
-use crate::condensed::{Answer, Condensed, DENSE, Joined};
-use crate::driver::Driver;
-use crate::driver::linked::Origin;
+use crate::between::Between;
 use crate::error::Error;
-use crate::operator::Operators;
-use crate::system::{LinkRow, System, on};
+use crate::model::Zoned;
+use crate::moves::Moves;
+use crate::response::answer;
+use crate::zones::Zones;
+use carom_dynamics::Driver;
+use carom_dynamics::condensed::{Answer, Condensed, DENSE, Joined};
+use carom_dynamics::linked::Origin;
+use carom_dynamics::operator::Operators;
+use carom_system::{LinkRow, System, on};
 
 impl Zones {
     /// Builds the zones, makes and factors H, and starts them: initial velocities become the closest ones, in the norm of the
@@ -42,7 +43,7 @@ impl Zones {
         let mut drivers = systems
             .iter()
             .map(|system| Driver::new(Arc::clone(system)))
-            .collect::<Result<Vec<_>, Error>>()?;
+            .collect::<Result<Vec<_>, carom_dynamics::Error>>()?;
         let between = Between::new(zoned, &drivers)?;
         if between.is_some() {
             make_room(&mut drivers)?;
@@ -180,7 +181,7 @@ fn start(
     let masses = drivers
         .iter()
         .map(|driver| Operators::new(driver.system(), 1.0, 0.0, "mass matrix"))
-        .collect::<Result<Vec<_>, Error>>()?;
+        .collect::<Result<Vec<_>, carom_dynamics::Error>>()?;
     let mut mass = MassLinks { masses, rows };
     let mut factor = mass.factor(drivers, count)?;
     // velocities
@@ -299,7 +300,8 @@ impl MassLinks<'_> {
             }
         }
         let factor = DenseCholesky::new(count, &matrix);
-        let factor = factor.map_err(|cause| Error::Redundant { rows: count, cause })?;
+        let factor =
+            factor.map_err(|cause| carom_dynamics::Error::Redundant { rows: count, cause })?;
         Ok(Condensed::Dense(factor))
     }
 }

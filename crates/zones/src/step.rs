@@ -1,9 +1,10 @@
 //! An outer step: how many inner steps the zones take, the passes over it, and what it leaves.
 
-use super::passes::{MOST_PASSES, record, sample};
-use super::{Kept, LinkKind, Zones};
 use crate::error::Error;
-use crate::system::on;
+use crate::model::LinkKind;
+use crate::passes::{MOST_PASSES, record, sample};
+use crate::zones::{Kept, Zones};
+use carom_system::on;
 
 impl Zones {
     /// Takes one outer step.

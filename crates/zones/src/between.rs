@@ -11,18 +11,18 @@ use carom_contact::law::{Local, Status};
 use carom_contact::{Pairing, Search};
 use serde::{Deserialize, Serialize};
 
-use super::model::{ModelZone, Zoned};
-use super::places::Places;
-use crate::driver::Driver;
-use crate::driver::linked::{Growth, Origin};
-use crate::driver::record::contact_report;
 use crate::error::Error;
-use crate::interface::{Candidate, Interface};
-use crate::records::{Records, Step};
-use crate::report::ContactReport;
-use crate::state::{InterfaceState, empty_state};
-use crate::step_map::Impulse;
-use crate::system::{LinkRow, System, on};
+use crate::model::{ModelZone, Zoned};
+use crate::places::Places;
+use carom_dynamics::ContactReport;
+use carom_dynamics::Driver;
+use carom_dynamics::contact_report;
+use carom_dynamics::linked::{Growth, Origin};
+use carom_dynamics::records::{Records, Step};
+use carom_dynamics::state::{InterfaceState, empty_state};
+use carom_nonsmooth::interface::{Candidate, Interface};
+use carom_schemes::step_map::Impulse;
+use carom_system::{LinkRow, System, on};
 
 /// Change of the forces over the largest at which the passes end.
 const TOLERANCE: f64 = 1e-12;
@@ -39,17 +39,17 @@ pub struct BetweenState {
 }
 
 /// Contacts between zones.
-pub(super) struct Between {
+pub(crate) struct Between {
     /// All of the model.
     system: Arc<System>,
     /// Contacts whose sides are in different zones.
-    pub(super) contacts: Vec<usize>,
+    pub(crate) contacts: Vec<usize>,
     /// Zone of each unknown of the whole, and its number there.
     homes: Vec<(usize, u32)>,
     places: Vec<Places>,
     search: Vec<Search>,
     initial: Vec<Pairing>,
-    pub(super) pairing: Pairing,
+    pub(crate) pairing: Pairing,
     /// Points that may carry a force in the step.
     candidates: Vec<u32>,
     /// Their forces in this pass, N.
@@ -65,9 +65,9 @@ pub(super) struct Between {
     data: Vec<Candidate>,
     u: Vec<f64>,
     v: Vec<f64>,
-    pub(super) state: BetweenState,
+    pub(crate) state: BetweenState,
     /// What the contacts of the model did in the last outer step.
-    pub(super) reports: Vec<ContactReport>,
+    pub(crate) reports: Vec<ContactReport>,
     /// Works of the step, by contact of the model, J.
     now: Vec<f64>,
 }
@@ -77,7 +77,7 @@ impl Between {
     ///
     /// # Errors
     /// A contact that zones of unequal steps cannot have.
-    pub(super) fn new(zoned: &Zoned, drivers: &[Driver]) -> Result<Option<Between>, Error> {
+    pub(crate) fn new(zoned: &Zoned, drivers: &[Driver]) -> Result<Option<Between>, Error> {
         let contacts = zoned.contacts_across();
         if contacts.is_empty() {
             return Ok(None);
@@ -166,7 +166,7 @@ impl Between {
     }
 
     /// Pairs and lists the candidates of an outer step, with the forces of the last one.
-    pub(super) fn begin(&mut self, drivers: &[Driver], span: (f64, f64)) {
+    pub(crate) fn begin(&mut self, drivers: &[Driver], span: (f64, f64)) {
         self.pair(drivers, span);
         let (system, dt) = (Arc::clone(&self.system), span.1);
         self.candidates.clear();
@@ -207,7 +207,7 @@ impl Between {
     ///
     /// # Errors
     /// An effective matrix that is not positive definite.
-    pub(super) fn respond(
+    pub(crate) fn respond(
         &mut self,
         drivers: &mut [Driver],
         substeps: &[u32],
@@ -244,19 +244,19 @@ impl Between {
     }
 
     /// Begins a pass.
-    pub(super) fn begin_pass(&mut self) {
+    pub(crate) fn begin_pass(&mut self) {
         self.rates.clear();
         self.rates.resize(self.candidates.len(), 0.0);
         self.now.fill(0.0);
     }
 
     /// Adds the forces of this pass to those on a zone, N.
-    pub(super) fn push(&self, zone: usize, driver: &mut Driver) {
+    pub(crate) fn push(&self, zone: usize, driver: &mut Driver) {
         driver.add_link_rows(&self.rows[zone], &self.forces);
     }
 
     /// Adds the work of the forces in a step of a zone just completed.
-    pub(super) fn record(&mut self, zone: usize, driver: &Driver) {
+    pub(crate) fn record(&mut self, zone: usize, driver: &Driver) {
         for (row, terms) in &self.rows[zone] {
             let force = self.forces[*row as usize];
             if force != 0.0 {
@@ -269,7 +269,7 @@ impl Between {
     }
 
     /// Adds the rates that a zone ends the outer step with.
-    pub(super) fn look(&mut self, zone: usize, v: &[f64]) {
+    pub(crate) fn look(&mut self, zone: usize, v: &[f64]) {
         for (row, terms) in &self.rows[zone] {
             self.rates[*row as usize] += on(terms, v);
         }
@@ -279,7 +279,7 @@ impl Between {
     ///
     /// # Errors
     /// A contact problem without solution.
-    pub(super) fn corrected(&mut self, (step, dt): (u64, f64)) -> Result<bool, Error> {
+    pub(crate) fn corrected(&mut self, (step, dt): (u64, f64)) -> Result<bool, Error> {
         let n = self.candidates.len();
         if n == 0 {
             return Ok(true);
@@ -337,7 +337,7 @@ impl Between {
     }
 
     /// Makes the forces those of the state at the end of an outer step of `dt` (both s).
-    pub(super) fn accept(&mut self, drivers: &[Driver], (end, dt): (f64, f64)) {
+    pub(crate) fn accept(&mut self, drivers: &[Driver], (end, dt): (f64, f64)) {
         let (before, v) = (self.state.interface.clone(), self.v.clone());
         let interface = &mut self.state.interface;
         for &contact in &self.contacts {
@@ -385,7 +385,7 @@ impl Between {
     }
 
     /// Gaps and rates at the present instant, s.
-    pub(super) fn tell(&mut self, drivers: &[Driver], time: f64) {
+    pub(crate) fn tell(&mut self, drivers: &[Driver], time: f64) {
         self.pair(drivers, (time, 0.0));
         let rows = &self.pairing.rows;
         let interface = &mut self.state.interface;
@@ -398,7 +398,7 @@ impl Between {
     }
 
     /// Forgets the forces and works so far.
-    pub(super) fn restart(&mut self, drivers: &[Driver]) {
+    pub(crate) fn restart(&mut self, drivers: &[Driver]) {
         self.state.interface = empty_state(&self.system).interface;
         self.state.works.fill(0.0);
         self.state.records = Records::of(&self.system);
@@ -410,7 +410,7 @@ impl Between {
     }
 
     /// Whether a point carries a force or may do so within `dt` (s), at twice its present rate.
-    pub(super) fn may_touch(&self, dt: f64) -> bool {
+    pub(crate) fn may_touch(&self, dt: f64) -> bool {
         let (interface, tolerance) = (&self.state.interface, self.system.tolerance);
         let touches = |point: usize| {
             let near = interface.gap[point] + 2.0 * dt * interface.rate[point].min(0.0);

@@ -1,0 +1,90 @@
+//! Why zones could not be built or an outer step not be taken.
+
+use thiserror::Error as ThisError;
+
+/// Errors of this crate.
+#[derive(Debug, ThisError)]
+pub enum Error {
+    /// A driver of a zone failed, or the links of all.
+    #[error(transparent)]
+    Dynamics(#[from] carom_dynamics::Error),
+    /// A model that no system is built from.
+    #[error(transparent)]
+    System(#[from] carom_system::Error),
+    /// A zone that could not be built.
+    #[error("zone '{zone}': {cause}")]
+    Zone {
+        /// Name of the zone.
+        zone: String,
+        /// Cause.
+        cause: Box<carom_dynamics::Error>,
+    },
+    /// A contact whose sides are in different zones.
+    #[error(
+        "contact '{contact}': its two sides are in the zones '{one}' and '{other}', which step apart: {cause}"
+    )]
+    AcrossZones {
+        /// Name of the contact.
+        contact: String,
+        /// Zone of the secondary side.
+        one: String,
+        /// Zone of the primary side.
+        other: String,
+        /// Why this contact cannot be between them.
+        cause: &'static str,
+    },
+    /// A contact between zones without solution.
+    #[error("step {step}, contact '{contact}' between zones: {cause}")]
+    Between {
+        /// Number of the outer step.
+        step: u64,
+        /// Name of the contact.
+        contact: String,
+        /// Cause.
+        cause: carom_nonsmooth::interface::Failure,
+    },
+    /// Numbers of inner steps that do not go together.
+    #[error("zone '{zone}' takes {found} steps per outer step: {accepted}")]
+    Substeps {
+        /// Name of the zone.
+        zone: String,
+        /// Steps given.
+        found: u32,
+        /// What would do.
+        accepted: &'static str,
+    },
+    /// Multipliers of links that were not found.
+    #[error(
+        "step {step}: the velocities of the zones still differ by {defect:e} m/s at a link after {passes} passes"
+    )]
+    Link {
+        /// Number of the outer step.
+        step: u64,
+        /// Passes made.
+        passes: usize,
+        /// Largest defect of a row per sum of its coefficients, m/s.
+        defect: f64,
+    },
+    /// Beams in a model with zones.
+    #[error("body '{body}': beams are not available in zones")]
+    BeamInZones {
+        /// Name of the body.
+        body: String,
+    },
+    /// Discrete elements in a model with zones.
+    #[error("`{element}`: point masses, springs and dashpots are not available in zones")]
+    DiscreteInZones {
+        /// Name of the element.
+        element: String,
+    },
+}
+
+impl From<Error> for carom_dynamics::Error {
+    fn from(error: Error) -> carom_dynamics::Error {
+        match error {
+            Error::Dynamics(error) => error,
+            Error::System(error) => error.into(),
+            own => carom_dynamics::Error::Stepper(Box::new(own)),
+        }
+    }
+}

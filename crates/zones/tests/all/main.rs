@@ -1,0 +1,13 @@
+//! Facts about steps of zones that need no exact solution.
+
+// Helpers of tests panic as the tests themselves do.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod allocation;
+mod dense;
+mod monolithic;
+mod whole;
+mod zones_nonlinear;
+
+#[global_allocator]
+static COUNTER: carom_testing::Counter = carom_testing::Counter;
