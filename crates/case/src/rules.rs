@@ -21,6 +21,11 @@ pub(crate) fn check(case: &Case) -> Vec<Problem> {
     for (name, contact) in case.contact.iter() {
         check_contact(&format!("contact.{name}"), contact, &mut problems);
     }
+    for (name, stop) in case.stop.iter() {
+        if let Some(obstacle) = &stop.obstacle {
+            check_vectors(&format!("stop.{name}"), obstacle, &mut problems);
+        }
+    }
     for (name, load) in case.load.iter() {
         let everywhere = load.acceleration.is_some() || load.base_acceleration.is_some();
         if let Some(on) = load.on.as_ref().filter(|_| everywhere) {
@@ -143,21 +148,21 @@ fn check_contact(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
             "`self = true` in its place",
         ]));
     }
-    check_vectors(path, contact, problems);
+    if let Some(obstacle) = &contact.obstacle {
+        check_vectors(path, obstacle, problems);
+    }
     check_capture(path, &contact.law, problems);
     check_r(path, contact, problems);
 }
 
 /// Normals and axes of no length.
-fn check_vectors(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
-    let Some(obstacle) = &contact.obstacle else {
-        return;
-    };
+fn check_vectors(path: &str, obstacle: &Obstacle, problems: &mut Vec<Problem>) {
     let (shape, vector, motion) = match obstacle {
         Obstacle::Plane(plane) => ("plane", Some(("normal", &plane.normal)), &plane.motion),
         Obstacle::Sphere(sphere) => ("sphere", None, &sphere.motion),
         Obstacle::Cylinder(round) => ("cylinder", Some(("axis", &round.axis)), &round.motion),
         Obstacle::Surface(surface) => ("surface", None, &surface.motion),
+        Obstacle::Profile(round) => ("profile", Some(("axis", &round.axis)), &round.motion),
     };
     let turn = motion.as_ref().and_then(|motion| motion.turn.as_ref());
     let turn = turn.map(|turn| ("motion.turn.axis", &turn.axis));

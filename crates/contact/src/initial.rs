@@ -19,6 +19,8 @@ pub enum Initial {
     Remove,
     /// All gaps are this one (m) in the reference position, wherever the surfaces are: a clearance that the mesh does not show.
     Gap(f64),
+    /// All gaps are larger by this (m) than the surfaces say.
+    Further(f64),
 }
 
 /// A point that penetrates.
@@ -70,6 +72,14 @@ impl Contact {
             normal: rows.normal(point),
         });
         self.offset_all(found.collect());
+    }
+
+    /// Makes all gaps larger by `distance` (m).
+    pub fn offset_by(&mut self, distance: f64) {
+        self.offsets.resize(self.points.len(), 0.0);
+        for offset in &mut self.offsets {
+            *offset += distance;
+        }
     }
 
     fn offset_all(&mut self, found: Vec<Penetration>) {

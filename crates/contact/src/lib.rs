@@ -24,8 +24,8 @@ pub use contact::{Contact, Integration, Sliding, Target};
 pub use initial::{Initial, Penetration};
 pub use mortar::{Basis, Mortar};
 pub use obstacle::{
-    Cylinder, Distance, Motion, Obstacle, Placed, Plane, RigidSurface, Shape, Side, Sphere,
-    Translation, Turn,
+    Cylinder, Distance, Motion, Obstacle, Placed, Plane, Profile, RigidSurface, Shape, Side,
+    Sphere, Translation, Turn,
 };
 pub use pairing::{Pairing, Tie};
 pub use places::{Balance, Frames, Places};

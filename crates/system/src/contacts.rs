@@ -1,6 +1,7 @@
 //! Contacts in the numbers of a system: bodies of each side, points, and which law may hold where.
 
 use carom_bodies::Kinematics;
+use carom_contact::law::Level;
 use carom_contact::{Contact, Integration, Mortar, Point, Sight, Target};
 use carom_mesh::{ElementId, Face, Mesh, Surface};
 
@@ -20,7 +21,9 @@ impl System {
     }
 
     /// Whether a contact of finite sliding is paired where the iterations of a dynamic step are: the geometry of bodies at small strain
-    /// without friction is that in which the step captures it.
+    /// without friction is that in which the step captures it. A stop or another law with a compliance on an obstacle is no such
+    /// contact: its force belongs to the instant of the internal forces, and with the normal of another instant a mass in orbit in a
+    /// bore would gain or lose angular momentum in each step, in proportion to the step.
     pub fn pairs_anew(&self, contact: usize) -> bool {
         let (secondary, primary) = self.sides[contact];
         let sides = [Some(secondary), primary];
@@ -28,7 +31,9 @@ impl System {
         let finite = sides.any(|body| !self.bodies[body].is_linear());
         let contact = (&self.contacts[contact], self.friction[contact]);
         let mortar = matches!(contact.0.integration, Integration::Mortar { .. });
-        finite || mortar || contact.0.moves() || contact.1 > 0.0
+        let compliant = contact.0.law.get().level() == Level::GapAndRate;
+        let round = matches!(contact.0.target, Target::Rigid(_)) && contact.0.turns();
+        finite || mortar || contact.0.moves() || contact.1 > 0.0 || compliant && round
     }
 
     /// Refuses laws that cannot hold where they are asked to.

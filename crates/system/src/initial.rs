@@ -139,6 +139,7 @@ pub(crate) fn settle(
                 contact.offset_touching(places, slack);
             }
             Initial::Offset => contact.offset_penetrations(places, slack),
+            Initial::Further(distance) => contact.offset_by(distance),
             Initial::Gap(gap) => {
                 let at_rest = vec![0.0; places.u.len()];
                 let reference = Places {

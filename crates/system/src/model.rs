@@ -102,7 +102,7 @@ impl Model {
         }
         let norm = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let gaps = self.contacts.iter().map(|contact| match contact.initial {
-            Initial::Gap(gap) => gap.abs(),
+            Initial::Gap(gap) | Initial::Further(gap) => gap.abs(),
             _ => 0.0,
         });
         let discrete = self.discrete.iter().flat_map(|some| {

@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Vec3;
 use carom_algebra::unknowns::{Carrier, Kind, NodeKind, Unknowns};
-use carom_bodies::{Body, Kinematics};
+use carom_bodies::{Body, DiscreteKind, Kinematics};
 use carom_contact::{Contact, Frames, Places, Sliding};
 
 use crate::error::Error;
-use crate::model::{Model, ModelBody};
+use crate::model::{Model, ModelBody, ModelDiscrete};
 use crate::motion::Motion;
 use crate::refused::Refused;
 use crate::system::System;
@@ -59,6 +59,9 @@ pub(crate) fn unknowns(
             }
         }
     }
+    for node in turned_by_masses(model) {
+        kinds[number[node as usize] as usize] = NodeKind::SmallRotations;
+    }
     let mut frames = Vec::new();
     for (body, centre) in model.bodies.iter().zip(centres) {
         let (Some(rigid), Some(centre)) = (body.rigid, *centre) else {
@@ -86,6 +89,25 @@ pub(crate) fn unknowns(
     frames.sort_unstable_by_key(|(node, _)| *node);
     let frames = frames.into_iter().map(|(_, frame)| frame).collect();
     Ok((Unknowns::new(model.mesh.dim, kinds), frames))
+}
+
+/// Nodes of point masses with moments of inertia that no body has: their rotations are theirs alone.
+fn turned_by_masses(model: &Model) -> BTreeSet<u32> {
+    let has_inertia = |some: &&ModelDiscrete| match &some.spec.kind {
+        DiscreteKind::Mass(point) => point.inertia != [0.0; 3],
+        DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) => false,
+    };
+    let masses = model.discrete.iter().filter(has_inertia);
+    let cells = masses.flat_map(|some| &some.spec.cells);
+    let nodes: BTreeSet<u32> = cells
+        .flat_map(|&cell| model.mesh.element_nodes(cell))
+        .copied()
+        .collect();
+    if nodes.is_empty() {
+        return nodes;
+    }
+    let of_bodies = model.bodies.iter().flat_map(|body| nodes_of(model, body));
+    nodes.difference(&of_bodies.collect()).copied().collect()
 }
 
 fn nodes_of(model: &Model, body: &ModelBody) -> BTreeSet<u32> {

@@ -82,6 +82,7 @@ mod knocking_oscillators;
 pub mod long_run;
 mod mass_on_stop;
 mod oblique_bar;
+mod orbiting_mass;
 mod order;
 mod order_features;
 mod quadrature;
@@ -96,6 +97,7 @@ mod rigid_sphere;
 mod rigid_top;
 mod ring_sector;
 pub mod rings;
+mod rubbing_stops;
 mod sdnl111;
 mod sdnl111_bars;
 mod self_contact;
@@ -199,6 +201,7 @@ registry! {
     long_run
     mass_on_stop
     oblique_bar
+    orbiting_mass
     order
     order_features
     quadrature
@@ -213,6 +216,7 @@ registry! {
     rigid_top
     ring_sector
     rings
+    rubbing_stops
     sdnl111
     sdnl111_bars
     self_contact

@@ -1,8 +1,8 @@
 //! Models of point masses, springs and stops.
 
-use carom_bodies::{Curve, DiscreteKind, DiscreteSpec, Link};
+use carom_bodies::{Curve, DiscreteKind, DiscreteSpec, Link, PointMass};
 use carom_contact::law::{Adhesion, Crush, Curve as StopCurve, Stop};
-use carom_contact::{Initial, Law, Plane};
+use carom_contact::{Initial, Law, Obstacle, Plane, Sliding};
 use carom_dynamics::{Model, ModelContact, ModelDiscrete, ModelTarget, Scheme, State};
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Mesh, Surface};
@@ -40,6 +40,18 @@ impl Points {
             ..self.made("mass", cell, DiscreteKind::Mass(mass.into()))
         });
         (node, cell)
+    }
+
+    /// A disc in the plane at rest, with its mass (kg) and moment of inertia (kg m²).
+    pub(crate) fn disc(&mut self, [mass, inertia]: [f64; 2], at: [f64; 3]) -> Point {
+        let point = self.mass(mass, at, [[0.0; 3]; 2]);
+        if let Some(made) = self.discrete.last_mut() {
+            made.spec.kind = DiscreteKind::Mass(PointMass {
+                mass,
+                inertia: [0.0, 0.0, inertia],
+            });
+        }
+        point
     }
 
     /// A spring between a mass and the ground along an axis.
@@ -94,18 +106,42 @@ impl Points {
                 normal: back,
             }),
         };
-        let law = Law::Stop(Stop {
-            clearance: 0.0,
-            curve: StopCurve::new(&[[1.0, stiffness]])?,
-            crush: Crush::Recovered,
-            damping,
-            adhesion: Adhesion::Clip,
-        });
+        let law = spring_stop(stiffness, damping)?;
         self.contacts.push(ModelContact {
             initial: Initial::Gap(gap),
             ..ModelContact::new("stop", Surface::of_points(&[one], axis), target, law)
         });
         Ok(())
+    }
+
+    /// Friction of the stop made last, and the radii (m) of the sections of its ends.
+    pub(crate) fn rub(&mut self, friction: f64, radii: [f64; 2]) {
+        if let Some(stop) = self.contacts.last_mut() {
+            stop.friction = friction;
+            stop.secondary = around(stop.secondary.clone(), radii[0]);
+            if let ModelTarget::Surface(primary) = &stop.primary {
+                stop.primary = ModelTarget::Surface(around(primary.clone(), radii[1]));
+            }
+        }
+    }
+
+    /// A mass in front of a rigid obstacle, with the radius (m) of its section.
+    pub(crate) fn in_front_of(
+        &mut self,
+        one: Point,
+        (obstacle, radius): (Obstacle, f64),
+        law: Law,
+    ) {
+        let target = ModelTarget::Rigid(obstacle);
+        self.contacts.push(ModelContact {
+            sliding: Sliding::Finite,
+            ..ModelContact::new(
+                "bore",
+                around(Surface::of_points(&[one], [0.0; 3]), radius),
+                target,
+                law,
+            )
+        });
     }
 
     /// Contact of a mass by any law.
@@ -123,6 +159,25 @@ impl Points {
             ..Model::new(Vec::new(), self.mesh, scheme, dt)
         }
     }
+}
+
+/// Points with the surface of a section (radius in m) around them.
+fn around(mut surface: Surface, radius: f64) -> Surface {
+    for face in &mut surface.faces {
+        face.radius = Some(radius);
+    }
+    surface
+}
+
+/// The law of a stop of stiffness (N/m) and damping (N s/m).
+pub(crate) fn spring_stop(stiffness: f64, damping: f64) -> Result<Law, Error> {
+    Ok(Law::Stop(Stop {
+        clearance: 0.0,
+        curve: StopCurve::new(&[[1.0, stiffness]])?,
+        crush: Crush::Recovered,
+        damping,
+        adhesion: Adhesion::Clip,
+    }))
 }
 
 /// What the balances leave, over the largest energy and over the largest momentum or `scale` (N s), if that is more: round-off

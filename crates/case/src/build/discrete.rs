@@ -1,23 +1,23 @@
-//! Point masses, springs, dashpots and stops, at nodes of the mesh or at nodes of their own.
+//! Point masses, springs and dashpots, at nodes of the mesh or at nodes of their own.
 
 use carom_bodies::{self as bodies, Curve, CurveError, DiscreteKind, DiscreteSpec, Link};
-use carom_contact::law::{Capture, CurvePoint, Defaults, GivenStop, Side};
-use carom_contact::{Initial, Law, Plane};
-use carom_dynamics::{ModelBody, ModelContact, ModelDiscrete, ModelTarget};
+use carom_contact::Law;
+use carom_dynamics::ModelDiscrete;
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Group, Mesh, Surface};
 
 use super::builder::{Builder, plural};
-use super::laws::no_curve;
 use crate::error::Problem;
-use crate::schema::{Ends, Force, Length, NormalVector, PointMass, Stop};
+use crate::schema::{Ends, NormalVector, PointMass};
 
 /// The end that does not move.
 const GROUND: &str = "ground";
 
 /// An end of a discrete element.
-enum End {
+pub(super) enum End {
+    /// What does not move.
     Ground,
+    /// Nodes of the mesh.
     Nodes(Vec<u32>),
 }
 
@@ -166,7 +166,7 @@ impl Builder<'_> {
     }
 
     /// The nodes of two ends: one each, or any number against the ground.
-    fn ends(&mut self, mesh: &Mesh, path: &str, names: &Ends) -> Option<[End; 2]> {
+    pub(super) fn ends(&mut self, mesh: &Mesh, path: &str, names: &Ends) -> Option<[End; 2]> {
         let path = format!("{path}.ends");
         let mut end = |k: usize| match names[k].as_str() {
             GROUND => Some(End::Ground),
@@ -241,100 +241,6 @@ impl Builder<'_> {
         sound
     }
 
-    /// The stops: contacts of one point.
-    pub(super) fn stops(
-        &mut self,
-        mesh: &Mesh,
-        bodies: &[ModelBody],
-        discrete: &[ModelDiscrete],
-    ) -> Vec<ModelContact> {
-        let mut stops = Vec::new();
-        for (name, stop) in self.case.stop.iter() {
-            let path = format!("stop.{name}");
-            if self.case.contact.get(name).is_some() {
-                let problem = Problem::new(&path, "a contact has this name").found(name);
-                self.problems.push(problem.accepted(["another name"]));
-                continue;
-            }
-            let axis = self.normal(mesh, &format!("{path}.axis"), &stop.axis);
-            let ends = self.ends(mesh, &path, &stop.ends);
-            let law = self.stop_law(&path, stop);
-            let (Some(axis), Some(ends), Some(law)) = (axis, ends, law) else {
-                continue;
-            };
-            let back = axis.map(|n| -n);
-            let (one, other, axis): (Vec<u32>, Option<Vec<u32>>, [f64; 3]) = match ends {
-                [End::Nodes(one), End::Nodes(other)] => (one, Some(other), axis),
-                [End::Nodes(one), End::Ground] => (one, None, axis),
-                [End::Ground, End::Nodes(one)] => (one, None, back),
-                [End::Ground, End::Ground] => continue,
-            };
-            let surface = |nodes: &[u32], axis: [f64; 3]| {
-                let owned = |&node: &u32| Some((node, owner(mesh, bodies, discrete, node)?));
-                let points: Option<Vec<(u32, ElementId)>> = nodes.iter().map(owned).collect();
-                Some(Surface::of_points(&points?, axis))
-            };
-            let outward = axis.map(|n| -n);
-            let secondary = surface(&one[..1], axis).filter(|_| one.len() == 1);
-            let primary = match &other {
-                Some(other) => surface(other, outward).map(ModelTarget::Surface),
-                None => Some(ModelTarget::rigid(Plane {
-                    point: mesh.nodes[one[0] as usize],
-                    normal: outward,
-                })),
-            };
-            let (Some(secondary), Some(primary)) = (secondary, primary) else {
-                let message = "an end of the stop is not one node with a mass";
-                let problem = Problem::new(format!("{path}.ends"), message);
-                let accepted = "nodes of bodies or of masses, one at each end, or `ground`";
-                self.problems.push(problem.accepted([accepted]));
-                continue;
-            };
-            stops.push(ModelContact {
-                initial: Initial::Gap(stop.gap.map_or(0.0, |gap| gap.0)),
-                ..ModelContact::new(name, secondary, primary, law)
-            });
-        }
-        if let (Some(stop), false) = (stops.first(), self.plan.steps_are_equal()) {
-            let message = "stops are not available in zones of unequal steps";
-            let problem = Problem::new(format!("stop.{}", stop.name), message);
-            self.problems
-                .push(problem.accepted(["substeps = 1", "a case without zones"]));
-        }
-        stops
-    }
-
-    fn stop_law(&mut self, path: &str, stop: &Stop) -> Option<Law> {
-        let curve = match (stop.stiffness, &stop.curve) {
-            // a line: one metre, and its force
-            (Some(stiffness), _) => vec![CurvePoint {
-                penetration: Length(1.0),
-                force: Force(stiffness.0),
-            }],
-            (None, Some(points)) => points.clone(),
-            (None, None) => return None,
-        };
-        let given = GivenStop {
-            clearance: None,
-            curve,
-            crush: stop.crush,
-            damping: stop.damping,
-            adhesion: stop.adhesion,
-        };
-        // nothing of a stop has a default from the sides
-        let defaults = Defaults {
-            capture: Capture::Now,
-            softer: Side::default(),
-        };
-        match given.law(&defaults) {
-            Ok(law) => Some(Law::Stop(law)),
-            Err(error) => {
-                self.problems.push(no_curve(path, &error));
-                None
-            }
-        }
-    }
-
     /// The surface of a mass with a node of its own, if `name` is one.
     pub(super) fn mass_surface(&self, mesh: &Mesh, name: &str) -> Option<Surface> {
         self.case.mass.get(name).filter(|mass| mass.at.is_some())?;
@@ -381,20 +287,4 @@ pub(super) fn kind_name(kind: &DiscreteKind) -> &'static str {
 fn points(mesh: &mut Mesh, nodes: &[u32]) -> Vec<ElementId> {
     let point = |&node: &u32| mesh.push(Kind::Point1, &[node]);
     nodes.iter().map(point).collect()
-}
-
-/// A cell with a node, of a body or else of a mass.
-fn owner(
-    mesh: &Mesh,
-    bodies: &[ModelBody],
-    discrete: &[ModelDiscrete],
-    node: u32,
-) -> Option<ElementId> {
-    let solids = bodies.iter().map(|body| &body.spec.cells);
-    let masses = discrete
-        .iter()
-        .filter(|some| matches!(some.spec.kind, DiscreteKind::Mass(_)));
-    let masses = masses.map(|some| &some.spec.cells);
-    let has = |cell: &&ElementId| mesh.element_nodes(**cell).contains(&node);
-    solids.chain(masses).flatten().find(has).copied()
 }

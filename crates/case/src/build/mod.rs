@@ -19,10 +19,12 @@ mod penetration;
 mod pieces;
 mod plan;
 mod probes;
+mod profiles;
 mod reference;
 mod refused;
 mod rigid;
 mod signals;
+mod stops;
 mod supports;
 mod surfaces;
 mod ties;
@@ -136,8 +138,8 @@ impl Builder<'_> {
         let cells: Vec<Vec<carom_mesh::ElementId>> =
             bodies.iter().map(|body| body.spec.cells.clone()).collect();
         let mut contacts = self.contacts(&mesh, &bodies, &cells);
-        contacts.extend(self.stops(&mesh, &bodies, &discrete));
         self.listed_twice(&contacts);
+        contacts.extend(self.stops(&mesh, &bodies, &discrete));
         self.nonlinear_in_zones();
         self.stresses_between(&bodies);
         self.contacts_outside(&mesh, &contacts, &joints);

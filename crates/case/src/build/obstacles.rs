@@ -43,6 +43,11 @@ impl Builder<'_> {
                 });
                 (path, shape, &cylinder.motion)
             }
+            schema::Obstacle::Profile(profile) => {
+                let path = format!("{path}.obstacle.profile");
+                let shape = self.profile(mesh, &path, profile)?;
+                (path, Shape::Profile(Box::new(shape)), &profile.motion)
+            }
             schema::Obstacle::Surface(surface) => {
                 let path = format!("{path}.obstacle.surface");
                 let shape = self.rigid_surface(mesh, &format!("{path}.group"), surface)?;
@@ -126,7 +131,12 @@ impl Builder<'_> {
     }
 
     /// A unit vector along an axis: in the plane across it.
-    fn axis(&mut self, mesh: &Mesh, path: &str, given: &NormalVector) -> Option<[f64; 3]> {
+    pub(super) fn axis(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        given: &NormalVector,
+    ) -> Option<[f64; 3]> {
         let axis = given.components();
         let across = axis[0] == 0.0 && axis[1] == 0.0;
         if mesh.dim < 3 && !across {

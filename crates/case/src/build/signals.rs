@@ -30,6 +30,20 @@ struct Points {
     lines: Vec<usize>,
 }
 
+/// A column of a text file, and the keys of the case file that say so.
+pub(super) struct FileColumn<'a> {
+    /// Key of its name.
+    pub(super) key: &'a str,
+    /// Its name.
+    pub(super) name: &'a str,
+    /// Key of its unit.
+    pub(super) unit_key: &'a str,
+    /// Unit that the case file gives.
+    pub(super) unit: Option<&'a String>,
+    /// What it has.
+    pub(super) dimension: &'a str,
+}
+
 impl Builder<'_> {
     /// All signals of the case.
     pub(super) fn signals(&mut self, input: &Input) -> Signals {
@@ -195,14 +209,46 @@ impl Builder<'_> {
         self.problems.push(problem);
     }
 
-    /// Two columns of a file in SI units.
+    /// The times and values of two columns of a file, in SI units.
     fn columns(
         &mut self,
         folder: &Path,
         path: &str,
         (given, dimension): (&Columns, &str),
     ) -> Option<Points> {
-        let bytes = file::regular(&folder.join(&given.file), LARGEST);
+        let keys = [
+            FileColumn {
+                key: "time",
+                name: &given.time,
+                unit_key: "time-unit",
+                unit: given.time_unit.as_ref(),
+                dimension: "time",
+            },
+            FileColumn {
+                key: "value",
+                name: &given.value,
+                unit_key: "unit",
+                unit: given.unit.as_ref(),
+                dimension,
+            },
+        ];
+        let (points, lines) = self.file_columns(folder, path, &given.file, keys)?;
+        Some(Points {
+            points,
+            path: path.to_owned(),
+            lines,
+        })
+    }
+
+    /// Two columns of a file in SI units, and the lines of their rows.
+    pub(super) fn file_columns(
+        &mut self,
+        folder: &Path,
+        path: &str,
+        file: &str,
+        keys: [FileColumn; 2],
+    ) -> Option<(Vec<[f64; 2]>, Vec<usize>)> {
+        let bytes = file::regular(&folder.join(file), LARGEST);
         let text = bytes.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
         let table = text
             .map_err(|error| error.to_string())
@@ -210,62 +256,65 @@ impl Builder<'_> {
         let table = match table {
             Ok(table) => table,
             Err(error) => {
-                let message = format!("{}: {error}", given.file);
+                let message = format!("{file}: {error}");
                 self.problems
                     .push(Problem::new(format!("{path}.file"), message));
                 return None;
             }
         };
-        let keys = [
-            ("time", &given.time, "time-unit", &given.time_unit, "time"),
-            ("value", &given.value, "unit", &given.unit, dimension),
-        ];
-        let [times, values] = keys.map(|(key, name, unit_key, unit, dimension)| {
-            let column = match table.column(name) {
-                Ok(column) => column,
-                Err(Error::NoColumn { name, columns }) => {
-                    let message = format!("{} has no column of this name", given.file);
-                    let problem = Problem::new(format!("{path}.{key}"), message);
-                    let columns = columns.iter().map(String::as_str);
-                    self.problems.push(problem.unknown(&name, columns));
-                    return None;
-                }
-                Err(error) => {
-                    let message = format!("{}: {error}", given.file);
-                    self.problems
-                        .push(Problem::new(format!("{path}.{key}"), message));
-                    return None;
-                }
-            };
-            let unit_path = format!("{path}.{unit_key}");
-            let written = match (&column.unit, unit) {
-                (Some(of_file), Some(unit)) if of_file != unit => {
-                    let message = format!("column `{name}` has the unit [{of_file}] already");
-                    self.problems
-                        .push(Problem::new(unit_path, message).found(unit));
-                    return None;
-                }
-                (Some(of_file), _) => Some((of_file, format!("{path}.{key}"))),
-                (None, unit) => unit.as_ref().map(|unit| (unit, unit_path)),
-            };
-            let factor = match written {
-                None => 1.0,
-                Some((unit, path)) => self.factor_of(&path, unit, dimension)?,
-            };
-            let values = column
-                .values
-                .iter()
-                .map(|value| factor * value)
-                .collect::<Vec<_>>();
-            Some((values, column.lines))
-        });
-        let ((times, lines), (values, _)) = (times?, values?);
-        let points = times.into_iter().zip(values);
-        Some(Points {
-            points: points.map(|(time, value)| [time, value]).collect(),
-            path: path.to_owned(),
-            lines,
-        })
+        let [one, other] = keys.map(|column| self.file_column(path, (file, &table), &column));
+        let ((one, lines), (other, _)) = (one?, other?);
+        let points = one.into_iter().zip(other);
+        Some((points.map(|(a, b)| [a, b]).collect(), lines))
+    }
+
+    /// The values of a column in SI units, and their lines.
+    fn file_column(
+        &mut self,
+        path: &str,
+        (file, table): (&str, &Table),
+        wanted: &FileColumn,
+    ) -> Option<(Vec<f64>, Vec<usize>)> {
+        let FileColumn {
+            key,
+            name,
+            unit_key,
+            unit,
+            dimension,
+        } = wanted;
+        let column = match table.column(name) {
+            Ok(column) => column,
+            Err(Error::NoColumn { name, columns }) => {
+                let message = format!("{file} has no column of this name");
+                let problem = Problem::new(format!("{path}.{key}"), message);
+                let columns = columns.iter().map(String::as_str);
+                self.problems.push(problem.unknown(&name, columns));
+                return None;
+            }
+            Err(error) => {
+                let message = format!("{file}: {error}");
+                self.problems
+                    .push(Problem::new(format!("{path}.{key}"), message));
+                return None;
+            }
+        };
+        let unit_path = format!("{path}.{unit_key}");
+        let written = match (&column.unit, unit) {
+            (Some(of_file), Some(unit)) if of_file != *unit => {
+                let message = format!("column `{name}` has the unit [{of_file}] already");
+                let problem = Problem::new(unit_path, message).found(*unit);
+                self.problems.push(problem);
+                return None;
+            }
+            (Some(of_file), _) => Some((of_file, format!("{path}.{key}"))),
+            (None, unit) => unit.map(|unit| (unit, unit_path)),
+        };
+        let factor = match written {
+            None => 1.0,
+            Some((unit, path)) => self.factor_of(&path, unit, dimension)?,
+        };
+        let values = column.values.iter().map(|value| factor * value).collect();
+        Some((values, column.lines))
     }
 
     /// The SI value of one of a unit.

@@ -10,7 +10,8 @@ use carom_quantities::{
 };
 
 use super::body::Initial;
-use super::obstacle::NormalVector;
+use super::contact::Friction;
+use super::obstacle::{NormalVector, Obstacle};
 
 /// A point mass: at a node of its own, or at each node of a group.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -94,17 +95,26 @@ pub struct DashpotPoint {
 }
 
 /// A stop: it pushes its ends apart where they come nearer than the gap. It is a contact of one point with the law `stop`: its
-/// force, gap, impulse and impacts are reported as those of a contact with its name.
+/// force, gap, impulse and impacts are reported as those of a contact with its name. A node may have any number of stops.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(extend("oneOf" = [{ "required": ["stiffness"] }, { "required": ["curve"] }]))]
+#[schemars(extend(
+    "oneOf" = [{ "required": ["stiffness"] }, { "required": ["curve"] }],
+    "anyOf" = [{ "required": ["axis"] }, { "required": ["obstacle"] }],
+    "not" = { "required": ["axis", "obstacle"] },
+))]
 pub struct Stop {
     /// Names of two groups of one node, or of one and `"ground"`.
     pub ends: Ends,
     /// Direction from the first end to the second one, fixed in space.
-    pub axis: NormalVector,
-    /// By how much the ends can come nearer along the axis, from their places in the mesh, until the stop acts. Default: 0.
-    pub gap: Option<Clearance>,
+    pub axis: Option<NormalVector>,
+    /// The place and shape of the ground, in place of `axis`: the gap is the distance of the node from it less `gap` and the radius of
+    /// the section. In a round hole this is the clearance less the eccentricity, in every direction.
+    pub obstacle: Option<Obstacle>,
+    /// With `axis`: by how much the ends can come nearer along it, from their places in the mesh, until the stop acts. With
+    /// `obstacle`: by how much the obstacle is further away than its shape says. A negative gap is a stop that is compressed
+    /// at the start. Default: 0.
+    pub gap: Option<Coordinate>,
     /// Force over penetration.
     pub stiffness: Option<Stiffness>,
     /// Points of force over penetration, as in the law `stop` of contacts.
@@ -118,4 +128,11 @@ pub struct Stop {
     /// Treatment of a tensile force of the dashpot.
     #[serde(default)]
     pub adhesion: Adhesion,
+    /// Friction across the axis while the stop is closed. Default: none.
+    pub friction: Option<Friction>,
+    /// Radii of the sections of the two ends, in their order. Friction acts at the surface of a section, at this distance from the
+    /// node along the axis: the rotation of the node is part of the sliding, and friction turns the node. The gap of a stop
+    /// with an axis does not depend on it. Default: 0.
+    #[schemars(extend("minItems" = 1, "maxItems" = 2))]
+    pub radius: Option<Vec<Clearance>>,
 }

@@ -50,8 +50,8 @@ pub use material::Material;
 pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
 pub use named::Named;
 pub use obstacle::{
-    Cylinder, NormalVector, Obstacle, ObstacleMotion, ObstaclePoint, Plane, Side, Sphere, Surface,
-    Turn,
+    Cylinder, NormalVector, Obstacle, ObstacleMotion, ObstaclePoint, Plane, PolarColumns,
+    PolarCurve, PolarPoint, PolarProfile, Side, Sphere, Surface, Turn,
 };
 pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};
 pub use signal::{

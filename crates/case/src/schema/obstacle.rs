@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use carom_quantities::{AngularVelocity, Coordinate, Delay, Length, Vector, Velocity};
+use carom_quantities::{Angle, AngularVelocity, Coordinate, Delay, Length, Vector, Velocity};
 
 /// A rigid obstacle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -17,6 +17,8 @@ pub enum Obstacle {
     Cylinder(Cylinder),
     /// Faces of the mesh that belong to no body.
     Surface(Surface),
+    /// A prism without ends whose section across an axis is a closed curve given by points.
+    Profile(PolarProfile),
 }
 
 /// A rigid plane.
@@ -61,6 +63,70 @@ pub struct Cylinder {
     pub side: Side,
     /// Its motion. Default: none.
     pub motion: Option<ObstacleMotion>,
+}
+
+/// A rigid prism: its section across the axis is a closed curve r(angle).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("oneOf" = [{ "required": ["points"] }, { "required": ["csv"] }]))]
+pub struct PolarProfile {
+    /// A point of its axis, from which radii count.
+    pub point: Vector<Coordinate>,
+    /// Direction of its axis, of any length except zero. In the plane: [0, 0, 1].
+    pub axis: NormalVector,
+    /// Direction of angle zero; its part across the axis counts. Angles run anticlockwise about the axis. Default: x, or y where the
+    /// axis is along x.
+    pub zero: Option<NormalVector>,
+    /// Points of the curve, angles ascending within one turn and less than half a turn apart.
+    #[schemars(extend("minItems" = 3))]
+    pub points: Option<Vec<PolarPoint>>,
+    /// Columns of a text file with such points.
+    pub csv: Option<PolarColumns>,
+    /// The curve between the points.
+    #[serde(default)]
+    pub curve: PolarCurve,
+    /// The side of the bodies.
+    #[serde(default)]
+    pub side: Side,
+    /// Its motion. Default: none.
+    pub motion: Option<ObstacleMotion>,
+}
+
+/// A point of a profile.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct PolarPoint {
+    /// Angle.
+    pub angle: Angle,
+    /// Distance from the axis.
+    pub radius: Length,
+}
+
+/// Two columns of a text file with the points of a profile, as in signals.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct PolarColumns {
+    /// Path of the file, from the folder of the case file.
+    pub file: String,
+    /// Column of the angles.
+    pub angle: String,
+    /// Column of the radii.
+    pub radius: String,
+    /// Unit of the angles, if the column does not say it. Default: rad.
+    pub angle_unit: Option<String>,
+    /// Unit of the radii, if the column does not say it. Default: m.
+    pub unit: Option<String>,
+}
+
+/// The curve between the points of a profile.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum PolarCurve {
+    /// Straight: a polygon.
+    #[default]
+    Straight,
+    /// The periodic cubic spline of the radius over the angle, with continuous curvature.
+    Smooth,
 }
 
 /// A rigid surface.

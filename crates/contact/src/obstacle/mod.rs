@@ -8,6 +8,7 @@ mod cylinder;
 mod distance;
 mod motion;
 mod plane;
+mod profile;
 mod sphere;
 mod surface;
 
@@ -15,6 +16,7 @@ pub use cylinder::Cylinder;
 pub use distance::{Distance, Side};
 pub use motion::{Motion, Translation, Turn};
 pub use plane::Plane;
+pub use profile::Profile;
 pub use sphere::Sphere;
 pub use surface::RigidSurface;
 
@@ -29,6 +31,8 @@ pub enum Shape {
     Sphere(Sphere),
     /// A cylinder.
     Cylinder(Cylinder),
+    /// A closed curve across an axis.
+    Profile(Box<Profile>),
     /// Faces of a mesh.
     Surface(Box<RigidSurface>),
 }
@@ -107,6 +111,12 @@ impl From<Cylinder> for Obstacle {
     }
 }
 
+impl From<Profile> for Obstacle {
+    fn from(profile: Profile) -> Obstacle {
+        Shape::Profile(Box::new(profile)).into()
+    }
+}
+
 impl From<RigidSurface> for Obstacle {
     fn from(surface: RigidSurface) -> Obstacle {
         Shape::Surface(Box::new(surface)).into()
@@ -152,6 +162,7 @@ impl Shape {
             Shape::Plane(plane) => plane.distance(x),
             Shape::Sphere(sphere) => sphere.distance(x),
             Shape::Cylinder(cylinder) => cylinder.distance(x),
+            Shape::Profile(profile) => profile.distance(x),
             Shape::Surface(surface) => surface.distance(x),
         }
     }
