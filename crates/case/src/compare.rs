@@ -61,19 +61,19 @@ pub fn compare(
 
 /// A job for every scheme with every law.
 fn variants(base: &Job, input: &Input, choices: &Choices) -> Result<Vec<Job>, SweepError> {
-    let contacts: Vec<&str> = base.case.contact.names().collect();
-    if contacts.is_empty() && !choices.laws.is_empty() {
+    let contacts = base.case.contact.names();
+    let contacts = contacts.map(|contact| format!("contact.{contact}.law"));
+    let stops = base.case.stop.names();
+    let stops = stops.map(|stop| format!("stop.{stop}.law"));
+    let laws: Vec<String> = contacts.chain(stops).collect();
+    if laws.is_empty() && !choices.laws.is_empty() {
         let problem = Problem::new(
             "",
-            "`--law` chooses a contact law, and the case has no contact",
+            "`--law` chooses a contact law, and the case has no contact and no stop",
         );
         return Err(base.refuse(vec![problem]));
     }
     let schemes = parts(&choices.schemes, &["time.scheme".to_owned()]);
-    let laws: Vec<String> = contacts
-        .iter()
-        .map(|contact| format!("contact.{contact}.law"))
-        .collect();
     let laws = parts(&choices.laws, &laws);
     let mut taken = BTreeSet::from([FINEST.to_owned()]);
     let mut jobs: Vec<Job> = Vec::new();

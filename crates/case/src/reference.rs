@@ -58,6 +58,7 @@ const ORDER: &[&str] = &[
     "arlequin",
     "interface",
     "probe",
+    "level",
     "output",
     "reference",
 ];

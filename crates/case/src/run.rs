@@ -148,9 +148,12 @@ fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Setti
                     velocity: has(Motion::Velocity),
                     acceleration: has(Motion::Acceleration),
                     absolute_acceleration: has(Motion::AbsoluteAcceleration),
+                    spectrum: probe.spectrum.clone(),
                 }
             })
             .collect(),
+        levels: built.levels.clone(),
+        history_every: case.output.histories.map(|histories| histories.every.0),
         fields: case.output.fields.as_ref().map(|fields| {
             let has = |field| fields.record.contains(&field);
             Fields {

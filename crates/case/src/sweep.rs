@@ -88,16 +88,17 @@ impl Job {
     /// The case has no contact of this name.
     pub(crate) fn has_contact(&self, chosen: Option<&str>) -> Result<(), SweepError> {
         let Some(name) = chosen else { return Ok(()) };
-        if self.case.contact.names().any(|own| own == name) {
+        let names = || self.case.contact.names().chain(self.case.stop.names());
+        if names().any(|own| own == name) {
             return Ok(());
         }
-        let problem = Problem::new("", "no contact of this name");
+        let problem = Problem::new("", "no contact and no stop of this name");
         Err(SweepError::Input {
             sources: vec![Source {
                 name: "--contact".to_owned(),
                 text: name.to_owned(),
             }],
-            problems: vec![problem.unknown(name, self.case.contact.names())],
+            problems: vec![problem.unknown(name, names())],
         })
     }
 

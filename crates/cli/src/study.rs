@@ -65,6 +65,11 @@ pub fn study(arguments: &Arguments) -> u8 {
         out!("Orders of convergence against {}\n", study.abscissa_text());
         out!("{}", orders.text(sweep::WIDTH));
     }
+    let envelope = study.envelope_table();
+    if !envelope.rows.is_empty() {
+        out!("Envelope of the runs\n");
+        out!("{}", envelope.text(sweep::WIDTH));
+    }
     let variants = || study.runs.iter().map(|run| &run.variant);
     sweep::reasons(variants());
     out!("  {RAW_PEAK}");

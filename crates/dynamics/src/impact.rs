@@ -32,6 +32,8 @@ pub struct Impact {
     pub intervals: u64,
     /// Largest total force, N.
     pub peak_force: f64,
+    /// End of the step of the largest force, s.
+    pub peak_time: f64,
     /// Impulse on the secondary body, N s.
     pub impulse: f64,
     /// The part of it, along it, that is in no force of a step, N s: of a projection or another stage after a step.
@@ -48,6 +50,9 @@ pub struct Impact {
     pub restitution: Option<f64>,
     /// Kinetic energy of the approach, ½ m w² with the reduced mass m of what no support holds of the two bodies, J.
     pub energy_given: f64,
+    /// Most energy that the contact has taken up at one time, J: the largest value of minus the work of its forces so far. A stop
+    /// stores it, or loses a part of it; an exact law takes what it loses.
+    pub energy_taken: f64,
     /// Energy lost in the contact, J: minus the work of its forces.
     pub energy_lost: f64,
     /// The part of it that is lost in crush, J; zero of laws without memory.
@@ -82,12 +87,15 @@ pub(crate) struct OpenImpact {
     start: f64,
     intervals: u64,
     peak_force: f64,
+    peak_time: f64,
     impulse: [Sum; 3],
     impulsive: [Sum; 3],
     /// Sums of the normal impulses of the steps and of their magnitudes, N s.
     normal: [Sum; 3],
     pushed: Sum,
     work: Sum,
+    /// Largest value of minus the work so far, J.
+    taken: f64,
     crushed: Sum,
     /// Mean velocities of the two sides before it, m/s.
     before: [[f64; 3]; 2],
@@ -153,8 +161,11 @@ impl OpenImpact {
             // radial forces of a full turn cancel
             (impulse[0], normal[0]) = (0.0, 0.0);
         }
-        self.peak_force = self.peak_force.max(given.force);
+        if given.force > self.peak_force {
+            (self.peak_force, self.peak_time) = (given.force, given.span[1]);
+        }
         self.work.add(given.work);
+        self.taken = self.taken.max(-self.work.get());
         self.crushed.add(given.crushed);
         self.pushed.add(norm(normal));
         for i in 0..3 {
@@ -185,6 +196,7 @@ impl OpenImpact {
             duration: end - self.start,
             intervals: self.intervals,
             peak_force: self.peak_force,
+            peak_time: self.peak_time,
             impulse: norm(impulse),
             impulsive: match norm(impulse) > 0.0 {
                 true => dot(
@@ -200,6 +212,7 @@ impl OpenImpact {
                 true => 0.5 * approach * approach / inverse,
                 false => 0.0,
             },
+            energy_taken: self.taken,
             energy_lost: -self.work.get(),
             energy_crushed: self.crushed.get(),
             unfinished: false,

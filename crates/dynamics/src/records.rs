@@ -44,6 +44,8 @@ pub struct ContactRecord {
     pub penetration: f64,
     /// Energy lost in crush so far, J: what it took to crush the points, less what they can give back.
     pub energy_crushed: f64,
+    /// Energy that friction has taken so far, J.
+    rubbed: Sum,
     /// Most nodes at the end of a step whose supports are partly closed; see [`ContactReport::mixed`].
     pub mixed: u64,
     /// Total force and force on the secondary body in the last step as they enter impulses, N.
@@ -123,6 +125,11 @@ impl ContactRecord {
             0 => 0.0,
             due => 2.0 * (due + self.hasty_closings) as f64 / due as f64,
         }
+    }
+
+    /// Energy that friction has taken so far, J: its work on what slides, which wears it off.
+    pub fn friction_loss(&self) -> f64 {
+        self.rubbed.get()
     }
 
     /// Σ |P (ġ₊ + opening)| dt, J.
@@ -240,6 +247,7 @@ impl Records {
         }
         record.later = later;
         record.defect.add(report.persistency_defect);
+        record.rubbed.add(report.friction_loss);
         record.status_changes += report.status_changes as u64;
         let points = system.first_point[contact]..system.first_point[contact + 1];
         record.count_closings(system, contact, step, &mut self.opened[points]);

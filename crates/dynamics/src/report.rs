@@ -18,6 +18,8 @@ pub struct ContactReport {
     pub friction: f64,
     /// Points that slip with a friction force.
     pub slipping: usize,
+    /// Energy that friction took in the step, J.
+    pub friction_loss: f64,
     /// Least gap at the end of the step, m; infinite where nothing faces anything.
     pub gap: f64,
     /// Gap rate at the point of the least gap, m/s.

@@ -37,6 +37,8 @@ pub struct ImpactRow {
     /// Kinetic energy of the approach, ½ m w² with w the approach speed and m the reduced mass of the two bodies
     /// (the mass of the one on an obstacle; without what supports hold and what links join to them), J.
     pub energy_given: f64,
+    /// Most energy that the contact has taken up at one time, J.
+    pub energy_taken: f64,
     /// Energy lost in the contact, minus the work of its forces, J, positive when lost.
     pub energy_lost: f64,
     /// The part of it that is lost in crush, J; zero of laws without memory.
@@ -48,7 +50,7 @@ pub struct ImpactRow {
 }
 
 /// Names of the columns of `impacts.csv`, with their units.
-pub const COLUMNS: [&str; 15] = [
+pub const COLUMNS: [&str; 16] = [
     "pair",
     "start_s",
     "duration_s",
@@ -60,6 +62,7 @@ pub const COLUMNS: [&str; 15] = [
     "rebound_speed_m_s",
     "restitution",
     "energy_given_j",
+    "energy_taken_j",
     "energy_lost_j",
     "energy_crushed_j",
     "intervals",
@@ -100,6 +103,7 @@ impl ImpactTable {
             impact.rebound_speed.into(),
             impact.restitution.into(),
             Cell::Number(impact.energy_given),
+            Cell::Number(impact.energy_taken),
             Cell::Number(impact.energy_lost),
             Cell::Number(impact.energy_crushed),
             Cell::Number(impact.intervals as f64),

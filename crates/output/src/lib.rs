@@ -18,6 +18,7 @@ pub mod pvd;
 pub mod report;
 pub mod results;
 pub mod rows;
+pub mod statistics;
 pub mod study;
 pub mod summary;
 pub mod table;
@@ -30,10 +31,13 @@ mod writer;
 
 pub use error::Error;
 pub use folder::Folder;
-pub use history::History;
+pub use history::{History, column};
 pub use impacts::{ImpactRow, ImpactTable};
 pub use pvd::Collection;
 pub use report::Report;
-pub use results::{Ending, Fields, Probe, Reference, Results, Settings, Zoning};
+pub use results::{
+    Ending, Fields, LevelSettings, Probe, Reference, Results, Settings, Spectrum, Zoning,
+};
+pub use statistics::{Allowable, Level, Statistics};
 pub use summary::Summary;
 pub use verdict::{Grade, Verdict};

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::statistics::{Level, Statistics};
 use crate::verdict::Verdict;
 use crate::{Error, atomic};
 
@@ -33,6 +34,12 @@ pub struct Summary {
     pub zones: Option<Zones>,
     /// One entry per contact, by name.
     pub contacts: BTreeMap<String, Contact>,
+    /// One entry per level of the case, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub levels: BTreeMap<String, Level>,
+    /// One entry per spring and dashpot, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub discrete: BTreeMap<String, Discrete>,
     /// Balance of energy.
     pub energy: Energy,
     /// Balance of linear momentum.
@@ -215,6 +222,22 @@ pub struct Contact {
     /// Restitution of the last complete impact, from the momenta of the bodies before and after it; `None` where it means
     /// nothing ([`carom_dynamics::Impact::restitution`]), or links join further bodies to one of the two.
     pub restitution: Option<f64>,
+    /// Statistics of the impacts; `None` without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub statistics: Option<Statistics>,
+}
+
+/// Largest force of the springs or dashpots of one name.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Discrete {
+    /// `spring` or `dashpot`.
+    pub kind: String,
+    /// Largest magnitude of the sum of their forces at the end of a step, N.
+    pub peak_force: f64,
+    /// When, s.
+    pub time: f64,
+    /// Largest magnitude of the mean elongation (m) of springs, of its rate (m/s) of dashpots.
+    pub extent: f64,
 }
 
 /// Coulomb friction of a contact.
@@ -224,6 +247,9 @@ pub struct Friction {
     pub coefficient: f64,
     /// Largest magnitude of the sum of the friction forces in a step, N.
     pub peak_force: f64,
+    /// Energy that friction took, J: its work on what slides, a measure of wear.
+    #[serde(default)]
+    pub loss: f64,
 }
 
 /// Balance of energy, J. The residual says how accurately the equations are solved, the dissipation of the scheme what the

@@ -128,6 +128,14 @@ quantity!(
     "An area greater than zero, m²."
 );
 quantity!(
+    Energy,
+    "energy",
+    "J",
+    "2 mJ",
+    POSITIVE,
+    "An energy greater than zero, J."
+);
+quantity!(
     SecondMoment,
     "second moment of area",
     "m^4",
@@ -337,7 +345,7 @@ macro_rules! into_si {
     };
 }
 
-into_si!(SecondMoment Frequency MomentOfInertia Angle SignedForce SignedMoment Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);
+into_si!(Energy SecondMoment Frequency MomentOfInertia Angle SignedForce SignedMoment Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);
 
 #[cfg(test)]
 mod tests {
@@ -384,6 +392,7 @@ mod tests {
         reads::<super::Frequency>();
         reads::<super::MomentOfInertia>();
         reads::<super::Angle>();
+        reads::<super::Energy>();
         reads::<super::AngularVelocity>();
     }
 }

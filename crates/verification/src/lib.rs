@@ -86,6 +86,7 @@ mod orbiting_mass;
 mod order;
 mod order_features;
 mod quadrature;
+mod random_field;
 mod rejections;
 mod rejections_features;
 mod restitution;
@@ -97,6 +98,7 @@ mod rigid_sphere;
 mod rigid_top;
 mod ring_sector;
 pub mod rings;
+mod rod_in_grid;
 mod rubbing_stops;
 mod sdnl111;
 mod sdnl111_bars;
@@ -205,6 +207,7 @@ registry! {
     order
     order_features
     quadrature
+    random_field
     rejections
     rejections_features
     restitution
@@ -216,6 +219,7 @@ registry! {
     rigid_top
     ring_sector
     rings
+    rod_in_grid
     rubbing_stops
     sdnl111
     sdnl111_bars

@@ -27,17 +27,20 @@ const FRICTION: f64 = 0.3;
 const SPEED: f64 = 1.0;
 const STIFFNESS: f64 = 1e5;
 
-/// Takes steps to a time in s; the start of the first one that does not slide, s.
-fn slide(driver: &mut Driver, end: f64) -> Result<f64, Error> {
-    let mut sliding = None;
+/// Takes steps to a time in s; when the rate of sliding (m/s), a function of the velocities, is first no more than `left`, s.
+fn slide(
+    driver: &mut Driver,
+    end: f64,
+    (rate, left): (impl Fn(&[f64]) -> f64, f64),
+) -> Result<f64, Error> {
+    let mut stopped = None;
     while driver.state().time < end {
-        let start = driver.state().time;
         driver.step()?;
-        if driver.report().contacts[0].slipping == 0 {
-            sliding.get_or_insert(start);
+        if rate(&driver.state().motion.v).abs() <= left {
+            stopped.get_or_insert(driver.state().time);
         }
     }
-    Ok(sliding.unwrap_or(end))
+    Ok(stopped.unwrap_or(end))
 }
 
 fn rolling(scheme: Scheme, steps: f64) -> Result<Vec<Row>, Error> {
@@ -55,9 +58,10 @@ fn rolling(scheme: Scheme, steps: f64) -> Result<Vec<Row>, Error> {
     (model.discrete[0].displacement, model.discrete[0].velocity) =
         (Some([0.0, down, 0.0]), Some(along));
     let mut driver = Driver::new(System::new(model)?)?;
-    let last = slide(&mut driver, 2.0 * roll)?;
-    let (state, name) = (driver.state(), format!("rolling, {}", scheme.get().name()));
     let left = 3.0 * FRICTION * GRAVITY * dt;
+    let rate = |v: &[f64]| v[0] + RADIUS * v[2];
+    let last = slide(&mut driver, 2.0 * roll, (rate, left))?;
+    let (state, name) = (driver.state(), format!("rolling, {}", scheme.get().name()));
     let (v, turned) = (state.motion.v[0], RADIUS * state.motion.v[2]);
     let kept = v - 0.5 * turned;
     let near = |what: &str, found, exact, tolerance| {
@@ -112,10 +116,11 @@ fn wheels(scheme: Scheme, steps: f64) -> Result<Vec<Row>, Error> {
     });
     v[turns[0]] = spin;
     driver.restart(&u, &v)?;
-    let last = slide(&mut driver, 2.0 * exact)?;
-    let (state, name) = (driver.state(), format!("wheels, {}", scheme.get().name()));
     let slowing = |k: usize| FRICTION * force * radii[k] * radii[k] / inertia[k];
     let left = (slowing(0) + slowing(1)) * dt;
+    let rate = |v: &[f64]| v[turns[0]] * radii[0] + v[turns[1]] * radii[1];
+    let last = slide(&mut driver, 2.0 * exact, (rate, left))?;
+    let (state, name) = (driver.state(), format!("wheels, {}", scheme.get().name()));
     let late = match scheme.get().keeps_acceleration() {
         true => 2.5,
         false => 1.5,

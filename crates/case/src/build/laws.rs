@@ -90,7 +90,7 @@ pub(super) fn no_curve(path: &str, error: &CurveError) -> Problem {
 }
 
 /// Half for theta = 1/2, now otherwise: what each scheme needs to close without a false start.
-fn default_capture(scheme: &Scheme) -> Capture {
+pub(super) fn default_capture(scheme: &Scheme) -> Capture {
     match scheme {
         Scheme::Theta(theta) if theta.theta == 0.5 => Capture::Half,
         _ => Capture::Now,

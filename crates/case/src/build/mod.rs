@@ -10,6 +10,7 @@ mod course;
 mod discrete;
 mod held;
 mod laws;
+mod levels;
 mod loads;
 mod materials;
 mod mesh;
@@ -36,6 +37,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use carom_dynamics::{Model, Nonlinear, System};
+use carom_output::{LevelSettings, Spectrum};
 use carom_zones::{LinkKind, Zoned};
 
 use crate::error::Problem;
@@ -64,6 +66,8 @@ pub struct Built {
     pub end: f64,
     /// End (s) and steps of the static stage before the dynamics, if there is one.
     pub stage: Option<(f64, u32)>,
+    /// Contacts that are judged together, in the order of their names.
+    pub levels: Vec<LevelSettings>,
     /// Probes, in the order of their names.
     pub probes: Vec<BuiltProbe>,
     /// The exact solution that the case names.
@@ -81,6 +85,8 @@ pub struct BuiltProbe {
     pub nodes: Vec<(u32, f64)>,
     /// What is recorded.
     pub record: Vec<Motion>,
+    /// Response spectrum of its absolute acceleration.
+    pub spectrum: Option<Spectrum>,
 }
 
 /// Builds the system of a case.
@@ -228,6 +234,7 @@ impl Builder<'_> {
         self.moved(&system, &nodes);
         self.startable(&system);
         self.advise(&system);
+        let levels = self.levels(&system);
         let end = self.case.time.end.0;
         let reference = self.reference(&system, end);
         Some(Built {
@@ -237,6 +244,7 @@ impl Builder<'_> {
             overlaps: joints.overlaps,
             end,
             stage: self.case.time.stage.map(|stage| (stage.end.0, stage.steps)),
+            levels,
             probes,
             reference,
             warnings: std::mem::take(&mut self.warnings),

@@ -7,9 +7,11 @@ use carom_bodies::Kinematics;
 use carom_dynamics::ModelBody;
 use carom_elements::{MAX_NODES, map};
 use carom_mesh::{ElementId, Group, Mesh};
+use carom_output::Spectrum;
 
 use super::{Builder, BuiltProbe};
 use crate::error::Problem;
+use crate::schema::Probe;
 
 impl Builder<'_> {
     pub(super) fn probes(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Vec<BuiltProbe> {
@@ -18,15 +20,35 @@ impl Builder<'_> {
             .any(|body| body.spec.kinematics == Kinematics::Axisymmetric);
         let mut probes = Vec::new();
         for (name, probe) in self.case.probe.iter() {
+            let spectrum = self.spectrum(name, probe);
             if let Some(group) = self.group(mesh, &format!("probe.{name}.on"), &probe.on) {
                 probes.push(BuiltProbe {
                     name: name.to_string(),
                     nodes: shares(mesh, group, axisymmetric),
                     record: probe.record.clone(),
+                    spectrum,
                 });
             }
         }
         probes
+    }
+
+    fn spectrum(&mut self, name: &str, probe: &Probe) -> Option<Spectrum> {
+        let given = probe.response_spectrum?;
+        let [from, to] = [given.from.0, given.to.0];
+        if to <= from {
+            let path = format!("probe.{name}.response-spectrum.to");
+            let message = "the highest frequency is not above the lowest one";
+            let problem = Problem::new(path, message).found(format!("{to} Hz"));
+            self.problems
+                .push(problem.accepted([format!("more than {from} Hz")]));
+            return None;
+        }
+        Some(Spectrum::between(
+            [from, to],
+            given.points as usize,
+            given.damping,
+        ))
     }
 
     /// Refuses probes on nodes of no body. `of`: cells of each body; with overlaps without those that are removed.

@@ -1,15 +1,15 @@
 //! Stops: contacts of one point between two nodes, or a node and the ground.
 
-use carom_contact::law::{Capture, CurvePoint, Defaults, GivenStop, Side};
+use carom_contact::law::{CurvePoint, Defaults, GivenStop, Side};
 use carom_contact::{Initial, Law, Obstacle, Plane, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelDiscrete, ModelTarget};
 use carom_mesh::{ElementId, Mesh, Surface};
 
 use super::builder::Builder;
 use super::discrete::End;
-use super::laws::no_curve;
+use super::laws::{default_capture, no_curve};
 use crate::error::Problem;
-use crate::schema::{Force, Friction, Length, Stop};
+use crate::schema::{Force, Friction, Length, Scheme, Stop};
 
 /// What a stop joins.
 struct Facing {
@@ -51,7 +51,8 @@ impl Builder<'_> {
             let ends = self.ends(mesh, &path, &stop.ends);
             let radii = self.radii(&path, stop, ends.as_ref());
             let facing = ends.and_then(|ends| self.facing(mesh, &path, stop, (ends, radii)));
-            let law = self.stop_law(&path, stop);
+            let scheme = self.scheme_at(None, &[]);
+            let law = self.stop_law(&path, stop, &scheme);
             let (Some(facing), Some(law)) = (facing, law) else {
                 continue;
             };
@@ -208,36 +209,47 @@ impl Builder<'_> {
         );
     }
 
-    fn stop_law(&mut self, path: &str, stop: &Stop) -> Option<Law> {
-        let curve = match (stop.stiffness, &stop.curve) {
-            // a line: one metre, and its force
-            (Some(stiffness), _) => vec![CurvePoint {
-                penetration: Length(1.0),
-                force: Force(stiffness.0),
-            }],
-            (None, Some(points)) => points.clone(),
-            (None, None) => return None,
-        };
-        let given = GivenStop {
-            clearance: None,
-            curve,
-            crush: stop.crush,
-            damping: stop.damping,
-            adhesion: stop.adhesion,
-        };
-        // nothing of a stop has a default from the sides
+    /// The law of a stop; nothing of it has a default from the sides. `scheme`: that of the case.
+    fn stop_law(&mut self, path: &str, stop: &Stop, scheme: &Scheme) -> Option<Law> {
         let defaults = Defaults {
-            capture: Capture::Now,
+            capture: default_capture(scheme),
             softer: Side::default(),
         };
-        match given.law(&defaults) {
-            Ok(law) => Some(Law::Stop(law)),
+        let (law, at) = match &stop.law {
+            Some(given) => (given.law(&defaults), format!("{path}.law.stop")),
+            None => (
+                own_law(stop)?.law(&defaults).map(Law::Stop),
+                path.to_owned(),
+            ),
+        };
+        match law {
+            Ok(law) => self.acts_at_a_point(path, &law).then_some(law),
             Err(error) => {
-                self.problems.push(no_curve(path, &error));
+                self.problems.push(no_curve(&at, &error));
                 None
             }
         }
     }
+}
+
+/// The spring and the dashpot of a stop.
+fn own_law(stop: &Stop) -> Option<GivenStop> {
+    let curve = match (stop.stiffness, &stop.curve) {
+        // a line: one metre, and its force
+        (Some(stiffness), _) => vec![CurvePoint {
+            penetration: Length(1.0),
+            force: Force(stiffness.0),
+        }],
+        (None, Some(points)) => points.clone(),
+        (None, None) => return None,
+    };
+    Some(GivenStop {
+        clearance: None,
+        curve,
+        crush: stop.crush,
+        damping: stop.damping,
+        adhesion: stop.adhesion,
+    })
 }
 
 /// A cell with a node, of a body or else of a mass.

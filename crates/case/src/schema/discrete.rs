@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use carom_laws::{Adhesion, Crush, CurvePoint};
+use carom_laws::{Adhesion, Crush, CurvePoint, GivenLaw};
 use carom_quantities::{
     Clearance, Coordinate, Damping, MomentOfInertia, SignedForce, Stiffness, Vector, Velocity,
     Weight,
@@ -128,6 +128,9 @@ pub struct Stop {
     /// Treatment of a tensile force of the dashpot.
     #[serde(default)]
     pub adhesion: Adhesion,
+    /// A law of contacts in place of the spring and the dashpot of the stop, whose keys then do not matter: `displacement`,
+    /// `velocity`, `restitution` or `stop`. For comparisons.
+    pub law: Option<GivenLaw>,
     /// Friction across the axis while the stop is closed. Default: none.
     pub friction: Option<Friction>,
     /// Radii of the sections of the two ends, in their order. Friction acts at the surface of a section, at this distance from the

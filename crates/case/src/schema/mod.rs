@@ -53,7 +53,10 @@ pub use obstacle::{
     Cylinder, NormalVector, Obstacle, ObstacleMotion, ObstaclePoint, Plane, PolarColumns,
     PolarCurve, PolarPoint, PolarProfile, Side, Sphere, Surface, Turn,
 };
-pub use output::{BarReference, Field, Fields, Motion, Output, Probe, Reference, Sides};
+pub use output::{
+    Allowable, BarReference, Field, Fields, Histories, Level, Motion, Output, Probe, ProbeSpectrum,
+    Reference, Sides,
+};
 pub use signal::{
     AccelerationPoint, AccelerationSource, Baseline, Columns, DisplacementSource, FactorSource,
     Signal, SpectrumPoint, Synthetic,
@@ -127,6 +130,9 @@ pub struct Case {
     /// Groups whose mean motion is written at every step, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub probe: Named<Probe>,
+    /// Contacts and stops that are judged together, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub level: Named<Level>,
     /// Output of a run.
     #[serde(default)]
     pub output: Output,

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use carom_quantities::Duration;
+use carom_quantities::{Duration, Energy, Force, Frequency};
 
 /// A history of the mean motion of a group, at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -14,6 +14,56 @@ pub struct Probe {
     /// Quantities to write.
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub record: Vec<Motion>,
+    /// Response spectrum of the absolute acceleration, for floor spectra. Default: none.
+    pub response_spectrum: Option<ProbeSpectrum>,
+}
+
+/// A response spectrum: largest absolute acceleration of oscillators on the probe, by their frequency.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ProbeSpectrum {
+    /// Damping ratio of the oscillators.
+    #[serde(default = "five_per_cent")]
+    #[schemars(range(min = 0.001, max = 0.5))]
+    pub damping: f64,
+    /// Lowest frequency.
+    pub from: Frequency,
+    /// Highest frequency, above the lowest one.
+    pub to: Frequency,
+    /// Number of frequencies, in a constant ratio.
+    #[serde(default = "fifty")]
+    #[schemars(range(min = 2, max = 1000))]
+    pub points: u32,
+}
+
+fn five_per_cent() -> f64 {
+    0.05
+}
+
+fn fifty() -> u32 {
+    50
+}
+
+/// Contacts and stops that are judged together, as those of one grid or one storey.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Level {
+    /// Names of contacts and stops. A name that ends with `*` stands for all that begin so.
+    #[schemars(extend("minItems" = 1))]
+    pub contacts: Vec<String>,
+    /// What each of them may bear in one impact: the results have the margins. Default: nothing is judged.
+    pub allowable: Option<Allowable>,
+}
+
+/// What a contact may bear in one impact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("anyOf" = [{ "required": ["force"] }, { "required": ["energy"] }]))]
+pub struct Allowable {
+    /// Largest force.
+    pub force: Option<Force>,
+    /// Largest energy that it takes up.
+    pub energy: Option<Energy>,
 }
 
 /// What a probe writes.
@@ -39,6 +89,16 @@ pub enum Motion {
 pub struct Output {
     /// Fields for ParaView. Default: none.
     pub fields: Option<Fields>,
+    /// Rows of `histories.csv`. Default: one for every step.
+    pub histories: Option<Histories>,
+}
+
+/// Rows of the histories.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Histories {
+    /// Time between two rows. Forces of contacts are means over it; impacts, peaks and impulses follow every step nevertheless.
+    pub every: Duration,
 }
 
 /// Fields on the whole mesh. The gap, pressure and sign fields of contact surfaces are always included.

@@ -26,6 +26,7 @@ impl Driver {
             let mut report = contact_report(&system, k, rows, old, new, self.dt);
             report.mixed = self.weak.mixed(k, &new.force[system.points_of(k)]);
             self.report_friction(k, &mut report);
+            report.friction_loss = -self.friction_work_of(k, [impulse.old, impulse.new]);
             let work = self.contact_work(k);
             let pushed = self.pushed(k);
             let (old, rows, projected) =

@@ -143,11 +143,21 @@ impl Driver {
     /// Work in J of the friction forces of the step, old and new with these weights by zone, on the way that their points slide
     /// over the primary.
     pub(super) fn friction_work(&self, weights: &[[f64; 2]]) -> f64 {
+        let contacts = 0..self.system.contacts.len();
+        let of = |k| self.friction_work_of(k, weights[self.system.zone_of(k)]);
+        contacts.map(of).sum()
+    }
+
+    /// The same of one contact, with its weights.
+    pub(super) fn friction_work_of(&self, contact: usize, weights: [f64; 2]) -> f64 {
         let (old, new) = (&self.state.interface, &self.next.interface);
+        let points = self.system.first_point[contact]..self.system.first_point[contact + 1];
         let mut work = 0.0;
-        for (point, t) in new.friction.iter().enumerate() {
+        for point in points {
+            let Some(t) = new.friction.get(point) else {
+                break;
+            };
             let before = old.friction.get(point).copied().unwrap_or_default();
-            let weights = weights[self.system.zone_of(self.system.contact_of(point))];
             for k in 0..self.system.tangents() {
                 let mean = weights[0] * before[k] + weights[1] * t[k];
                 if mean != 0.0 {

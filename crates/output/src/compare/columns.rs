@@ -4,6 +4,7 @@ use crate::compare::{Done, Variant};
 use crate::form::Form;
 use crate::form::NOTHING;
 use crate::rows::Cell;
+use crate::summary::Contact;
 use crate::table::Table;
 
 /// A column.
@@ -44,7 +45,7 @@ const fn hidden(name: &'static str, unit: &'static str, value: fn(&Done) -> Opti
 
 /// All columns between the name of the variant and the verdict. Force positive in compression, energy change and work
 /// positive when the bodies gain, dissipation positive when lost, penetration positive.
-pub const COLUMNS: [Column; 29] = [
+pub const COLUMNS: [Column; 32] = [
     column("force_error", "force error", Form::Percent, |v| {
         v.errors.force
     }),
@@ -59,6 +60,18 @@ pub const COLUMNS: [Column; 29] = [
     }),
     column("status_changes", "status changes", Form::Count, |v| {
         v.contact().map(|c| c.status_changes as f64)
+    }),
+    column("impacts", "impacts", Form::Count, |v| {
+        over_contacts(v, |sum, contact| sum + contact.impacts as f64)
+    }),
+    column(
+        "largest_force_n",
+        "largest force",
+        Form::Quantity("N"),
+        |v| over_contacts(v, |largest, contact| largest.max(contact.peak_force)),
+    ),
+    column("impulses_n_s", "impulses", Form::Quantity("N s"), |v| {
+        over_contacts(v, |sum, contact| sum + contact.impulse.unwrap_or(0.0))
     }),
     column("energy_change", "energy", Form::Percent, energy_change),
     column("work_contact_j", "by contact", Form::Quantity("J"), |v| {
@@ -130,6 +143,12 @@ pub const COLUMNS: [Column; 29] = [
         v.summary.newton.map(|newton| newton.iterations as f64)
     }),
 ];
+
+/// What all contacts come to; `None` without any.
+fn over_contacts(done: &Done, add: fn(f64, &Contact) -> f64) -> Option<f64> {
+    let contacts = &done.summary.contacts;
+    (!contacts.is_empty()).then(|| contacts.values().fold(0.0, add))
+}
 
 /// Kinetic and strain energy at the end over that at the start, less one.
 fn energy_change(done: &Done) -> Option<f64> {

@@ -11,6 +11,7 @@ mod film;
 mod logarithmic;
 mod model;
 mod scale;
+mod structure;
 mod thin;
 
 pub use figure::{Axis, Curve, Figure, Panel, Role};
@@ -19,4 +20,5 @@ pub(crate) use film::{Frame, Patch, Scene, film_figure};
 pub use logarithmic::{Logarithmic, Series};
 pub(crate) use model::{Shape, model_figure};
 pub use scale::{digits, quantity, rounded, scientific};
+pub(crate) use structure::{Lines, structure_figure};
 pub(crate) use thin::thin;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use carom_contact::{Contact as Pair, Integration};
-use carom_dynamics::{ContactRecord, Ledger, System};
+use carom_dynamics::{ContactRecord, Impact, Ledger, System};
 
 use crate::plot::model_figure;
 use crate::results::costs::{counts, courant, newton, timings};
@@ -11,7 +11,8 @@ use crate::results::exact;
 use crate::results::impacts::ContactTotals;
 use crate::results::lines::{Evidence, judge};
 use crate::results::totals::Last;
-use crate::results::{Comparison, Ending, Results};
+use crate::results::{Comparison, Ending, LevelSettings, Results};
+use crate::statistics::{Level, Statistics};
 use crate::summary::{
     Angular, Contact, Energy, Exact, Friction, Model, Momentum, Rejected, Summary, Time, Zones,
     hash,
@@ -80,7 +81,12 @@ fn draw(results: &mut Results, errors: &mut Vec<Error>) -> Vec<String> {
         .draw(reference, (results.last.time, results.is_static()));
     let film = results.film.draw(system);
     let film = film.map(|figure| ("plots/film.svg", figure));
+    let instants = results.instants.draw(system);
+    let instants = instants.map(|figure| ("plots/largest-forces.svg", figure));
+    let spectra = keep(results.spectra.write(&mut results.folder), errors).flatten();
+    let spectra = spectra.map(|figure| ("plots/spectra.svg", figure.svg()));
     let drawn = model.into_iter().chain(drawn).chain(film);
+    let drawn = drawn.chain(instants).chain(spectra);
     let mut figures = Vec::new();
     for (name, figure) in drawn {
         let Some(svg) = keep(figure, errors) else {
@@ -135,6 +141,8 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         time: time(system, last, zones),
         zones: ending.zones.clone(),
         contacts: contacts(results),
+        levels: levels(results),
+        discrete: results.discrete.all(),
         energy,
         momentum,
         exact,
@@ -204,6 +212,8 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
     let system = &results.system;
     let all = system.contacts.iter().zip(&results.impacts.contacts);
     let in_time = |value: f64| (!results.is_static()).then_some(value);
+    let all_impacts = &results.impacts.all;
+    let name = |k: usize| system.contacts[k].name.as_str();
     let one = |(k, (contact, totals)): (usize, (&Pair, &ContactTotals))| {
         let none = ContactRecord::default();
         let records = &results.last.records;
@@ -231,6 +241,7 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 friction: (system.friction[k] > 0.0).then_some(Friction {
                     coefficient: system.friction[k],
                     peak_force: totals.peak_friction,
+                    loss: record.friction_loss(),
                 }),
                 first_closing: record.first_closing,
                 last_release: record.last_force.filter(|_| !still_closed),
@@ -246,10 +257,33 @@ fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                     .last()
                     .and_then(|impact| impact.restitution)
                     .filter(|_| !totals.of_parts),
+                statistics: {
+                    let own = |impact: &&Impact| impact.contact as usize == k;
+                    let own: Vec<&Impact> = all_impacts.iter().filter(own).collect();
+                    let some = || Statistics::of(&own, name, record.friction_loss());
+                    (!own.is_empty()).then(some)
+                },
             },
         )
     };
     all.enumerate().map(one).collect()
+}
+
+/// The levels of the case.
+fn levels(results: &Results) -> BTreeMap<String, Level> {
+    let name = |k: usize| results.system.contacts[k].name.as_str();
+    let records = &results.last.records.contacts;
+    let one = |level: &LevelSettings| {
+        let own = |impact: &&Impact| level.contacts.contains(&(impact.contact as usize));
+        let impacts: Vec<&Impact> = results.impacts.all.iter().filter(own).collect();
+        let losses = level.contacts.iter().filter_map(|k| records.get(*k));
+        let loss = losses
+            .map(ContactRecord::friction_loss)
+            .fold(0.0, |a, b| a + b);
+        let of = Level::of(&level.contacts, &impacts, name, (loss, level.allowable));
+        (level.name.clone(), of)
+    };
+    results.settings.levels.iter().map(one).collect()
 }
 
 fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {

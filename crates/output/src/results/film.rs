@@ -213,7 +213,10 @@ impl Outlines {
             let outer = outer.into_values().flatten();
             match system.dim {
                 2 => outlines.rims.extend(outer.map(|(rim, _)| rim)),
-                _ => outlines.patches.extend(outer),
+                // the ends of a line have no area to be seen
+                _ => outlines
+                    .patches
+                    .extend(outer.filter(|(ring, _)| ring.len() > 2)),
             }
         }
         outlines

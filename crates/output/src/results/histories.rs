@@ -34,6 +34,12 @@ pub(crate) struct Histories {
     links: bool,
     probes: Vec<(Probe, Vec<Sensor>)>,
     row: Vec<Cell<'static>>,
+    every: Option<f64>,
+    /// What is gathered of each contact since the last row, where not every step has one.
+    means: Vec<ContactReport>,
+    /// Time of these, and of the last row, s.
+    gathered: f64,
+    last: Option<f64>,
 }
 
 impl Histories {
@@ -63,6 +69,10 @@ impl Histories {
             links: zoning.is_some(),
             probes: probes.zip(sensors).collect(),
             row: Vec::with_capacity(columns.len()),
+            every: settings.history_every,
+            means: Vec::new(),
+            gathered: 0.0,
+            last: None,
         })
     }
 
@@ -73,14 +83,21 @@ impl Histories {
         (state, report): (&State, &StepReport),
         point: Option<&ContactPoint>,
     ) -> Result<(), Error> {
+        if !self.is_due(report) {
+            return Ok(());
+        }
         let Some(file) = &mut self.file else {
             return Ok(());
+        };
+        let contacts = match self.every {
+            Some(_) => &self.means,
+            None => &report.contacts,
         };
         let (row, dim) = (&mut self.row, system.dim);
         let motion = &state.motion;
         row.clear();
         row.push(report.time.into());
-        for (k, contact) in report.contacts.iter().enumerate() {
+        for (k, contact) in contacts.iter().enumerate() {
             put(system, (k, contact), row);
             if let Some(point) = point.filter(|point| point.contact == k) {
                 for (_, sensor) in &point.sides {
@@ -156,12 +173,57 @@ impl Histories {
         Ok(())
     }
 
+    /// Whether a row is due; gathers the contacts for it. Forces of a row are means since the one before, so that their sum times
+    /// the time between rows is the impulse.
+    fn is_due(&mut self, report: &StepReport) -> bool {
+        let Some(every) = self.every else {
+            return true;
+        };
+        let fresh = self.gathered == 0.0;
+        self.means
+            .resize(report.contacts.len(), ContactReport::default());
+        self.gathered += report.dt;
+        for (mean, contact) in self.means.iter_mut().zip(&report.contacts) {
+            if fresh {
+                *mean = ContactReport::default();
+            }
+            gather(mean, contact, report.dt);
+        }
+        let due = self
+            .last
+            .is_none_or(|last| report.time >= (last + every) * (1.0 - 1e-12));
+        if !due {
+            return false;
+        }
+        self.last = Some(report.time);
+        let time = std::mem::take(&mut self.gathered);
+        for mean in self.means.iter_mut().filter(|_| time > 0.0) {
+            mean.force /= time;
+            mean.friction /= time;
+            mean.resultant = mean.resultant.map(|f| f / time);
+        }
+        true
+    }
+
     /// Forces all rows to the disk and closes the files. Nothing to do the second time.
     pub(crate) fn finish(&mut self) -> Result<(), Error> {
         let files = [self.file.take(), self.contact.take()];
         let closed = files.map(|file| file.map_or(Ok(()), History::finish));
         closed.into_iter().collect()
     }
+}
+
+/// Adds a step of `dt` (s) to what is gathered: forces times time, impulses, and the end of the step.
+fn gather(mean: &mut ContactReport, contact: &ContactReport, dt: f64) {
+    mean.force += dt * contact.force;
+    mean.friction += dt * contact.friction;
+    mean.impulsive += contact.impulsive;
+    for (sum, force) in mean.resultant.iter_mut().zip(contact.resultant) {
+        *sum += dt * force;
+    }
+    (mean.gap, mean.rate) = (contact.gap, contact.rate);
+    mean.closed = mean.closed.max(contact.closed);
+    mean.slipping = mean.slipping.max(contact.slipping);
 }
 
 /// Adds what a contact did to a row, in the order of [`contact_columns`].

@@ -18,6 +18,8 @@ pub(crate) struct Impacts {
     file: Option<ImpactTable>,
     /// Ended impacts already written.
     written: usize,
+    /// All impacts, once the run has ended.
+    pub(crate) all: Vec<Impact>,
     /// The first [`SHOWN`] rows.
     pub(crate) rows: Vec<ImpactRow>,
     /// By contact.
@@ -64,6 +66,7 @@ impl Impacts {
         Ok(Impacts {
             file: Some(ImpactTable::create(&folder.file("impacts.csv")?)?),
             written: 0,
+            all: Vec::new(),
             rows: Vec::new(),
             contacts: (0..system.contacts.len()).map(totals).collect(),
         })
@@ -103,6 +106,7 @@ impl Impacts {
             self.push(system, impact)?;
         }
         self.written = all.len();
+        self.all = all;
         self.file.take().map_or(Ok(()), ImpactTable::finish)
     }
 
@@ -126,6 +130,7 @@ impl Impacts {
             rebound_speed: parting(impact.rebound),
             restitution: impact.restitution.and_then(parting),
             energy_given: impact.energy_given,
+            energy_taken: impact.energy_taken,
             energy_lost: impact.energy_lost,
             energy_crushed: impact.energy_crushed,
             intervals: impact.intervals,

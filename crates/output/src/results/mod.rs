@@ -11,15 +11,18 @@ mod beams;
 mod cells;
 mod conclusion;
 mod costs;
+mod discrete;
 pub(crate) mod exact;
 mod fields;
 mod figures;
 mod film;
 mod histories;
 mod impacts;
+mod instants;
 mod lines;
 pub(crate) mod sensor;
 mod settings;
+mod spectra;
 mod totals;
 pub(crate) mod trace;
 mod zoning;
@@ -31,15 +34,19 @@ use carom_dynamics::{Observer, State, StepReport, Stepper, System};
 
 use crate::summary;
 use crate::{Error, Folder, atomic, checkpoint};
+use discrete::DiscretePeaks;
 use exact::Comparison;
 use fields::FieldOutput;
 use figures::Curves;
 use film::Film;
 use histories::Histories;
 use impacts::Impacts;
+use instants::Instants;
 use sensor::ContactPoint;
 
-pub use settings::{Ending, Fields, Probe, Reference, Settings};
+pub use settings::{Ending, Fields, LevelSettings, Probe, Reference, Settings};
+use spectra::Spectra;
+pub use spectra::Spectrum;
 use totals::{Last, Totals};
 pub use zoning::Zoning;
 
@@ -57,6 +64,9 @@ pub struct Results {
     fields: Option<FieldOutput>,
     curves: Curves,
     film: Film,
+    instants: Instants,
+    discrete: DiscretePeaks,
+    spectra: Spectra,
     comparison: Option<Comparison>,
     totals: Totals,
     /// Mean velocity of the bodies at the start, m/s.
@@ -80,6 +90,7 @@ impl Results {
         let mut folder = Folder::create(&settings.folder)?;
         atomic::write_text(&folder.file("case.toml")?, &settings.case_text)?;
         let curves = Curves::new(&system, &settings, point.as_ref(), &probes);
+        let spectra = Spectra::new(&settings, &probes);
         let histories = Histories::create(&mut folder, &columns, (&system, &settings), probes)?;
         let impacts = Impacts::create(&mut folder, &system, settings.zoning.as_ref())?;
         let fields = match &settings.fields {
@@ -93,6 +104,9 @@ impl Results {
         Ok(Results {
             curves,
             film: Film::default(),
+            instants: Instants::new(&system, &settings.levels),
+            discrete: DiscretePeaks::default(),
+            spectra,
             comparison: settings.reference.clone().map(Comparison::new),
             totals: Totals::default(),
             start: velocities(&system, &system.initial_velocity),
@@ -119,6 +133,9 @@ impl Results {
         self.impacts.take(&self.system, state, report)?;
         self.curves.push(&self.system, state, report);
         self.film.push(&self.system, state);
+        self.instants.push(&self.system, state, report);
+        self.discrete.push(&self.system, state);
+        self.spectra.push(&self.system, state, report);
         if let (Some(comparison), Some(point)) = (&mut self.comparison, point) {
             comparison.push((&self.system, point), state, report);
         }

@@ -6,7 +6,8 @@ use std::time::Duration;
 use carom_dynamics::Costs;
 use carom_exact::Solution;
 
-use crate::results::Zoning;
+use crate::results::{Spectrum, Zoning};
+use crate::statistics::Allowable;
 use crate::summary::Zones;
 
 /// What is written and where.
@@ -24,6 +25,10 @@ pub struct Settings {
     pub scheme: String,
     /// Histories of groups of nodes.
     pub probes: Vec<Probe>,
+    /// Contacts that are judged together.
+    pub levels: Vec<LevelSettings>,
+    /// Time between two rows of `histories.csv`, s; `None`: a row for every step.
+    pub history_every: Option<f64>,
     /// Fields for ParaView; `None`: none.
     pub fields: Option<Fields>,
     /// Exact solution to compare with.
@@ -32,6 +37,17 @@ pub struct Settings {
     pub zoning: Option<Zoning>,
     /// Warnings of the check.
     pub warnings: Vec<String>,
+}
+
+/// Contacts that are judged together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LevelSettings {
+    /// Name as in the case file.
+    pub name: String,
+    /// Indices of its contacts.
+    pub contacts: Vec<usize>,
+    /// What each of them may bear.
+    pub allowable: Allowable,
 }
 
 /// A history of the mean motion of a group of nodes.
@@ -49,6 +65,8 @@ pub struct Probe {
     pub acceleration: bool,
     /// Whether the acceleration with that of the frame of coordinates is written, m/s².
     pub absolute_acceleration: bool,
+    /// Response spectrum of the absolute acceleration; `None` for none.
+    pub spectrum: Option<Spectrum>,
 }
 
 impl Probe {

@@ -3,11 +3,13 @@
 //! The runs are plain data here. Where the case names an exact solution the errors are distances from it; elsewhere the
 //! order comes from the differences of neighbouring runs, which needs values in a constant ratio.
 
+mod envelope;
 mod orders;
 mod page;
 mod quantities;
 mod run;
 
+pub use envelope::{Envelope, Governed};
 pub use orders::{Fit, consecutive, differences, extrapolate, fit, saturation};
 pub use page::RAW_PEAK;
 pub use quantities::{Measure, Quantity};

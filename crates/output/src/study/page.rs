@@ -105,6 +105,7 @@ impl Study {
         self.write_runs(folder)?;
         let orders = self.orders();
         self.write_orders(folder, &orders)?;
+        self.write_envelope(folder)?;
         let figure = self.figure(&orders);
         let one = self.series().len() == 1;
         let drawn = one && figure.series.iter().any(|s| !s.points.is_empty());
@@ -236,6 +237,7 @@ impl Study {
                 reason,
             }
         };
+        let envelope = self.envelope_table();
         let runs: Vec<Value> = self.runs.iter().zip(&table.rows).map(run).collect();
         let page = environment.get_template("study.html")?.render(context! {
             title => self.title.clone(),
@@ -245,6 +247,8 @@ impl Study {
             runs,
             order_heads => orders.heads[1..].to_vec(),
             orders => orders.rows,
+            envelope_heads => envelope.heads,
+            envelope => envelope.rows,
             grid => self.series().len() > 1,
             contact => self.contact(),
             raw_peak => RAW_PEAK,

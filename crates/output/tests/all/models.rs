@@ -145,6 +145,8 @@ pub fn settings(folder: &Path) -> Settings {
         version: "0.1.0".to_owned(),
         scheme: "a scheme".to_owned(),
         probes: Vec::new(),
+        levels: Vec::new(),
+        history_every: None,
         fields: None,
         reference: None,
         zoning: None,
@@ -176,5 +178,6 @@ pub fn probe(system: &System, name: &str, group: &str) -> Probe {
         velocity: true,
         acceleration: true,
         absolute_acceleration: false,
+        spectrum: None,
     }
 }

@@ -49,6 +49,8 @@ fn sample(verdict: Verdict) -> Summary {
         },
         zones: None,
         contacts: BTreeMap::from([("shock".to_owned(), contact)]),
+        levels: BTreeMap::new(),
+        discrete: BTreeMap::new(),
         energy,
         momentum: Momentum {
             initial: [6.6, 0.0, 0.0],
@@ -216,6 +218,7 @@ fn what_does_not_exist_is_a_dash() {
         rebound_speed: None,
         restitution: None,
         energy_given: 1.0,
+        energy_taken: 1.0,
         energy_lost: 1.0,
         energy_crushed: 0.0,
         intervals: 1,
