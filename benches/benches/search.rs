@@ -114,6 +114,7 @@ fn scene(side: u32) -> (Vec<[f64; 3]>, Contact) {
             nodes: face_nodes(&[a, a + 1, a + n + 1, a + n]),
             parent: ElementId { block: 0, index: i },
             axis: [0.0; 3],
+            radius: None,
         }
     };
     let faces = (0..side * side).map(face).collect();

@@ -4,8 +4,86 @@
 //! those of the ladder `largest / 2ᵏ`, so that few factors serve a whole run; only a step cut at a closing has a size of
 //! its own.
 
-use carom_system::Adaptive;
+use carom_system::{Adaptive, Closing};
 use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::landing::cut;
+
+/// Attempts at one step after which a closing cuts it no more.
+const CUTS: u32 = 10;
+
+/// What takes adaptive steps: a driver, or the drivers of zones.
+pub trait Attempts {
+    /// The largest size up to `dt` (s) that is stable, s.
+    ///
+    /// # Errors
+    /// There is none that may be taken.
+    fn stable(&mut self, dt: f64) -> Result<f64, Error>;
+    /// Computes the end of a step of size `dt` before one of size `next` (both s), which is not accepted.
+    ///
+    /// # Errors
+    /// No solution.
+    fn attempt(&mut self, dt: f64, next: f64) -> Result<(), Error>;
+    /// When the first of the points in flight is at its lead of steps of size `planned` (s), after the start of the attempt, s;
+    /// infinite where none is.
+    fn first_cut(&self, rules: &Adaptive, planned: f64) -> f64;
+    /// Whether the energy that the scheme balances, less the work from outside, exceeds its value at the start of the run by more
+    /// than this fraction of the largest energy, at the end of the attempt.
+    fn grows(&self, fraction: f64) -> bool;
+    /// Gives back what an attempt that is dropped has changed.
+    fn withdraw(&mut self);
+    /// Number and time (s) of the state.
+    fn instant(&self) -> (u64, f64);
+}
+
+/// Attempts at a step, from one of size `dt` (s) on, until one need not be dropped. `largest`: the step of the model, s;
+/// `forced`: whether the first good one is dropped too, in tests. Returns what the control remembers of those dropped, and how
+/// many attempts there were.
+///
+/// # Errors
+/// An attempt of the smallest size that fails, or in which energy grows.
+pub fn adapt(
+    run: &mut dyn Attempts,
+    (mut control, mut dt): (Control, f64),
+    (rules, largest): (&Adaptive, f64),
+    mut forced: bool,
+) -> Result<(Control, u32), Error> {
+    let taken = control.taken;
+    let mut attempts = 0;
+    loop {
+        attempts += 1;
+        dt = run.stable(dt)?;
+        let outcome = run.attempt(dt, control.next(rules, largest));
+        let event = match &outcome {
+            Err(_) => Some((Event::Failure, dt)),
+            Ok(()) => {
+                let cuts = rules.closing == Closing::Cut && attempts <= CUTS;
+                let sizes = [dt, control.dt, taken];
+                let cut = cuts.then(|| cut(rules, run.first_cut(rules, control.dt), sizes));
+                let grows = || rules.growth.is_some_and(|fraction| run.grows(fraction));
+                match cut.flatten() {
+                    Some(size) => Some((Event::Closing, size)),
+                    None => grows().then_some((Event::Growth, dt)),
+                }
+            }
+        };
+        let Some((event, size)) = event else {
+            if std::mem::take(&mut forced) {
+                run.withdraw();
+                continue;
+            }
+            return Ok((control, attempts));
+        };
+        run.withdraw();
+        let (step, time) = run.instant();
+        let step = step + 1;
+        tracing::debug!("step {step}: attempt with {dt:e} s rejected ({event:?})");
+        let grown = Error::EnergyGrowth { step, time, dt };
+        let smaller = control.drop(rules, event, size);
+        dt = smaller.ok_or(outcome.err().unwrap_or(grown))?;
+    }
+}
 
 /// Why a step was dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

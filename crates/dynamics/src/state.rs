@@ -139,17 +139,6 @@ impl State {
         Ok(state)
     }
 
-    /// Whether a contact point carries a force or may do so within `dt` (s), at twice its present rate. `tolerance`: gap
-    /// that counts as closed, m.
-    pub fn may_touch(&self, dt: f64, tolerance: f64) -> bool {
-        let interface = &self.interface;
-        let points = interface.gap.iter().zip(&interface.rate);
-        let touches = |((gap, rate), force): ((&f64, &f64), &f64)| {
-            *force != 0.0 || gap + 2.0 * dt * rate.min(0.0) <= tolerance
-        };
-        points.zip(&interface.force).any(touches)
-    }
-
     /// Refuses a state of another size than the system's.
     pub fn check(&self, system: &System) -> Result<(), Error> {
         let (n, points) = (system.unknowns(), system.points());

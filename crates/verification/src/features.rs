@@ -37,10 +37,12 @@ pub(crate) enum Feature {
     UnequalZones,
     StaticStage,
     Massless,
+    BetweenZones,
+    AdaptiveZones,
 }
 
 impl Feature {
-    pub(crate) const ALL: [Feature; 12] = [
+    pub(crate) const ALL: [Feature; 14] = [
         Feature::Friction,
         Feature::FiniteStrain,
         Feature::Plasticity,
@@ -53,6 +55,8 @@ impl Feature {
         Feature::UnequalZones,
         Feature::StaticStage,
         Feature::Massless,
+        Feature::BetweenZones,
+        Feature::AdaptiveZones,
     ];
 
     pub(crate) fn name(self) -> &'static str {
@@ -69,6 +73,8 @@ impl Feature {
             Feature::UnequalZones => "zones, m = 4",
             Feature::StaticStage => "static stage",
             Feature::Massless => "massless",
+            Feature::BetweenZones => "contact between zones, m = 4",
+            Feature::AdaptiveZones => "adaptive zones, m = 4",
         }
     }
 
@@ -162,7 +168,6 @@ impl Feature {
         for body in &mut model.bodies {
             body.spec.material = self.material();
         }
-        let speed = -model.bodies[0].velocity[1];
         match self {
             Feature::Friction => model.contacts[0].friction = 0.3,
             Feature::Mortar => {
@@ -170,15 +175,12 @@ impl Feature {
                     basis: Basis::Standard,
                 }
             }
-            Feature::Adaptive => {
-                model.bodies[0].displacement[1] = 2.3 * model.dt * speed;
-                model.adaptive = Some(Adaptive {
-                    smallest: model.dt / 16.0,
-                    closing: Closing::Cut,
-                    growth: None,
-                    patience: 10,
-                });
+            Feature::Adaptive => fly(&mut model),
+            Feature::AdaptiveZones => {
+                fly(&mut model);
+                return Built::zoned(zones(model, 4)?);
             }
+            Feature::BetweenZones => return Built::zoned(in_contact(model, 4)),
             Feature::StaticStage => preloaded(&mut model)?,
             Feature::Massless => model.contacts[0].massless = true,
             Feature::EqualZones => return Built::zoned(zones(model, 1)?),
@@ -256,6 +258,35 @@ fn flung(scheme: Scheme, law: Law, refinement: usize) -> Result<Built, Error> {
     let system = System::new(pin.model()?)?;
     let velocity = pin.fling(&system);
     Ok(Built::One(system, Some(velocity)))
+}
+
+/// A flight of some steps, which adapt themselves to its end.
+fn fly(model: &mut Model) {
+    let speed = -model.bodies[0].velocity[1];
+    model.bodies[0].displacement[1] = 2.3 * model.dt * speed;
+    model.adaptive = Some(Adaptive {
+        smallest: model.dt / 16.0,
+        closing: Closing::Cut,
+        growth: None,
+        patience: 10,
+    });
+}
+
+/// Each block is a zone; the lower one takes `substeps` steps in one of the upper.
+fn in_contact(model: Model, substeps: u32) -> Zoned {
+    let zone = |body: usize, substeps| ModelZone {
+        name: model.bodies[body].spec.name.clone(),
+        bodies: vec![body],
+        scheme: model.scheme,
+        substeps,
+        far: None,
+    };
+    Zoned {
+        zones: vec![zone(0, 1), zone(1, substeps)],
+        links: Vec::new(),
+        kind: LinkKind::PrakashHjelmstad,
+        model,
+    }
 }
 
 /// Static steps under the weight, then a traction that presses the upper block down for some steps.
@@ -365,6 +396,7 @@ fn reason_of_zones(error: &carom_zones::Error) -> Option<String> {
         E::Zone { cause, .. } => reason_of_run(cause),
         E::Dynamics(error) => reason_of_run(error),
         E::System(error) => reason_of(error),
+        E::AcrossZones { cause, .. } => Some(format!("between zones of unequal steps: {cause}")),
         _ => None,
     }
 }

@@ -17,12 +17,15 @@ use crate::places::Places;
 use carom_dynamics::ContactReport;
 use carom_dynamics::Driver;
 use carom_dynamics::contact_report;
+use carom_dynamics::landing::{arrival, flies, lead};
 use carom_dynamics::linked::{Growth, Origin};
+use carom_dynamics::paired::{append, approaches, told};
 use carom_dynamics::records::{Records, Step};
 use carom_dynamics::state::{InterfaceState, empty_state};
 use carom_nonsmooth::interface::{Candidate, Interface};
+use carom_schemes::Scheme;
 use carom_schemes::step_map::Impulse;
-use carom_system::{LinkRow, System, on};
+use carom_system::{Adaptive, LinkRow, System, on};
 
 /// Change of the forces over the largest at which the passes end.
 const TOLERANCE: f64 = 1e-12;
@@ -30,45 +33,51 @@ const TOLERANCE: f64 = 1e-12;
 /// What contacts between zones go on from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BetweenState {
-    /// Forces, statuses and gaps of the points of the whole model; of the points between zones.
+    /// Forces, statuses and gaps of their points.
     pub interface: InterfaceState,
-    /// Records of the contacts of the whole model; of the contacts between zones.
+    /// Their records.
     pub records: Records,
-    /// Work of each contact of the model on both its sides, J.
+    /// Work of each on both its sides, J.
     pub works: Vec<f64>,
 }
 
 /// Contacts between zones.
 pub(crate) struct Between {
-    /// All of the model.
-    system: Arc<System>,
-    /// Contacts whose sides are in different zones.
+    /// All bodies, and these contacts alone.
+    pub(crate) system: Arc<System>,
+    /// Their numbers in the model.
     pub(crate) contacts: Vec<usize>,
+    /// The scheme of the zone of the secondary side of each.
+    schemes: Vec<Scheme>,
     /// Zone of each unknown of the whole, and its number there.
     homes: Vec<(usize, u32)>,
     places: Vec<Places>,
     search: Vec<Search>,
     initial: Vec<Pairing>,
-    pub(crate) pairing: Pairing,
+    pairing: Pairing,
     /// Points that may carry a force in the step.
     candidates: Vec<u32>,
     /// Their forces in this pass, N.
     forces: Vec<f64>,
     /// Rows of the candidates by zone.
     rows: Vec<Vec<(u32, LinkRow)>>,
-    /// D over the candidates, and the rows that it is of.
+    /// D over the candidates, the rows that it is of, and the sizes of the steps of the zones.
     matrix: Vec<f64>,
     of: Vec<(Vec<u32>, Vec<f64>)>,
+    sizes: Vec<f64>,
     version: u64,
     rates: Vec<f64>,
     interface: Interface,
     data: Vec<Candidate>,
-    u: Vec<f64>,
-    v: Vec<f64>,
+    /// Displacements and velocities of the whole at the start of the step, and at its end.
+    start: [Vec<f64>; 2],
+    end: [Vec<f64>; 2],
+    place: Vec<f64>,
+    still: Vec<f64>,
     pub(crate) state: BetweenState,
-    /// What the contacts of the model did in the last outer step.
+    /// What the contacts did in the last outer step.
     pub(crate) reports: Vec<ContactReport>,
-    /// Works of the step, by contact of the model, J.
+    /// Works of the step, J.
     now: Vec<f64>,
 }
 
@@ -82,7 +91,12 @@ impl Between {
         if contacts.is_empty() {
             return Ok(None);
         }
-        let system = System::whole(zoned.model.clone())?;
+        let mut model = zoned.model.clone();
+        let own = contacts
+            .iter()
+            .map(|&contact| model.contacts[contact].clone());
+        model.contacts = own.collect();
+        let system = System::whole(model)?;
         let mut taken = vec![false; system.unknowns()];
         let of_zone = |(driver, zone): (&Driver, &ModelZone)| {
             Places::new(driver.system(), (&zone.bodies, &[]), &system, &mut taken)
@@ -94,9 +108,11 @@ impl Between {
                 homes[whole as usize] = (zone, own);
             }
         }
-        let count = system.contacts.len();
-        let n = system.unknowns();
+        let count = contacts.len();
+        let zeros = || vec![0.0; system.unknowns()];
+        let scheme = |&contact: &usize| zoned.zones[zoned.zones_of(contact)[0]].scheme;
         Ok(Some(Between {
+            schemes: contacts.iter().map(scheme).collect(),
             contacts,
             homes,
             places,
@@ -108,12 +124,15 @@ impl Between {
             rows: vec![Vec::new(); drivers.len()],
             matrix: Vec::new(),
             of: Vec::new(),
+            sizes: Vec::new(),
             version: 0,
             rates: Vec::new(),
             interface: Interface::default(),
             data: Vec::new(),
-            u: vec![0.0; n],
-            v: vec![0.0; n],
+            start: [zeros(), zeros()],
+            end: [zeros(), zeros()],
+            place: zeros(),
+            still: zeros(),
             reports: vec![ContactReport::default(); count],
             state: BetweenState {
                 interface: empty_state(&system).interface,
@@ -125,67 +144,45 @@ impl Between {
         }))
     }
 
-    /// Displacements and velocities of the whole from those of the zones at the present instant.
-    fn gather(&mut self, drivers: &[Driver]) {
-        for (driver, places) in drivers.iter().zip(&self.places) {
-            let motion = &driver.state().motion;
-            for &(own, whole) in &places.own {
-                self.u[whole as usize] = motion.u[own as usize];
-                self.v[whole as usize] = motion.v[own as usize];
-            }
-        }
+    /// The way of the points of a contact in the step, of `dt` (s), at which it is paired, as a part of `dt`.
+    fn captured(&self, contact: usize) -> f64 {
+        self.system.contacts[contact].law.get().capture()
     }
 
-    /// Pairs the points for an outer step of `dt` (s) from `time`, and lists those that may carry a force; 0 for the present
-    /// instant.
-    fn pair(&mut self, drivers: &[Driver], (time, dt): (f64, f64)) {
-        self.gather(drivers);
+    /// Pairs the points for an outer step of `dt` from `time` (both s); 0 for the present instant.
+    fn pair(&mut self, (time, dt): (f64, f64)) {
         let system = Arc::clone(&self.system);
         self.pairing.clear();
         self.pairing.span = [0.0; 2];
-        let mut place = vec![0.0; self.u.len()];
         for (k, contact) in system.contacts.iter().enumerate() {
-            let part = contact.law.get().capture() * dt;
-            for (i, place) in place.iter_mut().enumerate() {
-                *place = self.u[i] + part * self.v[i];
+            let part = self.captured(k) * dt;
+            let [u, v] = &self.start;
+            for (i, place) in self.place.iter_mut().enumerate() {
+                *place = u[i] + part * v[i];
             }
-            let frames = &system.initial_frames;
-            if contact.sliding == carom_contact::Sliding::Finite {
-                let places = system.places(time + part, &place, frames);
-                contact.pair_fully(&places, &mut self.search[k], &mut self.pairing);
-                continue;
-            }
-            let initial = &mut self.initial[k];
-            if initial.is_empty() {
-                let still = vec![0.0; place.len()];
-                let places = system.places(time, &still, frames);
-                contact.pair_fully(&places, &mut self.search[k], initial);
-            }
-            self.pairing.append_moved(initial, &place);
+            let places = system.places(time + part, &self.place, &system.initial_frames);
+            let kept = (&mut self.search[k], &mut self.initial[k]);
+            append(contact, &places, &mut self.still, kept, &mut self.pairing);
         }
     }
 
-    /// Pairs and lists the candidates of an outer step, with the forces of the last one.
-    pub(crate) fn begin(&mut self, drivers: &[Driver], span: (f64, f64)) {
-        self.pair(drivers, span);
-        let (system, dt) = (Arc::clone(&self.system), span.1);
+    /// Pairs and lists the candidates of an outer step of `dt` from `time` (both s), with the forces of the last one.
+    pub(crate) fn begin(&mut self, drivers: &[Driver], (time, dt): (f64, f64)) {
+        gather(drivers, &self.places, &mut self.start);
+        self.pair((time, dt));
+        let system = Arc::clone(&self.system);
         self.candidates.clear();
         self.now.fill(0.0);
-        for &contact in &self.contacts {
-            let law = system.contacts[contact].law;
-            for point in system.first_point[contact]..system.first_point[contact + 1] {
-                let rows = &self.pairing.rows;
-                let (gap, rate) = (rows.gap(point), rows.product(point, &self.v));
-                if gap == f64::INFINITY {
-                    continue;
-                }
-                let way = (law.get().capture() * dt * rate).max(0.0);
-                let told = law.get().watches(gap - way, system.tolerance);
-                let near = gap + 2.0 * dt * rate.min(0.0) <= system.tolerance;
-                let pressed = self.state.interface.force[point] != 0.0;
-                if told.unwrap_or(near || pressed) {
-                    self.candidates.push(point as u32);
-                }
+        for point in 0..system.points() {
+            let law = &system.point(point).0.law;
+            let rows = &self.pairing.rows;
+            let captured = (rows.gap(point), rows.product(point, &self.start[1]));
+            let chosen = told(law, captured, dt, system.tolerance).unwrap_or_else(|| {
+                let near = approaches(captured, dt, system.tolerance);
+                near || self.state.interface.force[point] != 0.0
+            });
+            if chosen {
+                self.candidates.push(point as u32);
             }
         }
         let force = |&point: &u32| self.state.interface.force[point as usize];
@@ -203,14 +200,14 @@ impl Between {
         }
     }
 
-    /// D of the candidates, where their rows have changed.
+    /// D of the candidates for an outer step of `dt` (s), where their rows or the sizes of steps have changed.
     ///
     /// # Errors
     /// An effective matrix that is not positive definite.
     pub(crate) fn respond(
         &mut self,
         drivers: &mut [Driver],
-        substeps: &[u32],
+        (substeps, dt): (&[u32], f64),
         origins: &[Origin],
     ) -> Result<(), Error> {
         let row = |&point: &u32| {
@@ -218,7 +215,8 @@ impl Between {
             (dofs.to_vec(), coefficients.to_vec())
         };
         let of: Vec<_> = self.candidates.iter().map(row).collect();
-        if of == self.of {
+        let sizes = substeps.iter().map(|m| dt / f64::from(*m)).collect();
+        if of == self.of && sizes == self.sizes {
             return Ok(());
         }
         let n = self.candidates.len();
@@ -238,7 +236,7 @@ impl Between {
                 }
             }
         }
-        self.of = of;
+        (self.of, self.sizes) = (of, sizes);
         self.version += 1;
         Ok(())
     }
@@ -299,7 +297,7 @@ impl Between {
                     area: carrier.area,
                     share: carrier.share,
                     gap,
-                    rate: rows.product(point, &self.v),
+                    rate: rows.product(point, &self.start[1]),
                     start: 0.0,
                     gap_free: gap,
                     dt,
@@ -336,16 +334,13 @@ impl Between {
         Ok(held)
     }
 
-    /// Makes the forces those of the state at the end of an outer step of `dt` (both s).
-    pub(crate) fn accept(&mut self, drivers: &[Driver], (end, dt): (f64, f64)) {
-        let (before, v) = (self.state.interface.clone(), self.v.clone());
+    /// Makes the forces those of the state at `time`, the end of an outer step of `dt` (both s).
+    pub(crate) fn accept(&mut self, drivers: &[Driver], [time, dt]: [f64; 2]) {
+        let before = self.state.interface.clone();
         let interface = &mut self.state.interface;
-        for &contact in &self.contacts {
-            let points = self.system.first_point[contact]..self.system.first_point[contact + 1];
-            interface.force[points.clone()].fill(0.0);
-            interface.status[points.clone()].fill(Status::Open);
-            interface.watched[points].fill(false);
-        }
+        interface.force.fill(0.0);
+        interface.status.fill(Status::Open);
+        interface.watched.fill(false);
         for (k, &point) in self.candidates.iter().enumerate() {
             let point = point as usize;
             interface.force[point] = self.forces[k];
@@ -357,14 +352,25 @@ impl Between {
         for (sum, now) in self.state.works.iter_mut().zip(&self.now) {
             *sum += now;
         }
-        self.tell(drivers, end);
-        self.add_records(&before, &v, [end, dt]);
+        gather(drivers, &self.places, &mut self.end);
+        let ([u, v], [end, rate], rows) = (&self.start, &self.end, &self.pairing.rows);
+        for contact in 0..self.contacts.len() {
+            let part = self.captured(contact) * dt;
+            for point in self.system.points_of(contact) {
+                let paired = rows.product(point, u) + part * rows.product(point, v);
+                let way = rows.product(point, end) - paired;
+                let interface = &mut self.state.interface;
+                interface.gap[point] = rows.gap(point) + way;
+                interface.rate[point] = rows.product(point, rate);
+            }
+        }
+        self.add_records(&before, [time, dt]);
     }
 
-    /// Records of a step of `dt` to `end` (both s), from the interface and the velocities at its start.
-    fn add_records(&mut self, before: &InterfaceState, v: &[f64], [end, dt]: [f64; 2]) {
+    /// Records of a step of `dt` to `end` (both s), from the interface at its start.
+    fn add_records(&mut self, before: &InterfaceState, [end, dt]: [f64; 2]) {
         let system = Arc::clone(&self.system);
-        for &contact in &self.contacts {
+        for contact in 0..system.contacts.len() {
             let now = &self.state.interface;
             let rows = &self.pairing.rows;
             let report = contact_report(&system, contact, rows, before, now, dt);
@@ -378,22 +384,9 @@ impl Between {
                 crushed: 0.0,
                 jump: Default::default(),
             };
-            let velocities = [v, &self.v[..]];
+            let velocities = [&self.start[1][..], &self.end[1]];
             self.state.records.add(&system, contact, &step, velocities);
             self.reports[contact] = report;
-        }
-    }
-
-    /// Gaps and rates at the present instant, s.
-    pub(crate) fn tell(&mut self, drivers: &[Driver], time: f64) {
-        self.pair(drivers, (time, 0.0));
-        let rows = &self.pairing.rows;
-        let interface = &mut self.state.interface;
-        for &contact in &self.contacts {
-            for point in self.system.first_point[contact]..self.system.first_point[contact + 1] {
-                interface.gap[point] = rows.gap(point);
-                interface.rate[point] = rows.product(point, &self.v);
-            }
         }
     }
 
@@ -402,8 +395,14 @@ impl Between {
         self.state.interface = empty_state(&self.system).interface;
         self.state.works.fill(0.0);
         self.state.records = Records::of(&self.system);
-        self.tell(drivers, 0.0);
-        for &contact in &self.contacts {
+        gather(drivers, &self.places, &mut self.start);
+        self.pair((0.0, 0.0));
+        let (rows, interface) = (&self.pairing.rows, &mut self.state.interface);
+        for point in 0..self.system.points() {
+            interface.gap[point] = rows.gap(point);
+            interface.rate[point] = rows.product(point, &self.start[1]);
+        }
+        for contact in 0..self.contacts.len() {
             let (rows, now) = (&self.pairing.rows, &self.state.interface);
             self.reports[contact] = contact_report(&self.system, contact, rows, now, now, 0.0);
         }
@@ -413,12 +412,65 @@ impl Between {
     pub(crate) fn may_touch(&self, dt: f64) -> bool {
         let (interface, tolerance) = (&self.state.interface, self.system.tolerance);
         let touches = |point: usize| {
-            let near = interface.gap[point] + 2.0 * dt * interface.rate[point].min(0.0);
-            interface.force[point] != 0.0 || near <= tolerance
+            let ahead = (interface.gap[point], interface.rate[point]);
+            interface.force[point] != 0.0 || approaches(ahead, dt, tolerance)
         };
-        let mut points = self.contacts.iter().flat_map(|&contact| {
-            self.system.first_point[contact]..self.system.first_point[contact + 1]
+        (0..self.system.points()).any(touches)
+    }
+
+    /// When the first of the points in flight is at its lead of outer steps of size `planned`, after the start of the attempt of
+    /// `dt` just made (all s); infinite where none is. `largest`: the largest outer step, s.
+    pub(crate) fn first_cut(
+        &self,
+        drivers: &[Driver],
+        (rules, largest): (&Adaptive, f64),
+        [dt, planned]: [f64; 2],
+    ) -> f64 {
+        let (interface, rows) = (&self.state.interface, &self.pairing.rows);
+        let mut first = f64::INFINITY;
+        for point in 0..self.system.points() {
+            let (gap, flight) = (interface.gap[point], interface.flight[point]);
+            if !flies((gap, flight), self.system.tolerance, (rules, largest)) {
+                continue;
+            }
+            let rate = rows.product(point, &self.start[1]);
+            // without forces: of a candidate its own rate at the end, of others that of the motion
+            let candidate = self.candidates.binary_search(&(point as u32)).ok();
+            let free = candidate.and_then(|k| self.data.get(k)).map_or_else(
+                || self.ended(drivers, point),
+                |candidate| candidate.rate_free,
+            );
+            let end = gap + 0.5 * dt * (rate + free);
+            let contact = self.system.contact_of(point);
+            let law = self.system.contacts[contact].law.get();
+            let map = self.schemes[contact].get().step_map(planned);
+            let arrival = arrival([gap, rate, end], dt, self.system.tolerance);
+            let cut = arrival - lead(&map, planned, law);
+            if cut >= rules.smallest {
+                first = first.min(cut);
+            }
+        }
+        first
+    }
+
+    /// Rate of a point at the end of the attempt, m/s.
+    fn ended(&self, drivers: &[Driver], point: usize) -> f64 {
+        let (unknowns, coefficients) = self.pairing.rows.row(point);
+        let terms = unknowns.iter().zip(coefficients).map(|(&unknown, n)| {
+            let (zone, own) = self.homes[unknown as usize];
+            n * drivers[zone].ended().motion.v[own as usize]
         });
-        points.any(touches)
+        terms.sum()
+    }
+}
+
+/// Displacements and velocities of the whole from those of the zones at the present instant.
+fn gather(drivers: &[Driver], places: &[Places], [u, v]: &mut [Vec<f64>; 2]) {
+    for (driver, places) in drivers.iter().zip(places) {
+        let motion = &driver.state().motion;
+        for &(own, whole) in &places.own {
+            u[whole as usize] = motion.u[own as usize];
+            v[whole as usize] = motion.v[own as usize];
+        }
     }
 }

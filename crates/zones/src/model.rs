@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use carom_schemes::Scheme;
-use carom_system::{Model, ModelLink, NodalLoad, Nonlinear, System, sides};
+use carom_system::{Adaptive, Model, ModelLink, NodalLoad, Nonlinear, System, sides};
 
 /// A group of bodies with its own scheme and step.
 #[derive(Clone, Debug)]
@@ -130,7 +130,10 @@ impl Zoned {
             zones: Vec::new(),
             links: Vec::new(),
             dt: whole.dt / f64::from(part.substeps),
-            adaptive: None,
+            adaptive: whole.adaptive.map(|rules| Adaptive {
+                smallest: rules.smallest / f64::from(part.substeps),
+                ..rules
+            }),
             nonlinear: self.nonlinear(part),
         }
     }

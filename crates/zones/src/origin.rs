@@ -24,7 +24,6 @@ impl Zones {
     /// Makes these the origins of H from the next step on.
     pub(crate) fn start_from(&mut self, origins: Vec<Origin>) {
         self.origins = origins;
-        self.kept.clear();
         self.stale = true;
     }
 }

@@ -47,7 +47,7 @@ impl Zones {
     /// Largest velocity of all zones, at the end of the step or at its start.
     fn speed(&self) -> f64 {
         let of = |driver: &Driver| {
-            largest(driver.next_velocity()).max(largest(&driver.state().motion.v))
+            largest(&driver.ended().motion.v).max(largest(&driver.state().motion.v))
         };
         self.drivers.iter().map(of).fold(0.0, f64::max)
     }

@@ -29,7 +29,7 @@ impl Zones {
             driver.complete()?;
             for (row, terms) in &self.rows[k] {
                 start[*row as usize] += on(terms, &driver.state().motion.v);
-                end[*row as usize] += on(terms, driver.next_velocity());
+                end[*row as usize] += on(terms, &driver.ended().motion.v);
             }
         }
         for i in 0..n {
@@ -40,7 +40,12 @@ impl Zones {
         new.copy_from_slice(old);
         let m = self.substeps.iter().copied().max().unwrap_or(1);
         for j in 1..=m {
-            self.inner_instant(f64::from(j) / f64::from(m))?;
+            for k in 0..self.drivers.len() {
+                if self.substeps[k] > 1 {
+                    self.size_inner(k, j == m);
+                }
+            }
+            self.inner_instant((j, m))?;
         }
         let [old, new] = &self.multipliers;
         for (k, driver) in self.drivers.iter_mut().enumerate() {
@@ -58,7 +63,8 @@ impl Zones {
     }
 
     /// One step of the inner zones, whose pointwise multipliers start from those in `multipliers[1]` and end there.
-    fn inner_instant(&mut self, part: f64) -> Result<(), Error> {
+    fn inner_instant(&mut self, (j, m): (u32, u32)) -> Result<(), Error> {
+        let part = f64::from(j) / f64::from(m);
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] > 1 {
                 driver.prepare()?;
@@ -86,7 +92,7 @@ impl Zones {
                 self.mixes[k][0].copy_from_slice(mix);
                 driver.complete()?;
                 for (row, terms) in &self.rows[k] {
-                    self.defect[*row as usize] += on(terms, driver.next_velocity());
+                    self.defect[*row as usize] += on(terms, &driver.ended().motion.v);
                 }
             }
             if self.corrected(0)? {
@@ -94,6 +100,11 @@ impl Zones {
             }
             if pass == MOST_PASSES {
                 return Err(self.parted());
+            }
+        }
+        for k in (0..self.drivers.len()).filter(|_| j == 1) {
+            if self.substeps[k] > 1 {
+                self.look_ahead(k);
             }
         }
         for (k, driver) in self.drivers.iter_mut().enumerate() {

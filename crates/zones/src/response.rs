@@ -68,14 +68,6 @@ impl Zones {
         self.factor = Some(Condensed::Dense(factor));
         Ok(())
     }
-
-    /// Makes H anew if its origins are not those it was made from.
-    pub(crate) fn renew_condensed(&mut self) -> Result<(), Error> {
-        if std::mem::take(&mut self.stale) {
-            self.factorise()?;
-        }
-        Ok(())
-    }
 }
 
 /// A zone in H, with A = `mass` M + `stiffness` K.

@@ -10,10 +10,10 @@ use crate::model::Zoned;
 use crate::moves::Moves;
 use crate::response::answer;
 use crate::zones::Zones;
-use carom_dynamics::Driver;
 use carom_dynamics::condensed::{Answer, Condensed, DENSE, Joined};
 use carom_dynamics::linked::Origin;
 use carom_dynamics::operator::Operators;
+use carom_dynamics::{Control, Driver};
 use carom_system::{LinkRow, System, on};
 
 impl Zones {
@@ -51,8 +51,11 @@ impl Zones {
         let multipliers = start(&mut drivers, &rows, count)?;
         let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
         let far = zoned.zones.iter();
-        let far = far.map(|zone| zone.far.unwrap_or(zone.substeps)).collect();
-        let saved = drivers.iter().zip(&substeps).map(|(driver, m)| {
+        let far = far.map(|zone| zone.far.unwrap_or(zone.substeps));
+        let far: Vec<u32> = far.collect();
+        let most = |(near, far): (&u32, &u32)| *near.max(far);
+        let most: Vec<u32> = substeps.iter().zip(&far).map(most).collect();
+        let saved = drivers.iter().zip(&most).map(|(driver, m)| {
             let inner = *m > 1;
             inner.then(|| driver.state().clone())
         });
@@ -70,8 +73,16 @@ impl Zones {
             norms,
             links,
             kind: zoned.kind,
+            rules: zoned.model.adaptive,
+            largest: zoned.model.dt,
+            control: Control::start(zoned.model.dt),
+            attempts: 0,
+            first_cut: f64::INFINITY,
             dt: zoned.model.dt,
+            next: zoned.model.dt,
+            sizes: [zoned.model.dt; 2],
             step: 0,
+            time: 0.0,
             earlier: [multipliers.clone(), multipliers.clone()],
             multipliers: [multipliers.clone(), multipliers],
             factor: None,
@@ -116,7 +127,9 @@ impl Zones {
             driver.restart(u, v)?;
         }
         let multipliers = start(&mut self.drivers, &self.rows, self.norms.len())?;
-        self.step = 0;
+        (self.step, self.time) = (0, 0.0);
+        self.control = Control::start(self.largest);
+        self.sizes = [self.largest; 2];
         self.earlier = [multipliers.clone(), multipliers.clone()];
         self.multipliers = [multipliers.clone(), multipliers];
         self.start_works();

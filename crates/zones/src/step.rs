@@ -1,50 +1,19 @@
-//! An outer step: how many inner steps the zones take, the passes over it, and what it leaves.
+//! An attempt at an outer step: the passes over it, and what it leaves.
 
 use crate::error::Error;
 use crate::model::LinkKind;
 use crate::passes::{MOST_PASSES, record, sample};
-use crate::zones::{Kept, Zones};
+use crate::zones::Zones;
 use carom_system::on;
 
 impl Zones {
-    /// Takes one outer step.
-    ///
-    /// # Errors
-    /// A step of a zone that fails, or multipliers that are not found. The state is then the one before the step.
-    pub fn step(&mut self) -> Result<(), Error> {
-        self.renew_condensed()?;
-        self.choose_substeps()?;
-        for (k, driver) in self.drivers.iter().enumerate() {
-            if self.substeps[k] > 1
-                && let Some(saved) = &mut self.saved[k]
-            {
-                saved.clone_from(driver.state());
-            }
-        }
-        let forced = self
-            .forced
-            .is_some_and(|every| (self.step + 1).is_multiple_of(every));
-        if forced && self.attempt().is_ok() {
-            self.go_back();
-        }
-        match self.attempt() {
-            Ok(()) => {
-                self.accept();
-                Ok(())
-            }
-            Err(error) => {
-                self.go_back();
-                Err(error)
-            }
-        }
-    }
-
     /// Computes the outer step, which is not accepted.
-    fn attempt(&mut self) -> Result<(), Error> {
+    pub(crate) fn attempt(&mut self) -> Result<(), Error> {
         let inner = self.substeps.iter().any(|m| *m > 1);
         if let Some(between) = &mut self.between {
-            between.begin(&self.drivers, (self.step as f64 * self.dt, self.dt));
-            between.respond(&mut self.drivers, &self.substeps, &self.origins)?;
+            between.begin(&self.drivers, (self.time, self.dt));
+            let steps = (&self.substeps[..], self.dt);
+            between.respond(&mut self.drivers, steps, &self.origins)?;
         }
         match self.kind {
             LinkKind::GravouilCombescure if inner && !self.links.is_empty() => {
@@ -54,45 +23,8 @@ impl Zones {
         }
     }
 
-    /// Takes the inner steps of a shock if a contact may close in the outer step, else those far from it.
-    fn choose_substeps(&mut self) -> Result<(), Error> {
-        if self.choices[0] == self.choices[1] {
-            return Ok(());
-        }
-        let near = self.drivers.iter().any(|driver| {
-            let tolerance = driver.system().tolerance;
-            driver.state().may_touch(self.dt, tolerance)
-        });
-        let between = self.between.as_ref();
-        let near = near || between.is_some_and(|between| between.may_touch(self.dt));
-        let choice = &self.choices[usize::from(!near)];
-        if *choice == self.substeps {
-            return Ok(());
-        }
-        let now = Kept {
-            substeps: std::mem::replace(&mut self.substeps, choice.clone()),
-            factor: self.factor.take(),
-            outer: std::mem::take(&mut self.outer),
-        };
-        for (driver, m) in self.drivers.iter_mut().zip(&self.substeps) {
-            driver.resize(self.dt / f64::from(*m));
-        }
-        match self
-            .kept
-            .iter()
-            .position(|kept| kept.substeps == self.substeps)
-        {
-            Some(place) => {
-                let kept = self.kept.swap_remove(place);
-                (self.factor, self.outer) = (kept.factor, kept.outer);
-            }
-            None => self.factorise()?,
-        }
-        self.kept.push(now);
-        Ok(())
-    }
-
-    fn accept(&mut self) {
+    /// Makes the attempt the state.
+    pub(crate) fn accept(&mut self) {
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] == 1 {
                 record(
@@ -112,10 +44,12 @@ impl Zones {
         }
         let [now, sum] = &mut self.works;
         sum.iter_mut().zip(now).for_each(|(sum, now)| *sum += *now);
-        self.step += 1;
+        self.time = self.control.instant(self.step, self.time, self.dt);
         if let Some(between) = &mut self.between {
-            between.accept(&self.drivers, (self.step as f64 * self.dt, self.dt));
+            between.accept(&self.drivers, [self.time, self.dt]);
         }
+        self.step += 1;
+        self.sizes = [self.dt, self.sizes[0]];
         self.all_passes += self.passes as u64;
         let [before, first] = &mut self.earlier;
         let [old, new] = &mut self.multipliers;
@@ -125,7 +59,8 @@ impl Zones {
         self.judge_origins();
     }
 
-    fn go_back(&mut self) {
+    /// Gives the zones back the states that inner steps have changed.
+    pub(crate) fn go_back(&mut self) {
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] > 1
                 && let Some(saved) = &self.saved[k]
@@ -171,24 +106,36 @@ impl Zones {
     /// Multipliers at the end of the step from those of the last three instants, by a parabola.
     fn guess(&mut self) {
         let ([old, new], [before, first]) = (&mut self.multipliers, &self.earlier);
+        let (dt, [one, two]) = (self.dt, self.sizes);
+        let equal = one == dt && two == dt;
         for (i, new) in new.iter_mut().enumerate() {
-            *new = 3.0 * (old[i] - before[i]) + first[i];
+            *new = match equal {
+                true => 3.0 * (old[i] - before[i]) + first[i],
+                false => {
+                    let slopes = [(old[i] - before[i]) / one, (before[i] - first[i]) / two];
+                    let bend = (slopes[0] - slopes[1]) / (one + two);
+                    old[i] + dt * (slopes[0] + (dt + one) * bend)
+                }
+            };
         }
     }
 
     /// Takes the steps of one zone with the multipliers as they stand, and adds its part of the defect.
     fn ramp_zone(&mut self, k: usize) -> Result<(), Error> {
         let m = self.substeps[k];
-        let driver = &mut self.drivers[k];
-        let [old, new] = &self.multipliers;
-        let [_, end] = driver.link_weights();
         if m > 1
             && let Some(saved) = &self.saved[k]
-            && driver.state().step != saved.step
+            && self.drivers[k].state().step != saved.step
         {
-            driver.go_back(saved);
+            self.drivers[k].go_back(saved);
         }
         for j in 0..m {
+            if m > 1 {
+                self.size_inner(k, j + 1 == m);
+            }
+            let driver = &mut self.drivers[k];
+            let [old, new] = &self.multipliers;
+            let [_, end] = driver.link_weights();
             let part = (f64::from(j) + end) / f64::from(m);
             let mix = &mut self.pointwise[0];
             for (i, mix) in mix.iter_mut().enumerate() {
@@ -204,6 +151,10 @@ impl Zones {
             } else {
                 driver.prepare()?;
                 driver.complete()?;
+                if j == 0 {
+                    self.look_ahead(k);
+                }
+                let driver = &mut self.drivers[k];
                 record(
                     driver,
                     &self.rows[k],
@@ -217,8 +168,9 @@ impl Zones {
                 sample(k, driver, &mut self.samples);
             }
         }
+        let driver = &self.drivers[k];
         let v = match m {
-            1 => driver.next_velocity(),
+            1 => &driver.ended().motion.v,
             _ => &driver.state().motion.v,
         };
         for (row, terms) in &self.rows[k] {

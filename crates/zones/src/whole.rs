@@ -12,7 +12,6 @@ use crate::error::Error;
 use crate::model::Zoned;
 use crate::places::Places;
 use crate::zones::{Zones, ZonesState};
-use carom_dynamics::Control;
 use carom_dynamics::Costs;
 use carom_dynamics::records::Records;
 use carom_dynamics::state::{InterfaceState, State, empty_state};
@@ -44,7 +43,6 @@ pub struct Whole {
 #[derive(Serialize, Deserialize)]
 struct Saved {
     zones: ZonesState,
-    control: Control,
     ledger: Ledger,
 }
 
@@ -56,7 +54,6 @@ impl Whole {
     pub fn new(zoned: &Zoned, system: Arc<System>) -> Result<Whole, Error> {
         let mut whole = Whole::around(Zones::new(zoned)?, zoned, system);
         whole.gather();
-        whole.state.control = Control::start(whole.system.dt);
         Ok(whole)
     }
 
@@ -83,7 +80,6 @@ impl Whole {
         let mut whole = Whole::around(zones, zoned, system);
         whole.state.ledger = saved.ledger;
         whole.gather();
-        whole.state.control = saved.control;
         Ok(whole)
     }
 
@@ -141,6 +137,7 @@ impl Whole {
     fn gather(&mut self) {
         self.state.step = self.zones.step;
         self.state.time = self.zones.time();
+        self.state.control = self.zones.control;
         self.gather_motion();
         self.gather_interface();
         self.gather_records();
@@ -218,10 +215,11 @@ impl Whole {
         let Some((contacts, between)) = self.zones.between() else {
             return;
         };
-        for &contact in contacts {
-            for point in self.system.first_point[contact]..self.system.first_point[contact + 1] {
-                take_point((whole, point), (&between.interface, point));
-            }
+        let points = contacts
+            .iter()
+            .flat_map(|&contact| self.system.points_of(contact));
+        for (own, point) in points.enumerate() {
+            take_point((whole, point), (&between.interface, own));
         }
     }
 
@@ -245,13 +243,15 @@ impl Whole {
             self.impacts[k] = records.impacts.len();
         }
         if let Some((contacts, between)) = self.zones.between() {
-            for &contact in contacts {
-                whole.contacts[contact].clone_from(&between.records.contacts[contact]);
+            for (record, &contact) in between.records.contacts.iter().zip(contacts) {
+                whole.contacts[contact].clone_from(record);
             }
             let impacts = &between.records.impacts;
-            whole
-                .impacts
-                .extend_from_slice(&impacts[self.impacts_between..]);
+            for impact in &impacts[self.impacts_between..] {
+                let mut impact = impact.clone();
+                impact.contact = contacts[impact.contact as usize] as u32;
+                whole.impacts.push(impact);
+            }
             self.impacts_between = impacts.len();
         }
         whole.impacts[before..]
@@ -275,7 +275,7 @@ impl Whole {
             return;
         }
         report.dt = self.zones.dt;
-        report.attempts = 1;
+        report.attempts = self.zones.attempts;
         self.place_samples();
         let report = &mut self.report;
         report.join_parts();
@@ -364,11 +364,7 @@ impl Stepper for Whole {
     /// One outer step.
     fn step(&mut self) -> Result<(), carom_dynamics::Error> {
         self.zones.step()?;
-        let (before, time) = (self.state.step, self.state.time);
         self.gather();
-        let dt = self.zones.dt;
-        let control = &mut self.state.control;
-        control.take(None, (before, time, dt), dt);
         Ok(())
     }
 
@@ -387,7 +383,6 @@ impl Stepper for Whole {
     fn saved(&self) -> Result<Vec<u8>, carom_dynamics::Error> {
         let saved = Saved {
             zones: self.zones.state(),
-            control: self.state.control,
             ledger: self.state.ledger.clone(),
         };
         postcard::to_stdvec(&saved).map_err(|cause| carom_dynamics::Error::State {

@@ -7,15 +7,16 @@ use crate::model::LinkKind;
 use crate::moves::Moves;
 use carom_dynamics::Balance;
 use carom_dynamics::ContactReport;
-use carom_dynamics::Driver;
 use carom_dynamics::condensed::Condensed;
 use carom_dynamics::linked::Origin;
 use carom_dynamics::state::State;
-use carom_system::LinkRow;
+use carom_dynamics::{Control, Driver};
+use carom_system::{Adaptive, LinkRow};
 
-/// The condensed problem of some numbers of inner steps.
+/// The condensed problem of an outer step of some size with some numbers of inner steps.
 pub(crate) struct Kept {
     pub(crate) substeps: Vec<u32>,
+    pub(crate) dt: f64,
     pub(crate) factor: Option<Condensed>,
     pub(crate) outer: Vec<f64>,
 }
@@ -40,6 +41,10 @@ pub struct ZonesState {
     pub step: u64,
     /// Time, s.
     pub time: f64,
+    /// Step control.
+    pub control: Control,
+    /// Sizes of the last outer step and the one before it, s.
+    pub sizes: [f64; 2],
     /// Multipliers of the rows, N per unit of the row.
     pub multipliers: Vec<f64>,
     /// The same one and two steps before.
@@ -74,8 +79,22 @@ pub struct Zones {
     /// Range of the rows of each link.
     pub(crate) links: Vec<(String, std::ops::Range<usize>)>,
     pub(crate) kind: LinkKind,
+    /// Rules of adaptive outer steps, the largest of them in s, and what their control remembers.
+    pub(crate) rules: Option<Adaptive>,
+    pub(crate) largest: f64,
+    pub(crate) control: Control,
+    /// Attempts at the last outer step.
+    pub(crate) attempts: u32,
+    /// When zones with inner steps would end the attempt for the first of their points in flight, after its start, s.
+    pub(crate) first_cut: f64,
+    /// Size of the outer step under way and of the one planned after it, s.
     pub(crate) dt: f64,
+    pub(crate) next: f64,
+    /// Sizes of the last outer step and the one before it, s.
+    pub(crate) sizes: [f64; 2],
     pub(crate) step: u64,
+    /// Time, s.
+    pub(crate) time: f64,
     /// L at the start and at the end of the step.
     pub(crate) multipliers: [Vec<f64>; 2],
     /// L one and two outer steps before the start of the step.
@@ -87,7 +106,7 @@ pub struct Zones {
     pub(crate) stale: bool,
     /// Part of H of the zones with one step, row-major: for pointwise multipliers.
     pub(crate) outer: Vec<f64>,
-    /// Both for other numbers of inner steps.
+    /// Both for other sizes and numbers of inner steps.
     pub(crate) kept: Vec<Kept>,
     pub(crate) saved: Vec<Option<State>>,
     pub(crate) samples: Vec<Sample>,
@@ -135,7 +154,7 @@ impl Zones {
 
     /// Time, s.
     pub fn time(&self) -> f64 {
-        self.step as f64 * self.dt
+        self.time
     }
 
     /// Passes of the last outer step.
@@ -169,7 +188,9 @@ impl Zones {
     pub fn state(&self) -> ZonesState {
         ZonesState {
             step: self.step,
-            time: self.time(),
+            time: self.time,
+            control: self.control,
+            sizes: self.sizes,
             multipliers: self.multipliers[0].clone(),
             earlier: self.earlier.clone(),
             forces: self.mixes.iter().map(|[_, last, _]| last.clone()).collect(),
@@ -182,7 +203,8 @@ impl Zones {
 
     /// Goes on from a state, which must be of the same zones.
     pub fn resume(&mut self, state: &ZonesState) {
-        self.step = state.step;
+        (self.step, self.time) = (state.step, state.time);
+        (self.control, self.sizes) = (state.control, state.sizes);
         self.multipliers[0].clone_from(&state.multipliers);
         self.earlier.clone_from(&state.earlier);
         for ([_, last, before], force) in self.mixes.iter_mut().zip(&state.forces) {
@@ -215,8 +237,8 @@ impl Zones {
     /// What a contact between zones did in the last outer step.
     pub fn report_between(&self, contact: usize) -> Option<&ContactReport> {
         let between = self.between.as_ref()?;
-        let known = between.contacts.contains(&contact);
-        known.then(|| &between.reports[contact])
+        let place = between.contacts.iter().position(|own| *own == contact)?;
+        Some(&between.reports[place])
     }
 }
 

@@ -43,7 +43,7 @@ use carom_zones::{LinkKind, Zoned};
 use crate::error::Problem;
 use crate::input::Input;
 use crate::locate::Locator;
-use crate::schema::{Case, Motion, Step, StepRule};
+use crate::schema::{Case, Motion};
 
 pub use arlequin::BuiltOverlap;
 use builder::{Builder, dimensions, plural};
@@ -216,18 +216,6 @@ impl Builder<'_> {
             }
         };
         self.warn_of_steps(system.dt);
-        if apart && let Step::Rule(StepRule::Adaptive(_)) = self.case.time.step() {
-            let problem = Problem::new(
-                "time.step.adaptive",
-                "zones with unequal steps, or linked at finite strain, take steps of a fixed size",
-            );
-            self.problems.push(problem.accepted([
-                "step = { courant = ... }",
-                "a fixed step",
-                "substeps = 1",
-            ]));
-            return None;
-        }
         self.able_to_act(&system);
         self.with_area(&system);
         self.penetration(&system);

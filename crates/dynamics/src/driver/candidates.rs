@@ -6,7 +6,7 @@ use std::time::Instant;
 use carom_contact::law::Status;
 
 use super::Driver;
-use super::paired::sums_compliances;
+use super::paired::{approaches, sums_compliances};
 use crate::coulomb::Slip;
 use crate::error::Error;
 use crate::interface::{Failure, InterfaceProblem};
@@ -104,7 +104,7 @@ impl Driver {
         match self.is_affine() {
             true => {
                 let gap = self.pairing.rows.gap(point);
-                gap + 2.0 * self.dt * self.rate_at_start(point).min(0.0) <= tolerance
+                approaches((gap, self.rate_at_start(point)), self.dt, tolerance)
             }
             false => self.now(point, true).0 <= tolerance,
         }

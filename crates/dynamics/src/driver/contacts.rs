@@ -5,7 +5,7 @@ use std::sync::Arc;
 use carom_contact::law::{End, Level, Local, Status};
 use carom_contact::{Balance, Sliding};
 
-use super::paired::{Paired, instant, least_gap, looks_ahead, part_way};
+use super::paired::{Paired, append, instant, looks_ahead, part_way, told};
 use super::{Driver, Vectors};
 use crate::step_map::{Row, StepMap};
 
@@ -83,36 +83,20 @@ impl Driver {
         self.stack();
     }
 
-    /// Appends a contact at the configuration in `place`; `time`, s: where obstacles are. With small sliding the points are
-    /// paired at their reference places, once, or with an obstacle that moves where it is now; gaps are then linear in the
-    /// displacement, and rows and tangents do not turn with the bodies.
+    /// Appends a contact at the configuration in `place`; `time`, s: where obstacles are.
     pub(super) fn append(&mut self, number: usize, time: f64) {
         let system = Arc::clone(&self.system);
-        let contact = &system.contacts[number];
         let (middle, frames) = (self.between(), &self.state.motion.frames);
         let fraction = self.map_of(number).force_fraction.unwrap_or(1.0);
-        let search = &mut self.search[number];
         let Vectors {
             place, work, end, ..
         } = &mut self.vectors;
-        let end = &*end;
-        let at = |u| {
-            let mut places = system.places(time, u, frames);
-            places.frames.middle = middle;
-            places.frames.balance = (!end.is_empty()).then_some(Balance { end, fraction });
-            places
-        };
-        if contact.sliding == Sliding::Finite {
-            return contact.pair_fully(&at(place), search, &mut self.pairing);
-        }
-        let initial = &mut self.initial[number];
-        if initial.is_empty() || contact.moves() {
-            initial.clear();
-            initial.span = self.pairing.span;
-            work.fill(0.0);
-            contact.pair_fully(&at(work), search, initial);
-        }
-        self.pairing.append_moved(initial, place);
+        let mut places = system.places(time, place, frames);
+        places.frames.middle = middle;
+        places.frames.balance = (!end.is_empty()).then_some(Balance { end, fraction });
+        let kept = (&mut self.search[number], &mut self.initial[number]);
+        let contact = &system.contacts[number];
+        append(contact, &places, work, kept, &mut self.pairing);
     }
 
     /// Gap and rate that the law of a point constrains, at the x of the iteration. `pushed`: with what the contact forces of the
@@ -204,14 +188,13 @@ impl Driver {
             return Some(false);
         }
         let law = self.law(self.system.point(point).0);
-        let gap = match self.between() {
-            true => self.state.interface.gap[point],
-            false => {
-                let way = law.get().capture() * self.moves(point) * self.rate_at_start(point);
-                least_gap(gap, way)
-            }
-        };
-        law.get().watches(gap, self.system.tolerance)
+        let tolerance = self.system.tolerance;
+        if self.between() {
+            let gap = self.state.interface.gap[point];
+            return law.get().watches(gap, tolerance);
+        }
+        let rate = self.rate_at_start(point);
+        told(&law, (gap, rate), self.moves(point), tolerance)
     }
 
     /// Takes the multipliers of the weak forms that belong to the forces as they stand.

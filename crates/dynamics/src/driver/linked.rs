@@ -13,6 +13,7 @@ use carom_bodies::{Body, Placement};
 use serde::{Deserialize, Serialize};
 
 use super::Driver;
+use super::paired::approaches;
 use crate::error::Error;
 use crate::operator::{Operators, factored, single};
 use crate::scheme::{Scheme, Theta};
@@ -72,7 +73,7 @@ impl Driver {
             self.take_stages()?;
             check_finite(&self.next.motion, self.state.step + 1, self.state.time)?;
         } else {
-            self.attempt(self.dt, self.dt)?;
+            self.attempt(self.dt, self.ahead)?;
         }
         let State {
             step,
@@ -87,9 +88,9 @@ impl Driver {
         Ok(())
     }
 
-    /// Velocity at the end of the step just completed, which is not accepted yet.
-    pub fn next_velocity(&self) -> &[f64] {
-        &self.next.motion.v
+    /// The state at the end of the step just completed, which is not accepted yet.
+    pub fn ended(&self) -> &State {
+        &self.next
     }
 
     /// Accepts the step just completed.
@@ -106,10 +107,11 @@ impl Driver {
         self.state.clone_from(state);
     }
 
-    /// Makes `dt` (s) the size of the next steps.
-    pub fn resize(&mut self, dt: f64) {
+    /// Makes `dt` the size of the next steps, of an explicit scheme before one of the size `next` (both s).
+    pub fn resize(&mut self, dt: f64, next: f64) {
         self.prepared = false;
-        self.size(dt, dt);
+        self.ahead = next;
+        self.size(dt, next);
     }
 
     /// Weights of L at the start and the end of a step in Λ.
@@ -248,6 +250,16 @@ impl Driver {
         self.count_contact(begin, before);
         Ok(())
     }
+
+    /// Whether a contact point carries a force or may do so within `dt` (s), at twice its present rate.
+    pub fn may_touch(&self, dt: f64) -> bool {
+        let interface = &self.state.interface;
+        let points = interface.gap.iter().zip(&interface.rate);
+        let touches = |((gap, rate), force): ((&f64, &f64), &f64)| {
+            *force != 0.0 || approaches((*gap, *rate), dt, self.system.tolerance)
+        };
+        points.zip(&interface.force).any(touches)
+    }
 }
 
 /// How a zone answers to multipliers that grow, without contact and linearised.
@@ -274,11 +286,18 @@ impl Ramp<'_> {
             u: zeros(),
             v: zeros(),
             a: zeros(),
+            memory: match self.map.has_memory() {
+                true => zeros(),
+                false => Vec::new(),
+            },
             ..Motion::default()
         };
         let mut ended = motion.clone();
         for (column, (_, terms)) in rows.iter().enumerate() {
-            for vector in [&mut motion.u, &mut motion.v, &mut motion.a] {
+            let Motion {
+                u, v, a, memory, ..
+            } = &mut motion;
+            for vector in [u, v, a, memory] {
                 vector.fill(0.0);
             }
             for step in 0..steps {
@@ -333,6 +352,7 @@ impl Ramp<'_> {
         self.map.displacement.whole(motion, &x, &none, &mut end.u);
         self.map.velocity.whole(motion, &x, &none, &mut end.v);
         self.map.acceleration.whole(motion, &x, &none, &mut end.a);
+        self.map.memory.whole(motion, &x, &none, &mut end.memory);
     }
 }
 

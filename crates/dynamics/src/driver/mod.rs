@@ -35,7 +35,7 @@ mod loads;
 mod matrices;
 mod mixing;
 mod obstacles;
-mod paired;
+pub mod paired;
 mod part_matrix;
 mod predictor;
 mod projection;
@@ -90,6 +90,8 @@ pub struct Driver {
     floating: Floating,
     /// Every which step is dropped once, in tests.
     forced: Option<u64>,
+    /// Size of the step after that of a zone, s.
+    ahead: f64,
     /// Size of the next step that an event forces, in tests, s.
     unplanned: Option<f64>,
     /// Solver of the stages with the mass alone; none where there is no such stage.

@@ -1,7 +1,7 @@
 //! Where contacts are paired in a step, and what their laws constrain: maps of the scheme, without a driver.
 
 use carom_contact::law::Level;
-use carom_contact::{Contact, Law};
+use carom_contact::{Contact, Law, Pairing, Places, Search, Sliding};
 
 use crate::step_map::{Row, StepMap};
 use crate::system::{Motion, System};
@@ -78,4 +78,45 @@ pub(super) fn part_way(motion: &Motion, end: &[f64], law: &Law, out: &mut [f64])
     for (i, q) in out.iter_mut().enumerate() {
         *q = (1.0 - part) * motion.u[i] + part * end[i];
     }
+}
+
+/// Whether a point takes part, where its law says so before the forces. Gap (m) and rate (m/s): as the point is paired, where the
+/// law captures it in a step that moves it for `moves` (s). `tolerance`: gap that counts as closed, m.
+pub fn told(law: &Law, (gap, rate): (f64, f64), moves: f64, tolerance: f64) -> Option<bool> {
+    if gap == f64::INFINITY {
+        return Some(false);
+    }
+    let way = law.get().capture() * moves * rate;
+    law.get().watches(least_gap(gap, way), tolerance)
+}
+
+/// Whether a point is closed, or closes within `dt` (s) at twice its rate.
+pub fn approaches((gap, rate): (f64, f64), dt: f64, tolerance: f64) -> bool {
+    gap + 2.0 * dt * rate.min(0.0) <= tolerance
+}
+
+/// Appends a contact at the configuration of `places`. With small sliding the points are paired at their reference places, once,
+/// or with an obstacle that moves where it is now; gaps are then linear in the displacement, and rows and tangents do not turn
+/// with the bodies. `still`: room for a displacement of nothing.
+pub fn append(
+    contact: &Contact,
+    places: &Places,
+    still: &mut [f64],
+    (search, initial): (&mut Search, &mut Pairing),
+    pairing: &mut Pairing,
+) {
+    if contact.sliding == Sliding::Finite {
+        return contact.pair_fully(places, search, pairing);
+    }
+    if initial.is_empty() || contact.moves() {
+        initial.clear();
+        initial.span = pairing.span;
+        still.fill(0.0);
+        let reference = Places {
+            u: still,
+            ..*places
+        };
+        contact.pair_fully(&reference, search, initial);
+    }
+    pairing.append_moved(initial, places.u);
 }

@@ -60,6 +60,7 @@ impl Driver {
             effective: Effective::new(),
             floating: Floating::new(&system)?,
             forced: None,
+            ahead: system.dt,
             unplanned: None,
             impulses: match staged {
                 true => Some(Impulses::new(&system)?),

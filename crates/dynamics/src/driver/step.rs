@@ -4,16 +4,13 @@
 //! size that finds no solution is taken in halves of halves.
 
 use super::Driver;
-use crate::control::{Control, Event};
+use crate::control::{Attempts, Control, adapt};
 use crate::costs::Costs;
 use crate::error::Error;
 use crate::march::{FailedProblem, Stepper};
 use crate::report::StepReport;
 use crate::state::State;
-use crate::system::{Closing, System};
-
-/// Attempts at one step after which a closing cuts it no more.
-const CUTS: u32 = 10;
+use crate::system::{Adaptive, System};
 
 impl Driver {
     /// Takes one step. With an adaptive step, attempts in which a contact closes, energy grows, or no solution is found are
@@ -38,39 +35,17 @@ impl Driver {
             return Ok(());
         };
         self.renew_stable(self.state.control.dt)?;
-        let mut control = self.state.control;
-        let mut dt = self.unplanned.take().unwrap_or(control.dt);
-        let mut forced = self.is_forced();
-        loop {
-            let stable = self.stable_level(dt)?;
-            if stable > 0 {
-                dt /= (1u64 << stable) as f64;
-            }
-            self.report.attempts += 1;
-            let outcome = self.attempt(dt, control.next(rules, system.dt));
-            match self.judge(outcome, control.dt) {
-                Ok(None) if std::mem::take(&mut forced) => {}
-                Ok(None) => {
-                    let (step, time) = (self.state.step, self.state.time);
-                    self.next.step = step + 1;
-                    self.next.time = self.state.control.instant(step, time, self.dt);
-                    control.take(Some(rules), (step, time, self.dt), system.dt);
-                    self.accept(control, self.dt);
-                    return Ok(());
-                }
-                Ok(Some((event, size))) => {
-                    tracing::debug!(
-                        "step {}: attempt with {dt:e} s rejected ({event:?})",
-                        self.state.step + 1
-                    );
-                    let smaller = control.drop(rules, event, size);
-                    dt = smaller.ok_or_else(|| self.exhausted(event))?;
-                }
-                Err((event, error)) => {
-                    dt = control.drop(rules, event, dt).ok_or(error)?;
-                }
-            }
-        }
+        let control = self.state.control;
+        let first = self.unplanned.take().unwrap_or(control.dt);
+        let forced = self.is_forced();
+        let (mut control, attempts) = adapt(self, (control, first), (rules, system.dt), forced)?;
+        self.report.attempts = attempts;
+        let (step, time) = (self.state.step, self.state.time);
+        self.next.step = step + 1;
+        self.next.time = self.state.control.instant(step, time, self.dt);
+        control.take(Some(rules), (step, time, self.dt), system.dt);
+        self.accept(control, self.dt);
+        Ok(())
     }
 
     fn step_in_parts(&mut self) -> Result<(), Error> {
@@ -191,42 +166,35 @@ impl Driver {
         let next = self.state.step + 1;
         self.forced.is_some_and(|every| next.is_multiple_of(every))
     }
+}
 
-    /// What speaks against an attempt, and the size to go on from. `planned`: the size of the steps after it, s.
-    fn judge(
-        &self,
-        outcome: Result<(), Error>,
-        planned: f64,
-    ) -> Result<Option<(Event, f64)>, (Event, Error)> {
-        outcome.map_err(|error| (Event::Failure, error))?;
-        let Some(rules) = &self.system.adaptive else {
-            return Ok(None);
-        };
-        if rules.closing == Closing::Cut
-            && self.report.attempts <= CUTS
-            && let Some(dt) = self.landing(rules, planned)
-        {
-            return Ok(Some((Event::Closing, dt)));
-        }
-        let grows = rules.growth.is_some_and(|growth| self.grows(growth));
-        Ok(grows.then_some((Event::Growth, self.dt)))
+impl Attempts for Driver {
+    fn stable(&mut self, dt: f64) -> Result<f64, Error> {
+        let level = self.stable_level(dt)?;
+        Ok(match level > 0 {
+            true => dt / (1u64 << level) as f64,
+            false => dt,
+        })
     }
 
-    /// Whether the energy that the scheme balances, less the work from outside, exceeds its value at the start of the run by more
-    /// than this fraction of the largest energy.
-    fn grows(&self, growth: f64) -> bool {
+    fn attempt(&mut self, dt: f64, next: f64) -> Result<(), Error> {
+        Driver::attempt(self, dt, next)
+    }
+
+    fn first_cut(&self, rules: &Adaptive, planned: f64) -> f64 {
+        Driver::first_cut(self, (rules, self.system.dt), planned)
+    }
+
+    fn grows(&self, fraction: f64) -> bool {
         let ledger = &self.next.ledger;
-        ledger.free_energy() > growth * ledger.largest_energy
+        ledger.free_energy() > fraction * ledger.largest_energy
     }
 
-    /// The error of a step that was dropped at the smallest size.
-    fn exhausted(&self, event: Event) -> Error {
-        debug_assert_eq!(event, Event::Growth);
-        Error::EnergyGrowth {
-            step: self.state.step + 1,
-            time: self.state.time,
-            dt: self.dt,
-        }
+    /// An attempt leaves nothing behind.
+    fn withdraw(&mut self) {}
+
+    fn instant(&self) -> (u64, f64) {
+        (self.state.step, self.state.time)
     }
 }
 
