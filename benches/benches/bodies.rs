@@ -8,8 +8,8 @@
 use std::time::{Duration, Instant};
 
 use carom_algebra::unknowns::Unknowns;
-use carom_bodies::{Body, BodySpec, Kinematics, Scratch};
-use carom_materials::Elastic;
+use carom_bodies::{Body, BodySpec, Formulation, Kinematics, Placement, Scratch};
+use carom_materials::{Elastic, J2Plasticity, Law, NeoHooke, StVenantKirchhoff};
 use carom_mesh::{Mesh, generate};
 use criterion::{Criterion, Throughput};
 
@@ -55,7 +55,42 @@ fn main() {
         ("tet4", cube(18, true), Kinematics::Solid),
         ("hex8", cube(32, false), Kinematics::Solid),
     ] {
-        rates.push((name, sweep(&mut criterion, name, &mesh, kinematics)));
+        let cells = mesh.groups["b"].elements.clone();
+        let spec = BodySpec::new(name, cells, kinematics, MATERIAL);
+        let rate = sweep(&mut criterion, &mesh, spec);
+        rates.push((name.to_owned(), rate));
+    }
+    let plastic = J2Plasticity {
+        initial: MATERIAL,
+        yield_stress: 1e6,
+        hardening: 1e8,
+    };
+    let one_point = Formulation::Reduced { hourglass: 0.1 };
+    for (law, material) in [
+        (
+            "St Venant-Kirchhoff",
+            Law::StVenantKirchhoff(StVenantKirchhoff { initial: MATERIAL }),
+        ),
+        ("neo-Hooke", Law::NeoHooke(NeoHooke { initial: MATERIAL })),
+        ("J2", Law::J2Plasticity(plastic)),
+    ] {
+        for (kind, formulation) in [
+            ("full", Formulation::Full),
+            ("mean dilatation", Formulation::BBar),
+            ("one point", one_point),
+        ] {
+            let name = format!("hex8 {law}, {kind}");
+            let mesh = cube(32, false);
+            let mut spec = BodySpec::new(
+                &name,
+                mesh.groups["b"].elements.clone(),
+                Kinematics::Solid,
+                material,
+            );
+            spec.formulation = formulation;
+            let rate = sweep(&mut criterion, &mesh, spec);
+            rates.push((name, rate));
+        }
     }
     for (name, rate) in rates {
         println!("{name}: {:.1} million elements/s", rate / 1e6);
@@ -67,11 +102,9 @@ fn main() {
 }
 
 /// Times one kind; returns its best rate in elements per second.
-fn sweep(criterion: &mut Criterion, name: &str, mesh: &Mesh, kinematics: Kinematics) -> f64 {
-    let cells = mesh.groups["b"].elements.clone();
-    let count = cells.len() as u64;
+fn sweep(criterion: &mut Criterion, mesh: &Mesh, spec: BodySpec) -> f64 {
+    let (name, count) = (spec.name.clone(), spec.cells.len() as u64);
     let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
-    let spec = BodySpec::new(name, cells, kinematics, MATERIAL);
     let unknowns = Unknowns::translations(mesh.dim, mesh.nodes.len());
     let body = match Body::new(mesh, spec, &number, &unknowns) {
         Ok(body) => body,
@@ -83,13 +116,23 @@ fn sweep(criterion: &mut Criterion, name: &str, mesh: &Mesh, kinematics: Kinemat
     let n = mesh.dim * mesh.nodes.len();
     let u: Vec<f64> = (0..n).map(|i| 1e-3 * (i as f64).sin()).collect();
     let (mut scratch, mut f) = (Scratch::default(), vec![0.0; n]);
+    let mut old = vec![0.0; body.history_len()];
+    body.start_history(&mut old);
+    let mut new = old.clone();
     let mut best = Duration::MAX;
     let mut group = criterion.benchmark_group("internal_force");
     group.throughput(Throughput::Elements(count));
-    group.bench_function(name, |bench| {
+    group.bench_function(&name, |bench| {
         bench.iter(|| {
             let begin = Instant::now();
-            let energy = body.internal_force(&u, &mut scratch, &mut f);
+            let at = Placement {
+                u: &u,
+                v: &[],
+                from: None,
+                dt: 1e-6,
+                old: &old,
+            };
+            let energy = body.force(&at, &mut new, &mut scratch, &mut f);
             best = best.min(begin.elapsed());
             energy
         });

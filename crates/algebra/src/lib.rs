@@ -7,7 +7,11 @@
 pub mod csr;
 pub mod dense;
 mod error;
+mod functions;
+pub mod lanes;
+pub mod number;
 mod ordering;
+pub mod packed;
 pub mod pattern;
 pub mod reduce;
 pub mod rotation;

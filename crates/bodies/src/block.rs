@@ -3,6 +3,8 @@
 //! A chunk sums into its own node list, and the lists are added in chunk order: no atomics, and equal bits for any
 //! number of threads.
 
+use carom_algebra::lanes::{Lanes, Vector};
+use carom_algebra::number::Number;
 use carom_algebra::tensor::Mat3;
 use carom_elements::{Kind, MAX_NODES};
 use pulp::{Arch, Simd, WithSimd};
@@ -10,9 +12,9 @@ use rayon::prelude::*;
 
 use crate::bar::Bar;
 use crate::continuum::{self, Law, Points};
-use crate::finite::Elements;
-use crate::force::{self, Cell, Kernel};
-use crate::lanes::Lanes;
+use crate::finite::Outcome;
+use crate::force::{Elastic, Kernel};
+
 use crate::nodes::Nodes;
 use crate::single;
 use crate::weights::{CellWeights, ChunkWeights, ElementWeights, Unweighted, WIDEST, Weight};
@@ -91,7 +93,7 @@ pub(crate) struct Chunk {
     /// First unknowns of the nodes.
     pub(crate) first: Vec<u32>,
     /// Coordinates of the nodes in m.
-    x: Vec<[f64; 3]>,
+    pub(crate) x: Vec<[f64; 3]>,
     /// Nodes of each element, as places in `nodes`.
     pub(crate) connectivity: Vec<u32>,
     weights: Option<ChunkWeights>,
@@ -104,8 +106,22 @@ pub struct Scratch {
     pub(crate) energies: Vec<f64>,
     /// A system vector.
     pub(crate) middle: Vec<f64>,
-    /// At finite strain.
-    pub(crate) elements: Elements,
+    /// At finite strain, one of each chunk.
+    pub(crate) outcomes: Vec<Outcome>,
+}
+
+impl Scratch {
+    /// Makes room on the first call.
+    pub(crate) fn prepare(&mut self, blocks: &[Block]) {
+        if !self.forces.is_empty() {
+            return;
+        }
+        let chunks = blocks.iter().flat_map(|block| &block.chunks);
+        let lists = chunks.map(|chunk| vec![[0.0; 3]; chunk.nodes.len()]);
+        self.forces = lists.collect();
+        self.energies = vec![0.0; self.forces.len()];
+        self.outcomes = vec![Outcome::default(); self.forces.len()];
+    }
 }
 
 impl Block {
@@ -330,71 +346,57 @@ impl WithSimd for Sweep<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> f64 {
         // two registers for each number: their chains of operations fill each other's waiting time
-        if S::F64_LANES == 8 {
-            self.run::<S, WIDEST>()
-        } else {
-            self.run::<S, 8>()
+        match S::F64_LANES {
+            1 => self.run::<1>(),
+            8 => self.run::<WIDEST>(),
+            _ => self.run::<8>(),
         }
     }
 }
 
 impl Sweep<'_> {
     #[inline(always)]
-    fn run<S: Simd, const W: usize>(self) -> f64 {
+    fn run<const W: usize>(self) -> f64 {
         match &self.chunk.weights {
-            None => self.kinds::<S, W>(Unweighted),
-            Some(weights) => self.kinds::<S, W>(weights.at_points()),
+            None => self.kinds::<W>(Unweighted),
+            Some(weights) => self.kinds::<W>(weights.at_points()),
         }
     }
 
     #[inline(always)]
-    fn kinds<S: Simd, const W: usize>(self, w: impl Weight) -> f64 {
+    fn kinds<const W: usize>(self, w: impl Weight) -> f64 {
         let law = match &self.block.physics {
             Physics::Continuum(law) => law,
             Physics::Bar(bar) => {
                 return match self.dim {
-                    1 => self.batches::<S, W, 2, 1>(bar, w),
-                    2 => self.batches::<S, W, 2, 2>(bar, w),
-                    _ => self.batches::<S, W, 2, 3>(bar, w),
+                    1 => self.batches::<W, 2, 1>(bar, w),
+                    2 => self.batches::<W, 2, 2>(bar, w),
+                    _ => self.batches::<W, 2, 3>(bar, w),
                 };
             }
         };
         let points = &self.block.stiffness_points;
         match self.block.kind {
-            Kind::Tri3 => self.batches::<S, W, 3, 2>(&Cell::new(law, points, &force::TRI3), w),
-            Kind::Quad4 => self.batches::<S, W, 4, 2>(&Cell::new(law, points, &force::QUAD4), w),
-            Kind::Tet4 => self.batches::<S, W, 4, 3>(&Cell::new(law, points, &force::TET4), w),
-            Kind::Hex8 => self.batches::<S, W, 8, 3>(&Cell::new(law, points, &force::HEX8), w),
+            Kind::Tri3 => self.batches::<W, 3, 2>(&Elastic::<2, 1>::new(law, points), w),
+            Kind::Quad4 => self.batches::<W, 4, 2>(&Elastic::<2, 2>::new(law, points), w),
+            Kind::Tet4 => self.batches::<W, 4, 3>(&Elastic::<3, 1>::new(law, points), w),
+            Kind::Hex8 => self.batches::<W, 8, 3>(&Elastic::<3, 4>::new(law, points), w),
             kind => by_nodes!(kind => self.singly(law)),
         }
     }
 
     /// Takes the elements W at a time, and adds forces and energies in the order of the elements.
     #[inline(always)]
-    fn batches<S: Simd, const W: usize, const N: usize, const D: usize>(
+    fn batches<const W: usize, const N: usize, const D: usize>(
         self,
         kernel: &impl Kernel<N, D>,
         w: impl Weight,
     ) -> f64 {
         let mut energy = 0.0;
         for (place, batch) in self.chunk.connectivity.chunks(N * W).enumerate() {
-            let count = batch.len() / N;
-            let (mut x, mut u) = ([[Lanes::ZERO; D]; N], [[Lanes::ZERO; D]; N]);
-            for k in 0..W {
-                // a short batch repeats its last element, and the results are dropped
-                let element = &batch[N * k.min(count - 1)..][..N];
-                for a in 0..N {
-                    let place = element[a] as usize;
-                    let x_a = &self.chunk.x[place];
-                    let u_a = &self.u[self.chunk.first[place] as usize..][..D];
-                    for i in 0..D {
-                        x[a][i].0[k] = x_a[i];
-                        u[a][i].0[k] = u_a[i];
-                    }
-                }
-            }
+            let (x, u) = self.chunk.lanes::<W, N, D>(batch, self.u);
             let mut f = [[Lanes::ZERO; D]; N];
-            let energies = kernel.force::<S, W>(&x, &u, w.batch(place * W), &mut f);
+            let energies = kernel.force::<W>(&x, &u, w.batch(place * W), &mut f);
             for (k, element) in batch.chunks_exact(N).enumerate() {
                 energy += energies.0[k];
                 for a in 0..N {
@@ -414,10 +416,7 @@ impl Sweep<'_> {
         let mut energy = 0.0;
         for (place, element) in self.chunk.connectivity.chunks_exact(N).enumerate() {
             let (x, u) = self.chunk.gather::<N>(element, self.dim, self.u);
-            let weight = |q: usize| match &self.chunk.weights {
-                Some(weights) => weights.stiffness_at(place, q),
-                None => 1.0,
-            };
+            let weight = |q: usize| self.chunk.weight(place, q);
             let mut f = [[0.0; 3]; N];
             energy += single::force(law, points, weight, [&x, &u], &mut f);
             for (&node, f) in element.iter().zip(&f) {
@@ -431,6 +430,84 @@ impl Sweep<'_> {
 }
 
 impl Chunk {
+    /// Number of elements, of so many nodes each.
+    pub(crate) fn len(&self, nodes: usize) -> usize {
+        self.connectivity.len() / nodes
+    }
+
+    /// δ of an element at a point of the stiffness rule.
+    pub(crate) fn weight(&self, element: usize, point: usize) -> f64 {
+        match &self.weights {
+            Some(weights) => weights.stiffness_at(element, point),
+            None => 1.0,
+        }
+    }
+
+    /// Places and displacements of the nodes of W elements; a short batch repeats its last element, whose results are dropped.
+    #[inline(always)]
+    pub(crate) fn lanes<const W: usize, const N: usize, const D: usize>(
+        &self,
+        batch: &[u32],
+        u: &[f64],
+    ) -> ([Vector<W, D>; N], [Vector<W, D>; N]) {
+        let count = batch.len() / N;
+        let (mut x, mut moved) = ([[Lanes::ZERO; D]; N], [[Lanes::ZERO; D]; N]);
+        for k in 0..W {
+            let element = &batch[N * k.min(count - 1)..][..N];
+            for a in 0..N {
+                let place = element[a] as usize;
+                let x_a = &self.x[place];
+                let u_a = &u[self.first[place] as usize..][..D];
+                for i in 0..D {
+                    x[a][i].0[k] = x_a[i];
+                    moved[a][i].0[k] = u_a[i];
+                }
+            }
+        }
+        (x, moved)
+    }
+
+    /// [`Chunk::lanes`] of any number.
+    #[inline(always)]
+    pub(crate) fn gather_lanes<T: Number, const N: usize, const D: usize>(
+        &self,
+        batch: &[u32],
+        u: &[f64],
+        [x, moved]: [&mut [[T; D]; N]; 2],
+    ) {
+        let count = batch.len() / N;
+        for k in 0..x[0][0].lanes().len() {
+            let element = &batch[N * k.min(count - 1)..][..N];
+            for a in 0..N {
+                let place = element[a] as usize;
+                let x_a = &self.x[place];
+                let u_a = &u[self.first[place] as usize..][..D];
+                for i in 0..D {
+                    x[a][i].lanes_mut()[k] = x_a[i];
+                    moved[a][i].lanes_mut()[k] = u_a[i];
+                }
+            }
+        }
+    }
+
+    /// δ of the elements from one of them on, at a point of the stiffness rule; without weights nothing changes.
+    #[inline(always)]
+    pub(crate) fn weigh<T: Number>(&self, first: usize, point: usize, out: &mut T) {
+        if let Some(weights) = &self.weights {
+            weights.batch(first, point, out);
+        }
+    }
+
+    /// Adds its list of forces to a system vector.
+    pub(crate) fn add(&self, dim: usize, list: &[[f64; 3]], f: &mut [f64]) {
+        for (&first, f_a) in self.first.iter().zip(list) {
+            let first = first as usize;
+            for i in 0..dim {
+                f[first + i] += f_a[i];
+            }
+        }
+    }
+
     pub(crate) fn gather<const N: usize>(
         &self,
         element: &[u32],

@@ -14,7 +14,6 @@ mod error;
 mod finite;
 mod force;
 mod kinematics;
-mod lanes;
 mod nodes;
 mod rigid;
 mod single;

@@ -14,7 +14,7 @@ use crate::Error;
 use crate::bar::Bar;
 use crate::block::{Block, Physics, Scratch, Visit};
 use crate::continuum;
-use crate::finite::{Cells, Finite, Formulation, Shape};
+use crate::finite::{Finite, Formulation, Shape};
 use crate::nodes::Nodes;
 use crate::together::Together;
 use crate::weights::CellWeights;
@@ -64,7 +64,7 @@ pub struct Solid {
     material: Law,
     cells: Vec<ElementId>,
     blocks: Vec<Block>,
-    /// The elements at finite strain; none at small strain. The blocks then give masses.
+    /// Law and formulation at finite strain; none at small strain.
     pub(crate) finite: Option<Finite>,
     dim: usize,
     smallest: f64,
@@ -103,7 +103,6 @@ impl Solid {
         };
         let mut cells = Vec::with_capacity(spec.cells.len());
         let mut blocks = Vec::new();
-        let mut finite_cells = Vec::new();
         let shape = Shape {
             kinematics: spec.kinematics,
             formulation: spec.formulation,
@@ -127,9 +126,6 @@ impl Solid {
                     unknowns,
                 };
                 blocks.push(Block::new(kind, physics, &nodes, weights.as_ref()));
-                if spec.material.finite().is_some() {
-                    finite_cells.push(Cells::new(kind, &shape, &nodes, weights.as_ref()));
-                }
             }
             cells.extend(of_kind);
         }
@@ -143,8 +139,7 @@ impl Solid {
                 .fold(f64::INFINITY, f64::min),
             cells,
             blocks,
-            finite: (spec.material.finite().is_some())
-                .then(|| Finite::new(spec.material, finite_cells)),
+            finite: (spec.material.finite().is_some()).then(|| Finite::new(spec.material, shape)),
             dim: mesh.dim,
         };
         if spec.weights.is_some() {
@@ -237,12 +232,7 @@ impl Solid {
     /// nothing. The sums run in a fixed order whatever the number of threads.
     pub fn internal_force(&self, u: &[f64], scratch: &mut Scratch, f: &mut [f64]) -> f64 {
         debug_assert!(self.is_linear());
-        let chunks = || self.blocks.iter().flat_map(|block| &block.chunks);
-        if scratch.forces.is_empty() {
-            let lists = chunks().map(|chunk| vec![[0.0; 3]; chunk.nodes.len()]);
-            scratch.forces = lists.collect();
-            scratch.energies = vec![0.0; scratch.forces.len()];
-        }
+        scratch.prepare(&self.blocks);
         let (mut forces, mut energies) = (&mut scratch.forces[..], &mut scratch.energies[..]);
         for block in &self.blocks {
             let (block_forces, rest) = forces.split_at_mut(block.chunks.len());
@@ -251,13 +241,9 @@ impl Solid {
             energies = rest;
             block.forces(self.dim, u, block_forces, block_energies);
         }
-        for (chunk, force) in chunks().zip(&scratch.forces) {
-            for (&first, f_a) in chunk.first.iter().zip(force) {
-                let first = first as usize;
-                for i in 0..self.dim {
-                    f[first + i] += f_a[i];
-                }
-            }
+        let chunks = self.blocks.iter().flat_map(|block| &block.chunks);
+        for (chunk, force) in chunks.zip(&scratch.forces) {
+            chunk.add(self.dim, force, f);
         }
         scratch.energies.iter().sum()
     }
@@ -322,7 +308,7 @@ impl Solid {
     /// element whose law gives none.
     pub fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
         if let Some(finite) = &self.finite {
-            return finite.stresses(u, history);
+            return finite.stresses(&self.blocks, u, history);
         }
         let mut out = Vec::with_capacity(self.cells.len());
         for block in &self.blocks {
@@ -334,7 +320,8 @@ impl Solid {
     /// Mean equivalent plastic strain of each element in the `history` of this body, in the order of [`Solid::cells`]; none of
     /// a law without plasticity.
     pub fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
-        self.finite.as_ref()?.plastic_strains(history)
+        let finite = self.finite.as_ref()?;
+        finite.plastic_strains(&self.blocks, history)
     }
 
     /// Upper bound of the angular frequencies (rad/s) with lumped mass: the largest eigenvalue of M_e⁻¹ K_e over parts of

@@ -1,12 +1,13 @@
 //! Weights of a body that shares its volume with another, as in the Arlequin method, where two models of one material
 //! overlap and each carries its part.
 
+use carom_algebra::lanes::Lanes;
+use carom_algebra::number::Number;
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Mesh};
 
 use crate::Error;
 use crate::continuum::{Point, Points};
-use crate::lanes::Lanes;
 
 /// Elements of the widest batch of the force kernels.
 pub(crate) const WIDEST: usize = 16;
@@ -113,6 +114,16 @@ impl ChunkWeights {
     /// δ of an element at a point of the stiffness rule.
     pub(crate) fn stiffness_at(&self, element: usize, point: usize) -> f64 {
         self.stiffness[point * self.stride + element]
+    }
+
+    /// δ of elements from one of them on, at a point of the stiffness rule; those beyond the last have 0.
+    #[inline(always)]
+    pub(crate) fn batch<T: Number>(&self, first: usize, point: usize, out: &mut T) {
+        let Some(row) = self.stiffness.chunks_exact(self.stride).nth(point) else {
+            return;
+        };
+        let lanes = out.lanes_mut();
+        lanes.copy_from_slice(&row[first..first + lanes.len()]);
     }
 
     /// The force kernels' view.

@@ -1,10 +1,15 @@
 //! Laws that have a stored energy alone: the form that they share, its stress and tangent, and the algorithmic stress of a
 //! step that does exactly the work of the energy difference.
 
+use carom_algebra::number::Number;
 use carom_algebra::tensor::Mat3;
 
-use crate::lagrange::{Moduli, add_geometric, add_product, cofactor, green_lagrange, positive};
-use crate::{Conserving, Elastic, Failure, Material, Response, Want};
+use crate::lagrange::{Moduli, add_geometric, add_product, positive};
+use crate::tensor::{
+    Tensor, cofactor, determinant, double, green_lagrange, matrix, plus, plus_unit, product, rows,
+    scaled, symmetric_product, trace,
+};
+use crate::{Answer, Conserving, Elastic, Failure, Material, Pointwise, Response, Want};
 
 /// A hyperelastic law, chosen by the coefficients of its [`Potential`].
 pub(crate) trait Hyperelastic {
@@ -12,6 +17,13 @@ pub(crate) trait Hyperelastic {
     fn potential(&self) -> Potential;
     /// Linear elasticity of the undeformed material.
     fn initial(&self) -> Elastic;
+}
+
+impl<L: Hyperelastic> Pointwise for L {
+    #[inline(always)]
+    fn answer<T: Number>(&self, h: &Tensor<T>, _dt: f64, _old: &[T], _new: &mut [T]) -> Answer<T> {
+        self.potential().answer(h)
+    }
 }
 
 impl<T: Hyperelastic> Material for T {
@@ -64,38 +76,71 @@ pub(crate) struct Potential {
 }
 
 /// A strain with what the potential asks of it.
-struct State {
-    e: Mat3,
+struct State<T> {
+    e: Tensor<T>,
     /// B = C⁻¹ = (I + 2E)⁻¹.
-    b: Mat3,
+    b: Tensor<T>,
     /// det C.
-    det: f64,
+    det: T,
     /// ln J.
-    ln_j: f64,
+    ln_j: T,
     /// tr E - ln J, not negative.
-    gap: f64,
+    gap: T,
 }
 
-impl State {
-    /// det C - 1 = 2 I_1 + 4 I_2 + 8 I_3 with the invariants of E, and with it ln J and tr E - ln J free of cancellation:
-    /// the energy keeps its digits however small the strain is.
+impl<T: Number> State<T> {
+    /// Of a strain; of use where det C is positive.
     ///
+    /// det C - 1 = 2 I_1 + 4 I_2 + 8 I_3 with the invariants of E, and with it ln J and tr E - ln J free of cancellation:
+    /// the energy keeps its digits however small the strain is. With r = (det C - 1)/(det C + 1), ln J is atanh r.
+    #[inline(always)]
+    fn new(e: Tensor<T>) -> State<T> {
+        let sum = trace(&e);
+        let (one, two) = (sum.like(1.0), sum.like(2.0));
+        let c = plus_unit(&scaled(&e, two), one);
+        let pairs = sum.mul_add(sum, -double(&e, &e));
+        let rest = determinant(&e).mul_add(sum.like(4.0), pairs);
+        let growth = (sum + rest).scale(2.0);
+        let det = growth + one;
+        let ratio = growth / (growth + two);
+        let ln_j = growth.ln_1p().scale(0.5);
+        // beyond, the rest of the series is not small, and ln J - r has no cancellation
+        let above = (ratio.abs()).if_below(sum.like(NEAR), atanh_series(ratio), ln_j - ratio);
+        State {
+            b: scaled(&cofactor(&c), one / det),
+            det,
+            ln_j,
+            gap: growth.scale(0.5).mul_add(ratio, -above) - rest,
+            e,
+        }
+    }
+
+    /// Of a law quadratic in E, which asks for the strain alone.
+    #[inline(always)]
+    fn plain(e: Tensor<T>) -> State<T> {
+        let zero = e[0][0].like(0.0);
+        State {
+            e,
+            b: [[zero; 3]; 3],
+            det: zero.like(1.0),
+            ln_j: zero,
+            gap: zero,
+        }
+    }
+}
+
+impl State<f64> {
     /// # Errors
     /// det C not positive, as round-off makes it where the volume is pressed to nothing.
-    fn new(e: Mat3) -> Result<State, Failure> {
-        let c = Mat3::identity() + e * 2.0;
-        let trace = e.trace();
-        let rest = (trace * trace - e.norm_squared()) + 4.0 * e.determinant();
-        let growth = 2.0 * (trace + rest);
-        let det = positive(1.0 + growth)?;
-        let ratio = growth / (2.0 + growth);
-        Ok(State {
-            b: cofactor(&c) / det,
-            det,
-            ln_j: 0.5 * growth.ln_1p(),
-            gap: 0.5 * growth * ratio - atanh_rest(ratio) - rest,
-            e,
-        })
+    fn checked(e: &Mat3) -> Result<State<f64>, Failure> {
+        let state = State::new(rows(e));
+        positive(state.det)?;
+        Ok(state)
+    }
+
+    /// B.
+    fn inverse(&self) -> Mat3 {
+        matrix(&self.b)
     }
 }
 
@@ -122,64 +167,99 @@ const ATANH: [f64; 12] = {
     table
 };
 
-/// atanh(t) - t = t³/3 + t⁵/5 + ..., to its last digits for small t.
-fn atanh_rest(t: f64) -> f64 {
-    // up to here the next term, 0.04¹²/27, is below the last digit of the first
-    if t.abs() > 0.2 {
-        return t.atanh() - t;
-    }
+/// Below, the next term of the series, 0.04¹²/27, is less than the last digit of the first.
+const NEAR: f64 = 0.2;
+
+/// atanh(t) - t = t³/3 + t⁵/5 + ..., to its last digits for |t| below [`NEAR`].
+#[inline(always)]
+fn atanh_series<T: Number>(t: T) -> T {
     let square = t * t;
-    let series = ATANH.iter().rev().fold(0.0, |sum, c| sum * square + c);
+    let mut series = t.like(0.0);
+    for &c in ATANH.iter().rev() {
+        series = series.mul_add(square, t.like(c));
+    }
     series * square * t
 }
 
+/// atanh(t) - t, to its last digits for small t.
+fn atanh_rest(t: f64) -> f64 {
+    if t.abs() > NEAR {
+        t.atanh() - t
+    } else {
+        atanh_series(t)
+    }
+}
+
 impl Potential {
-    fn energy(&self, state: &State) -> f64 {
+    /// Whether it has parts that are functions of the volume.
+    #[inline(always)]
+    fn has_volume(&self) -> bool {
+        self.barrier != 0.0 || self.volume != 0.0
+    }
+
+    #[inline(always)]
+    fn energy<T: Number>(&self, state: &State<T>) -> T {
         let State { e, ln_j, gap, .. } = state;
-        let trace = e.trace();
-        0.5 * self.trace * trace * trace
-            + self.square * e.norm_squared()
-            + self.barrier * gap
-            + 0.5 * self.volume * ln_j * ln_j
+        let sum = trace(e);
+        let quadratic = (sum * sum).scale(0.5 * self.trace) + double(e, e).scale(self.square);
+        quadratic + gap.scale(self.barrier) + (*ln_j * *ln_j).scale(0.5 * self.volume)
     }
 
     /// S = a tr(E) I + 2 b E + m (I - B) + l ln(J) B, where I - B = 2 B E.
-    fn stress(&self, state: &State) -> Mat3 {
+    #[inline(always)]
+    fn stress<T: Number>(&self, state: &State<T>) -> Tensor<T> {
         let State { e, b, ln_j, .. } = state;
-        Mat3::identity() * (self.trace * e.trace())
-            + e * (2.0 * self.square)
-            + b * e * (2.0 * self.barrier)
-            + b * (self.volume * ln_j)
+        let mut s = scaled(e, ln_j.like(2.0 * self.square));
+        if self.has_volume() {
+            s = plus(&s, ln_j.like(2.0 * self.barrier), &symmetric_product(b, e));
+            s = plus(&s, ln_j.scale(self.volume), b);
+        }
+        plus_unit(&s, trace(e).scale(self.trace))
+    }
+
+    /// First Piola-Kirchhoff stress P = F S.
+    #[inline(always)]
+    fn answer<T: Number>(&self, h: &Tensor<T>) -> Answer<T> {
+        let f = plus_unit(h, h[0][0].like(1.0));
+        let e = green_lagrange(h);
+        let state = match self.has_volume() {
+            true => State::new(e),
+            false => State::plain(e),
+        };
+        let zero = h[0][0].like(0.0);
+        Answer {
+            stress: product(&f, &self.stress(&state)),
+            stored: self.energy(&state),
+            hardening: zero,
+            dissipated: zero,
+            positive: determinant(&f).least(state.det),
+        }
     }
 
     /// ∂S/∂E, with ∂ ln J/∂E = B and ∂B/∂E = -2 B⊙B.
-    fn moduli(&self, state: &State) -> Moduli {
+    fn moduli(&self, state: &State<f64>) -> Moduli {
         Moduli {
             trace: self.trace,
             identity: 2.0 * self.square,
             product: self.volume,
             cross: 2.0 * (self.barrier - self.volume * state.ln_j),
-            b: state.b,
+            b: state.inverse(),
         }
     }
 
-    /// First Piola-Kirchhoff stress P = F S and its derivative δ_ik S_JL + F_iM (∂S/∂E)_MJNL F_kN.
+    /// [`Potential::answer`] with the derivative δ_ik S_JL + F_iM (∂S/∂E)_MJNL F_kN.
     fn response(&self, f: &Mat3, want: Want) -> Result<Response, Failure> {
+        let h = rows(&(f - Mat3::identity()));
+        let answer = self.answer(&h);
         positive(f.determinant())?;
-        let state = State::new(green_lagrange(f))?;
-        let s = self.stress(&state);
+        positive(answer.positive)?;
         let tangent = (want == Want::Tangent).then(|| {
+            let state = State::new(green_lagrange(&h));
             let mut tangent = self.moduli(&state).pushed(f, f);
-            add_geometric(&mut tangent, &s);
+            add_geometric(&mut tangent, &matrix(&self.stress(&state)));
             tangent
         });
-        Ok(Response {
-            stress: f * s,
-            tangent,
-            stored: self.energy(&state),
-            hardening: 0.0,
-            dissipated: 0.0,
-        })
+        Ok(Response::of(&answer, tangent))
     }
 
     /// P_alg = F_m S_alg of [`Potential::conserving`], F_m = (F_0 + F_1)/2, so that P_alg : (F_1 - F_0) = S_alg : D, because
@@ -190,8 +270,8 @@ impl Potential {
         let f_m = (f_0 + f_1) * 0.5;
         let product = f_m.tr_mul(&(f_1 - f_0));
         let d = (product + product.transpose()) * 0.5;
-        let e_1 = green_lagrange(f_1);
-        let e_m = (green_lagrange(f_0) + e_1) * 0.5;
+        let e_1 = strain(f_1);
+        let e_m = (strain(f_0) + e_1) * 0.5;
         let algorithmic = self.conserving((e_m, e_1), &d, want)?;
         let s = algorithmic.stress;
         let tangent = (want == Want::Tangent).then(|| {
@@ -246,19 +326,19 @@ impl Potential {
         d: &Mat3,
         want: Want,
     ) -> Result<Algorithmic, Failure> {
-        let end = State::new(e_1)?;
-        let middle = State::new(e_m)?;
+        let end = State::checked(&e_1)?;
+        let middle = State::checked(&e_m)?;
         let length = d.norm_squared();
         let rate = if length > 0.0 {
             self.excess(&middle, d) / length
         } else {
             0.0
         };
-        let s_m = self.stress(&middle);
+        let s_m = matrix(&self.stress(&middle));
         let mut moduli = self.moduli(&middle).half();
         // below, D⊗w is smaller than the round-off of its parts
         let slope = (want == Want::Tangent && length > 1e-16).then(|| {
-            let bent = self.stress(&end) - s_m - moduli.times(d);
+            let bent = matrix(&self.stress(&end)) - s_m - moduli.times(d);
             (bent - d * (2.0 * rate)) / length
         });
         moduli.identity += rate;
@@ -276,15 +356,20 @@ impl Potential {
     ///
     /// ln J_1 - ln J_0 = atanh t, t = (a + c)/(1 + b), and the mean of ln J_0 and ln J_1 is
     /// ln J_m + ln((1 + b)² - (a + c)²)/4.
-    fn excess(&self, middle: &State, d: &Mat3) -> f64 {
-        let c_m = Mat3::identity() + middle.e * 2.0;
-        let a = middle.b.dot(d);
-        let b = c_m.dot(&cofactor(d)) / middle.det;
+    fn excess(&self, middle: &State<f64>, d: &Mat3) -> f64 {
+        let c_m = Mat3::identity() + matrix(&middle.e) * 2.0;
+        let a = middle.inverse().dot(d);
+        let b = c_m.dot(&matrix(&cofactor(&rows(d)))) / middle.det;
         let c = d.determinant() / middle.det;
         let beyond = atanh_rest((a + c) / (1.0 + b)) + (c - a * b) / (1.0 + b);
         let shift = 0.25 * (b * (2.0 + b) - (a + c) * (a + c)).ln_1p();
         (self.volume * (middle.ln_j + shift) - self.barrier) * beyond + self.volume * shift * a
     }
+}
+
+/// Green-Lagrange strain of F.
+fn strain(f: &Mat3) -> Mat3 {
+    matrix(&green_lagrange(&rows(&(f - Mat3::identity()))))
 }
 
 #[cfg(test)]

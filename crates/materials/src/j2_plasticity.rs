@@ -1,14 +1,22 @@
 //! Metal plasticity at finite strain.
 
+use carom_algebra::number::Number;
 use carom_algebra::tensor::Mat3;
 use carom_quantities::{Modulus, Stress};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::lagrange::{cofactor, pack, positive, unpack};
+use crate::lagrange::positive;
 use crate::range::{OutOfRange, require};
 use crate::spectral::spectral;
-use crate::{Conserving, Elastic, Failure, Material, Parameters, Plane, Response, Tangent, Want};
+use crate::tensor::{
+    Tensor, cofactor, determinant, entries, pack, plus_unit, product, product_transposed, rows,
+    scaled, symmetric_entries, transposed_product, unpack,
+};
+use crate::{
+    Answer, Conserving, Elastic, Failure, Material, Parameters, Plane, Pointwise, Response,
+    Tangent, Want,
+};
 
 /// J2 (von Mises) plasticity with linear isotropic hardening, in logarithmic strain.
 ///
@@ -77,23 +85,23 @@ impl Parameters for J2Plasticity {
 }
 
 /// The state at the end of a step, in the principal axes of the trial b_e.
-struct Return {
+struct Return<T> {
     /// Eigenvalues of the trial b_e.
-    beta: [f64; 3],
+    beta: [T; 3],
     /// Trial logarithmic strains ln(β)/2.
-    epsilon: [f64; 3],
+    epsilon: [T; 3],
     /// Principal axes, as columns.
-    n: Mat3,
+    n: Tensor<T>,
     /// Unit deviator of ε, and of the flow; zero where ε has none.
-    flow: [f64; 3],
+    flow: [T; 3],
     /// Norm of the trial deviator.
-    norm: f64,
+    norm: T,
     /// Increment of ε_p.
-    slip: f64,
+    slip: T,
     /// What the return leaves of the deviator, 1 - 3μ Δε_p/q.
-    left: f64,
+    left: T,
     /// Principal Kirchhoff stresses.
-    tau: [f64; 3],
+    tau: [T; 3],
 }
 
 impl J2Plasticity {
@@ -106,41 +114,61 @@ impl J2Plasticity {
         self.initial.lame_1(Plane::Full) + 2.0 / 3.0 * self.initial.shear_modulus()
     }
 
-    /// Return from the trial state, whose elastic left Cauchy-Green tensor is I + `beyond`. `None` where round-off has made an
-    /// eigenvalue of it negative.
-    fn returned(&self, beyond: &Mat3, plastic: f64) -> Option<Return> {
+    /// Return from the trial state of F = I + `h`, whose b_e - I = F (C_p⁻¹ - I) Fᵀ + H + Hᵀ + H Hᵀ: no digit is lost where all
+    /// strains are small. Of use where all its eigenvalues `beta` are positive.
+    #[inline(always)]
+    fn returned<T: Number>(&self, h: &Tensor<T>, old: &[T]) -> Return<T> {
+        let f = plus_unit(h, h[0][0].like(1.0));
+        let pushed = product_transposed(&product(&f, &unpack(old)), &f);
+        let square = product_transposed(h, h);
+        let beyond = symmetric_entries!(|i: usize, j: usize| {
+            pushed[i][j] + (h[i][j] + h[j][i]) + square[i][j]
+        });
+        let (lambda, n) = spectral(&beyond);
+        self.in_axes(lambda, n, old[6])
+    }
+
+    #[inline(always)]
+    fn in_axes<T: Number>(&self, lambda: [T; 3], n: Tensor<T>, plastic: T) -> Return<T> {
         let mu = self.initial.shear_modulus();
-        let (lambda, n) = spectral(beyond);
-        if !lambda.iter().all(|&x| x > -1.0) {
-            return None;
-        }
-        let epsilon = lambda.map(|x| 0.5 * x.ln_1p());
-        let trace = epsilon[0] + epsilon[1] + epsilon[2];
-        let dev = epsilon.map(|x| x - trace / 3.0);
-        let norm = (dev[0] * dev[0] + dev[1] * dev[1] + dev[2] * dev[2]).sqrt();
-        let q = 6_f64.sqrt() * mu * norm;
-        let beyond_yield = q - self.yield_stress - self.hardening * plastic;
-        let (slip, left) = if beyond_yield > 0.0 {
-            let slip = beyond_yield / (3.0 * mu + self.hardening);
-            (slip, 1.0 - 3.0 * mu * slip / q)
-        } else {
-            (0.0, 1.0)
-        };
-        let pressure = self.bulk_modulus() * trace;
-        Some(Return {
-            beta: lambda.map(|x| 1.0 + x),
-            flow: if norm > 0.0 {
-                dev.map(|x| x / norm)
-            } else {
-                dev
-            },
-            tau: dev.map(|x| pressure + 2.0 * mu * left * x),
+        let (zero, one) = (plastic.like(0.0), plastic.like(1.0));
+        let [x, y, z] = lambda;
+        let beta = [x + one, y + one, z + one];
+        // no closure: it would not be inlined, and have no instruction set
+        let epsilon = [
+            x.ln_1p().scale(0.5),
+            y.ln_1p().scale(0.5),
+            z.ln_1p().scale(0.5),
+        ];
+        let sum = epsilon[0] + epsilon[1] + epsilon[2];
+        let deviator = |a: usize| sum.mul_add(sum.like(-1.0 / 3.0), epsilon[a]);
+        let deviator = [deviator(0), deviator(1), deviator(2)];
+        let [x, y, z] = deviator;
+        let square = x * x + y * y + z * z;
+        let norm = square.sqrt();
+        let q = norm.scale(6_f64.sqrt() * mu);
+        let beyond_yield = q - plastic.mul_add(q.like(self.hardening), q.like(self.yield_stress));
+        let tiny = q.like(f64::MIN_POSITIVE);
+        let slip = beyond_yield
+            .most(zero)
+            .scale(1.0 / (3.0 * mu + self.hardening));
+        let left = one - slip.scale(3.0 * mu) / q.most(tiny);
+        let pressure = sum.scale(self.bulk_modulus());
+        let kept = left.scale(2.0 * mu);
+        let unit = one / norm.most(tiny);
+        let tau = |x: T| x.mul_add(kept, pressure);
+        let tau = [tau(x), tau(y), tau(z)];
+        let flow = [x * unit, y * unit, z * unit];
+        Return {
+            beta,
             epsilon,
             n,
+            flow,
             norm,
             slip,
             left,
-        })
+            tau,
+        }
     }
 
     /// ∂P/∂F. With the rate l = dF F⁻¹ in the principal axes,
@@ -150,7 +178,7 @@ impl J2Plasticity {
     /// w_ab = (τ_a - τ_b)/(β_a - β_b) = 2μ left (ε_a - ε_b)/(β_a - β_b), whose limit at equal eigenvalues is 1/(2β):
     /// the return scales the deviator, so that only the logarithm is left to divide.
     /// `g` is Nᵀ F⁻ᵀ.
-    fn tangent(&self, at: &Return, g: &Mat3) -> Box<Tangent> {
+    fn tangent(&self, at: &Return<f64>, g: &Tensor<f64>) -> Box<Tangent> {
         let (mu, bulk) = (self.initial.shear_modulus(), self.bulk_modulus());
         let two_mu = 2.0 * mu * at.left;
         let softer = if at.slip > 0.0 {
@@ -161,7 +189,7 @@ impl J2Plasticity {
         };
         // dyads[3 a + b] = n_a ⊗ (row b of g): what l_ab is taken from, and what the stress ab goes to
         let dyads: [[f64; 9]; 9] = std::array::from_fn(|ab| {
-            std::array::from_fn(|ij| at.n[(ij / 3, ab / 3)] * g[(ab % 3, ij % 3)])
+            std::array::from_fn(|ij| at.n[ij / 3][ab / 3] * g[ab % 3][ij % 3])
         });
         let mut tangent = Box::new([[0.0; 9]; 9]);
         for a in 0..3 {
@@ -195,7 +223,7 @@ impl J2Plasticity {
 }
 
 /// (ε_a - ε_b)/(β_a - β_b), to round-off however near the eigenvalues are.
-fn log_quotient(at: &Return, a: usize, b: usize) -> f64 {
+fn log_quotient(at: &Return<f64>, a: usize, b: usize) -> f64 {
     let z = (at.beta[a] - at.beta[b]) / at.beta[b];
     if z == 0.0 {
         0.5 / at.beta[b]
@@ -203,6 +231,61 @@ fn log_quotient(at: &Return, a: usize, b: usize) -> f64 {
         0.5 * z.ln_1p() / z / at.beta[b]
     } else {
         (at.epsilon[a] - at.epsilon[b]) / (at.beta[a] - at.beta[b])
+    }
+}
+
+impl J2Plasticity {
+    /// Stress, energies and history of a return, and Nᵀ F⁻ᵀ.
+    #[inline(always)]
+    fn answered<T: Number>(
+        &self,
+        (at, h): (&Return<T>, &Tensor<T>),
+        old: &[T],
+        new: &mut [T],
+    ) -> (Answer<T>, Tensor<T>) {
+        let f = plus_unit(h, h[0][0].like(1.0));
+        let det = determinant(&f);
+        let g = transposed_product(&at.n, &scaled(&cofactor(&f), det.like(1.0) / det));
+        // the flow sqrt(3/2) Δε_p of ε changes β by the factor exp(-2 flow); F⁻¹ pulls the change back to C_p⁻¹
+        let change = [
+            at.beta[0] * shrink(at.slip, at.flow[0]),
+            at.beta[1] * shrink(at.slip, at.flow[1]),
+            at.beta[2] * shrink(at.slip, at.flow[2]),
+        ];
+        let turned = entries!(|a: usize, j: usize| g[a][j] * change[a]);
+        let weighted = entries!(|a: usize, j: usize| g[a][j] * at.tau[a]);
+        let positive = det.least(at.beta[0]).least(at.beta[1]).least(at.beta[2]);
+        let pulled = transposed_product(&g, &turned);
+        let metric = unpack(old);
+        let updated = entries!(|i: usize, j: usize| metric[i][j] + pulled[i][j]);
+        pack(&updated, new);
+        new[6] = old[6] + at.slip;
+        let sum = at.epsilon[0] + at.epsilon[1] + at.epsilon[2];
+        let deviator = at.left * at.norm;
+        let stored = (sum * sum).scale(0.5 * self.bulk_modulus())
+            + (deviator * deviator).scale(self.initial.shear_modulus());
+        let answer = Answer {
+            stress: product(&at.n, &weighted),
+            stored,
+            hardening: (new[6] * new[6]).scale(0.5 * self.hardening),
+            dissipated: at.slip.scale(self.yield_stress),
+            positive,
+        };
+        (answer, g)
+    }
+}
+
+/// exp(-2 flow) - 1.
+#[inline(always)]
+fn shrink<T: Number>(slip: T, flow: T) -> T {
+    (slip * flow).scale(-6_f64.sqrt()).exp_m1()
+}
+
+impl Pointwise for J2Plasticity {
+    #[inline(always)]
+    fn answer<T: Number>(&self, h: &Tensor<T>, _dt: f64, old: &[T], new: &mut [T]) -> Answer<T> {
+        let at = self.returned(h, old);
+        self.answered((&at, h), old, new).0
     }
 }
 
@@ -222,36 +305,13 @@ impl Material for J2Plasticity {
         (old, new): (&[f64], &mut [f64]),
         want: Want,
     ) -> Result<Response, Failure> {
-        let determinant = positive(f.determinant())?;
-        let (plastic_metric, plastic) = (unpack(&old[..6]), old[6]);
-        let h = f - Mat3::identity();
-        // b_e - I, from H and C_p⁻¹ - I: no digit is lost where all strains are small
-        let beyond = f * plastic_metric * f.transpose() + h + h.transpose() + h * h.transpose();
-        let at = self
-            .returned(&beyond, plastic)
-            .ok_or(Failure::Inverted { determinant })?;
-        let inverse_transposed = cofactor(f) / determinant;
-        let g = at.n.tr_mul(&inverse_transposed);
-        new.copy_from_slice(old);
-        if at.slip > 0.0 {
-            // the flow sqrt(3/2) Δε_p of ε changes β by the factor exp(-2 flow); F⁻¹ pulls the change back to C_p⁻¹
-            let change = std::array::from_fn::<f64, 3, _>(|a| {
-                at.beta[a] * (-6_f64.sqrt() * at.slip * at.flow[a]).exp_m1()
-            });
-            let pulled = g.transpose() * Mat3::from_diagonal(&change.into()) * g;
-            pack(&(plastic_metric + pulled), &mut new[..6]);
-            new[6] = plastic + at.slip;
-        }
-        let trace = at.epsilon[0] + at.epsilon[1] + at.epsilon[2];
-        let deviator = at.left * at.norm;
-        Ok(Response {
-            stress: at.n * Mat3::from_diagonal(&at.tau.into()) * g,
-            tangent: (want == Want::Tangent).then(|| self.tangent(&at, &g)),
-            stored: 0.5 * self.bulk_modulus() * trace * trace
-                + self.initial.shear_modulus() * deviator * deviator,
-            hardening: 0.5 * self.hardening * new[6] * new[6],
-            dissipated: self.yield_stress * at.slip,
-        })
+        positive(f.determinant())?;
+        let h = rows(&(f - Mat3::identity()));
+        let at = self.returned(&h, old);
+        let (answer, g) = self.answered((&at, &h), old, new);
+        positive(answer.positive)?;
+        let tangent = (want == Want::Tangent).then(|| self.tangent(&at, &g));
+        Ok(Response::of(&answer, tangent))
     }
 
     fn between(&self, _f_0: &Mat3, _f_1: &Mat3, _want: Want) -> Option<Result<Response, Failure>> {

@@ -1,4 +1,4 @@
-//! Green-Lagrange strain, and the way from the stress and the moduli that belong to it to those that belong to F.
+//! The way from the stress and the moduli that belong to the Green-Lagrange strain to those that belong to F.
 
 use carom_algebra::tensor::Mat3;
 
@@ -11,21 +11,6 @@ pub(crate) fn positive(determinant: f64) -> Result<f64, Failure> {
     } else {
         Err(Failure::Inverted { determinant })
     }
-}
-
-/// Green-Lagrange strain E = (FᵀF - I)/2, from H = F - I as (H + Hᵀ + HᵀH)/2: no digit is lost where F is near I.
-pub(crate) fn green_lagrange(f: &Mat3) -> Mat3 {
-    let h = f - Mat3::identity();
-    (h + h.transpose() + h.tr_mul(&h)) * 0.5
-}
-
-/// Cofactor matrix, det(A) A⁻ᵀ.
-pub(crate) fn cofactor(a: &Mat3) -> Mat3 {
-    let minor = |i: usize, j: usize| {
-        let (p, q, r, s) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
-        a[(p, r)] * a[(q, s)] - a[(p, s)] * a[(q, r)]
-    };
-    Mat3::from_fn(minor)
 }
 
 /// Moduli ∂S/∂E = trace I⊗I + identity 𝕀 + product B⊗B + cross B⊙B, with a symmetric tensor B, the identity
@@ -112,22 +97,4 @@ pub(crate) fn add_product(tangent: &mut Tangent, u: &Mat3, v: &Mat3) {
             }
         }
     }
-}
-
-/// The symmetric matrix of six numbers of a history: 11, 22, 33, 12, 23, 13.
-pub(crate) fn unpack(v: &[f64]) -> Mat3 {
-    Mat3::new(v[0], v[3], v[5], v[3], v[1], v[4], v[5], v[4], v[2])
-}
-
-/// Writes a symmetric matrix as the six numbers 11, 22, 33, 12, 23, 13.
-pub(crate) fn pack(a: &Mat3, out: &mut [f64]) {
-    let numbers = [
-        a[(0, 0)],
-        a[(1, 1)],
-        a[(2, 2)],
-        a[(0, 1)],
-        a[(1, 2)],
-        a[(0, 2)],
-    ];
-    out.copy_from_slice(&numbers);
 }

@@ -2,10 +2,13 @@
 //!
 //! Adding a material: one file, and its lines here.
 
-/// The list of materials: each with what the case file says of it, and its key there.
+/// The list of materials: each with what the case file says of it, and its key there. Calls the macro `use` with the tokens
+/// behind its name and with the list.
+#[macro_export]
 macro_rules! materials {
-    ($declare:ident) => {
-        $declare! {
+    ($use:ident $($with:tt)*) => {
+        $use! {
+            [$($with)*]
             /// Linear isotropic elasticity, small strain.
             Elastic "elastic",
             /// St Venant-Kirchhoff elasticity: linear between second Piola-Kirchhoff stress and Green-Lagrange strain. Large rotations,
@@ -34,9 +37,11 @@ mod maxwell;
 mod mooney_rivlin;
 mod neo_hooke;
 mod parameters;
+mod pointwise;
 mod range;
 mod spectral;
 mod st_venant_kirchhoff;
+mod tensor;
 
 pub use elastic::{Elastic, Plane};
 pub use j2_plasticity::J2Plasticity;
@@ -46,5 +51,7 @@ pub use maxwell::{Branch, MAX_BRANCHES, Maxwell};
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hooke::NeoHooke;
 pub use parameters::Parameters;
+pub use pointwise::{Answer, MAX_KEPT, Pointwise};
 pub use range::OutOfRange;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
+pub use tensor::Tensor;

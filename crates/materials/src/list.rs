@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::{Elastic, Material, OutOfRange, Parameters, Plane};
 
 macro_rules! declare {
-    ($($(#[$doc:meta])* $law:ident $key:literal,)*) => {
+    ([] $($(#[$doc:meta])* $law:ident $key:literal,)*) => {
         /// A material, as chosen in the case file.
         #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
         pub enum Law {

@@ -3,7 +3,8 @@
 use carom_algebra::tensor::Mat3;
 use thiserror::Error as ThisError;
 
-use crate::Elastic;
+use crate::tensor::matrix;
+use crate::{Answer, Elastic};
 
 /// Derivative ∂P/∂F of the first Piola-Kirchhoff stress, in Pa: entry `[3 i + j][3 k + l]` is ∂P_ij/∂F_kl.
 pub type Tangent = [[f64; 9]; 9];
@@ -30,6 +31,18 @@ pub struct Response {
     pub hardening: f64,
     /// Energy per reference volume dissipated since the old history, in J/m³, not negative.
     pub dissipated: f64,
+}
+
+impl Response {
+    pub(crate) fn of(answer: &Answer<f64>, tangent: Option<Box<Tangent>>) -> Response {
+        Response {
+            stress: matrix(&answer.stress),
+            tangent,
+            stored: answer.stored,
+            hardening: answer.hardening,
+            dissipated: answer.dissipated,
+        }
+    }
 }
 
 /// Algorithmic stress of a step between two strains.

@@ -1,14 +1,21 @@
 //! Linear viscoelasticity at finite strain.
 
+use carom_algebra::number::Number;
 use carom_algebra::tensor::Mat3;
 use carom_quantities::Duration;
 use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::lagrange::{Moduli, add_geometric, green_lagrange, pack, positive, unpack};
+use crate::lagrange::{Moduli, add_geometric, positive};
 use crate::range::{OutOfRange, require};
-use crate::{Conserving, Elastic, Failure, Material, Parameters, Plane, Response, Want};
+use crate::tensor::{
+    Tensor, determinant, double, green_lagrange, matrix, pack, plus, plus_unit, product, rows,
+    scaled, trace, unpack,
+};
+use crate::{
+    Answer, Conserving, Elastic, Failure, Material, Parameters, Plane, Pointwise, Response, Want,
+};
 
 /// Most branches of a [`Maxwell`] material.
 pub const MAX_BRANCHES: usize = 4;
@@ -142,6 +149,81 @@ impl Maxwell {
         let ratios = self.branches.iter().flatten().map(|branch| branch.ratio);
         1.0 - ratios.sum::<f64>()
     }
+
+    fn bulk_modulus(&self) -> f64 {
+        self.initial.lame_1(Plane::Full) + 2.0 / 3.0 * self.initial.shear_modulus()
+    }
+
+    /// Second Piola-Kirchhoff stress at the strain `e`, and energies.
+    #[inline(always)]
+    fn relaxed<T: Number>(
+        &self,
+        strain: &Tensor<T>,
+        dt: f64,
+        old: &[T],
+        new: &mut [T],
+    ) -> (Tensor<T>, [T; 2]) {
+        let sum = trace(strain);
+        let e = plus_unit(strain, sum.scale(-1.0 / 3.0));
+        let change = plus(&e, sum.like(-1.0), &unpack(old));
+        pack(&e, new);
+        let (mu, bulk) = (self.initial.shear_modulus(), self.bulk_modulus());
+        // shear stress and energy over 2μ
+        let mut shear = scaled(&e, sum.like(self.lasting()));
+        let mut energy = double(&e, &e).scale(0.5 * self.lasting());
+        let mut dissipated = sum.like(0.0);
+        for (place, branch) in self.branches.iter().flatten().enumerate() {
+            let kept = 6 + 6 * place..12 + 6 * place;
+            let step = Relaxation::new(dt / branch.time);
+            let x_0 = unpack(&old[kept.clone()]);
+            let x_1 = plus(
+                &scaled(&x_0, sum.like(step.decay)),
+                sum.like(step.gain),
+                &change,
+            );
+            pack(&x_1, &mut new[kept]);
+            shear = plus(&shear, sum.like(branch.ratio), &x_1);
+            energy += double(&x_1, &x_1).scale(0.5 * branch.ratio);
+            let integral = double(&x_0, &x_0).scale(step.squares[0])
+                + double(&x_0, &change).scale(step.squares[1])
+                + double(&change, &change).scale(step.squares[2]);
+            // round-off can leave less than zero of an integral of squares
+            dissipated += integral.most(sum.like(0.0)).scale(branch.ratio);
+        }
+        let s = plus_unit(&scaled(&shear, sum.like(2.0 * mu)), sum.scale(bulk));
+        let stored = (sum * sum).scale(0.5 * bulk) + energy.scale(2.0 * mu);
+        (s, [stored, dissipated.scale(2.0 * mu)])
+    }
+
+    /// ∂S/∂E at the end of a step.
+    fn moduli(&self, dt: f64) -> Moduli {
+        let gains = self.branches.iter().flatten();
+        let gains = gains.map(|branch| branch.ratio * Relaxation::new(dt / branch.time).gain);
+        let modulus = self.lasting() + gains.sum::<f64>();
+        let mu = self.initial.shear_modulus();
+        Moduli {
+            trace: self.bulk_modulus() - 2.0 / 3.0 * mu * modulus,
+            identity: 2.0 * mu * modulus,
+            product: 0.0,
+            cross: 0.0,
+            b: Mat3::zeros(),
+        }
+    }
+}
+
+impl Pointwise for Maxwell {
+    #[inline(always)]
+    fn answer<T: Number>(&self, h: &Tensor<T>, dt: f64, old: &[T], new: &mut [T]) -> Answer<T> {
+        let f = plus_unit(h, h[0][0].like(1.0));
+        let (s, [stored, dissipated]) = self.relaxed(&green_lagrange(h), dt, old, new);
+        Answer {
+            stress: product(&f, &s),
+            stored,
+            hardening: stored.like(0.0),
+            dissipated,
+            positive: determinant(&f),
+        }
+    }
 }
 
 impl Material for Maxwell {
@@ -161,52 +243,15 @@ impl Material for Maxwell {
         want: Want,
     ) -> Result<Response, Failure> {
         positive(f.determinant())?;
-        let strain = green_lagrange(f);
-        let trace = strain.trace();
-        let e = strain - Mat3::identity() * (trace / 3.0);
-        let change = e - unpack(&old[..6]);
-        pack(&e, &mut new[..6]);
-        let mu = self.initial.shear_modulus();
-        let bulk = self.initial.lame_1(Plane::Full) + 2.0 / 3.0 * mu;
-        // shear stress, energy and modulus over 2μ
-        let mut shear = e * self.lasting();
-        let mut energy = 0.5 * self.lasting() * e.norm_squared();
-        let mut modulus = self.lasting();
-        let mut dissipated = 0.0;
-        let histories = old[6..].chunks_exact(6).zip(new[6..].chunks_exact_mut(6));
-        for (branch, (old, new)) in self.branches.iter().flatten().zip(histories) {
-            let step = Relaxation::new(dt / branch.time);
-            let x_0 = unpack(old);
-            let x_1 = x_0 * step.decay + change * step.gain;
-            pack(&x_1, new);
-            shear += x_1 * branch.ratio;
-            energy += 0.5 * branch.ratio * x_1.norm_squared();
-            modulus += branch.ratio * step.gain;
-            let squares = [x_0.norm_squared(), x_0.dot(&change), change.norm_squared()];
-            let integral: f64 = step.squares.iter().zip(squares).map(|(c, s)| c * s).sum();
-            // round-off can leave less than zero of an integral of squares
-            dissipated += branch.ratio * integral.max(0.0);
-        }
-        let s = Mat3::identity() * (bulk * trace) + shear * (2.0 * mu);
+        let h = rows(&(f - Mat3::identity()));
+        let answer = self.answer(&h, dt, old, new);
         let tangent = (want == Want::Tangent).then(|| {
-            let moduli = Moduli {
-                trace: bulk - 2.0 / 3.0 * mu * modulus,
-                identity: 2.0 * mu * modulus,
-                product: 0.0,
-                cross: 0.0,
-                b: Mat3::zeros(),
-            };
-            let mut tangent = moduli.pushed(f, f);
-            add_geometric(&mut tangent, &s);
+            let (s, _) = self.relaxed(&green_lagrange(&h), dt, old, new);
+            let mut tangent = self.moduli(dt).pushed(f, f);
+            add_geometric(&mut tangent, &matrix(&s));
             tangent
         });
-        Ok(Response {
-            stress: f * s,
-            tangent,
-            stored: 0.5 * bulk * trace * trace + 2.0 * mu * energy,
-            hardening: 0.0,
-            dissipated: 2.0 * mu * dissipated,
-        })
+        Ok(Response::of(&answer, tangent))
     }
 
     fn between(&self, _f_0: &Mat3, _f_1: &Mat3, _want: Want) -> Option<Result<Response, Failure>> {

@@ -36,7 +36,7 @@ use carom_algebra::tensor::Mat3;
 use carom_materials::{Conserving, Failure, Tangent, Want};
 
 use super::Stored;
-use super::cells::{Cells, MAX_UNKNOWNS};
+use super::cell::{Element, MAX_UNKNOWNS};
 use super::element::{Fault, Local};
 use super::gradient::symmetric;
 
@@ -93,10 +93,10 @@ struct Slopes {
     pressure_by_ratio: f64,
 }
 
-impl Cells {
+impl Element {
     /// Fails where the point is turned inside out.
-    fn motion(&self, (element, point): (usize, usize), u: [&[f64]; 2]) -> Result<Motion, Fault> {
-        let gradient = self.gradient(element, point);
+    fn motion(&self, point: usize, u: [&[f64]; 2]) -> Result<Motion, Fault> {
+        let gradient = self.gradient(point);
         let f = u.map(|u| gradient.deformation(u));
         let jacobian = f.map(|f| f.determinant());
         for determinant in jacobian {
@@ -117,14 +117,14 @@ impl Cells {
             c_m,
             d,
             jacobian,
-            volume: self.volume(element, point),
+            volume: self.volume(point),
         })
     }
 
-    fn dilation(&self, element: usize, u: [&[f64]; 2]) -> Result<Dilation, Fault> {
+    fn dilation(&self, u: [&[f64]; 2]) -> Result<Dilation, Fault> {
         let mut sum = Dilation::default();
         for point in 0..self.points {
-            let motion = self.motion((element, point), u)?;
+            let motion = self.motion(point, u)?;
             sum.reference += motion.volume;
             sum.change += motion.volume * motion.slope.dot(&motion.d);
             for (ratio, jacobian) in sum.ratio.iter_mut().zip(motion.jacobian) {
@@ -138,12 +138,12 @@ impl Cells {
 
     fn point_between(
         &self,
-        (element, point): (usize, usize),
+        point: usize,
         (dilation, from): (&Dilation, &[f64]),
         at: &Local,
         want: Want,
     ) -> Result<Point, Fault> {
-        let motion = self.motion((element, point), [from, at.u])?;
+        let motion = self.motion(point, [from, at.u])?;
         let Motion { c_m, d, .. } = &motion;
         let [j_0, j_1] = motion.jacobian;
         let s = [0, 1].map(|k| (dilation.ratio[k] / motion.jacobian[k]).cbrt());
@@ -161,7 +161,7 @@ impl Cells {
         Ok(Point {
             pressure: 0.5 * rate * law.stress.dot(c_m),
             share: motion.volume / dilation.reference,
-            weighted: self.weighted(element, point),
+            weighted: self.weighted(point),
             motion,
             s,
             rate,
@@ -172,20 +172,18 @@ impl Cells {
     /// Adds the forces of an element (N) between `from` and `at.u` to `f`.
     pub(super) fn dilated_force_between(
         &self,
-        element: usize,
         from: &[f64],
         at: &Local,
         f: &mut [f64],
     ) -> Result<Stored, Fault> {
-        let dilation = self.dilation(element, [from, at.u])?;
+        let dilation = self.dilation([from, at.u])?;
         let (mut stored, mut whole) = (Stored::default(), 0.0);
         let mut volume = [0.0; MAX_UNKNOWNS];
         for place in 0..self.points {
-            let point =
-                self.point_between((element, place), (&dilation, from), at, Want::Stress)?;
+            let point = self.point_between(place, (&dilation, from), at, Want::Stress)?;
             stored.strain += point.weighted * point.law.stored;
             whole += point.pull();
-            let (gradient, f_m) = (self.gradient(element, place), &point.motion.f_m);
+            let (gradient, f_m) = (self.gradient(place), &point.motion.f_m);
             gradient.add_transposed(1.0, &(f_m * point.stress(&dilation, 0.0)), f);
             let slope = f_m * point.motion.slope;
             gradient.add_transposed(point.share, &slope, &mut volume[..f.len()]);
@@ -199,15 +197,13 @@ impl Cells {
     /// Adds the symmetric part of ∂f/∂u_1 (N/m) to the blocks on and above the diagonal of a row-major matrix.
     pub(super) fn dilated_tangent_between(
         &self,
-        element: usize,
         from: &[f64],
         at: &Local,
         matrix: &mut [f64],
     ) -> Result<(), Fault> {
-        let dilation = self.dilation(element, [from, at.u])?;
+        let dilation = self.dilation([from, at.u])?;
         let mut points = Vec::with_capacity(self.points);
         for place in 0..self.points {
-            let place = (element, place);
             points.push(self.point_between(place, (&dilation, from), at, Want::Tangent)?);
         }
         let whole: f64 = points.iter().map(Point::pull).sum();
@@ -215,7 +211,7 @@ impl Cells {
         let [mut d, mut n, mut y, mut z] = [[0.0; MAX_UNKNOWNS]; 4];
         let mut by_ratio = 0.0;
         for (place, point) in points.iter().enumerate() {
-            let gradient = self.gradient(element, place);
+            let gradient = self.gradient(place);
             let Motion {
                 f_1, f_m, slope, ..
             } = &point.motion;

@@ -18,7 +18,7 @@ use carom_materials::{Failure, Response, Tangent, Want};
 
 use super::Stored;
 use super::between::cofactor;
-use super::cells::{Cells, MAX_UNKNOWNS};
+use super::cell::{Element, MAX_UNKNOWNS};
 use super::element::{Fault, Local, tangent};
 use super::gradient::symmetric;
 
@@ -47,18 +47,18 @@ struct Point {
     response: Response,
 }
 
-impl Cells {
+impl Element {
     /// θ of an element; fails where a point is turned inside out.
-    pub(super) fn dilatation(&self, element: usize, u: &[f64]) -> Result<Dilatation, Fault> {
+    pub(super) fn dilatation(&self, u: &[f64]) -> Result<Dilatation, Fault> {
         let (mut reference, mut volume) = (0.0, 0.0);
         for point in 0..self.points {
-            let determinant = self.gradient(element, point).deformation(u).determinant();
+            let determinant = self.gradient(point).deformation(u).determinant();
             if determinant.is_nan() || determinant <= 0.0 {
                 let failure = Failure::Inverted { determinant };
                 return Err(Fault::Law { point, failure });
             }
-            reference += self.volume(element, point);
-            volume += self.volume(element, point) * determinant;
+            reference += self.volume(point);
+            volume += self.volume(point) * determinant;
         }
         Ok(Dilatation {
             ratio: volume / reference,
@@ -68,21 +68,21 @@ impl Cells {
 
     fn dilated_point(
         &self,
-        (element, point): (usize, usize),
+        point: usize,
         dilatation: &Dilatation,
         at: &Local,
         new: &mut [f64],
         want: Want,
     ) -> Result<Point, Fault> {
-        let f = self.gradient(element, point).deformation(at.u);
+        let f = self.gradient(point).deformation(at.u);
         let determinant = f.determinant();
         let s = (dilatation.ratio / determinant).cbrt();
         let response = at.update(self.points, point, &(f * s), new, want)?;
         Ok(Point {
             g: cofactor(&f) / determinant,
             s,
-            share: self.volume(element, point) * determinant / dilatation.volume,
-            weighted: self.weighted(element, point),
+            share: self.volume(point) * determinant / dilatation.volume,
+            weighted: self.weighted(point),
             pressure: s * response.stress.dot(&f) / 3.0,
             f,
             response,
@@ -91,20 +91,19 @@ impl Cells {
 
     pub(super) fn dilated_force(
         &self,
-        element: usize,
         at: &Local,
         new: &mut [f64],
         f: &mut [f64],
     ) -> Result<Stored, Fault> {
-        let dilatation = self.dilatation(element, at.u)?;
+        let dilatation = self.dilatation(at.u)?;
         let (mut stored, mut mean) = (Stored::default(), 0.0);
         let mut volume = [0.0; MAX_UNKNOWNS];
         for place in 0..self.points {
-            let point = self.dilated_point((element, place), &dilatation, at, new, Want::Stress)?;
+            let point = self.dilated_point(place, &dilatation, at, new, Want::Stress)?;
             stored.add(point.weighted, &point.response);
             mean += point.weighted * point.pressure;
             let deviator = point.response.stress * point.s - point.g * point.pressure;
-            let gradient = self.gradient(element, place);
+            let gradient = self.gradient(place);
             gradient.add_transposed(point.weighted, &deviator, f);
             gradient.add_transposed(point.share, &point.g, &mut volume[..f.len()]);
         }
@@ -116,25 +115,23 @@ impl Cells {
 
     pub(super) fn dilated_tangent(
         &self,
-        element: usize,
         at: &Local,
         new: &mut [f64],
         matrix: &mut [f64],
     ) -> Result<(), Fault> {
-        let dilatation = self.dilatation(element, at.u)?;
+        let dilatation = self.dilatation(at.u)?;
         let n = at.u.len();
         let mut points = Vec::with_capacity(self.points);
         let (mut mean, mut d) = (0.0, [0.0; MAX_UNKNOWNS]);
         for place in 0..self.points {
-            let point =
-                self.dilated_point((element, place), &dilatation, at, new, Want::Tangent)?;
+            let point = self.dilated_point(place, &dilatation, at, new, Want::Tangent)?;
             mean += point.weighted * point.pressure;
-            let gradient = self.gradient(element, place);
+            let gradient = self.gradient(place);
             gradient.add_transposed(point.share, &point.g, &mut d[..n]);
             points.push(point);
         }
         for (place, point) in points.iter().enumerate() {
-            let gradient = self.gradient(element, place);
+            let gradient = self.gradient(place);
             let (a, by_f, twice) = point.tangents(mean);
             gradient.add_product(&a, matrix);
             let (mut y, mut e) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);

@@ -4,7 +4,7 @@ use carom_algebra::tensor::Mat3;
 use carom_materials::{Failure, Material, Response, Tangent, Want};
 
 use super::Stored;
-use super::cells::Cells;
+use super::cell::Element;
 use super::gradient::{Gradient, mirror, symmetric};
 
 /// Where one element is.
@@ -37,39 +37,38 @@ impl Stored {
     }
 }
 
-impl Cells {
-    pub(super) fn gradient(&self, element: usize, point: usize) -> Gradient<'_> {
+impl Element {
+    pub(super) fn gradient(&self, point: usize) -> Gradient<'_> {
         Gradient {
             dim: self.dim,
             axisymmetric: self.axisymmetric,
-            dn: self.gradients(element, point),
+            dn: self.gradients(point),
         }
     }
 
     /// Adds the forces of an element (N) to `f`, writes its history into `new`.
     pub(super) fn force(
         &self,
-        element: usize,
         at: &Local,
         new: &mut [f64],
         f: &mut [f64],
     ) -> Result<Stored, Fault> {
         if self.dilatation {
             return match at.from {
-                None => self.dilated_force(element, at, new, f),
-                Some(from) => self.dilated_force_between(element, from, at, f),
+                None => self.dilated_force(at, new, f),
+                Some(from) => self.dilated_force_between(from, at, f),
             };
         }
         let mut stored = Stored::default();
         for point in 0..self.points {
-            let response = self.response(element, point, at, new, Want::Stress)?;
-            let volume = self.weighted(element, point);
+            let response = self.response(point, at, new, Want::Stress)?;
+            let volume = self.weighted(point);
             stored.add(volume, &response);
-            let gradient = self.gradient(element, point);
+            let gradient = self.gradient(point);
             gradient.add_transposed(volume, &response.stress, f);
         }
         if let Some(hourglass) = &self.hourglass {
-            stored.strain += hourglass.force(element, self.dim, at.u, at.from, f);
+            stored.strain += hourglass.force(self.dim, at.u, at.from, f);
         }
         Ok(stored)
     }
@@ -77,7 +76,6 @@ impl Cells {
     /// Writes ∂f/∂u of an element (N/m, row-major, symmetric). `new`: room for its history.
     pub(super) fn tangent(
         &self,
-        element: usize,
         at: &Local,
         new: &mut [f64],
         matrix: &mut [f64],
@@ -85,19 +83,19 @@ impl Cells {
         matrix.fill(0.0);
         if self.dilatation {
             match at.from {
-                None => self.dilated_tangent(element, at, new, matrix)?,
-                Some(from) => self.dilated_tangent_between(element, from, at, matrix)?,
+                None => self.dilated_tangent(at, new, matrix)?,
+                Some(from) => self.dilated_tangent_between(from, at, matrix)?,
             }
         } else {
             for point in 0..self.points {
-                let response = self.response(element, point, at, new, Want::Tangent)?;
-                let a = symmetric(self.weighted(element, point), tangent(&response));
-                self.gradient(element, point).add_product(&a, matrix);
+                let response = self.response(point, at, new, Want::Tangent)?;
+                let a = symmetric(self.weighted(point), tangent(&response));
+                self.gradient(point).add_product(&a, matrix);
             }
         }
         if let Some(hourglass) = &self.hourglass {
             let factor = if at.from.is_some() { 0.5 } else { 1.0 };
-            hourglass.tangent(element, self.dim, factor, matrix);
+            hourglass.tangent(self.dim, factor, matrix);
         }
         mirror(matrix);
         Ok(())
@@ -106,13 +104,12 @@ impl Cells {
     /// The law at one point, at its own F.
     fn response(
         &self,
-        element: usize,
         point: usize,
         at: &Local,
         new: &mut [f64],
         want: Want,
     ) -> Result<Response, Fault> {
-        let gradient = self.gradient(element, point);
+        let gradient = self.gradient(point);
         let f = gradient.deformation(at.u);
         let failed = |failure| Fault::Law { point, failure };
         let Some(from) = at.from else {
@@ -124,20 +121,15 @@ impl Cells {
     }
 
     /// Cauchy stress σ = P F^T / det F and det F times dV at a point, by the F that its law sees.
-    pub(super) fn cauchy(
-        &self,
-        element: usize,
-        at: &Local,
-        new: &mut [f64],
-    ) -> Result<(f64, Mat3), Fault> {
+    pub(super) fn cauchy(&self, at: &Local, new: &mut [f64]) -> Result<(f64, Mat3), Fault> {
         let theta = match self.dilatation {
-            true => Some(self.dilatation(element, at.u)?.ratio),
+            true => Some(self.dilatation(at.u)?.ratio),
             false => None,
         };
         let (mut volume, mut stress) = (0.0, Mat3::zeros());
         for point in 0..self.points {
-            let mut f = self.gradient(element, point).deformation(at.u);
-            let current = self.volume(element, point) * f.determinant();
+            let mut f = self.gradient(point).deformation(at.u);
+            let current = self.volume(point) * f.determinant();
             if let Some(theta) = theta {
                 f *= (theta / f.determinant()).cbrt();
             }

@@ -14,71 +14,72 @@ use carom_elements::Kind;
 /// incompressible ones. On a square and κ = 1 this is 3/4 of the energy of full integration for λ = μ.
 ///
 /// Patterns and projection: Flanagan and Belytschko (1981), there with λ + 2μ; the form in current positions is ours.
-#[derive(Debug)]
-pub(crate) struct Hourglass {
-    /// h_a, pattern after pattern.
-    patterns: Vec<Vec<f64>>,
-    /// 2 μ κ in Pa.
-    modulus: f64,
-    /// γ_a of each element and pattern.
-    shapes: Vec<f64>,
-    /// k of each element in N/m.
-    stiffness: Vec<f64>,
+pub(super) struct Hourglass {
+    /// γ_a of each pattern.
+    shapes: [[f64; MAX_CORNERS]; MAX_PATTERNS],
+    patterns: usize,
+    nodes: usize,
+    /// k in N/m.
+    stiffness: f64,
+}
+
+/// Nodes of a hexahedron.
+const MAX_CORNERS: usize = 8;
+/// Patterns of a hexahedron.
+const MAX_PATTERNS: usize = 4;
+
+/// The products of reference coordinates that are the patterns of a quadrilateral or a hexahedron.
+pub(super) fn patterns(kind: Kind) -> &'static [&'static [usize]] {
+    match kind.table().dim {
+        2 => &[&[0, 1]],
+        _ => &[&[1, 2], &[2, 0], &[0, 1], &[0, 1, 2]],
+    }
+}
+
+/// h_a of a pattern at a node of these reference coordinates.
+pub(super) fn pattern(axes: &[usize], xi: &[f64; 3]) -> f64 {
+    axes.iter().map(|&i| xi[i]).product()
 }
 
 impl Hourglass {
-    /// Of no element yet. `modulus`: 2 μ κ in Pa.
-    pub(super) fn new(kind: Kind, modulus: f64) -> Hourglass {
-        let products: &[&[usize]] = match kind.table().dim {
-            2 => &[&[0, 1]],
-            _ => &[&[1, 2], &[2, 0], &[0, 1], &[0, 1, 2]],
-        };
-        let reference = kind.table().reference;
-        let pattern = |axes: &&[usize]| {
-            let value = |xi: &[f64; 3]| axes.iter().map(|&i| xi[i]).product();
-            reference.iter().map(value).collect()
-        };
-        Hourglass {
-            patterns: products.iter().map(pattern).collect(),
-            modulus,
-            shapes: Vec::new(),
-            stiffness: Vec::new(),
-        }
-    }
-
-    /// Adds an element. `x`: its nodes in m; `gradient`: mean gradients in 1/m, of which the first `dim` entries are those in
+    /// `modulus`: 2 μ κ in Pa; `x`: nodes in m; `gradient`: mean gradients in 1/m, of which the first `dim` entries are those in
     /// space; `volume`: ∫ δ dV in m³.
-    pub(super) fn push(&mut self, x: &[[f64; 3]], gradient: &[[f64; 3]], volume: f64) {
-        let dim = if self.patterns.len() == 1 { 2 } else { 3 };
-        let nodes = x.len() as f64;
-        for h in &self.patterns {
-            let along = [0, 1, 2].map(|j| h.iter().zip(x).map(|(h, x)| h * x[j]).sum::<f64>());
-            let shape = h.iter().zip(gradient).map(|(h, dn)| {
+    pub(super) fn new(
+        kind: Kind,
+        modulus: f64,
+        x: &[[f64; 3]],
+        gradient: &[[f64; 3]],
+        volume: f64,
+    ) -> Hourglass {
+        let (dim, nodes) = (kind.table().dim, x.len());
+        let mut shapes = [[0.0; MAX_CORNERS]; MAX_PATTERNS];
+        let patterns = patterns(kind);
+        for (shape, axes) in shapes.iter_mut().zip(patterns) {
+            let h = |node: usize| pattern(axes, &kind.table().reference[node]);
+            let along = [0, 1, 2].map(|j| (0..nodes).map(|a| h(a) * x[a][j]).sum::<f64>());
+            for (a, (shape, dn)) in shape.iter_mut().zip(gradient).enumerate() {
                 let linear: f64 = (0..dim).map(|j| along[j] * dn[j]).sum();
-                (h - linear) / nodes
-            });
-            self.shapes.extend(shape);
+                *shape = (h(a) - linear) / nodes as f64;
+            }
         }
         let square: f64 = gradient
             .iter()
             .map(|dn| dn[..dim].iter().map(|dn| dn * dn).sum::<f64>())
             .sum();
-        self.stiffness.push(self.modulus * volume * square);
+        Hourglass {
+            shapes,
+            patterns: patterns.len(),
+            nodes,
+            stiffness: modulus * volume * square,
+        }
     }
 
     /// Adds the forces at `u` (m, `dim` entries per node) to `f` and returns the energy (J) there. `from`: displacement at
     /// the start of a step, for the forces at its middle.
-    pub(super) fn force(
-        &self,
-        element: usize,
-        dim: usize,
-        u: &[f64],
-        from: Option<&[f64]>,
-        f: &mut [f64],
-    ) -> f64 {
-        let k = self.stiffness[element];
+    pub(super) fn force(&self, dim: usize, u: &[f64], from: Option<&[f64]>, f: &mut [f64]) -> f64 {
+        let k = self.stiffness;
         let mut energy = 0.0;
-        for shape in self.shapes(element, u.len() / dim) {
+        for shape in self.shapes() {
             for i in 0..dim {
                 let amplitude = |u: &[f64]| {
                     let nodes = u.chunks_exact(dim).zip(shape);
@@ -96,10 +97,10 @@ impl Hourglass {
     }
 
     /// Adds `factor` k γ_a γ_b to the diagonal blocks of a row-major element matrix, upper half and diagonal.
-    pub(super) fn tangent(&self, element: usize, dim: usize, factor: f64, matrix: &mut [f64]) {
+    pub(super) fn tangent(&self, dim: usize, factor: f64, matrix: &mut [f64]) {
         let n = matrix.len().isqrt();
-        let k = factor * self.stiffness[element];
-        for shape in self.shapes(element, n / dim) {
+        let k = factor * self.stiffness;
+        for shape in self.shapes() {
             for (a, shape_a) in shape.iter().enumerate() {
                 for (b, shape_b) in shape.iter().enumerate().skip(a) {
                     for i in 0..dim {
@@ -110,8 +111,8 @@ impl Hourglass {
         }
     }
 
-    fn shapes(&self, element: usize, nodes: usize) -> impl Iterator<Item = &[f64]> {
-        let length = self.patterns.len() * nodes;
-        self.shapes[element * length..][..length].chunks_exact(nodes)
+    fn shapes(&self) -> impl Iterator<Item = &[f64]> {
+        let shapes = self.shapes[..self.patterns].iter();
+        shapes.map(|shape| &shape[..self.nodes])
     }
 }

@@ -11,24 +11,26 @@ use crate::solid::Solid;
 use crate::stability;
 
 mod between;
-mod cells;
+mod cell;
 mod dilatation;
 mod element;
 mod formulation;
 mod gradient;
 mod hourglass;
+mod kernel;
 mod linear;
+mod passes;
 mod placement;
 mod pressure;
 mod sweep;
 
-pub(crate) use cells::{Cells, Shape};
+pub(crate) use cell::Shape;
 use element::Fault;
 pub use formulation::Formulation;
 pub use placement::{Placement, Stored};
 pub use pressure::FollowerPressure;
 use sweep::Failed;
-pub(crate) use sweep::{Elements, Finite};
+pub(crate) use sweep::{Finite, Outcome};
 
 impl Solid {
     /// Whether forces are linear in the displacement: small strain.
@@ -43,7 +45,8 @@ impl Solid {
 
     /// Numbers that the integration points keep from one step to the next.
     pub fn history_len(&self) -> usize {
-        self.finite.as_ref().map_or(0, Finite::history_len)
+        let len = |finite: &Finite| finite.history_len(self.blocks());
+        self.finite.as_ref().map_or(0, len)
     }
 
     /// Writes the history of a body that nothing has happened to, [`Solid::history_len`] numbers.
@@ -72,7 +75,7 @@ impl Solid {
         match &self.finite {
             None => Ok(self.linear_force(at, scratch, f)),
             Some(finite) => {
-                let stored = finite.force(at, new, &mut scratch.elements, f);
+                let stored = finite.force(self.blocks(), at, new, scratch, f);
                 stored.map_err(|failed| self.failed(failed))
             }
         }
@@ -92,7 +95,7 @@ impl Solid {
                 Ok(())
             }
             Some(finite) => {
-                let added = finite.add_tangent(at, factor, matrix);
+                let added = finite.add_tangent(self.blocks(), at, factor, matrix);
                 added.map_err(|failed| self.failed(failed))
             }
         }
@@ -114,7 +117,7 @@ impl Solid {
         let mut masses = Vec::new();
         self.each_matrix(false, &mut |element| masses.extend(element.lumped));
         let (mut largest, mut scaled, mut first): (f64, _, _) = (0.0, Vec::new(), 0);
-        let visited = finite.each_tangent(at, &mut |of_nodes, dim, k| {
+        let visited = finite.each_tangent(self.blocks(), at, &mut |of_nodes, dim, k| {
             let masses = &masses[first..first + of_nodes.len()];
             first += of_nodes.len();
             stability::scale(dim, k, masses, &mut scaled);
@@ -141,3 +144,6 @@ impl Solid {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

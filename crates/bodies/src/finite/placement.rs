@@ -26,3 +26,12 @@ pub struct Stored {
     /// Dissipated since the old history.
     pub dissipated: f64,
 }
+
+impl Stored {
+    /// Adds the energies of a part.
+    pub(super) fn include(&mut self, part: &Stored) {
+        self.strain += part.strain;
+        self.hardening += part.hardening;
+        self.dissipated += part.dissipated;
+    }
+}

@@ -1,64 +1,64 @@
 //! Sweeps over all elements of a body at finite strain.
 //!
-//! Elements are computed in parallel, each into its own place, and added in their order: equal bits for any number of
+//! Chunks are computed in parallel, each into its own list, and added in their order: equal bits for any number of
 //! threads.
 
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Mat3;
-use carom_materials::Law;
+use carom_elements::MAX_NODES;
+use carom_materials::{Law, Material};
+use pulp::Arch;
 use rayon::prelude::*;
 
-use super::cells::Cells;
+use super::cell::{Element, MAX_UNKNOWNS, Shape};
 use super::element::{Fault, Local};
+use super::kernel;
 use super::{Placement, Stored};
+use crate::block::{Block, Chunk, Scratch};
 
-/// Elements per piece of parallel work.
-const PIECE: usize = 32;
 /// Entries of element tangents that are held at a time.
 const HELD: usize = 1 << 19;
 
-/// The elements of a body at finite strain.
+/// What the elements of a body at finite strain are, beside their geometry.
 #[derive(Debug)]
 pub(crate) struct Finite {
-    law: Law,
+    pub(super) law: Law,
     /// Numbers that the law keeps of a point.
-    kept: usize,
-    pub(super) cells: Vec<Cells>,
+    pub(super) kept: usize,
+    pub(super) shape: Shape,
 }
 
-/// Forces and energies of the elements before they are added.
-#[derive(Debug, Default)]
-pub(crate) struct Elements {
-    /// N, unknowns of each element.
-    forces: Vec<f64>,
-    /// One of each piece.
-    pieces: Vec<Piece>,
-}
-
-/// Result of some elements.
+/// Result of the elements of a chunk.
 #[derive(Clone, Debug, Default)]
-struct Piece {
-    stored: Stored,
-    /// Place in the block, and what went wrong.
-    fault: Option<(usize, Fault)>,
+pub(crate) struct Outcome {
+    pub(super) stored: Stored,
+    /// Place in the chunk, and what went wrong.
+    pub(super) fault: Option<Failed>,
 }
 
 /// What is called for each element: first unknowns of its nodes, unknowns of a node, tangent in N/m, row-major.
 pub(super) type VisitTangent<'a> = dyn FnMut(&[u32], usize, &mut [f64]) + 'a;
 
-/// A place in the body, and what went wrong there.
+/// A place, and what went wrong there.
 pub(super) type Failed = (usize, Fault);
 
 impl Finite {
-    pub(crate) fn new(law: Law, cells: Vec<Cells>) -> Finite {
-        let kept = law.finite().map_or(0, |law| law.history_len());
-        Finite { law, kept, cells }
+    pub(crate) fn new(law: Law, shape: Shape) -> Finite {
+        let kept = law.finite().map_or(0, Material::history_len);
+        Finite { law, kept, shape }
+    }
+
+    /// Numbers that the points of an element keep.
+    fn kept_of_element(&self, block: &Block) -> usize {
+        self.kept * self.shape.points(block)
     }
 
     /// Numbers that all points keep.
-    pub(super) fn history_len(&self) -> usize {
-        let points = self.cells.iter().map(|cells| cells.len() * cells.points);
-        self.kept * points.sum::<usize>()
+    pub(super) fn history_len(&self, blocks: &[Block]) -> usize {
+        let blocks = blocks.iter();
+        blocks
+            .map(|block| block.len() * self.kept_of_element(block))
+            .sum()
     }
 
     pub(super) fn start_history(&self, out: &mut [f64]) {
@@ -73,96 +73,136 @@ impl Finite {
     /// Adds all forces to `f`.
     pub(super) fn force(
         &self,
+        blocks: &[Block],
         at: &Placement,
         mut new: &mut [f64],
-        elements: &mut Elements,
+        scratch: &mut Scratch,
         f: &mut [f64],
     ) -> Result<Stored, Failed> {
-        let (mut stored, mut first, mut kept) = (Stored::default(), 0, 0);
-        for cells in &self.cells {
-            let length = cells.len() * cells.points * self.kept;
+        scratch.prepare(blocks);
+        let (mut stored, mut first, mut kept, mut chunk) = (Stored::default(), 0, 0, 0);
+        let dim = self.shape.dim();
+        for block in blocks {
+            let length = block.len() * self.kept_of_element(block);
             let old = &at.old[kept..kept + length];
             let (own, rest) = std::mem::take(&mut new).split_at_mut(length);
             (new, kept) = (rest, kept + length);
-            self.sweep(cells, &Placement { old, ..*at }, own, elements);
-            let pieces = &elements.pieces;
-            if let Some((place, fault)) = pieces.iter().find_map(|piece| piece.fault.clone()) {
-                return Err((first + place, fault));
-            }
-            for piece in pieces {
-                stored.strain += piece.stored.strain;
-                stored.hardening += piece.stored.hardening;
-                stored.dissipated += piece.stored.dissipated;
-            }
-            let forces = elements.forces.chunks_exact(cells.dim);
-            for (f_a, &first) in forces.zip(&cells.first) {
-                let f = &mut f[first as usize..][..cells.dim];
-                for (f, f_a) in f.iter_mut().zip(f_a) {
-                    *f += f_a;
+            let chunks = chunk..chunk + block.chunks.len();
+            chunk = chunks.end;
+            let lists = &mut scratch.forces[chunks.clone()];
+            let outcomes = &mut scratch.outcomes[chunks];
+            self.sweep(block, &Placement { old, ..*at }, own, (lists, outcomes));
+            for ((chunk, list), outcome) in block.chunks.iter().zip(lists).zip(outcomes) {
+                if let Some((place, fault)) = outcome.fault.take() {
+                    return Err((first + place, fault));
                 }
+                stored.include(&outcome.stored);
+                chunk.add(dim, list, f);
+                first += chunk.len(block.kind.table().nodes);
             }
-            first += cells.len();
         }
         Ok(stored)
     }
 
     /// Forces of the elements of one kind; `at.old` and `new` are theirs.
-    fn sweep(&self, cells: &Cells, at: &Placement, new: &mut [f64], out: &mut Elements) {
-        let unknowns = cells.unknowns();
-        out.forces.clear();
-        out.forces.resize(cells.len() * unknowns, 0.0);
-        out.pieces.clear();
-        out.pieces
-            .resize(cells.len().div_ceil(PIECE), Piece::default());
-        let kept = cells.points * self.kept;
-        let work = |place: usize, new: &mut [f64], forces: &mut [f64], piece: &mut Piece| {
-            for (k, f) in forces.chunks_exact_mut(unknowns).enumerate() {
-                let element = place * PIECE + k;
-                let new = &mut new[kept * k..kept * (k + 1)];
-                let force = self.at_element(cells, element, at, |local| {
-                    cells.force(element, local, new, f)
-                });
-                match force {
-                    Ok(stored) => {
-                        piece.stored.strain += stored.strain;
-                        piece.stored.hardening += stored.hardening;
-                        piece.stored.dissipated += stored.dissipated;
-                    }
-                    Err(fault) => {
-                        piece.fault = Some((element, fault));
-                        return;
-                    }
-                }
-            }
+    fn sweep(
+        &self,
+        block: &Block,
+        at: &Placement,
+        new: &mut [f64],
+        (lists, outcomes): (&mut [Vec<[f64; 3]>], &mut [Outcome]),
+    ) {
+        let kept = block.chunk_length() * self.kept_of_element(block);
+        let work = |place: usize, new: &mut [f64], f: &mut [[f64; 3]], out: &mut Outcome| {
+            let old = match kept {
+                0 => at.old,
+                _ => &at.old[place * kept..][..new.len()],
+            };
+            f.fill([0.0; 3]);
+            let chunk = &block.chunks[place];
+            *out = self.chunk((block, chunk), &Placement { old, ..*at }, new, f);
         };
-        if out.pieces.len() == 1 {
+        if outcomes.len() == 1 {
             // waking a thread takes as long as the work
-            return work(0, new, &mut out.forces, &mut out.pieces[0]);
+            return work(0, new, &mut lists[0], &mut outcomes[0]);
         }
-        let pieces = out.forces.par_chunks_mut(PIECE * unknowns);
-        let pieces = pieces.zip(&mut out.pieces).enumerate();
+        let pieces = lists.par_iter_mut().zip(outcomes).enumerate();
         if kept == 0 {
-            pieces.for_each(|(place, (f, piece))| work(place, &mut [], f, piece));
+            pieces.for_each(|(place, (f, out))| work(place, &mut [], f, out));
         } else {
-            let histories = new.par_chunks_mut(PIECE * kept);
+            let histories = new.par_chunks_mut(kept);
             pieces
                 .zip(histories)
-                .for_each(|((place, (f, piece)), new)| work(place, new, f, piece));
+                .for_each(|((place, (f, out)), new)| work(place, new, f, out));
         }
     }
 
-    /// Calls `then` with an element where it is; `at.old` begins with the elements of `cells`.
+    /// Forces of the elements of a chunk, on its nodes; `at.old` and `new` are theirs.
+    fn chunk(
+        &self,
+        (block, chunk): (&Block, &Chunk),
+        at: &Placement,
+        new: &mut [f64],
+        f: &mut [[f64; 3]],
+    ) -> Outcome {
+        if at.from.is_none() && kernel::takes(block.kind) {
+            return Arch::new().dispatch(kernel::Sweep {
+                finite: self,
+                block,
+                chunk,
+                at,
+                new,
+                f,
+            });
+        }
+        self.singly((block, chunk), at, new, f)
+    }
+
+    /// Takes the elements of a chunk one after the other.
+    pub(super) fn singly(
+        &self,
+        (block, chunk): (&Block, &Chunk),
+        at: &Placement,
+        new: &mut [f64],
+        f: &mut [[f64; 3]],
+    ) -> Outcome {
+        let (mut out, mut room) = (Outcome::default(), Element::room());
+        let (nodes, dim) = (block.kind.table().nodes, self.shape.dim());
+        let kept = self.kept_of_element(block);
+        for (place, element) in chunk.connectivity.chunks_exact(nodes).enumerate() {
+            room.set(&self.shape, block, chunk, place);
+            let new = &mut new[kept * place..kept * (place + 1)];
+            let mut f_e = [0.0; MAX_UNKNOWNS];
+            let f_e = &mut f_e[..room.unknowns()];
+            let old = kept * place..kept * (place + 1);
+            let force = self.at_element(&room, at, old, |local| room.force(local, new, f_e));
+            match force {
+                Ok(stored) => out.stored.include(&stored),
+                Err(fault) => {
+                    out.fault = Some((place, fault));
+                    return out;
+                }
+            }
+            for (&node, f_a) in element.iter().zip(f_e.chunks_exact(dim)) {
+                for (f, f_a) in f[node as usize].iter_mut().zip(f_a) {
+                    *f += f_a;
+                }
+            }
+        }
+        out
+    }
+
+    /// Calls `then` with an element where it is. `kept`: its place in `at.old`.
     fn at_element<T>(
         &self,
-        cells: &Cells,
-        element: usize,
+        element: &Element,
         at: &Placement,
+        kept: std::ops::Range<usize>,
         then: impl FnOnce(&Local) -> Result<T, Fault>,
     ) -> Result<T, Fault> {
-        let kept = cells.points * self.kept;
-        let n = cells.unknowns();
-        let u = cells.gather(element, at.u);
-        let from = at.from.map(|from| cells.gather(element, from));
+        let n = element.unknowns();
+        let u = element.gather(at.u);
+        let from = at.from.map(|from| element.gather(from));
         let Some(law) = self.law.finite() else {
             return Err(Fault::NoBetween);
         };
@@ -171,19 +211,20 @@ impl Finite {
             u: &u[..n],
             from: from.as_ref().map(|from| &from[..n]),
             dt: at.dt,
-            old: &at.old[kept * element..kept * (element + 1)],
+            old: &at.old[kept],
         })
     }
 
     /// Adds `factor` times all tangents to a matrix over all unknowns.
     pub(super) fn add_tangent(
         &self,
+        blocks: &[Block],
         at: &Placement,
         factor: f64,
         matrix: &mut Csr,
     ) -> Result<(), Failed> {
         let mut unknowns = Vec::new();
-        self.each_tangent(at, &mut |first, dim, k| {
+        self.each_tangent(blocks, at, &mut |first, dim, k| {
             unknowns.clear();
             let of_node = |&first: &u32| first..first + dim as u32;
             unknowns.extend(first.iter().flat_map(of_node));
@@ -195,79 +236,106 @@ impl Finite {
     /// Calls `visit` with each element in their order.
     pub(super) fn each_tangent(
         &self,
+        blocks: &[Block],
         at: &Placement,
         visit: &mut VisitTangent,
     ) -> Result<(), Failed> {
-        let (mut first, mut kept) = (0, 0);
+        let (mut first, mut before) = (0, 0);
         let (mut tangents, mut results) = (Vec::new(), Vec::new());
-        for cells in &self.cells {
-            let length = cells.len() * cells.points * self.kept;
-            let old = &at.old[kept..kept + length];
-            let at = Placement { old, ..*at };
-            let entries = cells.unknowns().pow(2);
+        let dim = self.shape.dim();
+        for block in blocks {
+            let kept = self.kept_of_element(block);
+            let entries = (dim * block.kind.table().nodes).pow(2);
             let held = (HELD / entries).max(1);
-            for begin in (0..cells.len()).step_by(held) {
-                let count = held.min(cells.len() - begin);
+            for begin in (0..block.len()).step_by(held) {
+                let count = held.min(block.len() - begin);
                 tangents.resize(count * entries, 0.0);
                 let all = tangents.par_chunks_exact_mut(entries).enumerate();
-                let room = || vec![0.0; cells.points * self.kept];
-                all.map_init(room, |new, (place, k)| {
-                    let element = begin + place;
-                    self.at_element(cells, element, &at, |local| {
-                        cells.tangent(element, local, new, k)
-                    })
+                let room = || (Element::room(), vec![0.0; kept]);
+                all.map_init(room, |(element, new), (place, k)| {
+                    let place = begin + place;
+                    block.set(element, &self.shape, place);
+                    let old = before + kept * place..before + kept * (place + 1);
+                    self.at_element(element, at, old, |local| element.tangent(local, new, k))
                 })
                 .collect_into_vec(&mut results);
                 for (place, result) in results.drain(..).enumerate() {
                     result.map_err(|fault| (first + begin + place, fault))?;
                     let k = &mut tangents[place * entries..][..entries];
-                    visit(cells.element_first(begin + place), cells.dim, k);
+                    let (first, nodes) = block.first(begin + place);
+                    visit(&first[..nodes], dim, k);
                 }
             }
-            first += cells.len();
-            kept += length;
+            first += block.len();
+            before += block.len() * kept;
         }
         Ok(())
     }
 
     /// Current volume (m³) and mean Cauchy stress (Pa) of each element; no number where the law gives none.
-    pub(crate) fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
-        let (mut out, mut kept) = (Vec::new(), 0);
-        for cells in &self.cells {
-            let mut new = vec![0.0; cells.points * self.kept];
-            let length = cells.len() * new.len();
-            let at = Placement {
-                u,
-                v: &[],
-                from: None,
-                dt: 0.0,
-                old: &history[kept..kept + length],
-            };
-            kept += length;
-            out.extend((0..cells.len()).map(|element| {
-                let stress = self.at_element(cells, element, &at, |local| {
-                    cells.cauchy(element, local, &mut new)
-                });
-                stress.unwrap_or((f64::NAN, Mat3::repeat(f64::NAN)))
-            }));
+    pub(crate) fn stresses(
+        &self,
+        blocks: &[Block],
+        u: &[f64],
+        history: &[f64],
+    ) -> Vec<(f64, Mat3)> {
+        let (mut out, mut kept, mut room) = (Vec::new(), 0, Element::room());
+        let at = Placement {
+            u,
+            v: &[],
+            from: None,
+            dt: 0.0,
+            old: history,
+        };
+        for block in blocks {
+            let mut new = vec![0.0; self.kept_of_element(block)];
+            for place in 0..block.len() {
+                block.set(&mut room, &self.shape, place);
+                let old = kept..kept + new.len();
+                kept = old.end;
+                let stress = self.at_element(&room, &at, old, |local| room.cauchy(local, &mut new));
+                out.push(stress.unwrap_or((f64::NAN, Mat3::repeat(f64::NAN))));
+            }
         }
         out
     }
 
     /// Mean equivalent plastic strain of each element, by volume; none of a law without.
-    pub(crate) fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
+    pub(crate) fn plastic_strains(&self, blocks: &[Block], history: &[f64]) -> Option<Vec<f64>> {
         self.law.plastic_strain(history)?;
         let (mut out, mut points) = (Vec::new(), history.chunks_exact(self.kept));
-        for cells in &self.cells {
-            for element in 0..cells.len() {
+        let mut room = Element::room();
+        for block in blocks {
+            for place in 0..block.len() {
+                block.set(&mut room, &self.shape, place);
                 let (mut volume, mut sum) = (0.0, 0.0);
-                for (point, kept) in points.by_ref().take(cells.points).enumerate() {
-                    volume += cells.volume(element, point);
-                    sum += cells.volume(element, point) * self.law.plastic_strain(kept)?;
+                for (point, kept) in points.by_ref().take(room.points).enumerate() {
+                    volume += room.volume(point);
+                    sum += room.volume(point) * self.law.plastic_strain(kept)?;
                 }
                 out.push(sum / volume);
             }
         }
         Some(out)
+    }
+}
+
+impl Block {
+    /// First unknowns of the nodes of the element at this place, and their number.
+    fn first(&self, place: usize) -> ([u32; MAX_NODES], usize) {
+        let (chunk, place) = (place / self.chunk_length(), place % self.chunk_length());
+        let (chunk, nodes) = (&self.chunks[chunk], self.kind.table().nodes);
+        let mut first = [0; MAX_NODES];
+        let element = &chunk.connectivity[nodes * place..][..nodes];
+        for (first, &node) in first.iter_mut().zip(element) {
+            *first = chunk.first[node as usize];
+        }
+        (first, nodes)
+    }
+
+    /// Makes `element` the one at this place of the block.
+    fn set(&self, element: &mut Element, shape: &Shape, place: usize) {
+        let (chunk, place) = (place / self.chunk_length(), place % self.chunk_length());
+        element.set(shape, self, &self.chunks[chunk], place);
     }
 }

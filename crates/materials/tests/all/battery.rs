@@ -1,7 +1,7 @@
 //! Facts about the stress and the tangent of every law.
 
 use carom_algebra::tensor::Mat3;
-use carom_materials::{Failure, Plane, Want};
+use carom_materials::{Failure, MAX_KEPT, Plane, Want};
 use carom_testing::{Random, allocations};
 
 use crate::support::{
@@ -100,6 +100,11 @@ fn the_stress_turns_with_the_body_and_the_kirchhoff_stress_is_symmetric() {
             }
         }
     });
+}
+
+#[test]
+fn a_history_has_room_in_the_kernels() {
+    for_each(|name, law| assert!(law.history_len() <= MAX_KEPT, "{name}"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! One number of each of W elements: what the force kernels compute with.
+//! One number of each of W elements: what the sweeps over elements compute with.
 //!
 //! The loops over the lanes are plain and short, and everything is inlined, so that they become vector code of the
 //! instruction set for which the caller is compiled (`pulp::Simd::vectorize`). No lane sees another.
@@ -8,25 +8,46 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use pulp::Simd;
+use crate::functions;
+use crate::number::Number;
 
-/// The same number of W elements.
+/// The same number of W elements. One lane alone is for instruction sets without vectors.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(crate) struct Lanes<const W: usize>(pub(crate) [f64; W]);
+pub struct Lanes<const W: usize>(pub [f64; W]);
 
 /// One Cartesian or reference vector of W elements.
-pub(crate) type Vector<const W: usize, const D: usize> = [Lanes<W>; D];
+pub type Vector<const W: usize, const D: usize> = [Lanes<W>; D];
 
 impl<const W: usize> Lanes<W> {
-    pub(crate) const ZERO: Self = Lanes([0.0; W]);
+    /// Zeros.
+    pub const ZERO: Self = Lanes([0.0; W]);
+    /// Ones.
+    pub const ONE: Self = Lanes([1.0; W]);
+}
 
-    /// self · b + c, rounded once where the instruction set can: without it `mul_add` is a library call.
+impl<const W: usize> Number for Lanes<W> {
     #[inline(always)]
-    pub(crate) fn mul_add<S: Simd>(self, b: Self, c: Self) -> Self {
+    fn like(self, value: f64) -> Self {
+        Lanes([value; W])
+    }
+
+    #[inline(always)]
+    fn lanes(&self) -> &[f64] {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn lanes_mut(&mut self) -> &mut [f64] {
+        &mut self.0
+    }
+
+    /// With one lane there is no fused operation, and `f64::mul_add` would be a library call.
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
         let mut out = c;
         for k in 0..W {
-            out.0[k] = if S::IS_SCALAR {
+            out.0[k] = if W == 1 {
                 self.0[k] * b.0[k] + c.0[k]
             } else {
                 self.0[k].mul_add(b.0[k], c.0[k])
@@ -35,20 +56,45 @@ impl<const W: usize> Lanes<W> {
         out
     }
 
-    /// self · b + c with the same factor b in all lanes.
     #[inline(always)]
-    pub(crate) fn scale_add<S: Simd>(self, b: f64, c: Self) -> Self {
-        self.mul_add::<S>(Lanes([b; W]), c)
-    }
-
-    /// Square root.
-    #[inline(always)]
-    pub(crate) fn sqrt(self) -> Self {
+    fn sqrt(self) -> Self {
         let mut out = self;
         for k in 0..W {
             out.0[k] = self.0[k].sqrt();
         }
         out
+    }
+
+    #[inline(always)]
+    fn ln_1p(self) -> Self {
+        functions::ln_1p(self)
+    }
+
+    #[inline(always)]
+    fn exp_m1(self) -> Self {
+        functions::exp_m1(self)
+    }
+
+    #[inline(always)]
+    fn if_below(self, bound: Self, then: Self, otherwise: Self) -> Self {
+        let mut out = otherwise;
+        for k in 0..W {
+            out.0[k] = if self.0[k] < bound.0[k] {
+                then.0[k]
+            } else {
+                otherwise.0[k]
+            };
+        }
+        out
+    }
+
+    #[inline(always)]
+    fn largest(self) -> f64 {
+        let mut largest = self.0[0];
+        for k in 1..W {
+            largest = largest.max(self.0[k]);
+        }
+        largest
     }
 }
 
@@ -73,15 +119,6 @@ operator!(Add, add, +);
 operator!(Sub, sub, -);
 operator!(Mul, mul, *);
 operator!(Div, div, /);
-
-impl<const W: usize> Mul<f64> for Lanes<W> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, factor: f64) -> Self {
-        self * Lanes([factor; W])
-    }
-}
 
 impl<const W: usize> Neg for Lanes<W> {
     type Output = Self;

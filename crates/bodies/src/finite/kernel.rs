@@ -1,0 +1,321 @@
+//! Forces at finite strain of several elements at a time, as many as a register has lanes: the inner loop of a nonlinear explicit run.
+//!
+//! The formulas are those of `element.rs`, `dilatation.rs` and `hourglass.rs`, which take one element after the other, give
+//! the tangents, and serve the steps between two displacements. Geometry is computed anew at each call, as at small strain.
+//!
+//! A batch of elements passes through three functions: geometry and displacement gradients of all points, the law at all points,
+//! forces. Each is compiled for each instruction set; with the law apart, kinds and laws add up and do not multiply.
+
+use carom_algebra::number::Number;
+use carom_algebra::packed::Packed;
+use carom_elements::Kind;
+use carom_materials::{Answer, Failure, MAX_KEPT, Pointwise, Tensor};
+use pulp::{NullaryFnOnce, Simd, WithSimd};
+
+use super::element::Fault;
+use super::passes::{Elements, Forces, Gradients, Room};
+use super::sweep::{Finite, Outcome};
+use super::{Formulation, Placement, Stored};
+use crate::block::{Block, Chunk, Physics};
+use crate::force::Cell;
+
+/// Whether there is a kernel for the kind.
+pub(super) fn takes(kind: Kind) -> bool {
+    matches!(kind, Kind::Tri3 | Kind::Quad4 | Kind::Tet4 | Kind::Hex8)
+}
+
+/// Evaluates an expression with the law behind the choice, whatever its type.
+macro_rules! by_law {
+    ($choice:expr, $law:ident => $call:expr) => {
+        carom_materials::materials!(match_law ($choice) $law $call)
+    };
+}
+
+/// [`by_law`], with the list of materials behind it.
+macro_rules! match_law {
+    (
+        [($choice:expr) $law:ident $call:expr]
+        $($(#[$doc:meta])* $name:ident $key:literal,)*
+    ) => {
+        match $choice {
+            $(carom_materials::Law::$name($law) => $call,)*
+        }
+    };
+}
+
+/// Points of the largest of these kinds.
+pub(super) const POINTS: usize = 8;
+/// The forces of one chunk.
+pub(super) struct Sweep<'a> {
+    pub(super) finite: &'a Finite,
+    pub(super) block: &'a Block,
+    pub(super) chunk: &'a Chunk,
+    /// Its history is that of the chunk.
+    pub(super) at: &'a Placement<'a>,
+    pub(super) new: &'a mut [f64],
+    /// One entry for each node of the chunk.
+    pub(super) f: &'a mut [[f64; 3]],
+}
+
+impl WithSimd for Sweep<'_> {
+    type Output = Outcome;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Outcome {
+        self.kinds(Packed::all(simd, 0.0), simd)
+    }
+}
+
+/// How the points of an element act together.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Together {
+    /// Each alone.
+    Full,
+    /// Mean dilatation.
+    Dilated,
+    /// One in place of all, with hourglass control of the factor 2 κ μ, Pa.
+    OnePoint(f64),
+}
+
+/// Energies per element.
+pub(super) type Energies<T> = [T; 3];
+
+/// What the law sees and answers at the points of several elements.
+pub(super) struct AtLaw<T> {
+    pub(super) h: [Tensor<T>; POINTS],
+    pub(super) answers: [Answer<T>; POINTS],
+    /// δ.
+    pub(super) weights: [T; POINTS],
+}
+
+impl<T: Number> AtLaw<T> {
+    #[inline(always)]
+    pub(super) fn new(zero: T) -> Self {
+        let answer = Answer {
+            stress: [[zero; 3]; 3],
+            stored: zero,
+            hardening: zero,
+            dissipated: zero,
+            positive: zero,
+        };
+        AtLaw {
+            h: [[[zero; 3]; 3]; POINTS],
+            answers: [answer; POINTS],
+            weights: [zero.like(1.0); POINTS],
+        }
+    }
+}
+
+/// Elements of which some gave no stress.
+pub(super) struct Bad<T>(Watch<T>);
+
+impl Sweep<'_> {
+    #[inline(always)]
+    fn kinds<S: Simd>(self, zero: Packed<S>, simd: S) -> Outcome {
+        match self.block.kind {
+            Kind::Tri3 => self.batches::<S, 3, 2, 1>(zero, simd),
+            Kind::Quad4 => self.batches::<S, 4, 2, 2>(zero, simd),
+            Kind::Tet4 => self.batches::<S, 4, 3, 1>(zero, simd),
+            _ => self.batches::<S, 8, 3, 4>(zero, simd),
+        }
+    }
+
+    /// How the points of an element with E edges along each axis act together.
+    fn together(&self, edges: usize) -> Together {
+        let shape = &self.finite.shape;
+        match (shape.formulation, shape.hourglass(self.block)) {
+            (_, Some(modulus)) => Together::OnePoint(modulus),
+            // of a single point the mean is its own
+            (Formulation::BBar, _) if edges > 1 => Together::Dilated,
+            _ => Together::Full,
+        }
+    }
+
+    /// Takes as many elements at a time as a register has lanes, and adds forces and energies in the order of the elements.
+    #[inline(always)]
+    fn batches<S: Simd, const N: usize, const D: usize, const E: usize>(
+        self,
+        zero: Packed<S>,
+        simd: S,
+    ) -> Outcome {
+        let mut out = Outcome::default();
+        let Physics::Continuum(physics) = &self.block.physics else {
+            return out;
+        };
+        let elements = Elements {
+            cell: Cell::new(physics, &self.block.stiffness_points),
+            together: self.together(E),
+            kind: self.block.kind,
+        };
+        let points = self.finite.shape.points(self.block);
+        let mut room = Room::<_, N, D, E>::new(zero);
+        for (place, batch) in self.chunk.connectivity.chunks(N * S::F64_LANES).enumerate() {
+            let (first, count) = (place * S::F64_LANES, batch.len() / N);
+            self.chunk
+                .gather_lanes(batch, self.at.u, [&mut room.x, &mut room.u]);
+            for (q, weight) in room.law.weights.iter_mut().enumerate() {
+                self.chunk.weigh(first, q, weight);
+            }
+            let mut found = simd.vectorize(Gradients(&elements, &mut room));
+            let histories = Histories {
+                first,
+                count,
+                points,
+                kept: self.finite.kept,
+                dt: self.at.dt,
+                old: self.at.old,
+                new: &mut *self.new,
+            };
+            if found.is_ok() {
+                let at = &mut room.law;
+                found = by_law!(
+                    &self.finite.law,
+                    law => simd.vectorize(AskLaw(law, at, histories))
+                );
+            }
+            if let Err(bad) = found {
+                out.fault = bad.fault(first, count);
+                return out;
+            }
+            let energies = simd.vectorize(Forces(&elements, &mut room));
+            out.stored.add_lanes(&energies, count);
+            for (k, element) in batch.chunks_exact(N).enumerate() {
+                for a in 0..N {
+                    let sum = &mut self.f[element[a] as usize];
+                    for i in 0..D {
+                        sum[i] += room.f[a][i].lanes()[k];
+                    }
+                }
+            }
+        }
+        out
+    }
+}
+
+impl Stored {
+    #[inline(always)]
+    fn add_lanes<T: Number>(&mut self, energies: &Energies<T>, count: usize) {
+        for k in 0..count {
+            self.strain += energies[0].lanes()[k];
+            self.hardening += energies[1].lanes()[k];
+            self.dissipated += energies[2].lanes()[k];
+        }
+    }
+}
+
+impl<T: Number> Bad<T> {
+    /// The first element without stress.
+    fn fault(&self, first: usize, count: usize) -> Option<(usize, Fault)> {
+        let lane = self.0.failed.lanes()[..count]
+            .iter()
+            .position(|&x| x > 0.0)?;
+        let failure = Failure::Inverted {
+            determinant: self.0.value.lanes()[lane],
+        };
+        let point = self.0.first.lanes()[lane] as usize;
+        Some((first + lane, Fault::Law { point, failure }))
+    }
+}
+
+/// What must be positive at the points of several elements.
+pub(super) struct Watch<T> {
+    /// At how many points it was not.
+    failed: T,
+    /// The first of them, and the value there.
+    first: T,
+    value: T,
+}
+
+impl<T: Number> Watch<T> {
+    /// Nothing was seen yet.
+    #[inline(always)]
+    pub(super) fn new(zero: T) -> Self {
+        Watch {
+            failed: zero,
+            first: zero,
+            value: zero,
+        }
+    }
+
+    /// Looks at a point. What is no number is not positive.
+    #[inline(always)]
+    pub(super) fn see(&mut self, point: usize, positive: T) {
+        let zero = positive.like(0.0);
+        let failed = zero.if_below(positive, zero, positive.like(1.0));
+        // where none has failed before
+        let first = self.failed.if_below(positive.like(0.5), failed, zero);
+        self.first = zero.if_below(first, positive.like(point as f64), self.first);
+        self.value = zero.if_below(first, positive, self.value);
+        self.failed += failed;
+    }
+
+    /// # Errors
+    /// An element with a point that was not positive.
+    #[inline(always)]
+    pub(super) fn end(self) -> Result<(), Bad<T>> {
+        if self.failed.largest() > 0.0 {
+            return Err(Bad(self));
+        }
+        Ok(())
+    }
+}
+
+/// Histories of several elements from one place in the chunk on.
+struct Histories<'a> {
+    first: usize,
+    count: usize,
+    /// Of an element.
+    points: usize,
+    /// Numbers that the law keeps of a point.
+    kept: usize,
+    dt: f64,
+    old: &'a [f64],
+    new: &'a mut [f64],
+}
+
+/// The law at all points of several elements.
+struct AskLaw<'a, L, T>(&'a L, &'a mut AtLaw<T>, Histories<'a>);
+
+impl<L: Pointwise, T: Number> NullaryFnOnce for AskLaw<'_, L, T> {
+    type Output = Result<(), Bad<T>>;
+
+    #[inline(always)]
+    fn call(self) -> Result<(), Bad<T>> {
+        let AskLaw(law, at, histories) = self;
+        let Histories {
+            first,
+            count,
+            points,
+            kept,
+            dt,
+            old: all_old,
+            new: all_new,
+        } = histories;
+        let zero = at.h[0][0][0].like(0.0);
+        let (mut old, mut new) = ([zero; MAX_KEPT], [zero; MAX_KEPT]);
+        let (old, new) = (&mut old[..kept], &mut new[..kept]);
+        let mut watch = Watch::new(zero);
+        for point in 0..points {
+            let place = |k: usize| ((first + k) * points + point) * kept;
+            if kept > 0 {
+                for k in 0..zero.lanes().len() {
+                    let own = &all_old[place(k.min(count - 1))..];
+                    for (old, own) in old.iter_mut().zip(own) {
+                        old.lanes_mut()[k] = *own;
+                    }
+                }
+            }
+            at.answers[point] = law.answer(&at.h[point], dt, old, new);
+            watch.see(point, at.answers[point].positive);
+            if kept > 0 {
+                for k in 0..count {
+                    let own = &mut all_new[place(k)..];
+                    for (new, own) in new.iter().zip(own) {
+                        *own = new.lanes()[k];
+                    }
+                }
+            }
+        }
+        watch.end()
+    }
+}

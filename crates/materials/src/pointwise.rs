@@ -1,0 +1,49 @@
+//! Stress and energy of a law at one point of one element, or of W elements at a time.
+
+use carom_algebra::number::Number;
+
+use crate::tensor::{Tensor, double, entries, plus_unit, trace};
+use crate::{Elastic, Plane};
+
+/// Most numbers that a law keeps of a point.
+pub const MAX_KEPT: usize = 6 + 6 * crate::MAX_BRANCHES;
+
+/// What a law answers at a point. Stress and energies are of no use where `positive` is not.
+#[derive(Clone, Copy, Debug)]
+pub struct Answer<T> {
+    /// First Piola-Kirchhoff stress P in Pa.
+    pub stress: Tensor<T>,
+    /// Energy per reference volume that elastic strain stores, in J/m³.
+    pub stored: T,
+    /// Energy per reference volume that hardening stores, in J/m³.
+    pub hardening: T,
+    /// Energy per reference volume dissipated since the old history, in J/m³, not negative.
+    pub dissipated: T,
+    /// det F, or what else is positive only as long as the law gives a stress.
+    pub positive: T,
+}
+
+/// A law that any [`Number`] can be asked of. Calls are inlined into the sweeps, so that they take their instruction set.
+pub trait Pointwise {
+    /// Answer at F = I + `h` at the end of a step of `dt` (s) that began with the history `old`; writes the history there into
+    /// `new`. All nine components of H, as in [`Material`](crate::Material).
+    fn answer<T: Number>(&self, h: &Tensor<T>, dt: f64, old: &[T], new: &mut [T]) -> Answer<T>;
+}
+
+/// σ = λ tr(ε) I + 2 μ ε of the small strain ε = sym H in the place of P.
+impl Pointwise for Elastic {
+    #[inline(always)]
+    fn answer<T: Number>(&self, h: &Tensor<T>, _dt: f64, _old: &[T], _new: &mut [T]) -> Answer<T> {
+        let (lambda, mu) = (self.lame_1(Plane::Full), self.shear_modulus());
+        let stress = entries!(|i: usize, j: usize| (h[i][j] + h[j][i]).scale(mu));
+        let stress = plus_unit(&stress, trace(h).scale(lambda));
+        let zero = h[0][0].like(0.0);
+        Answer {
+            stored: double(&stress, h).scale(0.5),
+            stress,
+            hardening: zero,
+            dissipated: zero,
+            positive: zero.like(1.0),
+        }
+    }
+}
