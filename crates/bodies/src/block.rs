@@ -3,16 +3,15 @@
 //! A chunk sums into its own node list, and the lists are added in chunk order: no atomics, and equal bits for any
 //! number of threads.
 
-use carom_algebra::lanes::{Lanes, Vector};
-use carom_algebra::number::Number;
+use carom_algebra::lanes::Lanes;
 use carom_algebra::tensor::Mat3;
 use carom_elements::{Kind, MAX_NODES};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::bar::Bar;
+use crate::chunk::{Chunk, element_nodes};
 use crate::continuum::{self, Law, Points};
-use crate::finite::Outcome;
 use crate::force::{Elastic, Kernel};
 
 use crate::nodes::Nodes;
@@ -83,45 +82,6 @@ pub(crate) struct Block {
     pub(crate) stiffness_points: Points,
     mass_points: Points,
     pub(crate) chunks: Vec<Chunk>,
-}
-
-/// A fixed number of neighbouring elements with their own node list.
-#[derive(Debug)]
-pub(crate) struct Chunk {
-    /// System numbers of the nodes.
-    pub(crate) nodes: Vec<u32>,
-    /// First unknowns of the nodes.
-    pub(crate) first: Vec<u32>,
-    /// Coordinates of the nodes in m.
-    pub(crate) x: Vec<[f64; 3]>,
-    /// Nodes of each element, as places in `nodes`.
-    pub(crate) connectivity: Vec<u32>,
-    weights: Option<ChunkWeights>,
-}
-
-/// Buffers of the internal-force sweep: one list of nodal forces and one energy per chunk.
-#[derive(Debug, Default)]
-pub struct Scratch {
-    pub(crate) forces: Vec<Vec<[f64; 3]>>,
-    pub(crate) energies: Vec<f64>,
-    /// A system vector.
-    pub(crate) middle: Vec<f64>,
-    /// At finite strain, one of each chunk.
-    pub(crate) outcomes: Vec<Outcome>,
-}
-
-impl Scratch {
-    /// Makes room on the first call.
-    pub(crate) fn prepare(&mut self, blocks: &[Block]) {
-        if !self.forces.is_empty() {
-            return;
-        }
-        let chunks = blocks.iter().flat_map(|block| &block.chunks);
-        let lists = chunks.map(|chunk| vec![[0.0; 3]; chunk.nodes.len()]);
-        self.forces = lists.collect();
-        self.energies = vec![0.0; self.forces.len()];
-        self.outcomes = vec![Outcome::default(); self.forces.len()];
-    }
 }
 
 impl Block {
@@ -427,107 +387,6 @@ impl Sweep<'_> {
         }
         energy
     }
-}
-
-impl Chunk {
-    /// Number of elements, of so many nodes each.
-    pub(crate) fn len(&self, nodes: usize) -> usize {
-        self.connectivity.len() / nodes
-    }
-
-    /// δ of an element at a point of the stiffness rule.
-    pub(crate) fn weight(&self, element: usize, point: usize) -> f64 {
-        match &self.weights {
-            Some(weights) => weights.stiffness_at(element, point),
-            None => 1.0,
-        }
-    }
-
-    /// Places and displacements of the nodes of W elements; a short batch repeats its last element, whose results are dropped.
-    #[inline(always)]
-    pub(crate) fn lanes<const W: usize, const N: usize, const D: usize>(
-        &self,
-        batch: &[u32],
-        u: &[f64],
-    ) -> ([Vector<W, D>; N], [Vector<W, D>; N]) {
-        let count = batch.len() / N;
-        let (mut x, mut moved) = ([[Lanes::ZERO; D]; N], [[Lanes::ZERO; D]; N]);
-        for k in 0..W {
-            let element = &batch[N * k.min(count - 1)..][..N];
-            for a in 0..N {
-                let place = element[a] as usize;
-                let x_a = &self.x[place];
-                let u_a = &u[self.first[place] as usize..][..D];
-                for i in 0..D {
-                    x[a][i].0[k] = x_a[i];
-                    moved[a][i].0[k] = u_a[i];
-                }
-            }
-        }
-        (x, moved)
-    }
-
-    /// [`Chunk::lanes`] of any number.
-    #[inline(always)]
-    pub(crate) fn gather_lanes<T: Number, const N: usize, const D: usize>(
-        &self,
-        batch: &[u32],
-        u: &[f64],
-        [x, moved]: [&mut [[T; D]; N]; 2],
-    ) {
-        let count = batch.len() / N;
-        for k in 0..x[0][0].lanes().len() {
-            let element = &batch[N * k.min(count - 1)..][..N];
-            for a in 0..N {
-                let place = element[a] as usize;
-                let x_a = &self.x[place];
-                let u_a = &u[self.first[place] as usize..][..D];
-                for i in 0..D {
-                    x[a][i].lanes_mut()[k] = x_a[i];
-                    moved[a][i].lanes_mut()[k] = u_a[i];
-                }
-            }
-        }
-    }
-
-    /// δ of the elements from one of them on, at a point of the stiffness rule; without weights nothing changes.
-    #[inline(always)]
-    pub(crate) fn weigh<T: Number>(&self, first: usize, point: usize, out: &mut T) {
-        if let Some(weights) = &self.weights {
-            weights.batch(first, point, out);
-        }
-    }
-
-    /// Adds its list of forces to a system vector.
-    pub(crate) fn add(&self, dim: usize, list: &[[f64; 3]], f: &mut [f64]) {
-        for (&first, f_a) in self.first.iter().zip(list) {
-            let first = first as usize;
-            for i in 0..dim {
-                f[first + i] += f_a[i];
-            }
-        }
-    }
-
-    pub(crate) fn gather<const N: usize>(
-        &self,
-        element: &[u32],
-        dim: usize,
-        u: &[f64],
-    ) -> ([[f64; 3]; N], [[f64; 3]; N]) {
-        let x = element_nodes::<N, _>(element, |node| self.x[node]);
-        let u = element_nodes::<N, _>(element, |node| {
-            let first = self.first[node] as usize;
-            let mut u_a = [0.0; 3];
-            u_a[..dim].copy_from_slice(&u[first..first + dim]);
-            u_a
-        });
-        (x, u)
-    }
-}
-
-#[inline]
-fn element_nodes<const N: usize, T>(element: &[u32], of: impl Fn(usize) -> T) -> [T; N] {
-    std::array::from_fn(|a| of(element[a] as usize))
 }
 
 #[cfg(test)]

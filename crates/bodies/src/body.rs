@@ -8,10 +8,10 @@ use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
 use crate::beam::{Beam, SectionForces};
-use crate::block::Scratch;
 use crate::discrete::{Discrete, DiscreteSpec, VisitRow};
 use crate::distortion::Distortion;
 use crate::rigid::Rigid;
+use crate::scratch::Scratch;
 use crate::solid::{BodySpec, Solid};
 use crate::{Error, Kinematics, Placement, Stored};
 

@@ -18,7 +18,8 @@ use rayon::prelude::*;
 
 use crate::Solid;
 use crate::bar::Bar;
-use crate::block::{Block, Chunk, Physics, by_nodes, call_by_nodes};
+use crate::block::{Block, Physics, by_nodes, call_by_nodes};
+use crate::chunk::Chunk;
 use crate::continuum::{Law, Point};
 
 /// The largest value of something over the elements of a body.

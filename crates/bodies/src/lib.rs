@@ -7,6 +7,7 @@ mod bar;
 mod beam;
 mod block;
 mod body;
+mod chunk;
 mod continuum;
 mod discrete;
 mod distortion;
@@ -16,6 +17,7 @@ mod force;
 mod kinematics;
 mod nodes;
 mod rigid;
+mod scratch;
 mod single;
 mod size;
 mod solid;
@@ -24,7 +26,6 @@ mod together;
 mod weights;
 
 pub use beam::{Beam, BeamSection, BeamTheory, SectionForces, SectionProperties, SectionShape};
-pub use block::Scratch;
 pub use body::Body;
 pub use discrete::{
     Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, Link, PointMass, VisitRow,
@@ -34,6 +35,7 @@ pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};
 pub use kinematics::{Kinematics, MassKind};
 pub use rigid::{Inertia, Rigid};
+pub use scratch::Scratch;
 pub use size::{height, smallest as smallest_size};
 pub use solid::{BodySpec, Solid};
 pub use weights::CellWeights;

@@ -12,10 +12,11 @@ use carom_mesh::{ElementId, Mesh};
 
 use crate::Error;
 use crate::bar::Bar;
-use crate::block::{Block, Physics, Scratch, Visit};
+use crate::block::{Block, Physics, Visit};
 use crate::continuum;
 use crate::finite::{Finite, Formulation, Shape};
 use crate::nodes::Nodes;
+use crate::scratch::Scratch;
 use crate::together::Together;
 use crate::weights::CellWeights;
 use crate::{Kinematics, size, stability};

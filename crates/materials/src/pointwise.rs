@@ -5,8 +5,8 @@ use carom_algebra::number::Number;
 use crate::tensor::{Tensor, double, entries, plus_unit, trace};
 use crate::{Elastic, Plane};
 
-/// Most numbers that a law keeps of a point.
-pub const MAX_KEPT: usize = 6 + 6 * crate::MAX_BRANCHES;
+/// Most numbers that a law may keep of a point.
+pub const MAX_KEPT: usize = 30;
 
 /// What a law answers at a point. Stress and energies are of no use where `positive` is not.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,8 @@ use carom_elements::{MAX_NODES, map};
 use super::Formulation;
 use super::hourglass::Hourglass;
 use crate::Kinematics;
-use crate::block::{Block, Chunk};
+use crate::block::Block;
+use crate::chunk::Chunk;
 
 /// Unknowns of the largest element.
 pub(super) const MAX_UNKNOWNS: usize = 3 * MAX_NODES;

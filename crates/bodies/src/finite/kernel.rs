@@ -9,14 +9,15 @@
 use carom_algebra::number::Number;
 use carom_algebra::packed::Packed;
 use carom_elements::Kind;
-use carom_materials::{Answer, Failure, MAX_KEPT, Pointwise, Tensor};
+use carom_materials::{MAX_KEPT, Pointwise};
 use pulp::{NullaryFnOnce, Simd, WithSimd};
 
-use super::element::Fault;
+use super::batch::{AtLaw, Bad, Energies, Together, Watch};
+use super::body::{Finite, Outcome};
 use super::passes::{Elements, Forces, Gradients, Room};
-use super::sweep::{Finite, Outcome};
 use super::{Formulation, Placement, Stored};
-use crate::block::{Block, Chunk, Physics};
+use crate::block::{Block, Physics};
+use crate::chunk::Chunk;
 use crate::force::Cell;
 
 /// Whether there is a kernel for the kind.
@@ -43,8 +44,6 @@ macro_rules! match_law {
     };
 }
 
-/// Points of the largest of these kinds.
-pub(super) const POINTS: usize = 8;
 /// The forces of one chunk.
 pub(super) struct Sweep<'a> {
     pub(super) finite: &'a Finite,
@@ -65,49 +64,6 @@ impl WithSimd for Sweep<'_> {
         self.kinds(Packed::all(simd, 0.0), simd)
     }
 }
-
-/// How the points of an element act together.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Together {
-    /// Each alone.
-    Full,
-    /// Mean dilatation.
-    Dilated,
-    /// One in place of all, with hourglass control of the factor 2 κ μ, Pa.
-    OnePoint(f64),
-}
-
-/// Energies per element.
-pub(super) type Energies<T> = [T; 3];
-
-/// What the law sees and answers at the points of several elements.
-pub(super) struct AtLaw<T> {
-    pub(super) h: [Tensor<T>; POINTS],
-    pub(super) answers: [Answer<T>; POINTS],
-    /// δ.
-    pub(super) weights: [T; POINTS],
-}
-
-impl<T: Number> AtLaw<T> {
-    #[inline(always)]
-    pub(super) fn new(zero: T) -> Self {
-        let answer = Answer {
-            stress: [[zero; 3]; 3],
-            stored: zero,
-            hardening: zero,
-            dissipated: zero,
-            positive: zero,
-        };
-        AtLaw {
-            h: [[[zero; 3]; 3]; POINTS],
-            answers: [answer; POINTS],
-            weights: [zero.like(1.0); POINTS],
-        }
-    }
-}
-
-/// Elements of which some gave no stress.
-pub(super) struct Bad<T>(Watch<T>);
 
 impl Sweep<'_> {
     #[inline(always)]
@@ -200,63 +156,6 @@ impl Stored {
             self.hardening += energies[1].lanes()[k];
             self.dissipated += energies[2].lanes()[k];
         }
-    }
-}
-
-impl<T: Number> Bad<T> {
-    /// The first element without stress.
-    fn fault(&self, first: usize, count: usize) -> Option<(usize, Fault)> {
-        let lane = self.0.failed.lanes()[..count]
-            .iter()
-            .position(|&x| x > 0.0)?;
-        let failure = Failure::Inverted {
-            determinant: self.0.value.lanes()[lane],
-        };
-        let point = self.0.first.lanes()[lane] as usize;
-        Some((first + lane, Fault::Law { point, failure }))
-    }
-}
-
-/// What must be positive at the points of several elements.
-pub(super) struct Watch<T> {
-    /// At how many points it was not.
-    failed: T,
-    /// The first of them, and the value there.
-    first: T,
-    value: T,
-}
-
-impl<T: Number> Watch<T> {
-    /// Nothing was seen yet.
-    #[inline(always)]
-    pub(super) fn new(zero: T) -> Self {
-        Watch {
-            failed: zero,
-            first: zero,
-            value: zero,
-        }
-    }
-
-    /// Looks at a point. What is no number is not positive.
-    #[inline(always)]
-    pub(super) fn see(&mut self, point: usize, positive: T) {
-        let zero = positive.like(0.0);
-        let failed = zero.if_below(positive, zero, positive.like(1.0));
-        // where none has failed before
-        let first = self.failed.if_below(positive.like(0.5), failed, zero);
-        self.first = zero.if_below(first, positive.like(point as f64), self.first);
-        self.value = zero.if_below(first, positive, self.value);
-        self.failed += failed;
-    }
-
-    /// # Errors
-    /// An element with a point that was not positive.
-    #[inline(always)]
-    pub(super) fn end(self) -> Result<(), Bad<T>> {
-        if self.failed.largest() > 0.0 {
-            return Err(Bad(self));
-        }
-        Ok(())
     }
 }
 

@@ -3,7 +3,7 @@
 use carom_algebra::csr::Csr;
 
 use super::{Placement, Stored};
-use crate::block::Scratch;
+use crate::scratch::Scratch;
 use crate::solid::Solid;
 
 impl Solid {

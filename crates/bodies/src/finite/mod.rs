@@ -5,12 +5,14 @@
 
 use carom_algebra::csr::Csr;
 
-use crate::block::Scratch;
 use crate::error::Error;
+use crate::scratch::Scratch;
 use crate::solid::Solid;
 use crate::stability;
 
+mod batch;
 mod between;
+mod body;
 mod cell;
 mod dilatation;
 mod element;
@@ -24,13 +26,13 @@ mod placement;
 mod pressure;
 mod sweep;
 
+use body::Failed;
+pub(crate) use body::{Finite, Outcome};
 pub(crate) use cell::Shape;
 use element::Fault;
 pub use formulation::Formulation;
 pub use placement::{Placement, Stored};
 pub use pressure::FollowerPressure;
-use sweep::Failed;
-pub(crate) use sweep::{Finite, Outcome};
 
 impl Solid {
     /// Whether forces are linear in the displacement: small strain.

@@ -5,8 +5,8 @@ use carom_elements::Kind;
 use carom_materials::{Answer, Tensor};
 use pulp::NullaryFnOnce;
 
+use super::batch::{AtLaw, Bad, Energies, POINTS, Together, Watch};
 use super::hourglass::{pattern, patterns};
-use super::kernel::{AtLaw, Bad, Energies, POINTS, Together, Watch};
 use crate::force::{self, Batch, Cell, Metric, OfEdges};
 
 /// What is the same for all batches of a chunk.
@@ -16,7 +16,7 @@ pub(super) struct Elements<'a, const D: usize, const E: usize> {
     pub(super) kind: Kind,
 }
 
-/// several elements on their way through the functions.
+/// Several elements on their way through the functions.
 pub(super) struct Room<T, const N: usize, const D: usize, const E: usize> {
     /// Places and displacements of the nodes, m.
     pub(super) x: [[T; D]; N],

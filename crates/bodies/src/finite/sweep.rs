@@ -6,48 +6,25 @@
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Mat3;
 use carom_elements::MAX_NODES;
-use carom_materials::{Law, Material};
 use pulp::Arch;
 use rayon::prelude::*;
 
+use super::body::{Failed, Finite, Outcome};
 use super::cell::{Element, MAX_UNKNOWNS, Shape};
 use super::element::{Fault, Local};
 use super::kernel;
 use super::{Placement, Stored};
-use crate::block::{Block, Chunk, Scratch};
+use crate::block::Block;
+use crate::chunk::Chunk;
+use crate::scratch::Scratch;
 
 /// Entries of element tangents that are held at a time.
 const HELD: usize = 1 << 19;
 
-/// What the elements of a body at finite strain are, beside their geometry.
-#[derive(Debug)]
-pub(crate) struct Finite {
-    pub(super) law: Law,
-    /// Numbers that the law keeps of a point.
-    pub(super) kept: usize,
-    pub(super) shape: Shape,
-}
-
-/// Result of the elements of a chunk.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Outcome {
-    pub(super) stored: Stored,
-    /// Place in the chunk, and what went wrong.
-    pub(super) fault: Option<Failed>,
-}
-
 /// What is called for each element: first unknowns of its nodes, unknowns of a node, tangent in N/m, row-major.
 pub(super) type VisitTangent<'a> = dyn FnMut(&[u32], usize, &mut [f64]) + 'a;
 
-/// A place, and what went wrong there.
-pub(super) type Failed = (usize, Fault);
-
 impl Finite {
-    pub(crate) fn new(law: Law, shape: Shape) -> Finite {
-        let kept = law.finite().map_or(0, Material::history_len);
-        Finite { law, kept, shape }
-    }
-
     /// Numbers that the points of an element keep.
     fn kept_of_element(&self, block: &Block) -> usize {
         self.kept * self.shape.points(block)

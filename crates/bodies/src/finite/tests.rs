@@ -7,9 +7,9 @@ use carom_materials::{
 };
 use pulp::{Arch, Scalar, Simd};
 
+use super::body::{Finite, Outcome};
 use super::cell::Shape;
 use super::kernel::Sweep;
-use super::sweep::{Finite, Outcome};
 use super::{Formulation, Placement};
 use crate::Kinematics;
 use crate::block::{Block, Physics};

@@ -1,0 +1,34 @@
+//! What the elements of a body at finite strain are, and what they give.
+
+use carom_materials::{Law, Material};
+
+use super::cell::Shape;
+use super::element::Fault;
+use super::placement::Stored;
+
+/// What the elements of a body at finite strain are, beside their geometry.
+#[derive(Debug)]
+pub(crate) struct Finite {
+    pub(super) law: Law,
+    /// Numbers that the law keeps of a point.
+    pub(super) kept: usize,
+    pub(super) shape: Shape,
+}
+
+/// Result of the elements of a chunk.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Outcome {
+    pub(super) stored: Stored,
+    /// Place in the chunk, and what went wrong.
+    pub(super) fault: Option<Failed>,
+}
+
+/// A place, and what went wrong there.
+pub(super) type Failed = (usize, Fault);
+
+impl Finite {
+    pub(crate) fn new(law: Law, shape: Shape) -> Finite {
+        let kept = law.finite().map_or(0, Material::history_len);
+        Finite { law, kept, shape }
+    }
+}

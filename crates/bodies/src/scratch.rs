@@ -1,0 +1,29 @@
+//! Buffers of the force sweeps.
+
+use crate::block::Block;
+use crate::finite::Outcome;
+
+/// Buffers of the internal-force sweep: one list of nodal forces and one energy per chunk.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    pub(crate) forces: Vec<Vec<[f64; 3]>>,
+    pub(crate) energies: Vec<f64>,
+    /// A system vector.
+    pub(crate) middle: Vec<f64>,
+    /// At finite strain, one of each chunk.
+    pub(crate) outcomes: Vec<Outcome>,
+}
+
+impl Scratch {
+    /// Makes room on the first call.
+    pub(crate) fn prepare(&mut self, blocks: &[Block]) {
+        if !self.forces.is_empty() {
+            return;
+        }
+        let chunks = blocks.iter().flat_map(|block| &block.chunks);
+        let lists = chunks.map(|chunk| vec![[0.0; 3]; chunk.nodes.len()]);
+        self.forces = lists.collect();
+        self.energies = vec![0.0; self.forces.len()];
+        self.outcomes = vec![Outcome::default(); self.forces.len()];
+    }
+}
