@@ -44,9 +44,8 @@ use impacts::Impacts;
 use instants::Instants;
 use sensor::ContactPoint;
 
-pub use settings::{Ending, Fields, LevelSettings, Probe, Reference, Settings};
+pub use settings::{Ending, Fields, LevelSettings, Probe, Reference, Settings, Spectrum};
 use spectra::Spectra;
-pub use spectra::Spectrum;
 use totals::{Last, Totals};
 pub use zoning::Zoning;
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 use carom_dynamics::Costs;
 use carom_exact::Solution;
 
-use crate::results::{Spectrum, Zoning};
+use crate::results::Zoning;
 use crate::statistics::Allowable;
 use crate::summary::Zones;
 
@@ -67,6 +67,28 @@ pub struct Probe {
     pub absolute_acceleration: bool,
     /// Response spectrum of the absolute acceleration; `None` for none.
     pub spectrum: Option<Spectrum>,
+}
+
+/// Frequencies and damping ratio of a response spectrum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spectrum {
+    /// Damping ratio.
+    pub damping: f64,
+    /// Frequencies, Hz, ascending.
+    pub frequencies: Vec<f64>,
+}
+
+impl Spectrum {
+    /// Frequencies in a constant ratio, Hz.
+    pub fn between([first, last]: [f64; 2], count: usize, damping: f64) -> Spectrum {
+        let ratio = (last / first).ln() / (count.max(2) - 1) as f64;
+        Spectrum {
+            damping,
+            frequencies: (0..count)
+                .map(|k| first * (ratio * k as f64).exp())
+                .collect(),
+        }
+    }
 }
 
 impl Probe {

@@ -5,8 +5,8 @@ use carom_dynamics::{Order, State, StepReport, System};
 use carom_signals::{Record, response_spectrum};
 
 use crate::plot::{Logarithmic, Series};
-use crate::results::Settings;
 use crate::results::sensor::{COMPONENTS, Sensor};
+use crate::results::settings::{Settings, Spectrum};
 use crate::rows::Cell;
 use crate::table::write_csv;
 use crate::{Error, Folder, column};
@@ -15,15 +15,6 @@ use crate::{Error, Folder, column};
 #[derive(Debug)]
 pub(crate) struct Spectra {
     probes: Vec<OfProbe>,
-}
-
-/// Frequencies and damping ratio of a response spectrum.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Spectrum {
-    /// Damping ratio.
-    pub damping: f64,
-    /// Frequencies, Hz, ascending.
-    pub frequencies: Vec<f64>,
 }
 
 #[derive(Debug)]
@@ -134,19 +125,6 @@ impl Spectra {
             .chain(names.iter().cloned())
             .collect();
         write_csv(&folder.file("spectra.csv")?, &names, &rows)
-    }
-}
-
-impl Spectrum {
-    /// Frequencies in a constant ratio, Hz.
-    pub fn between([first, last]: [f64; 2], count: usize, damping: f64) -> Spectrum {
-        let ratio = (last / first).ln() / (count.max(2) - 1) as f64;
-        Spectrum {
-            damping,
-            frequencies: (0..count)
-                .map(|k| first * (ratio * k as f64).exp())
-                .collect(),
-        }
     }
 }
 
