@@ -5,7 +5,7 @@
 
 use crate::{Error, solver};
 use faer::{
-    MatMut, MatRef, Par, Side,
+    MatMut, Par,
     dyn_stack::{MemBuffer, MemStack},
     linalg::{
         cholesky::llt::factor::{self, LltError, LltRegularization},
@@ -86,49 +86,15 @@ impl DenseCholesky {
         (0..n).map(ratio).fold(f64::INFINITY, f64::min)
     }
 
+    /// L, column-major; above the diagonal the entries of the matrix.
+    pub(crate) fn lower(&self) -> &[f64] {
+        &self.values
+    }
+
     /// x ← A⁻¹ x; no allocation.
     pub fn solve(&self, x: &mut [f64]) {
         Arch::new().dispatch(Solve(self, x));
     }
-}
-
-/// Eigenvalues λ of K x = λ M x, ascending: `k` and `m` have `n` squared entries, row-major, symmetric, and M is positive
-/// definite. They are those of L⁻¹ K L⁻ᵀ with M = L Lᵀ.
-///
-/// # Errors
-/// A length that is not n²; an entry that is not finite; M not positive definite; no convergence.
-pub fn eigenvalues(n: usize, k: &[f64], m: &[f64]) -> Result<Vec<f64>, Error> {
-    let factor = DenseCholesky::new(n, m)?;
-    if k.len() != n * n {
-        return Err(Error::WrongLength {
-            what: "dense matrix",
-            expected: n * n,
-            found: k.len(),
-        });
-    }
-    let lower = |i: usize, j: usize| factor.values[j * n + i];
-    // rows of L⁻¹ K, then the same of its transpose
-    let forward = |matrix: &mut [f64]| {
-        for column in 0..n {
-            for i in 0..n {
-                let known: f64 = (0..i).map(|j| lower(i, j) * matrix[j * n + column]).sum();
-                matrix[i * n + column] = (matrix[i * n + column] - known) / lower(i, i);
-            }
-        }
-    };
-    let mut reduced = k.to_vec();
-    forward(&mut reduced);
-    let mut reduced: Vec<f64> = (0..n * n).map(|e| reduced[e % n * n + e / n]).collect();
-    forward(&mut reduced);
-    let matrix = MatRef::from_row_major_slice(&reduced, n, n);
-    let mut values = matrix
-        .self_adjoint_eigenvalues(Side::Lower)
-        .map_err(|_| Error::Analysis {
-            unknowns: n,
-            reason: "the iterations for the eigenvalues do not converge".into(),
-        })?;
-    values.sort_by(f64::total_cmp);
-    Ok(values)
 }
 
 struct Solve<'a>(&'a DenseCholesky, &'a mut [f64]);

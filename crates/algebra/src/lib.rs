@@ -6,6 +6,8 @@
 
 pub mod csr;
 pub mod dense;
+pub mod dense_eigen;
+pub mod eigen;
 mod error;
 mod functions;
 pub mod lanes;

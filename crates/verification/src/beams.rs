@@ -1,6 +1,6 @@
 //! Models of beams.
 
-use carom_algebra::dense::eigenvalues;
+use carom_algebra::dense_eigen::eigenvalues;
 use carom_bodies::{BeamSection, BeamTheory, Kinematics, MassKind, Scratch, SectionShape};
 use carom_dynamics::{Model, ModelBody, Scheme, Support, System};
 use carom_exact::beam;

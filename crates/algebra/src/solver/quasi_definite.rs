@@ -40,6 +40,26 @@ impl QuasiDefinite {
     /// A pivot that vanishes or has the wrong sign, which is that of redundant multipliers; entries that are not finite; a
     /// lack of memory.
     pub fn new(matrix: &Csr, group_of: &[u32], negative: usize) -> Result<Self, Error> {
+        let factor = Self::of(matrix, group_of)?;
+        factor.check(matrix, negative)?;
+        Ok(factor)
+    }
+
+    /// Number of negative eigenvalues of a symmetric matrix: that of its negative pivots, by Sylvester's law of inertia.
+    ///
+    /// Entries of the diagonal must be stored. Pivots are taken in their order: a matrix with a leading block that is nearly
+    /// singular loses digits, and with them perhaps a sign.
+    ///
+    /// # Errors
+    /// A pivot that vanishes; entries that are not finite; a lack of memory.
+    pub fn negative_eigenvalues(matrix: &Csr, group_of: &[u32]) -> Result<usize, Error> {
+        let factor = Self::of(matrix, group_of)?;
+        let alone = factor.isolated.iter().filter(|d| **d < 0.0).count();
+        let connected = factor.pivots().filter(|(_, pivot)| *pivot < 0.0).count();
+        Ok(alone + connected)
+    }
+
+    fn of(matrix: &Csr, group_of: &[u32]) -> Result<Self, Error> {
         let order = ordering::order(matrix, group_of)?;
         let (connected, permutation) = (order.connected, order.permutation);
         let position = ordering::inverse(matrix.n, &permutation);
@@ -58,7 +78,6 @@ impl QuasiDefinite {
             symbolic,
         };
         factor.factorise(&lower)?;
-        factor.check(matrix, negative)?;
         Ok(factor)
     }
 
@@ -94,28 +113,29 @@ impl QuasiDefinite {
         })
     }
 
+    /// Unknowns of the factor, and their pivots or the inverses of these.
+    fn pivots(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let first = self.symbolic.col_ptr_for_val();
+        (0..self.symbolic.n_supernodes()).flat_map(move |s| {
+            let columns = self.symbolic.supernode_begin()[s]..self.symbolic.supernode_end()[s];
+            let rows = (first[s + 1] - first[s]) / columns.len();
+            let pivot = move |(k, column): (usize, usize)| {
+                let pivot = self.values[first[s] + k * rows + k];
+                (self.permutation[column] as usize, pivot)
+            };
+            columns.enumerate().map(pivot)
+        })
+    }
+
     /// Signs of the pivots: positive above, negative for multipliers.
     fn check(&self, matrix: &Csr, negative: usize) -> Result<(), Error> {
-        let mut wrong = None;
-        for s in 0..self.symbolic.n_supernodes() {
-            let columns = self.symbolic.supernode_begin()[s]..self.symbolic.supernode_end()[s];
-            let values = &self.values[self.symbolic.col_ptr_for_val()[s]..];
-            let rows = (self.symbolic.col_ptr_for_val()[s + 1]
-                - self.symbolic.col_ptr_for_val()[s])
-                / columns.len();
-            for (k, column) in columns.enumerate() {
-                // faer keeps the inverse of D on the diagonal of a panel, or D: the sign is the same
-                let pivot = values[k * rows + k];
-                let unknown = self.permutation[column] as usize;
-                let sign = if unknown < negative { 1.0 } else { -1.0 };
-                if !(pivot * sign > 0.0 && pivot.is_finite()) {
-                    wrong.get_or_insert(unknown);
-                }
-            }
-        }
-        match wrong {
+        let wrong = |(unknown, pivot): &(usize, f64)| {
+            let sign = if *unknown < negative { 1.0 } else { -1.0 };
+            !(pivot * sign > 0.0 && pivot.is_finite())
+        };
+        match self.pivots().find(wrong) {
             None => Ok(()),
-            Some(unknown) => Err(Error::NotPositiveDefinite {
+            Some((unknown, _)) => Err(Error::NotPositiveDefinite {
                 unknown,
                 diagonal: matrix.get(unknown, unknown),
             }),
