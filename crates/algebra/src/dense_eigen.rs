@@ -111,9 +111,8 @@ mod tests {
             let own = if i == j { 3.0 + i as f64 } else { 0.0 };
             own + 1.0 / (1.0 + (i + j) as f64).powf(power)
         };
-        let full = |power: f64| -> Vec<f64> {
-            (0..n * n).map(|e| entry(e / n, e % n, power)).collect()
-        };
+        let full =
+            |power: f64| -> Vec<f64> { (0..n * n).map(|e| entry(e / n, e % n, power)).collect() };
         let (k, m) = (full(1.0), full(2.0));
         let (values, vectors) = eigenpairs(n, &k, &m).unwrap();
         assert!(values.is_sorted());

@@ -1,4 +1,4 @@
-//! The executable: `carom run`, `compare`, `study`, `check`, `schema`, `new`, `verify`.
+//! The executable: `carom run`, `compare`, `study`, `modes`, `check`, `schema`, `new`, `verify`.
 //!
 //! Exit codes: 0 done and the verdict `good` or `look`, 2 bad input, 3 the run failed with the last good state on disk, 4 done but
 //! the verdict bad, 130 interrupted. All that it prints goes through [`terminal`].
@@ -7,6 +7,7 @@ mod compare;
 mod diagnostics;
 mod exit;
 mod load;
+mod modes;
 mod new;
 mod progress;
 mod run;
@@ -44,6 +45,8 @@ enum Command {
     Compare(compare::Arguments),
     /// Run a case over the values of a key, with orders of convergence; or find the value that gives a result
     Study(study::Arguments),
+    /// Compute frequencies, shapes and effective masses of the bodies of a case
+    Modes(modes::Arguments),
     /// Check a case without running it: errors, warnings, sizes, wave speeds, first possible impact, steps
     Check {
         /// The case file
@@ -101,6 +104,7 @@ fn obey(Arguments { log, command }: Arguments) -> u8 {
         Command::Run(arguments) => run::run(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Study(arguments) => study::study(&arguments),
+        Command::Modes(arguments) => modes::modes(&arguments),
         Command::Check { case, set } => check(&case, &set),
         Command::Schema { reference } => schema(reference),
         Command::New { template, file } => new::new(template.as_deref(), &file),

@@ -13,6 +13,7 @@ pub mod folder;
 pub mod form;
 pub mod history;
 pub mod impacts;
+pub mod modes;
 pub mod plot;
 pub mod pvd;
 pub mod report;

@@ -15,6 +15,9 @@ pub enum Error {
     /// A mesh file could not be read.
     #[error(transparent)]
     Read(#[from] carom_mesh::read::ReadError),
+    /// Modes that could not be computed.
+    #[error(transparent)]
+    Reduction(#[from] carom_reduction::Error),
     /// Models that cannot be coupled.
     #[error(transparent)]
     Arlequin(#[from] carom_arlequin::Error),

@@ -81,6 +81,7 @@ mod ironing;
 mod knocking_oscillators;
 pub mod long_run;
 mod mass_on_stop;
+mod modes;
 mod oblique_bar;
 mod orbiting_mass;
 mod order;
@@ -202,6 +203,7 @@ registry! {
     knocking_oscillators
     long_run
     mass_on_stop
+    modes
     oblique_bar
     orbiting_mass
     order

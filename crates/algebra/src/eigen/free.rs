@@ -49,7 +49,12 @@ impl Free {
         Free {
             stiffness: stiffness.restricted(&ranges),
             mass: mass.restricted(&ranges),
-            groups: ranges.iter().cloned().flatten().map(|i| problem.groups[i]).collect(),
+            groups: ranges
+                .iter()
+                .cloned()
+                .flatten()
+                .map(|i| problem.groups[i])
+                .collect(),
             constraints: rows.filter(|row| !row.dofs.is_empty()).collect(),
             ranges,
             all,

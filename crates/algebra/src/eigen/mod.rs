@@ -3,10 +3,12 @@
 //! With K - σ M = L Lᵀ at a shift σ below all ω² the pairs are those of the symmetric operator P L⁻¹ M L⁻ᵀ P, whose largest
 //! eigenvalues are 1/(ω² - σ): `operator.rs`. P is the projection that takes out constraints C φ = 0 and the vectors found
 //! before. The method of Rayleigh and Ritz makes the vectors M-orthonormal, and inertia counts the eigenvalues below a value
-//! ([`QuasiDefinite::negative_eigenvalues`]): Lanczos' method finds one vector of a multiple eigenvalue, and may skip others;
-//! what is missing is sought in the complement. Source: Ericsson and Ruhe, Mathematics of Computation 35 (1980).
+//! ([`QuasiDefinite::negative_eigenvalues`]): Lanczos' method may miss vectors of multiple eigenvalues, which are then sought in the
+//! complement. (The matrix-free method of faer 0.24 loses vectors and returns others twice where pairs converge out of order.)
+//! Source: Ericsson and Ruhe, Mathematics of Computation 35 (1980).
 
 mod free;
+mod lanczos;
 mod operator;
 mod search;
 

@@ -1,7 +1,8 @@
 //! The shift, the runs of Lanczos' method, the count of what they found, and the pairs.
 
 use super::free::Free;
-use super::operator::{Operator, subspace};
+use super::lanczos;
+use super::operator::Operator;
 use super::{Count, Eigenpairs};
 use crate::Error;
 use crate::csr::Csr;
@@ -28,8 +29,14 @@ const BEYOND: usize = 4;
 /// Relative gap between two eigenvalues in which they can be counted.
 const GAP: f64 = 1e-5;
 
+/// Part of the largest eigenvalue below which pairs are refined.
+const LOW: f64 = 1e-4;
+
 /// Searches for what is missing.
 const SEARCHES: usize = 6;
+
+/// Eigenvalues and vectors.
+type Pairs = (Vec<f64>, Vec<Vec<f64>>);
 
 pub(super) struct Search<'a> {
     free: &'a Free,
@@ -46,9 +53,16 @@ pub(super) struct Search<'a> {
 impl<'a> Search<'a> {
     pub(super) fn new(free: &'a Free) -> Result<Self, Error> {
         let scale = free.scale();
-        let shift = -FIRST_SHIFT * if scale > 0.0 { scale } else { 1.0 / FIRST_SHIFT };
+        let shift = -FIRST_SHIFT
+            * if scale > 0.0 {
+                scale
+            } else {
+                1.0 / FIRST_SHIFT
+            };
         let operator = Operator::new(&free.combined(-shift), &free.mass, &free.groups)?;
-        let heavy = (0..free.len()).filter(|&i| free.mass.get(i, i) > 0.0).count();
+        let heavy = (0..free.len())
+            .filter(|&i| free.mass.get(i, i) > 0.0)
+            .count();
         let mut search = Search {
             free,
             operator,
@@ -79,12 +93,16 @@ impl<'a> Search<'a> {
     pub(super) fn run(mut self, count: usize) -> Result<Eigenpairs, Error> {
         let (n, count) = (self.free.len(), count.min(self.existing));
         let sought = count + BEYOND;
-        if n <= DENSE || 3 * sought.max(subspace(sought) / 2) >= n || sought >= self.existing {
+        if n <= DENSE || 4 * sought >= n || sought >= self.existing {
             return self.all(count);
         }
         self.find(PROBE)?;
         self.ritz()?;
-        self.choose_shift()?;
+        if self.choose_shift()? {
+            // so far from the first shift they have lost digits
+            self.vectors.clear();
+            self.values.clear();
+        }
         self.find(sought.saturating_sub(self.vectors.len()))?;
         let mut counted = self.counted(count)?;
         for _ in 0..SEARCHES {
@@ -106,12 +124,18 @@ impl<'a> Search<'a> {
         let n = self.free.len();
         let (_, vectors) = symmetric(n, &self.operator.dense())?;
         // ascending: the largest 1/(ω² - σ) are the last
-        let finite: Vec<&[f64]> = vectors.chunks_exact(n.max(1)).rev().take(self.existing).collect();
+        let finite: Vec<&[f64]> = vectors
+            .chunks_exact(n.max(1))
+            .rev()
+            .take(self.existing)
+            .collect();
         for y in finite {
             let x = self.operator.backward(y);
             self.vectors.push(x);
         }
         self.ritz()?;
+        self.refine()?;
+        self.choose_shift()?;
         let counted = Count {
             below: f64::INFINITY,
             exist: self.existing,
@@ -120,13 +144,32 @@ impl<'a> Search<'a> {
         self.conclude(count, counted)
     }
 
+    /// Takes the rounding of the highest frequencies out of the lowest pairs, by an inverse iteration.
+    fn refine(&mut self) -> Result<(), Error> {
+        let largest = self.values.last().copied().unwrap_or(0.0);
+        let low = self.values.partition_point(|value| *value < LOW * largest);
+        let rest = self.vectors.split_off(low);
+        for k in 0..low {
+            let mut image = vec![0.0; self.free.len()];
+            self.free.mass.multiply(&self.vectors[k], &mut image);
+            let mut y = self.operator.forward(&image);
+            self.operator.project(self.independent.len(), &mut y);
+            self.vectors[k] = self.operator.backward(&y);
+        }
+        let high = self.values.split_off(low);
+        self.ritz()?;
+        self.values.extend(high);
+        self.vectors.extend(rest);
+        Ok(())
+    }
+
     /// Seeks vectors beyond those known; how many were found.
     fn find(&mut self, count: usize) -> Result<usize, Error> {
         let count = count.min(self.existing - self.vectors.len());
         if count == 0 {
             return Ok(0);
         }
-        let found = self.operator.largest(count)?;
+        let found = lanczos::largest(&mut self.operator, count)?;
         let number = found.len();
         for y in found {
             self.vectors.push(self.operator.backward(&y));
@@ -135,10 +178,17 @@ impl<'a> Search<'a> {
         Ok(number)
     }
 
-    /// The pairs of K and M in the span of the vectors.
+    /// Replaces the vectors by the pairs in their span.
     fn ritz(&mut self) -> Result<(), Error> {
-        let (n, k) = (self.free.len(), self.vectors.len());
-        for x in &mut self.vectors {
+        let vectors = std::mem::take(&mut self.vectors);
+        (self.values, self.vectors) = self.pairs_within(vectors)?;
+        Ok(())
+    }
+
+    /// The pairs of K and M in the span of vectors.
+    fn pairs_within(&self, mut vectors: Vec<Vec<f64>>) -> Result<Pairs, Error> {
+        let (n, k) = (self.free.len(), vectors.len());
+        for x in &mut vectors {
             let mut image = vec![0.0; n];
             self.free.mass.multiply(x, &mut image);
             let norm = dot(x, &image).sqrt();
@@ -147,9 +197,9 @@ impl<'a> Search<'a> {
         let project = |matrix: &Csr| {
             let mut projected = vec![0.0; k * k];
             let mut image = vec![0.0; n];
-            for (i, x) in self.vectors.iter().enumerate() {
+            for (i, x) in vectors.iter().enumerate() {
                 matrix.multiply(x, &mut image);
-                for (j, y) in self.vectors.iter().enumerate().take(i + 1) {
+                for (j, y) in vectors.iter().enumerate().take(i + 1) {
                     let entry = dot(y, &image);
                     (projected[i * k + j], projected[j * k + i]) = (entry, entry);
                 }
@@ -160,7 +210,7 @@ impl<'a> Search<'a> {
         let (values, combinations) = eigenpairs(k, &stiffness, &mass)?;
         let combined = |z: &[f64]| {
             let mut sum = vec![0.0; n];
-            for (x, z) in self.vectors.iter().zip(z) {
+            for (x, z) in vectors.iter().zip(z) {
                 for (sum, x) in sum.iter_mut().zip(x) {
                     *sum += z * x;
                 }
@@ -168,25 +218,25 @@ impl<'a> Search<'a> {
             sum
         };
         let vectors = combinations.chunks_exact(k.max(1)).map(combined).collect();
-        (self.values, self.vectors) = (values, vectors);
-        Ok(())
+        Ok((values, vectors))
     }
 
-    /// Takes the first frequency that is not zero as the distance of the shift from zero, where the first shift is far closer.
-    fn choose_shift(&mut self) -> Result<(), Error> {
-        let deformed = self.values.iter().find(|value| **value > -RIGID * self.shift);
+    /// Takes the first frequency that is not zero as the distance of the shift from zero, where the first shift is far closer;
+    /// whether it did.
+    fn choose_shift(&mut self) -> Result<bool, Error> {
+        let deformed = self
+            .values
+            .iter()
+            .find(|value| **value > -RIGID * self.shift);
         let Some(&first) = deformed.filter(|value| **value > -100.0 * self.shift) else {
-            return Ok(());
+            return Ok(false);
         };
         self.shift = -first;
         self.operator.refactor(&self.free.combined(first))?;
         for row in self.independent.clone() {
             self.take_out(row);
         }
-        // far from zero the first shift has cost them digits
-        self.vectors.clear();
-        self.values.clear();
-        Ok(())
+        Ok(true)
     }
 
     /// The pairs, and their number up to a gap that is not below number `count`.
@@ -234,7 +284,9 @@ impl<'a> Search<'a> {
             columns.for_each(|&j| cliques.push(&[i as u32, j]));
         }
         for (k, row) in rows.iter().enumerate() {
-            row.dofs.iter().for_each(|&i| cliques.push(&[i, (n + k) as u32]));
+            row.dofs
+                .iter()
+                .for_each(|&i| cliques.push(&[i, (n + k) as u32]));
         }
         let mut bordered = Csr::from_cliques(n + rows.len(), &cliques);
         let mut groups = self.free.groups.clone();
@@ -261,9 +313,12 @@ impl<'a> Search<'a> {
         let bounds = (0..self.values.len()).map(|k| self.bound(k)).collect();
         let mut vectors = self.vectors;
         for x in &mut vectors {
-            let largest = x.iter().fold(0.0_f64, |most, x| {
-                if x.abs() > most.abs() { *x } else { most }
-            });
+            let largest = x.iter().fold(
+                0.0_f64,
+                |most, x| {
+                    if x.abs() > most.abs() { *x } else { most }
+                },
+            );
             if largest < 0.0 {
                 x.iter_mut().for_each(|x| *x = -*x);
             }

@@ -129,3 +129,52 @@ fn there_are_as_many_pairs_as_masses() {
         assert!((value - exact).abs() < 1e-12);
     }
 }
+
+#[test]
+fn a_free_truss_in_the_plane_has_three_rigid_motions() {
+    // unit springs along the edges and both diagonals of unit squares, unit masses at the corners
+    let side = 21;
+    let n = 2 * side * side;
+    let mut cliques = Cliques::new();
+    let mut springs = Vec::new();
+    for j in 0..side {
+        for i in 0..side {
+            for (di, dj) in [(1, 0), (0, 1), (1, 1), (-1, 1)] {
+                let (k, l) = (i as i32 + di, j as i32 + dj);
+                if (0..side as i32).contains(&k) && (0..side as i32).contains(&l) {
+                    let other = (l as usize * side + k as usize) as u32;
+                    let own = (j * side + i) as u32;
+                    let dofs = [2 * own, 2 * own + 1, 2 * other, 2 * other + 1];
+                    cliques.push(&dofs);
+                    let length = f64::from(di * di + dj * dj).sqrt();
+                    let [x, y] = [di, dj].map(|d| f64::from(d) / length);
+                    springs.push((dofs, [-x, -y, x, y]));
+                }
+            }
+        }
+    }
+    let (mut k, mut m) = (
+        Csr::from_cliques(n, &cliques),
+        Csr::from_cliques(n, &cliques),
+    );
+    for (dofs, row) in &springs {
+        let block: Vec<f64> = (0..16).map(|e| row[e / 4] * row[e % 4]).collect();
+        k.add_block(dofs, &block);
+    }
+    (0..n).for_each(|i| m.add(i, i, 1.0));
+    let groups: Vec<u32> = (0..n as u32).map(|i| i / 2).collect();
+    let problem = Problem {
+        stiffness: &k,
+        mass: &m,
+        fixed: &vec![false; n],
+        groups: &groups,
+        constraints: &[],
+    };
+    let found = lowest(&problem, 12).unwrap();
+    assert_eq!(found.count.exist, found.count.found);
+    for (j, value) in found.values.iter().enumerate() {
+        assert_eq!(*value < 1e-10, j < 3, "{:?}", found.values);
+        assert!(found.bounds[j] < 1e-8, "{:?}", found.bounds);
+    }
+    assert!(orthonormal(&m, &found.vectors) < 1e-12);
+}

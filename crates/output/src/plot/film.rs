@@ -44,14 +44,16 @@ pub(crate) struct Patch {
     pub(crate) value: f64,
 }
 
-/// The model at an instant.
-#[derive(Clone, Debug)]
+/// The model at an instant, or in one shape.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Frame {
     /// Time, s.
     pub(crate) time: f64,
+    /// What is written under it.
+    pub(crate) caption: String,
     /// Cells of a plane model, outer faces of a solid.
     pub(crate) patches: Vec<Patch>,
-    /// Outlines of plane bodies, each a piece of line, m.
+    /// Outlines of plane bodies, and beams, each a piece of line, m.
     pub(crate) rims: Vec<Vec<[f64; 3]>>,
     /// Places of plane models with a contact force, m.
     pub(crate) marks: Vec<[f64; 3]>,
@@ -59,6 +61,8 @@ pub(crate) struct Frame {
 
 /// What a film shows beside its frames.
 pub(crate) struct Scene<'a> {
+    /// Title of the picture.
+    pub(crate) title: &'a str,
     /// Dimension of the space.
     pub(crate) dim: usize,
     /// Name and unit of the values.
@@ -77,7 +81,11 @@ pub(crate) fn film_figure(scene: &Scene, frames: &[Frame]) -> Result<String, Err
         .iter()
         .map(|frame| flatten(scene.dim, frame, largest))
         .collect();
-    let points = drawn.iter().flatten().flat_map(|flat| flat.points.clone());
+    let points = drawn
+        .iter()
+        .flatten()
+        .flat_map(|flat| &flat.points)
+        .copied();
     let rims = frames.iter().flat_map(|frame| frame.rims.iter().flatten());
     let rims = rims.map(|x| project(scene.dim, x).0);
     let bounds = points.chain(rims).fold(
@@ -92,7 +100,7 @@ pub(crate) fn film_figure(scene: &Scene, frames: &[Frame]) -> Result<String, Err
     let finite = bounds.iter().flatten().all(|bound| bound.is_finite());
     if !finite {
         return Err(Error::EmptyPanel {
-            panel: "Motion".to_owned(),
+            panel: scene.title.to_owned(),
         });
     }
     let (windows, height) = windows(bounds, frames.len());
@@ -103,9 +111,10 @@ pub(crate) fn film_figure(scene: &Scene, frames: &[Frame]) -> Result<String, Err
     }
     Ok(format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{height:.0}\" \
-         viewBox=\"0 0 {WIDTH} {height:.0}\" role=\"img\" aria-label=\"Motion\" font-family=\"sans-serif\" \
+         viewBox=\"0 0 {WIDTH} {height:.0}\" role=\"img\" aria-label=\"{}\" font-family=\"sans-serif\" \
          font-size=\"12\" fill=\"#222222\" stroke-linejoin=\"round\">\n\
-         <rect width=\"{WIDTH}\" height=\"{height:.0}\" fill=\"#ffffff\"/>\n{svg}</svg>\n"
+         <rect width=\"{WIDTH}\" height=\"{height:.0}\" fill=\"#ffffff\"/>\n{svg}</svg>\n",
+        scene.title
     ))
 }
 
@@ -232,8 +241,9 @@ fn draw_head(scene: &Scene, window: &Window, largest: f64, frames: &[Frame], svg
     // writing to a String cannot fail, here and below
     let _ = writeln!(
         svg,
-        "<text x=\"{}\" y=\"22\" font-size=\"16\" font-weight=\"bold\" text-anchor=\"middle\">Motion</text>",
-        0.5 * WIDTH
+        "<text x=\"{}\" y=\"22\" font-size=\"16\" font-weight=\"bold\" text-anchor=\"middle\">{}</text>",
+        0.5 * WIDTH,
+        scene.title
     );
     let (mut x, y) = (24.0, 46.0);
     for level in 0..LEVELS {
@@ -319,10 +329,10 @@ fn draw_frame(scene: &Scene, frame: &Frame, flats: &[Flat], window: &Window, svg
     }
     let _ = writeln!(
         svg,
-        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">t = {}</text></g>",
+        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text></g>",
         corner[0] + 0.5 * size[0],
         corner[1] + size[1] + 16.0,
-        quantity(frame.time, "s")
+        frame.caption
     );
 }
 

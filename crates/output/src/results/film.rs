@@ -3,15 +3,14 @@
 //! Every accepted state is a candidate. When more than [`KEPT`] are kept, every other one is dropped, and from then on only
 //! one step in twice as many is taken.
 
-use std::collections::BTreeMap;
-
 use carom_algebra::rotation::Rotation;
 use carom_contact::Target;
 use carom_dynamics::{State, System};
 
 use crate::Error;
-use crate::plot::{Frame, Patch, Scene, film_figure};
+use crate::plot::{Frame, Scene, film_figure, quantity};
 use crate::results::cells::{cell_stresses, von_mises};
+use crate::results::outlines::{Outlines, size};
 
 /// Instants kept at most, and instants shown.
 const KEPT: usize = 24;
@@ -97,14 +96,14 @@ impl Film {
         if self.stills.len() < 2 || !(system.is_nonlinear() || largest > VISIBLE * size(system)) {
             return None;
         }
-        let outlines = Outlines::new(system);
-        if outlines.patches.is_empty() && outlines.rims.is_empty() {
+        let outlines = Outlines::new(system, |_| true);
+        if outlines.is_blank() {
             return None;
         }
         let shown = self.shown();
         let frames: Vec<Frame> = shown
             .iter()
-            .map(|still| outlines.frame(system, still))
+            .map(|still| still.frame(system, &outlines))
             .collect();
         let gap = |time: f64, place: [f64; 3]| {
             let place = match system.axisymmetric {
@@ -121,6 +120,7 @@ impl Film {
             obstacles.fold(f64::INFINITY, f64::min)
         };
         let scene = Scene {
+            title: "Motion",
             dim: system.dim,
             field: ("von Mises stress", "Pa"),
             gap: &gap,
@@ -145,145 +145,16 @@ impl Film {
     }
 }
 
-/// Longest side of the box around the undeformed model, m.
-fn size(system: &System) -> f64 {
-    let side = |i: usize| {
-        let values = system.x.iter().map(|x| x[i]);
-        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        });
-        high - low
-    };
-    (0..system.dim).map(side).fold(0.0, f64::max)
-}
-
-/// What is drawn of the mesh, in system numbers of the nodes.
-struct Outlines {
-    /// Nodes in turn around each patch, and its cell.
-    patches: Vec<(Vec<u32>, usize)>,
-    /// Outer edges of plane bodies, and cells that are lines.
-    rims: Vec<Vec<u32>>,
-}
-
-impl Outlines {
-    /// All cells and the outer edges of a plane model, the outer faces of a solid.
-    fn new(system: &System) -> Outlines {
-        let mut outlines = Outlines {
-            patches: Vec::new(),
-            rims: Vec::new(),
+impl Still {
+    /// Its picture.
+    fn frame(&self, system: &System, outlines: &Outlines) -> Frame {
+        let places = system.places(self.time, &self.u, &self.frames);
+        let frame = Frame {
+            time: self.time,
+            caption: format!("t = {}", quantity(self.time, "s")),
+            marks: self.marks.clone(),
+            ..Frame::default()
         };
-        let mut cell = 0;
-        for body in &system.bodies {
-            if body.as_discrete().is_some() {
-                cell += body.cells().len();
-                continue;
-            }
-            // the faces that only one cell of the body has
-            let mut outer: BTreeMap<Vec<u32>, Option<(Vec<u32>, usize)>> = BTreeMap::new();
-            for &element in body.cells() {
-                let nodes = system.mesh.element_nodes(element);
-                let number = |local: &usize| system.number[nodes[*local] as usize];
-                let table = system.mesh.kind(element).table();
-                if table.dim == 1 {
-                    let all: Vec<u32> = (0..nodes.len()).map(|local| number(&local)).collect();
-                    outlines.rims.push(along(&all));
-                    cell += 1;
-                    continue;
-                }
-                for face in table.faces {
-                    let own: Vec<u32> = face.nodes.iter().map(number).collect();
-                    let mut key = own.clone();
-                    key.sort_unstable();
-                    let around = match system.dim {
-                        2 => along(&own),
-                        _ => ring(face.kind.table().faces.iter().map(|f| f.nodes), &own),
-                    };
-                    let entry = outer.entry(key);
-                    entry
-                        .and_modify(|twice| *twice = None)
-                        .or_insert(Some((around, cell)));
-                }
-                if system.dim == 2 {
-                    let all: Vec<u32> = (0..nodes.len()).map(|local| number(&local)).collect();
-                    let around = ring(table.faces.iter().map(|f| f.nodes), &all);
-                    outlines.patches.push((around, cell));
-                }
-                cell += 1;
-            }
-            let outer = outer.into_values().flatten();
-            match system.dim {
-                2 => outlines.rims.extend(outer.map(|(rim, _)| rim)),
-                // the ends of a line have no area to be seen
-                _ => outlines
-                    .patches
-                    .extend(outer.filter(|(ring, _)| ring.len() > 2)),
-            }
-        }
-        outlines
+        outlines.frame(system, &places, &|_, cell| self.stress[cell], frame)
     }
-
-    /// The picture of an instant; of an axisymmetric model both halves of the section.
-    fn frame(&self, system: &System, still: &Still) -> Frame {
-        let places = system.places(still.time, &still.u, &still.frames);
-        let place = |node: &u32| places.of(*node);
-        let patch = |(nodes, cell): &(Vec<u32>, usize)| Patch {
-            points: nodes.iter().map(place).collect(),
-            value: still.stress[*cell],
-        };
-        let mut frame = Frame {
-            time: still.time,
-            patches: self.patches.iter().map(patch).collect(),
-            rims: self
-                .rims
-                .iter()
-                .map(|rim| rim.iter().map(place).collect())
-                .collect(),
-            marks: still.marks.clone(),
-        };
-        if system.axisymmetric {
-            mirror(&mut frame);
-        }
-        frame
-    }
-}
-
-/// Adds the other half of a section through the axis.
-fn mirror(frame: &mut Frame) {
-    let other = |[r, z, y]: &[f64; 3]| [-r, *z, *y];
-    let patches: Vec<Patch> = frame
-        .patches
-        .iter()
-        .map(|patch| Patch {
-            points: patch.points.iter().map(other).collect(),
-            value: patch.value,
-        })
-        .collect();
-    // edges on the axis are inside the body
-    let on_axis = |rim: &Vec<[f64; 3]>| rim.iter().all(|x| x[0] == 0.0);
-    frame.rims.retain(|rim| !on_axis(rim));
-    let rims = frame.rims.iter().map(|rim| rim.iter().map(other).collect());
-    let rims: Vec<Vec<[f64; 3]>> = rims.collect();
-    let marks: Vec<[f64; 3]> = frame.marks.iter().map(other).collect();
-    frame.patches.extend(patches);
-    frame.rims.extend(rims);
-    frame.marks.extend(marks);
-}
-
-/// An edge from end to end: its middle, which comes last in the list of its nodes, between the ends.
-fn along(edge: &[u32]) -> Vec<u32> {
-    match edge {
-        [from, to, middle] => vec![*from, *middle, *to],
-        _ => edge.to_vec(),
-    }
-}
-
-/// The nodes around a cell or a face, with those in the middle of its edges.
-fn ring<'a>(edges: impl Iterator<Item = &'a [usize]>, nodes: &[u32]) -> Vec<u32> {
-    let mut ring = Vec::new();
-    for edge in edges {
-        // the end of an edge is the beginning of the next
-        let inner = std::iter::once(edge[0]).chain(edge.get(2).copied());
-        ring.extend(inner.map(|local| nodes[local]));
-    }
-    ring
 }

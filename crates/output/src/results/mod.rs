@@ -20,6 +20,7 @@ mod histories;
 mod impacts;
 mod instants;
 mod lines;
+pub(crate) mod outlines;
 pub(crate) mod sensor;
 mod settings;
 mod spectra;

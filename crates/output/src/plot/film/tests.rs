@@ -7,6 +7,7 @@ fn no_obstacle(_: f64, _: [f64; 3]) -> f64 {
 
 fn scene(dim: usize) -> Scene<'static> {
     Scene {
+        title: "Motion",
         dim,
         field: ("stress", "Pa"),
         gap: &no_obstacle,
@@ -33,10 +34,8 @@ fn cube(from: [f64; 3], value: f64) -> Vec<Patch> {
 
 fn frame(patches: Vec<Patch>) -> Frame {
     Frame {
-        time: 0.0,
         patches,
-        rims: Vec::new(),
-        marks: Vec::new(),
+        ..Frame::default()
     }
 }
 
