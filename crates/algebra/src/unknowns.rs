@@ -1,9 +1,12 @@
 //! The map of unknowns: which entries of a system vector belong to a node, and what each of them is.
 //!
-//! A node has its translations, its translations followed by its rotations, or none, if another node carries it. Nothing
-//! else decides where the unknowns of a node are: whoever needs them asks this map.
+//! A node has its translations, its translations followed by its rotations, or none, if another node carries it or a basis
+//! gives its motion. The amplitudes of a basis belong to a node without a place. Nothing else decides where the unknowns of a
+//! node are: whoever needs them asks this map.
 
 use std::ops::Range;
+
+use crate::basis::{Amplitude, Basis};
 
 /// What an unknown is, with its axis: 0, 1, 2 for x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +15,8 @@ pub enum Kind {
     Translation(usize),
     /// A rotation, rad; in the plane about z.
     Rotation(usize),
+    /// The amplitude of a motion of many nodes, m, by its number in its basis.
+    Amplitude(usize),
 }
 
 /// Unknowns of the nodes of a system, those of a node next to each other, in the order of the nodes.
@@ -26,6 +31,10 @@ pub struct Unknowns {
     turning: Vec<u32>,
     /// What carries a node that is carried, by node; empty where none is.
     carriers: Vec<Option<Carrier>>,
+    /// Nodes of amplitudes, ascending.
+    amplitudes: Vec<u32>,
+    /// Motions of nodes by unknowns of others.
+    bases: Vec<Basis>,
 }
 
 /// What carries a node without unknowns: it keeps its place in the frame of another node.
@@ -55,7 +64,8 @@ impl Unknowns {
             map.node.extend(own);
             map.first.push(map.node.len() as u32);
             match kind {
-                NodeKind::Translations | NodeKind::SmallRotations => {}
+                NodeKind::Translations | NodeKind::SmallRotations | NodeKind::Recovered => {}
+                NodeKind::Amplitudes(_) => map.amplitudes.push(number as u32),
                 NodeKind::Turning => map.turning.push(number as u32),
                 NodeKind::Carried(carrier) => {
                     map.carriers.resize(number + 1, None);
@@ -111,13 +121,35 @@ impl Unknowns {
     #[inline]
     pub fn translations_of(&self, node: u32) -> Range<usize> {
         let all = self.of(node);
-        all.start..all.end.min(all.start + self.dim)
+        match self.has_amplitudes(node) {
+            true => all.start..all.start,
+            false => all.start..all.end.min(all.start + self.dim),
+        }
+    }
+
+    #[inline]
+    fn has_amplitudes(&self, node: u32) -> bool {
+        !self.amplitudes.is_empty() && self.amplitudes.binary_search(&node).is_ok()
+    }
+
+    /// Adds the motions of nodes by the unknowns of others.
+    pub fn recover(&mut self, basis: Basis) {
+        self.bases.push(basis);
+    }
+
+    /// Each amplitude, and what of a rigid motion it is.
+    pub fn amplitudes(&self) -> impl Iterator<Item = (usize, &Amplitude)> {
+        self.bases.iter().flat_map(Basis::amplitudes)
     }
 
     /// Rotations of a node.
     #[inline]
     pub fn rotations_of(&self, node: u32) -> Range<usize> {
-        self.translations_of(node).end..self.of(node).end
+        let all = self.of(node);
+        match self.has_amplitudes(node) {
+            true => all.end..all.end,
+            false => self.translations_of(node).end..all.end,
+        }
     }
 
     /// What carries a node, if anything does.
@@ -170,6 +202,9 @@ impl Unknowns {
     #[inline]
     pub fn kind(&self, unknown: usize) -> Kind {
         let place = unknown - self.first(self.node[unknown]);
+        if self.has_amplitudes(self.node[unknown]) {
+            return Kind::Amplitude(place);
+        }
         match (place < self.dim, self.dim) {
             (true, _) => Kind::Translation(place),
             (false, 2) => Kind::Rotation(2),
@@ -183,6 +218,7 @@ impl Unknowns {
             (Kind::Translation(axis), _) => axis,
             (Kind::Rotation(axis), 2) => (axis == 2).then_some(2)?,
             (Kind::Rotation(axis), dim) => dim + axis,
+            (Kind::Amplitude(number), _) => number,
         };
         let unknown = self.first(node) + place;
         (self.of(node).contains(&unknown) && self.kind(unknown) == kind).then_some(unknown)
@@ -195,8 +231,17 @@ impl Unknowns {
             [x, y, z] => [x, y, z],
             [x, y] => [x, y, 0.0],
             [x] => [x, 0.0, 0.0],
-            _ => [0.0; 3],
+            _ => self.recovered(node, values),
         }
+    }
+}
+
+impl Unknowns {
+    /// The translations of a node that a basis gives, zero of other nodes without any.
+    fn recovered(&self, node: u32, values: &[f64]) -> [f64; 3] {
+        let mut bases = self.bases.iter();
+        let motion = bases.find_map(|basis| basis.motion(node, self.dim, values));
+        motion.unwrap_or([0.0; 3])
     }
 }
 
@@ -211,12 +256,17 @@ pub enum NodeKind {
     Turning,
     /// None: another node carries it.
     Carried(Carrier),
+    /// None: a basis gives its motion ([`Unknowns::recover`]).
+    Recovered,
+    /// So many amplitudes of a basis: it has no place.
+    Amplitudes(usize),
 }
 
 impl NodeKind {
     fn unknowns(self, dim: usize) -> usize {
         match (self, dim) {
-            (NodeKind::Carried(_), _) => 0,
+            (NodeKind::Carried(_) | NodeKind::Recovered, _) => 0,
+            (NodeKind::Amplitudes(count), _) => count,
             (NodeKind::Translations, _) | (_, 0 | 1) => dim,
             (NodeKind::SmallRotations | NodeKind::Turning, 2) => 3,
             (NodeKind::SmallRotations | NodeKind::Turning, _) => 6,
@@ -262,6 +312,34 @@ mod tests {
             assert_eq!(map.rotations_of(0).len(), count - dim);
             assert_eq!((map.turning(), map.frame(0)), (&[][..], None));
         }
+    }
+
+    #[test]
+    fn a_basis_moves_a_node_without_unknowns() {
+        // node 1 moves by half of node 0 and the amplitude, which is a third of a translation along y
+        let kinds = [
+            NodeKind::Translations,
+            NodeKind::Recovered,
+            NodeKind::Amplitudes(1),
+        ];
+        let mut map = Unknowns::new(2, kinds);
+        let amplitude = Amplitude {
+            translation: [0.0, 1.0 / 3.0, 0.0],
+            rotation: [0.0; 3],
+        };
+        map.recover(Basis::new(
+            vec![0, 1, 2],
+            vec![0.5, 0.0, 1.0, 0.0, 0.5, -1.0].into(),
+            vec![(1, 0)],
+            vec![(2, amplitude)],
+        ));
+        assert_eq!((map.len(), map.kind(2)), (3, Kind::Amplitude(0)));
+        assert_eq!(map.find(2, Kind::Amplitude(0)), Some(2));
+        assert!(map.translations_of(2).is_empty() && map.rotations_of(2).is_empty());
+        let values = [2.0, 4.0, 7.0];
+        assert_eq!(map.vector(1, &values), [8.0, -5.0, 0.0]);
+        assert_eq!(map.vector(2, &values), [0.0; 3]);
+        assert_eq!(map.amplitudes().collect::<Vec<_>>(), [(2, &amplitude)]);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use carom_mesh::{ElementId, Mesh};
 use crate::beam::{Beam, SectionForces};
 use crate::discrete::{Discrete, DiscreteSpec, VisitRow};
 use crate::distortion::Distortion;
+use crate::reduced::Reduced;
 use crate::rigid::Rigid;
 use crate::scratch::Scratch;
 use crate::solid::{BodySpec, Solid};
@@ -28,6 +29,8 @@ pub enum Body {
     Rigid(Rigid),
     /// Point masses, springs or dashpots.
     Discrete(Discrete),
+    /// A body reduced to retained nodes and modes.
+    Reduced(Reduced),
 }
 
 impl Body {
@@ -68,7 +71,7 @@ impl Body {
     pub fn as_solid(&self) -> Option<&Solid> {
         match self {
             Body::Solid(solid) => Some(solid),
-            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => None,
+            _ => None,
         }
     }
 
@@ -76,7 +79,7 @@ impl Body {
     pub fn as_beam(&self) -> Option<&Beam> {
         match self {
             Body::Beam(beam) => Some(beam),
-            Body::Solid(_) | Body::Rigid(_) | Body::Discrete(_) => None,
+            _ => None,
         }
     }
 
@@ -84,24 +87,46 @@ impl Body {
     pub fn as_rigid(&self) -> Option<&Rigid> {
         match self {
             Body::Rigid(rigid) => Some(rigid),
-            Body::Solid(_) | Body::Beam(_) | Body::Discrete(_) => None,
+            _ => None,
         }
     }
 
     /// The discrete elements that it is, if it is some.
     pub fn as_discrete(&self) -> Option<&Discrete> {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => None,
             Body::Discrete(discrete) => Some(discrete),
+            _ => None,
+        }
+    }
+
+    /// The reduced body that it is, if it is one.
+    pub fn as_reduced(&self) -> Option<&Reduced> {
+        match self {
+            Body::Reduced(reduced) => Some(reduced),
+            _ => None,
+        }
+    }
+
+    /// Adds the forces (N) at a displacement of a body whose forces may have a resultant ([`Body::balances_itself`]).
+    pub fn add_unbalanced_force(&self, at: &Placement, f: &mut [f64]) {
+        match self {
+            Body::Discrete(discrete) => {
+                discrete.add_spring_force(at, f);
+            }
+            Body::Reduced(reduced) if reduced.reduction().is_grounded => {
+                reduced.force(at, f);
+            }
+            _ => {}
         }
     }
 
     /// Whether its forces on the system have no resultant and no moment. Those of springs and dashpots may have both: on the
-    /// ground, and across their nodes.
+    /// ground, and across their nodes; so may those of a reduced body that supports hold.
     pub fn balances_itself(&self) -> bool {
         match self {
             Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => true,
             Body::Discrete(discrete) => !discrete.has_stiffness(),
+            Body::Reduced(reduced) => !reduced.reduction().is_grounded,
         }
     }
 
@@ -110,6 +135,7 @@ impl Body {
         match self {
             Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => false,
             Body::Discrete(discrete) => discrete.has_damping(),
+            Body::Reduced(reduced) => reduced.reduction().damping.is_some(),
         }
     }
 
@@ -120,6 +146,7 @@ impl Body {
             Body::Beam(beam) => beam.name(),
             Body::Discrete(discrete) => discrete.name(),
             Body::Rigid(rigid) => rigid.name(),
+            Body::Reduced(reduced) => reduced.name(),
         }
     }
 
@@ -130,6 +157,7 @@ impl Body {
             Body::Beam(beam) => beam.cells(),
             Body::Discrete(discrete) => discrete.cells(),
             Body::Rigid(rigid) => rigid.cells(),
+            Body::Reduced(reduced) => reduced.cells(),
         }
     }
 
@@ -140,6 +168,7 @@ impl Body {
             Body::Beam(_) => true,
             Body::Discrete(discrete) => discrete.is_linear(),
             Body::Rigid(_) => false,
+            Body::Reduced(_) => true,
         }
     }
 
@@ -149,6 +178,7 @@ impl Body {
             Body::Solid(solid) => Some(solid.wave_speed()),
             Body::Beam(beam) => Some(beam.wave_speed()),
             Body::Rigid(_) | Body::Discrete(_) => None,
+            Body::Reduced(reduced) => reduced.reduction().full.wave_speed(),
         }
     }
 
@@ -158,6 +188,7 @@ impl Body {
             Body::Solid(solid) => solid.smallest_size(),
             Body::Beam(beam) => beam.smallest_size(),
             Body::Rigid(_) | Body::Discrete(_) => f64::INFINITY,
+            Body::Reduced(reduced) => reduced.reduction().full.smallest_size(),
         }
     }
 
@@ -165,13 +196,17 @@ impl Body {
     pub fn lumps(&self) -> bool {
         match self {
             Body::Beam(beam) => beam.lumps(),
-            Body::Solid(_) | Body::Rigid(_) | Body::Discrete(_) => true,
+            Body::Solid(_) | Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => true,
         }
     }
 
     /// Forces and moments in the sections of each element of beams, in the order of [`Body::cells`]; none of other bodies.
     pub fn section_forces(&self, u: &[f64]) -> Option<Vec<SectionForces>> {
-        Some(self.as_beam()?.section_forces(u))
+        match self {
+            Body::Beam(beam) => Some(beam.section_forces(u)),
+            Body::Reduced(reduced) => reduced.section_forces(u),
+            _ => None,
+        }
     }
 
     /// Time that a wave needs to pass over its smallest element, s; zero without waves.
@@ -184,7 +219,7 @@ impl Body {
     pub fn history_len(&self) -> usize {
         match self {
             Body::Solid(solid) => solid.history_len(),
-            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => 0,
+            _ => 0,
         }
     }
 
@@ -192,7 +227,7 @@ impl Body {
     pub fn start_history(&self, out: &mut [f64]) {
         match self {
             Body::Solid(solid) => solid.start_history(out),
-            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => {}
+            _ => {}
         }
     }
 
@@ -207,6 +242,7 @@ impl Body {
             Body::Beam(beam) => beam.internal_force(u, f),
             Body::Discrete(discrete) => discrete.internal_force(u, f),
             Body::Rigid(_) => 0.0,
+            Body::Reduced(reduced) => reduced.internal_force(u, f),
         }
     }
 
@@ -229,6 +265,7 @@ impl Body {
             Body::Solid(solid) => solid.force(at, new, scratch, f),
             Body::Beam(beam) => Ok(beam.force(at, f)),
             Body::Discrete(discrete) => Ok(discrete.add_spring_force(at, f)),
+            Body::Reduced(reduced) => Ok(reduced.force(at, f)),
             Body::Rigid(rigid) => {
                 rigid.add_force(at, f);
                 Ok(Stored::default())
@@ -259,6 +296,10 @@ impl Body {
                 rigid.add_tangent(at, by_v, matrix);
                 Ok(())
             }
+            Body::Reduced(reduced) => {
+                reduced.add_tangent(at, [by_u, by_v], matrix);
+                Ok(())
+            }
             Body::Discrete(discrete) => {
                 discrete.add_tangent(at, [by_u, by_v], matrix);
                 Ok(())
@@ -272,6 +313,7 @@ impl Body {
         match self {
             Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.add_damping_force(v, f),
+            Body::Reduced(reduced) => reduced.add_damping_force(v, f),
         }
     }
 
@@ -282,6 +324,8 @@ impl Body {
             Body::Beam(beam) => beam.add_lumped_mass(mass),
             Body::Discrete(discrete) => discrete.add_lumped_mass(mass),
             Body::Rigid(rigid) => rigid.add_mass(mass),
+            // its mass is not diagonal
+            Body::Reduced(_) => {}
         }
     }
 
@@ -294,6 +338,7 @@ impl Body {
             Body::Beam(beam) => beam.assemble([factors[0], factors[2]], part, matrix),
             Body::Discrete(discrete) => discrete.assemble(factors, part, matrix),
             Body::Rigid(_) => {}
+            Body::Reduced(reduced) => reduced.assemble(factors, part, matrix),
         }
     }
 
@@ -304,6 +349,7 @@ impl Body {
             Body::Beam(beam) => beam.each_element(visit),
             Body::Discrete(discrete) => discrete.each_element(visit),
             Body::Rigid(rigid) => visit(&[rigid.node()]),
+            Body::Reduced(reduced) => reduced.each_element(visit),
         }
     }
 
@@ -315,6 +361,7 @@ impl Body {
             // neither volume nor stress
             Body::Discrete(discrete) => vec![(0.0, Mat3::zeros()); discrete.cells().len()],
             Body::Rigid(rigid) => vec![(0.0, Mat3::zeros()); rigid.cells().len()],
+            Body::Reduced(reduced) => reduced.stresses(u),
         }
     }
 
@@ -323,7 +370,7 @@ impl Body {
     pub fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
         match self {
             Body::Solid(solid) => solid.plastic_strains(history),
-            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => None,
+            _ => None,
         }
     }
 
@@ -333,7 +380,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.frequency_bound(),
             Body::Beam(beam) => beam.frequency_bound(),
-            Body::Rigid(_) | Body::Discrete(_) => 0.0,
+            Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => 0.0,
         }
     }
 
@@ -345,15 +392,15 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.frequency_bound_at(at),
             Body::Beam(beam) => Ok(beam.frequency_bound()),
-            Body::Rigid(_) | Body::Discrete(_) => Ok(0.0),
+            Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => Ok(0.0),
         }
     }
 
     /// Visits the rows n of springs, as unknowns and coefficients of the elongation: motions that they hold.
     pub fn each_spring(&self, visit: &mut VisitRow) {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.each_spring(visit),
+            _ => {}
         }
     }
 
@@ -362,8 +409,8 @@ impl Body {
     /// (Gershgorin).
     pub fn add_row_sums(&self, stiffness: &mut [f64], damping: &mut [f64]) {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.add_row_sums(stiffness, damping),
+            _ => {}
         }
     }
 
@@ -372,7 +419,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.distortion(u, point, before),
             Body::Beam(beam) => Some(beam.distortion(u, before)),
-            Body::Rigid(_) | Body::Discrete(_) => None,
+            Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => None,
         }
     }
 }

@@ -44,6 +44,10 @@ pub fn facts(built: &Built) -> Vec<Fact> {
     for (k, body) in system.bodies.iter().enumerate() {
         let Some(body) = body.as_solid() else {
             facts.extend(body.as_discrete().map(discrete_fact));
+            facts.extend(
+                body.as_reduced()
+                    .map(|reduced| reduced_fact(system, k, reduced)),
+            );
             facts.extend(body.as_beam().map(|beam| beam_fact(system, k, beam)));
             continue;
         };
@@ -101,6 +105,28 @@ pub fn facts(built: &Built) -> Vec<Fact> {
         ));
     }
     facts
+}
+
+/// A line for a reduced body: what it is reduced to, and how far its modes go.
+fn reduced_fact(system: &System, body: usize, reduced: &carom_bodies::Reduced) -> Fact {
+    let data = reduced.reduction();
+    let modes = data.frequencies.len();
+    let mass = if data.is_massless {
+        " without mass"
+    } else {
+        ""
+    };
+    let highest = data.frequencies.last().copied().unwrap_or(0.0);
+    fact(
+        format!("body {}", reduced.name()),
+        format!(
+            "reduced from {} unknowns to {} of {} retained nodes{mass} and {modes} modes up to {highest:.4e} Hz, {:.6} kg",
+            data.unknowns.len(),
+            data.len() - modes,
+            data.retained.len(),
+            system.body_mass(body)
+        ),
+    )
 }
 
 /// A line for beams: theory, section, mass, waves.

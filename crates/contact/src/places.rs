@@ -54,6 +54,10 @@ impl Places<'_> {
             *x += u;
         }
         match self.unknowns.carrier(node) {
+            None if self.unknowns.of(node).is_empty() => {
+                let moved = self.unknowns.vector(node, self.u);
+                [0, 1, 2].map(|i| place[i] + moved[i])
+            }
             None => place,
             Some(carrier) => {
                 let [start, turned] = self.turn(own);

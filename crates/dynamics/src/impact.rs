@@ -273,7 +273,14 @@ impl Sides<'_> {
         let bodies = [Some(secondary), primary];
         let mut free = [[0.0; 3]; 2];
         for (body, free) in bodies.iter().zip(&mut free) {
-            each_free(system, *body, |_, i, m| free[i] += m);
+            let reduced = body.filter(|&body| system.bodies[body].as_reduced().is_some());
+            match reduced {
+                Some(body) if system.bodies[body].balances_itself() => {
+                    free.fill(system.body_mass(body));
+                }
+                Some(_) => {}
+                None => each_free(system, *body, |_, i, m| free[i] += m),
+            }
         }
         Sides {
             system,
@@ -343,6 +350,19 @@ impl Sides<'_> {
 /// Visits the unknowns of a body that no support holds, with their direction and mass.
 fn each_free(system: &System, body: Option<usize>, mut visit: impl FnMut(usize, usize, f64)) {
     let nodes = body.map_or(&[][..], |body| &system.body_masses[body][..]);
+    if let Some(reduced) = body.and_then(|body| system.bodies[body].as_reduced()) {
+        let axes = if reduced.reduction().is_grounded {
+            0
+        } else {
+            system.dim
+        };
+        for axis in 0..axes {
+            reduced
+                .inertia(axis)
+                .for_each(|(unknown, m)| visit(unknown, axis, m));
+        }
+        return;
+    }
     for &(node, m) in nodes {
         for (i, unknown) in system.unknowns.translations_of(node).enumerate() {
             if !system.fixed[unknown] {

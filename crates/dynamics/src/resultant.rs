@@ -38,6 +38,9 @@ impl Resultant {
         for node in 0..nodes {
             let mut x = system.x[node];
             let node = node as u32;
+            if unknowns.translations_of(node).is_empty() {
+                continue;
+            }
             let force = unknowns.vector(node, f);
             for u in displacements {
                 let u = unknowns.vector(node, u);
@@ -55,6 +58,12 @@ impl Resultant {
                 for i in 0..3 {
                     sum.angular[i] += moment[i];
                 }
+            }
+        }
+        for (unknown, amplitude) in unknowns.amplitudes().filter(|_| !f.is_empty()) {
+            for i in 0..3 {
+                sum.linear[i] += amplitude.translation[i] * f[unknown];
+                sum.angular[i] += amplitude.rotation[i] * f[unknown];
             }
         }
         let moments = if f.is_empty() { &[][..] } else { frames };

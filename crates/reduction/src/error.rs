@@ -13,4 +13,35 @@ pub enum Error {
         /// Why.
         cause: carom_algebra::Error,
     },
+    /// A body that cannot be reduced.
+    #[error("body '{body}' cannot be reduced: {why}")]
+    Refused {
+        /// Its name.
+        body: String,
+        /// Why, and what would do.
+        why: &'static str,
+    },
+    /// More modes than there are.
+    #[error(
+        "body '{body}' has {exist} modes with its retained nodes, as many as unknowns with mass that are not held; {asked} were asked for"
+    )]
+    Count {
+        /// Its name.
+        body: String,
+        /// The number asked for.
+        asked: usize,
+        /// The number that exist.
+        exist: usize,
+    },
+    /// A static response that could not be computed.
+    #[error("body '{body}' cannot be reduced: {cause}")]
+    Static {
+        /// Its name.
+        body: String,
+        /// Why.
+        cause: carom_algebra::Error,
+    },
+    /// The body by itself could not be built.
+    #[error(transparent)]
+    System(#[from] carom_system::Error),
 }

@@ -1,12 +1,17 @@
-//! Eigenmodes of the linear parts of a system.
+//! Eigenmodes of the linear parts of a system, and bodies reduced to modes.
 //!
 //! A part is what the matrices of bodies and the rows of links connect. Contacts are open; bodies at finite strain are taken
-//! about their undeformed state. No step is taken here. Theory: the chapter on modes of the documentation.
+//! about their undeformed state. A body is reduced in a model, before its system is built. No step is taken here. Theory: the chapters
+//! on modes and reduced bodies of the documentation.
 
 mod error;
 mod matrices;
 mod modes;
+mod reduce;
+mod retained;
+mod statics;
 
 pub use error::Error;
 pub use matrices::Matrices;
 pub use modes::{Modes, Participation, modes};
+pub use reduce::{Keep, reduce};

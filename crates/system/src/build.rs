@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::{Kind, Unknowns};
-use carom_bodies::{Body, Kinematics, Rigid};
+use carom_bodies::{Body, Kinematics, Reduced, Rigid};
 use carom_contact::{Contact, Frames, Places};
 use carom_mesh::Parts;
 use carom_schemes::Scheme;
@@ -69,9 +69,14 @@ impl System {
             .iter()
             .map(|&node| model.mesh.nodes[node as usize])
             .collect();
-        let (unknowns, initial_frames) = unknowns(&model, &centres, &number, &mesh_node)?;
+        let (mut unknowns, initial_frames) = unknowns(&model, &centres, &number, &mesh_node)?;
         let body = |(body, centre): (&ModelBody, &Option<u32>)| {
             let (spec, unknowns) = (body.spec.clone(), &unknowns);
+            if let (Some(reduced), Some(centre)) = (&body.reduced, centre) {
+                let node = (number[*centre as usize], unknowns);
+                let reduced = Reduced::new(Arc::clone(reduced), &number, node);
+                return Ok(Body::Reduced(reduced));
+            }
             match (body.rigid, centre) {
                 (Some(rigid), Some(centre)) => {
                     let node = (number[*centre as usize], unknowns);
@@ -91,6 +96,9 @@ impl System {
             .map(body)
             .chain(model.discrete.iter().map(discrete))
             .collect::<Result<Vec<_>, _>>()?;
+        for body in bodies.iter().filter_map(Body::as_reduced) {
+            unknowns.recover(body.basis(&number));
+        }
         let mut fixed = vec![false; unknowns.len()];
         for support in &model.supports {
             let numbers = support.nodes.iter().map(|&node| number[node as usize]);
@@ -104,16 +112,20 @@ impl System {
         let mut mass = Mass::of(&bodies, &model.bodies, &unknowns);
         let mut body_masses: Vec<_> = bodies
             .iter()
-            .map(|body| node_masses(body, &unknowns))
+            .map(|body| node_masses(body, (&number, &unknowns)))
             .collect();
         check_masses(&bodies, &body_masses, &mesh_node)?;
         let masses = (&mut mass, &mut body_masses[..]);
         let massless = redistribute(&model, &bodies, &number, (&x, &unknowns), masses)?;
-        let load = mass.weight(&unknowns, model.gravity);
+        let load = mass.weight((&bodies, &unknowns), model.gravity);
         let nonlinear =
             NumberedNonlinear::new(&model, (&number, &unknowns), (&bodies, &mass), &fixed)?;
-        let (mut initial_displacement, initial_velocity) =
-            initial(&model, &body_masses, &fixed, (&unknowns, &initial_frames));
+        let (mut initial_displacement, initial_velocity) = initial(
+            &model,
+            (&bodies, &body_masses),
+            &fixed,
+            (&unknowns, &initial_frames),
+        );
         for follows in &nonlinear.follows {
             fixed[follows.unknown as usize] = true;
             initial_displacement[follows.unknown as usize] = 0.0;
@@ -336,7 +348,13 @@ fn schemes(
     Ok((schemes, zones.collect(), spans))
 }
 
-fn node_masses(body: &Body, unknowns: &Unknowns) -> Vec<(u32, f64)> {
+fn node_masses(body: &Body, (number, unknowns): (&[u32], &Unknowns)) -> Vec<(u32, f64)> {
+    if let Body::Reduced(reduced) = body {
+        let masses = reduced.reduction().masses.iter();
+        return masses
+            .map(|(node, m)| (number[*node as usize], *m))
+            .collect();
+    }
     let mut mass = vec![0.0; unknowns.len()];
     body.add_lumped_mass(&mut mass);
     let first = (0..unknowns.len()).filter(|&i| unknowns.kind(i) == Kind::Translation(0));
@@ -348,7 +366,7 @@ fn node_masses(body: &Body, unknowns: &Unknowns) -> Vec<(u32, f64)> {
 
 fn initial(
     model: &Model,
-    masses: &[Vec<(u32, f64)>],
+    (system_bodies, masses): (&[Body], &[Vec<(u32, f64)>]),
     fixed: &[bool],
     (unknowns, frames): (&Unknowns, &[Rotation]),
 ) -> (Vec<f64>, Vec<f64>) {
@@ -364,6 +382,15 @@ fn initial(
                     u[dof] = displacement.map_or(u[dof], |given| given[i]);
                     v[dof] = velocity.map_or(v[dof], |given| given[i]);
                 }
+            }
+        }
+    }
+    for (body, given) in system_bodies.iter().zip(&model.bodies) {
+        if let Body::Reduced(reduced) = body {
+            for (of, motion) in [(&mut u, given.displacement), (&mut v, given.velocity)] {
+                reduced
+                    .uniform(motion)
+                    .for_each(|(unknown, q)| of[unknown] = q);
             }
         }
     }

@@ -32,14 +32,29 @@ impl Mass {
     }
 
     /// M g in N: of a consistent mass the work of gravity (m/s²) over the shapes of the elements, moments included.
-    pub(crate) fn weight(&self, unknowns: &Unknowns, gravity: [f64; 3]) -> Vec<f64> {
+    pub(crate) fn weight(
+        &self,
+        (bodies, unknowns): (&[Body], &Unknowns),
+        gravity: [f64; 3],
+    ) -> Vec<f64> {
         let along = |unknown: usize| match unknowns.kind(unknown) {
             Kind::Translation(axis) => gravity[axis],
-            Kind::Rotation(_) => 0.0,
+            Kind::Rotation(_) | Kind::Amplitude(_) => 0.0,
         };
-        let field: Vec<f64> = (0..unknowns.len()).map(along).collect();
+        let mut field: Vec<f64> = (0..unknowns.len()).map(along).collect();
+        for (unknown, amplitude) in unknowns.amplitudes() {
+            let terms = amplitude.translation.iter().zip(gravity);
+            field[unknown] = terms.map(|(part, g)| part * g).sum();
+        }
         let mut load = vec![0.0; unknowns.len()];
         self.multiply(&field, &mut load);
+        for body in bodies.iter().filter_map(Body::as_reduced) {
+            for (axis, g) in gravity.iter().enumerate().filter(|(_, g)| **g != 0.0) {
+                for (unknown, missing) in body.missing(axis) {
+                    load[unknown] += g * missing;
+                }
+            }
+        }
         load
     }
 

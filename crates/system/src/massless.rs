@@ -36,6 +36,22 @@ pub(crate) fn redistribute(
         }
     }
     for (k, masses) in body_masses.iter_mut().enumerate() {
+        if let Body::Reduced(reduced) = &bodies[k] {
+            let own = reduced.reduction();
+            let mut retained = own
+                .retained
+                .iter()
+                .map(|&node| number[node as usize] as usize);
+            if own.is_massless {
+                retained.for_each(|node| bare[node] = true);
+            } else if retained.any(|node| bare[node]) {
+                return Err(Error::Massless {
+                    body: reduced.name().to_owned(),
+                    cause: "its reduction leaves mass at the retained nodes; reduce it with massless = true",
+                });
+            }
+            continue;
+        }
         if !masses.iter().any(|&(node, _)| bare[node as usize]) {
             continue;
         }

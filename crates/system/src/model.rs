@@ -1,8 +1,10 @@
 //! Everything from which a system is built.
 
+use std::sync::Arc;
+
 use carom_algebra::unknowns::Kind;
 use carom_arlequin::Row;
-use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind};
+use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind, Reduction};
 use carom_contact::{Initial, Integration, Law, Obstacle, Sliding};
 use carom_mesh::{Mesh, Surface};
 use carom_schemes::Scheme;
@@ -128,6 +130,8 @@ pub struct ModelBody {
     pub displacement: [f64; 3],
     /// What it is as a rigid body; its cells then only say which nodes it carries.
     pub rigid: Option<ModelRigid>,
+    /// What it is reduced to: retained nodes and modes.
+    pub reduced: Option<Arc<Reduction>>,
 }
 
 /// A rigid body and its initial rotation.
@@ -148,6 +152,7 @@ impl ModelBody {
             velocity: [0.0; 3],
             displacement: [0.0; 3],
             rigid: None,
+            reduced: None,
         }
     }
 }
@@ -191,6 +196,7 @@ impl Support {
         match kind {
             Kind::Translation(axis) => self.fix[axis],
             Kind::Rotation(axis) => self.fix_rotations[axis],
+            Kind::Amplitude(_) => false,
         }
     }
 }

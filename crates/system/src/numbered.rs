@@ -82,7 +82,7 @@ impl NumberedNonlinear {
             let kind = Kind::Rotation(turn.axis);
             numbered.follow((node, &turn.angle), kind, (number, unknowns), fixed)?;
         }
-        numbered.loads = numbered_loads(model, (number, unknowns), mass)?;
+        numbered.loads = numbered_loads(model, (number, unknowns), (bodies, mass))?;
         let mut first = 0;
         for body in bodies {
             numbered.histories.push(first..first + body.history_len());
@@ -102,7 +102,8 @@ impl NumberedNonlinear {
     ) -> Result<(), Error> {
         let place = self.amplitudes.len();
         self.amplitudes.push(amplitude.clone());
-        let (Kind::Translation(direction) | Kind::Rotation(direction)) = kind;
+        let (Kind::Translation(direction) | Kind::Rotation(direction) | Kind::Amplitude(direction)) =
+            kind;
         let mut own: Vec<u32> = Vec::new();
         for &node in nodes {
             let refused = |why| Error::Nonlinear {

@@ -1,7 +1,7 @@
 //! Loads in time in the numbers of a system: on surfaces, at nodes, and the inertia force of an accelerated frame.
 
 use carom_algebra::unknowns::{Kind, Unknowns};
-use carom_bodies::FollowerPressure;
+use carom_bodies::{Body, FollowerPressure};
 use carom_signals::Amplitude;
 
 use crate::error::Error;
@@ -37,7 +37,7 @@ pub enum NumberedForce {
 pub fn numbered_loads(
     model: &Model,
     (number, unknowns): (&[u32], &Unknowns),
-    mass: &Mass,
+    (bodies, mass): (&[Body], &Mass),
 ) -> Result<Vec<NumberedLoad>, Error> {
     let given = &model.nonlinear;
     let mut numbered = Vec::new();
@@ -61,7 +61,7 @@ pub fn numbered_loads(
         if let Some(amplitude) = acceleration {
             numbered.push(NumberedLoad {
                 amplitude: amplitude.clone(),
-                force: NumberedForce::Dead(inertia_forces(direction, unknowns, mass)),
+                force: NumberedForce::Dead(inertia_forces(direction, (bodies, unknowns), mass)),
                 bodies: Vec::new(),
             });
         }
@@ -70,12 +70,14 @@ pub fn numbered_loads(
 }
 
 /// -M r, with r a unit translation of all nodes in a direction: the inertia force for a unit acceleration of the frame.
-fn inertia_forces(direction: usize, unknowns: &Unknowns, mass: &Mass) -> Vec<(u32, f64)> {
-    let moves = |i: usize| unknowns.kind(i) == Kind::Translation(direction);
-    let translation = (0..unknowns.len()).map(|i| if moves(i) { 1.0 } else { 0.0 });
-    let translation: Vec<f64> = translation.collect();
-    let mut force = vec![0.0; unknowns.len()];
-    mass.multiply(&translation, &mut force);
+fn inertia_forces(
+    direction: usize,
+    (bodies, unknowns): (&[Body], &Unknowns),
+    mass: &Mass,
+) -> Vec<(u32, f64)> {
+    let mut unit = [0.0; 3];
+    unit[direction] = 1.0;
+    let force = mass.weight((bodies, unknowns), unit);
     let forces = (0u32..).zip(force).filter(|(_, force)| *force != 0.0);
     forces.map(|(unknown, force)| (unknown, -force)).collect()
 }

@@ -30,12 +30,13 @@ impl Order {
     pub const ALL: [Order; 3] = [Order::Displacement, Order::Velocity, Order::Acceleration];
 }
 
-/// Adds the centre of mass of each rigid body to the nodes of the mesh; their numbers, by body.
+/// Adds the centre of mass of each rigid or reduced body to the nodes of the mesh, for its unknowns; their numbers, by body.
 pub(crate) fn add_centres(model: &mut Model) -> Vec<Option<u32>> {
     let nodes = &mut model.mesh.nodes;
     let mut add = |body: &ModelBody| {
-        let inertia = body.rigid?.inertia;
-        nodes.push(inertia.centre);
+        let of_rigid = body.rigid.map(|rigid| rigid.inertia.centre);
+        let of_reduced = body.reduced.as_ref().map(|reduced| reduced.centre);
+        nodes.push(of_rigid.or(of_reduced)?);
         Some(nodes.len() as u32 - 1)
     };
     model.bodies.iter().map(&mut add).collect()
@@ -61,6 +62,18 @@ pub(crate) fn unknowns(
     }
     for node in turned_by_masses(model) {
         kinds[number[node as usize] as usize] = NodeKind::SmallRotations;
+    }
+    for (body, centre) in model.bodies.iter().zip(centres) {
+        let (Some(reduced), Some(centre)) = (&body.reduced, *centre) else {
+            continue;
+        };
+        for node in nodes_of(model, body) {
+            if reduced.retained.binary_search(&node).is_err() {
+                kinds[number[node as usize] as usize] = NodeKind::Recovered;
+            }
+        }
+        let amplitudes = NodeKind::Amplitudes(reduced.amplitudes.len());
+        kinds[number[centre as usize] as usize] = amplitudes;
     }
     let mut frames = Vec::new();
     for (body, centre) in model.bodies.iter().zip(centres) {

@@ -174,6 +174,10 @@ impl System {
 
     /// Mean velocity of a body, Σ m v / Σ m over its nodes, m/s.
     pub fn mean_velocity(&self, body: usize, v: &[f64]) -> [f64; 3] {
+        if let Body::Reduced(reduced) = &self.bodies[body] {
+            let momentum = |axis| reduced.inertia(axis).map(|(i, m)| m * v[i]).sum::<f64>();
+            return [0, 1, 2].map(|axis| momentum(axis) / self.body_mass(body));
+        }
         let (mut momentum, mut total) = ([0.0; 3], 0.0);
         for &(node, m) in &self.body_masses[body] {
             total += m;
@@ -187,8 +191,11 @@ impl System {
 
     /// An unknown of a body.
     pub fn first_unknown(&self, body: usize) -> usize {
-        let node = self.body_masses[body].first().map_or(0, |(node, _)| *node);
-        self.unknowns.first(node)
+        let mut first = None;
+        self.bodies[body].each_element(&mut |nodes| {
+            first.get_or_insert(self.unknowns.first(nodes[0]));
+        });
+        first.unwrap_or(0)
     }
 
     /// Nodes of a range of unknowns that has all of theirs.

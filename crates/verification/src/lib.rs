@@ -88,6 +88,7 @@ mod order;
 mod order_features;
 mod quadrature;
 mod random_field;
+mod reduced_bodies;
 mod rejections;
 mod rejections_features;
 mod restitution;
@@ -210,6 +211,7 @@ registry! {
     order_features
     quadrature
     random_field
+    reduced_bodies
     rejections
     rejections_features
     restitution

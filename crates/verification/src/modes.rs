@@ -56,7 +56,7 @@ fn bar(mass: MassKind, across: usize, is_held: bool) -> Result<Modes, Error> {
     made.mass = mass;
     let mut supports = Vec::new();
     if is_held {
-        supports.push(support(&mesh, "left", [true; 3])?);
+        supports.push(support(&mesh, "bar.left", [true; 3])?);
     }
     let model = Model {
         supports,

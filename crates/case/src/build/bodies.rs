@@ -81,6 +81,7 @@ impl Builder<'_> {
                 velocity,
                 displacement,
                 rigid,
+                reduced: None,
             });
         }
         self.one_plane(&bodies);

@@ -21,6 +21,7 @@ mod pieces;
 mod plan;
 mod probes;
 mod profiles;
+mod reductions;
 mod reference;
 mod refused;
 mod rigid;
@@ -174,6 +175,10 @@ impl Builder<'_> {
                 ..self.nonlinear(loads, (motions, turns))
             },
         };
+        self.reduce(&mut model, &joints.links);
+        if !self.problems.is_empty() {
+            return None;
+        }
         let nodes = model.mesh.nodes.clone();
         let mut zoned = None;
         if self.plan.zones.is_empty() {

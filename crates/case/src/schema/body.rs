@@ -28,8 +28,30 @@ pub struct Body {
     pub damping: Option<Damping>,
     /// Makes the body rigid: its cells keep their shape, and it moves as one. Default: deformable.
     pub rigid: Option<Rigid>,
+    /// Reduces the body to the nodes on which something acts and to modes, for a material at small strain. Default: not reduced.
+    pub reduction: Option<Reduction>,
     /// Initial state. After a static stage the velocity applies at the end of that stage. Default: at rest, undeformed.
     pub initial: Option<Initial>,
+}
+
+/// A body reduced to nodes and modes. It retains the nodes of contacts, stops, links, loads and motions, those that it shares with other
+/// bodies and discrete elements, and those of `retain`. Supports are part of the reduction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Reduction {
+    /// Number of modes.
+    #[schemars(extend("minimum" = 1))]
+    pub modes: u32,
+    /// Groups whose nodes are retained as well.
+    #[serde(default)]
+    pub retain: Vec<String>,
+    /// Whether the retained nodes have no mass, so that they do not vibrate against what they touch. Default: they have mass.
+    #[serde(default)]
+    pub massless: bool,
+    /// Damping ratio of the modes, beside `damping`. Default: 0.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub damping_ratio: f64,
 }
 
 /// How cells integrate the internal work.

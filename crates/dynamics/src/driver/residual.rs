@@ -1,7 +1,7 @@
 //! The residual of an iteration, and how far it is from nothing.
 
 use carom_algebra::unknowns::Kind;
-use carom_bodies::Body;
+use carom_bodies::{Body, Reduced};
 use carom_mesh::ElementId;
 
 use super::loads::damping_rate;
@@ -152,7 +152,13 @@ impl Driver {
         let spins = spins.map(|unknown| {
             (self.system.mass.lumped[unknown] * self.state.motion.v[unknown]).powi(2)
         });
-        (squares.sum::<f64>() + spins.sum::<f64>()).sqrt() / self.dt
+        let reduced = self.system.bodies.iter().filter_map(Body::as_reduced);
+        let of_axis = |body: &Reduced, axis: usize| {
+            let terms = body.inertia(axis);
+            terms.map(|(i, m)| m * self.state.motion.v[i]).sum::<f64>()
+        };
+        let reduced = reduced.flat_map(|body| [0, 1, 2].map(|axis| of_axis(body, axis).powi(2)));
+        (squares.sum::<f64>() + spins.sum::<f64>() + reduced.sum::<f64>()).sqrt() / self.dt
     }
 
     /// Norm of what rounding of the positions leaves in the internal forces, N. Displacements cannot be told apart within
@@ -165,7 +171,7 @@ impl Driver {
                 let x = &system.x[system.unknowns.node(unknown) as usize];
                 (x[axis] - system.origin[axis]).abs() + u[unknown].abs()
             }
-            Kind::Rotation(_) => u[unknown].abs(),
+            Kind::Rotation(_) | Kind::Amplitude(_) => u[unknown].abs(),
         });
         2.0 * f64::EPSILON
             * self

@@ -100,7 +100,7 @@ impl<'a> Rigid<'a> {
             Kind::Translation(axis) => (false, axis),
             Kind::Rotation(axis) if unknowns.frame(node).is_none() => (true, axis),
             // finite rotations are not linear in the coordinates
-            Kind::Rotation(_) => return None,
+            Kind::Rotation(_) | Kind::Amplitude(_) => return None,
         };
         let place = &self.places[node as usize];
         let x = [0, 1, 2].map(|j| (place[j] - frame.centre[j]) / frame.size);

@@ -30,9 +30,8 @@ impl Driver {
             dt: self.dt,
             old: &[],
         };
-        let springs = system.bodies.iter().filter_map(|body| body.as_discrete());
-        for some in springs {
-            some.add_spring_force(&at, &mut forces);
+        for body in &system.bodies {
+            body.add_unbalanced_force(&at, &mut forces);
         }
         forces
     }
@@ -62,9 +61,8 @@ impl Driver {
             dt: 0.0,
             old: &[],
         };
-        let springs = self.system.bodies.iter().filter_map(|b| b.as_discrete());
-        for some in springs {
-            some.add_spring_force(&at, work);
+        for body in &self.system.bodies {
+            body.add_unbalanced_force(&at, work);
         }
     }
 }
