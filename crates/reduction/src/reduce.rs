@@ -96,8 +96,10 @@ fn reduction(model: &Model, body: usize, keep: &Keep) -> Result<Reduction, Error
     let mut amplitudes = vec![Amplitude::default(); count - border];
     let mut is_grounded = false;
     for axis in 0..3 {
-        let (moved, turned) = (full.translation(axis), full.rotation(axis));
-        let moves = share(&moved, &inertia[axis]);
+        // nodes that supports hold do not move with the others
+        let [moved, turned] = [full.translation(axis), full.rotation(axis, [0.0; 3])]
+            .map(|motion| full.freed(motion));
+        let moves = share(&moved, &full.inertia(&condensed, &moved));
         let turns = share(&turned, &full.inertia(&condensed, &turned));
         let mut motion: Vec<f64> = full.border.iter().map(|&unknown| moved[unknown]).collect();
         motion.extend(&moves);
@@ -221,14 +223,48 @@ impl Full {
             bodies: vec![self.name.clone()],
             cause,
         })?;
-        match keep.modes > pairs.existing {
-            true => Err(Error::Count {
+        if keep.modes > pairs.existing {
+            return Err(Error::Count {
                 body: self.name.clone(),
                 asked: keep.modes,
                 exist: pairs.existing,
-            }),
-            false => Ok(pairs),
+            });
         }
+        self.straightened(pairs)
+    }
+
+    /// The pairs, those of rigid motions exactly rigid: their combination nearest to each, where all of these are modes.
+    fn straightened(&self, mut pairs: Eigenpairs) -> Result<Eigenpairs, Error> {
+        let mass = self.system.body_masses[0].iter();
+        let total = self.system.body_mass(0);
+        let centre = [0, 1, 2].map(|i| {
+            let moments = mass
+                .clone()
+                .map(|(node, m)| m * self.system.x[*node as usize][i]);
+            moments.sum::<f64>() / total
+        });
+        let turned = (0..3).map(|axis| self.rotation(axis, centre));
+        let motions = (0..3).map(|axis| self.translation(axis)).chain(turned);
+        let moves = |motion: &Vec<f64>| motion.iter().any(|x| *x != 0.0);
+        let motions: Vec<Vec<f64>> = motions.filter(moves).collect();
+        let n = motions.len();
+        if rigid_modes(&pairs) != n {
+            return Ok(pairs);
+        }
+        let factor = DenseCholesky::new(n, &projected(&self.matrices.mass, &motions));
+        let factor = factor.map_err(|cause| self.refused(cause))?;
+        let mut image = vec![0.0; self.matrices.mass.n];
+        for mode in &mut pairs.vectors[..n] {
+            self.matrices.mass.multiply(mode, &mut image);
+            let mut parts: Vec<f64> = motions.iter().map(|motion| dot(motion, &image)).collect();
+            factor.solve(&mut parts);
+            mode.fill(0.0);
+            for (part, motion) in parts.iter().zip(&motions) {
+                add(*part, motion, mode);
+            }
+        }
+        pairs.values[..n].fill(0.0);
+        Ok(pairs)
     }
 
     /// Unknowns that supports hold, and the retained ones.
@@ -380,15 +416,27 @@ impl Full {
         all.map(|i| if moves(i) { 1.0 } else { 0.0 }).collect()
     }
 
-    /// The motion of a unit rotation about an axis through the origin.
-    fn rotation(&self, axis: usize) -> Vec<f64> {
+    /// A motion without that of the unknowns that supports hold.
+    fn freed(&self, mut motion: Vec<f64>) -> Vec<f64> {
+        for (motion, _) in motion
+            .iter_mut()
+            .zip(&self.fixed)
+            .filter(|(_, fixed)| **fixed)
+        {
+            *motion = 0.0;
+        }
+        motion
+    }
+
+    /// The motion of a unit rotation about an axis through a place.
+    fn rotation(&self, axis: usize, about: [f64; 3]) -> Vec<f64> {
         let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
         let unknowns = &self.system.unknowns;
         let of = |i: usize| {
             let x = &self.system.x[unknowns.node(i) as usize];
             match unknowns.kind(i) {
-                Kind::Translation(a) if a == j => -x[k],
-                Kind::Translation(a) if a == k => x[j],
+                Kind::Translation(a) if a == j => about[k] - x[k],
+                Kind::Translation(a) if a == k => x[j] - about[j],
                 Kind::Rotation(a) if a == axis => 1.0,
                 _ => 0.0,
             }

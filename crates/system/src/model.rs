@@ -275,11 +275,18 @@ impl Model {
             |body: &ModelBody| body.rigid.is_some() || body.spec.material.finite().is_some();
         self.nonlinear.asks()
             || self.bodies.iter().any(finite)
+            || self.bodies.iter().any(damped)
             || self.discrete.iter().any(|some| !some.spec.is_linear())
             || self.scheme.get().is_between()
             || self.mixes_schemes()
             || self.contacts.iter().any(needs_newton)
     }
+}
+
+fn damped(body: &ModelBody) -> bool {
+    body.reduced
+        .as_ref()
+        .is_some_and(|reduced| reduced.damping.is_some())
 }
 
 fn needs_newton(contact: &ModelContact) -> bool {

@@ -196,6 +196,40 @@ fn rows(name: &str, problem: &Problem, steps: usize, all: bool) -> Result<Vec<Ro
     }
     let mut errors = Vec::new();
     for (how, massless) in [("Craig-Bampton", false), ("massless", true)] {
+        if let Ok(list) = std::env::var("CAROM_N") {
+            for count in list.split(',').filter_map(|n| n.parse().ok()) {
+                let model = reduced(count, massless)?;
+                let [own, _] = run(&model, problem.inside, steps)?;
+                let kept = model.bodies[0].reduced.as_ref();
+                let highest = kept
+                    .and_then(|kept| kept.frequencies.last())
+                    .copied()
+                    .unwrap_or(0.0);
+                let name = format!("{name}, {how}, {count} modes to {:.1} f1", highest / first);
+                rows.push(Row::shown(name, off(&own, &forces)));
+                let mean = |f: &[f64]| {
+                    f.windows(10)
+                        .map(|w| w.iter().sum::<f64>() / 10.0)
+                        .collect::<Vec<_>>()
+                };
+                rows.push(Row::shown("mean", off(&mean(&own), &mean(&forces))));
+                let found = frequencies(&model, 20)?;
+                let exact = frequencies(&full, 20)?;
+                for part in [0.3, 0.4, 0.5] {
+                    let band = found
+                        .iter()
+                        .zip(&exact)
+                        .take_while(|(_, exact)| **exact < part * highest);
+                    let worst = band
+                        .clone()
+                        .map(|(found, exact)| (found / exact - 1.0).abs());
+                    rows.push(Row::shown(
+                        format!("band {part} {}", band.count()),
+                        worst.fold(0.0, f64::max),
+                    ));
+                }
+            }
+        }
         for count in [2, 20] {
             let model = reduced(count, massless)?;
             let [own, _] = run(&model, problem.inside, steps)?;
