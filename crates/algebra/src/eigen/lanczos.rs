@@ -12,7 +12,7 @@ use crate::reduce::{dot, norm_squared};
 const BLOCK: usize = 6;
 
 /// Residual of a pair at which it has converged, over its own eigenvalue, and over the largest, which is rounding.
-const CONVERGED: [f64; 2] = [1e-12, 1e-15];
+const CONVERGED: [f64; 2] = [1e-12, 1e-14];
 
 /// What is left of a vector after orthogonalisation, over its norm, below which it is rounding.
 const DEPENDENT: f64 = 1e-12;

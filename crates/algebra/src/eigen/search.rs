@@ -14,6 +14,9 @@ use crate::solver::{QuasiDefinite, SparseRow};
 /// Number of unknowns up to which all vectors are computed from a dense matrix.
 const DENSE: usize = 240;
 
+/// The same where eigenvectors of a sparse matrix do not converge.
+const LARGEST_DENSE: usize = 4000;
+
 /// First shift, over the largest quotient of the diagonals of K and M: K - σ M has a condition of its inverse.
 const FIRST_SHIFT: f64 = 1e-9;
 
@@ -81,6 +84,19 @@ impl<'a> Search<'a> {
         Ok(search)
     }
 
+    /// Forgets what was found.
+    fn restart(&mut self) -> Result<(), Error> {
+        if !self.vectors.is_empty() {
+            self.vectors.clear();
+            self.values.clear();
+            self.operator.refactor(&self.free.combined(-self.shift))?;
+            for row in self.independent.clone() {
+                self.take_out(row);
+            }
+        }
+        Ok(())
+    }
+
     fn take_out(&mut self, row: &SparseRow) -> bool {
         let mut dense = vec![0.0; self.free.len()];
         for (&i, c) in row.dofs.iter().zip(&row.coefficients) {
@@ -116,12 +132,24 @@ impl<'a> Search<'a> {
             }
             counted = self.counted(count)?;
         }
-        self.conclude(count, counted)
+        match self.vectors.len() < count {
+            // those that are missing do not converge
+            true if n <= LARGEST_DENSE => self.all(count),
+            true => Err(Error::Analysis {
+                unknowns: n,
+                reason: format!(
+                    "{} of {count} eigenvectors have converged; ask for fewer",
+                    self.vectors.len()
+                ),
+            }),
+            false => self.conclude(count, counted),
+        }
     }
 
     /// All pairs, from a dense matrix.
     fn all(mut self, count: usize) -> Result<Eigenpairs, Error> {
         let n = self.free.len();
+        self.restart()?;
         let (_, vectors) = symmetric(n, &self.operator.dense())?;
         // ascending: the largest 1/(ω² - σ) are the last
         let finite: Vec<&[f64]> = vectors
