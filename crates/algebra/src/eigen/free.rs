@@ -30,10 +30,9 @@ impl Free {
         };
         let mut ranges: Vec<Range<usize>> = Vec::new();
         let mut place = vec![u32::MAX; all];
-        let mut n = 0;
-        for i in (0..all).filter(|&i| !problem.fixed[i] && !empty(i)) {
-            place[i] = n;
-            n += 1;
+        let free = (0..all).filter(|&i| !problem.fixed[i] && !empty(i));
+        for (n, i) in free.enumerate() {
+            place[i] = n as u32;
             match ranges.last_mut() {
                 Some(last) if last.end == i => last.end += 1,
                 _ => ranges.push(i..i + 1),
