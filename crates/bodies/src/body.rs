@@ -225,9 +225,8 @@ impl Body {
 
     /// Writes the history of a body that nothing has happened to, [`Body::history_len`] numbers.
     pub fn start_history(&self, out: &mut [f64]) {
-        match self {
-            Body::Solid(solid) => solid.start_history(out),
-            _ => {}
+        if let Body::Solid(solid) = self {
+            solid.start_history(out);
         }
     }
 
@@ -398,9 +397,8 @@ impl Body {
 
     /// Visits the rows n of springs, as unknowns and coefficients of the elongation: motions that they hold.
     pub fn each_spring(&self, visit: &mut VisitRow) {
-        match self {
-            Body::Discrete(discrete) => discrete.each_spring(visit),
-            _ => {}
+        if let Body::Discrete(discrete) = self {
+            discrete.each_spring(visit);
         }
     }
 
@@ -408,9 +406,8 @@ impl Body {
     /// masses of other bodies, at most, to system vectors: over the mass of the unknown they bound the eigenvalues
     /// (Gershgorin).
     pub fn add_row_sums(&self, stiffness: &mut [f64], damping: &mut [f64]) {
-        match self {
-            Body::Discrete(discrete) => discrete.add_row_sums(stiffness, damping),
-            _ => {}
+        if let Body::Discrete(discrete) = self {
+            discrete.add_row_sums(stiffness, damping);
         }
     }
 

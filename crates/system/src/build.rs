@@ -348,6 +348,9 @@ fn schemes(
     Ok((schemes, zones.collect(), spans))
 }
 
+/// Lumped masses of the nodes of a body, kg.
+type NodeMasses = Vec<(u32, f64)>;
+
 fn node_masses(body: &Body, (number, unknowns): (&[u32], &Unknowns)) -> Vec<(u32, f64)> {
     if let Body::Reduced(reduced) = body {
         let masses = reduced.reduction().masses.iter();
@@ -366,7 +369,7 @@ fn node_masses(body: &Body, (number, unknowns): (&[u32], &Unknowns)) -> Vec<(u32
 
 fn initial(
     model: &Model,
-    (system_bodies, masses): (&[Body], &[Vec<(u32, f64)>]),
+    (system_bodies, masses): (&[Body], &[NodeMasses]),
     fixed: &[bool],
     (unknowns, frames): (&Unknowns, &[Rotation]),
 ) -> (Vec<f64>, Vec<f64>) {

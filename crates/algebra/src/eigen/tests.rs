@@ -121,8 +121,8 @@ fn there_are_as_many_pairs_as_masses() {
     };
     let found = lowest(&problem, 9).unwrap();
     // springs of 1/5 and 1/6 between three unit masses
-    let (a, b) = (1.0 / 5.0, 1.0 / 6.0);
-    let root = (a * a - a * b + b * b as f64).sqrt();
+    let (a, b): (f64, f64) = (1.0 / 5.0, 1.0 / 6.0);
+    let root = (a * a - a * b + b * b).sqrt();
     let exact = [0.0, a + b - root, a + b + root];
     assert_eq!(found.values.len(), 3);
     for (value, exact) in found.values.iter().zip(exact) {

@@ -28,6 +28,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
         velocity: [0.0; 3],
         displacement: [0.0; 3],
         rigid: None,
+        reduced: None,
     }
 }
 
