@@ -7,7 +7,7 @@ use carom_algebra::tensor::Mat3;
 use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
-use crate::beam::{Beam, SectionForces};
+use crate::beam::{Beam, LargeBeam, Rotations, SectionForces};
 use crate::discrete::{Discrete, DiscreteSpec, VisitRow};
 use crate::distortion::Distortion;
 use crate::rigid::Rigid;
@@ -24,6 +24,8 @@ pub enum Body {
     Solid(Solid),
     /// Beams.
     Beam(Beam),
+    /// Beams with finite rotations.
+    LargeBeam(LargeBeam),
     /// A rigid body.
     Rigid(Rigid),
     /// Point masses, springs or dashpots.
@@ -44,7 +46,20 @@ impl Body {
     ) -> Result<Body, Error> {
         match spec.kinematics {
             Kinematics::Beam(section) => {
-                Beam::new(mesh, spec, section, number, unknowns).map(Body::Beam)
+                let beam = Beam::new(mesh, spec, section, number, unknowns)?;
+                match section.rotations {
+                    Rotations::Small => Ok(Body::Beam(beam)),
+                    Rotations::Finite => {
+                        let mut x = vec![[0.0; 3]; unknowns.nodes()];
+                        for (place, &own) in mesh.nodes.iter().zip(number) {
+                            if let Some(x) = x.get_mut(own as usize) {
+                                *x = *place;
+                            }
+                        }
+                        let place = |node: u32| x[node as usize];
+                        LargeBeam::new(beam, &place, unknowns).map(Body::LargeBeam)
+                    }
+                }
             }
             _ => Solid::new(mesh, spec, number, unknowns).map(Body::Solid),
         }
@@ -68,7 +83,7 @@ impl Body {
     pub fn as_solid(&self) -> Option<&Solid> {
         match self {
             Body::Solid(solid) => Some(solid),
-            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => None,
+            Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) | Body::Discrete(_) => None,
         }
     }
 
@@ -76,7 +91,7 @@ impl Body {
     pub fn as_beam(&self) -> Option<&Beam> {
         match self {
             Body::Beam(beam) => Some(beam),
-            Body::Solid(_) | Body::Rigid(_) | Body::Discrete(_) => None,
+            Body::Solid(_) | Body::LargeBeam(_) | Body::Rigid(_) | Body::Discrete(_) => None,
         }
     }
 
@@ -84,31 +99,43 @@ impl Body {
     pub fn as_rigid(&self) -> Option<&Rigid> {
         match self {
             Body::Rigid(rigid) => Some(rigid),
-            Body::Solid(_) | Body::Beam(_) | Body::Discrete(_) => None,
+            Body::Solid(_) | Body::Beam(_) | Body::LargeBeam(_) | Body::Discrete(_) => None,
         }
     }
 
     /// The discrete elements that it is, if it is some.
     pub fn as_discrete(&self) -> Option<&Discrete> {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => None,
+            Body::Solid(_) | Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) => None,
             Body::Discrete(discrete) => Some(discrete),
         }
     }
 
-    /// Whether its forces on the system have no resultant and no moment. Those of springs and dashpots may have both: on the
-    /// ground, and across their nodes.
+    /// Whether its forces on the system have no resultant and no moment. Those of springs, of dashpots and of an elastic foundation
+    /// may have both: on the ground, and across their nodes.
     pub fn balances_itself(&self) -> bool {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => true,
+            Body::Solid(_) | Body::LargeBeam(_) | Body::Rigid(_) => true,
+            Body::Beam(beam) => !beam.has_foundation(),
             Body::Discrete(discrete) => !discrete.has_stiffness(),
+        }
+    }
+
+    /// Adds the forces of springs and of elastic foundations (N), which may have a resultant, to a system vector.
+    pub fn add_spring_force(&self, at: &Placement, f: &mut [f64]) {
+        match self {
+            Body::Solid(_) | Body::LargeBeam(_) | Body::Rigid(_) => {}
+            Body::Beam(beam) => beam.add_foundation_force(at, f),
+            Body::Discrete(discrete) => {
+                discrete.add_spring_force(at, f);
+            }
         }
     }
 
     /// Whether it has dashpots ([`Body::add_damping_force`]).
     pub fn has_damping(&self) -> bool {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => false,
+            Body::Solid(_) | Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) => false,
             Body::Discrete(discrete) => discrete.has_damping(),
         }
     }
@@ -118,6 +145,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.name(),
             Body::Beam(beam) => beam.name(),
+            Body::LargeBeam(beam) => beam.small().name(),
             Body::Discrete(discrete) => discrete.name(),
             Body::Rigid(rigid) => rigid.name(),
         }
@@ -128,6 +156,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.cells(),
             Body::Beam(beam) => beam.cells(),
+            Body::LargeBeam(beam) => beam.small().cells(),
             Body::Discrete(discrete) => discrete.cells(),
             Body::Rigid(rigid) => rigid.cells(),
         }
@@ -139,7 +168,7 @@ impl Body {
             Body::Solid(solid) => solid.is_linear(),
             Body::Beam(_) => true,
             Body::Discrete(discrete) => discrete.is_linear(),
-            Body::Rigid(_) => false,
+            Body::LargeBeam(_) | Body::Rigid(_) => false,
         }
     }
 
@@ -148,6 +177,7 @@ impl Body {
         match self {
             Body::Solid(solid) => Some(solid.wave_speed()),
             Body::Beam(beam) => Some(beam.wave_speed()),
+            Body::LargeBeam(beam) => Some(beam.small().wave_speed()),
             Body::Rigid(_) | Body::Discrete(_) => None,
         }
     }
@@ -157,6 +187,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.smallest_size(),
             Body::Beam(beam) => beam.smallest_size(),
+            Body::LargeBeam(beam) => beam.small().smallest_size(),
             Body::Rigid(_) | Body::Discrete(_) => f64::INFINITY,
         }
     }
@@ -165,6 +196,7 @@ impl Body {
     pub fn lumps(&self) -> bool {
         match self {
             Body::Beam(beam) => beam.lumps(),
+            Body::LargeBeam(beam) => beam.lumps(),
             Body::Solid(_) | Body::Rigid(_) | Body::Discrete(_) => true,
         }
     }
@@ -184,7 +216,7 @@ impl Body {
     pub fn history_len(&self) -> usize {
         match self {
             Body::Solid(solid) => solid.history_len(),
-            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => 0,
+            Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) | Body::Discrete(_) => 0,
         }
     }
 
@@ -192,7 +224,7 @@ impl Body {
     pub fn start_history(&self, out: &mut [f64]) {
         match self {
             Body::Solid(solid) => solid.start_history(out),
-            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => {}
+            Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) | Body::Discrete(_) => {}
         }
     }
 
@@ -205,6 +237,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.internal_force(u, scratch, f),
             Body::Beam(beam) => beam.internal_force(u, f),
+            Body::LargeBeam(_) => 0.0,
             Body::Discrete(discrete) => discrete.internal_force(u, f),
             Body::Rigid(_) => 0.0,
         }
@@ -228,6 +261,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.force(at, new, scratch, f),
             Body::Beam(beam) => Ok(beam.force(at, f)),
+            Body::LargeBeam(beam) => Ok(beam.force(at, f)),
             Body::Discrete(discrete) => Ok(discrete.add_spring_force(at, f)),
             Body::Rigid(rigid) => {
                 rigid.add_force(at, f);
@@ -255,6 +289,10 @@ impl Body {
                 beam.add_tangent(at, by_u, matrix);
                 Ok(())
             }
+            Body::LargeBeam(beam) => {
+                beam.add_tangent(at, [by_u, by_v], matrix);
+                Ok(())
+            }
             Body::Rigid(rigid) => {
                 rigid.add_tangent(at, by_v, matrix);
                 Ok(())
@@ -270,7 +308,7 @@ impl Body {
     /// [`Body::force`], since all their work is dissipated; their derivative is a part of [`Body::add_tangent`].
     pub fn add_damping_force(&self, v: &[f64], f: &mut [f64]) {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => {}
+            Body::Solid(_) | Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.add_damping_force(v, f),
         }
     }
@@ -280,6 +318,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.add_lumped_mass(mass),
             Body::Beam(beam) => beam.add_lumped_mass(mass),
+            Body::LargeBeam(beam) => beam.add_lumped_mass(mass),
             Body::Discrete(discrete) => discrete.add_lumped_mass(mass),
             Body::Rigid(rigid) => rigid.add_mass(mass),
         }
@@ -292,8 +331,24 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.assemble(factors[0], factors[2], part, matrix),
             Body::Beam(beam) => beam.assemble([factors[0], factors[2]], part, matrix),
+            Body::LargeBeam(beam) if factors[2] != 0.0 => beam.add_mass(factors[2], part, matrix),
+            Body::LargeBeam(_) => {}
             Body::Discrete(discrete) => discrete.assemble(factors, part, matrix),
             Body::Rigid(_) => {}
+        }
+    }
+
+    /// The beams that move a fluid along, whose mass has no weight: in a fluid at rest beside it gravity and the motion of the base
+    /// act on the displaced fluid alike.
+    pub fn in_fluid(&self) -> Option<&Beam> {
+        self.as_beam().filter(|beam| beam.has_fluid())
+    }
+
+    /// Whether its mass couples nodes, so that it is never lumped.
+    pub fn couples_mass(&self) -> bool {
+        match self {
+            Body::Discrete(discrete) => discrete.couples_mass(),
+            Body::Solid(_) | Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) => false,
         }
     }
 
@@ -302,6 +357,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.each_element(visit),
             Body::Beam(beam) => beam.each_element(visit),
+            Body::LargeBeam(beam) => beam.small().each_element(visit),
             Body::Discrete(discrete) => discrete.each_element(visit),
             Body::Rigid(rigid) => visit(&[rigid.node()]),
         }
@@ -312,6 +368,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.stresses(u, history),
             Body::Beam(beam) => beam.stresses(u),
+            Body::LargeBeam(beam) => beam.stresses(u),
             // neither volume nor stress
             Body::Discrete(discrete) => vec![(0.0, Mat3::zeros()); discrete.cells().len()],
             Body::Rigid(rigid) => vec![(0.0, Mat3::zeros()); rigid.cells().len()],
@@ -323,7 +380,7 @@ impl Body {
     pub fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
         match self {
             Body::Solid(solid) => solid.plastic_strains(history),
-            Body::Beam(_) | Body::Rigid(_) | Body::Discrete(_) => None,
+            Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) | Body::Discrete(_) => None,
         }
     }
 
@@ -333,6 +390,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.frequency_bound(),
             Body::Beam(beam) => beam.frequency_bound(),
+            Body::LargeBeam(beam) => beam.small().frequency_bound(),
             Body::Rigid(_) | Body::Discrete(_) => 0.0,
         }
     }
@@ -345,14 +403,16 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.frequency_bound_at(at),
             Body::Beam(beam) => Ok(beam.frequency_bound()),
+            Body::LargeBeam(beam) => Ok(beam.small().frequency_bound()),
             Body::Rigid(_) | Body::Discrete(_) => Ok(0.0),
         }
     }
 
-    /// Visits the rows n of springs, as unknowns and coefficients of the elongation: motions that they hold.
+    /// Visits the rows n of springs and of foundations, as unknowns and coefficients of the elongation: motions that they hold.
     pub fn each_spring(&self, visit: &mut VisitRow) {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => {}
+            Body::Solid(_) | Body::LargeBeam(_) | Body::Rigid(_) => {}
+            Body::Beam(beam) => beam.each_spring(visit),
             Body::Discrete(discrete) => discrete.each_spring(visit),
         }
     }
@@ -362,7 +422,7 @@ impl Body {
     /// (Gershgorin).
     pub fn add_row_sums(&self, stiffness: &mut [f64], damping: &mut [f64]) {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => {}
+            Body::Solid(_) | Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.add_row_sums(stiffness, damping),
         }
     }
@@ -372,7 +432,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.distortion(u, point, before),
             Body::Beam(beam) => Some(beam.distortion(u, before)),
-            Body::Rigid(_) | Body::Discrete(_) => None,
+            Body::LargeBeam(_) | Body::Rigid(_) | Body::Discrete(_) => None,
         }
     }
 }

@@ -16,6 +16,7 @@ mod finite;
 mod force;
 mod kinematics;
 mod nodes;
+mod release;
 mod rigid;
 mod scratch;
 mod single;
@@ -25,15 +26,19 @@ mod stability;
 mod together;
 mod weights;
 
-pub use beam::{Beam, BeamSection, BeamTheory, SectionForces, SectionProperties, SectionShape};
+pub use beam::{
+    Beam, BeamSection, BeamTheory, LargeBeam, Rotations, SectionForces, SectionProperties,
+    SectionShape,
+};
 pub use body::Body;
 pub use discrete::{
-    Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, Link, PointMass, VisitRow,
+    Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, FluidGap, Link, PointMass, VisitRow,
 };
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};
 pub use kinematics::{Kinematics, MassKind};
+pub use release::Release;
 pub use rigid::{Inertia, Rigid};
 pub use scratch::Scratch;
 pub use size::{height, smallest as smallest_size};

@@ -1,4 +1,4 @@
-//! Forces of springs in the balance of momentum: they may have a resultant and a moment, on the ground and across their nodes, which is
+//! Forces of springs and of elastic foundations in the balance of momentum: they may have a resultant and a moment, on the ground and across their nodes, which is
 //! counted with that of the supports.
 
 use carom_bodies::Placement;
@@ -27,12 +27,12 @@ impl Driver {
             u: &self.vectors.place,
             v: &self.vectors.rate,
             from: between.then_some(&self.state.motion.u[..]),
+            frames: &self.state.motion.frames,
             dt: self.dt,
             old: &[],
         };
-        let springs = system.bodies.iter().filter_map(|body| body.as_discrete());
-        for some in springs {
-            some.add_spring_force(&at, &mut forces);
+        for body in &system.bodies {
+            body.add_spring_force(&at, &mut forces);
         }
         forces
     }
@@ -59,12 +59,12 @@ impl Driver {
             u: place,
             v: &[],
             from: None,
+            frames: &[],
             dt: 0.0,
             old: &[],
         };
-        let springs = self.system.bodies.iter().filter_map(|b| b.as_discrete());
-        for some in springs {
-            some.add_spring_force(&at, work);
+        for body in &self.system.bodies {
+            body.add_spring_force(&at, work);
         }
     }
 }
