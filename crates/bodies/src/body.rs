@@ -7,7 +7,7 @@ use carom_algebra::tensor::Mat3;
 use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
-use crate::beam::{Beam, SectionForces};
+use crate::beam::{Beam, LargeBeam, Rotations, SectionForces};
 use crate::discrete::{Discrete, DiscreteSpec, VisitRow};
 use crate::distortion::Distortion;
 use crate::reduced::Reduced;
@@ -25,6 +25,8 @@ pub enum Body {
     Solid(Solid),
     /// Beams.
     Beam(Beam),
+    /// Beams with finite rotations.
+    LargeBeam(LargeBeam),
     /// A rigid body.
     Rigid(Rigid),
     /// Point masses, springs or dashpots.
@@ -47,7 +49,20 @@ impl Body {
     ) -> Result<Body, Error> {
         match spec.kinematics {
             Kinematics::Beam(section) => {
-                Beam::new(mesh, spec, section, number, unknowns).map(Body::Beam)
+                let beam = Beam::new(mesh, spec, section, number, unknowns)?;
+                match section.rotations {
+                    Rotations::Small => Ok(Body::Beam(beam)),
+                    Rotations::Finite => {
+                        let mut x = vec![[0.0; 3]; unknowns.nodes()];
+                        for (place, &own) in mesh.nodes.iter().zip(number) {
+                            if let Some(x) = x.get_mut(own as usize) {
+                                *x = *place;
+                            }
+                        }
+                        let place = |node: u32| x[node as usize];
+                        LargeBeam::new(beam, &place, unknowns).map(Body::LargeBeam)
+                    }
+                }
             }
             _ => Solid::new(mesh, spec, number, unknowns).map(Body::Solid),
         }
@@ -113,6 +128,7 @@ impl Body {
             Body::Discrete(discrete) => {
                 discrete.add_spring_force(at, f);
             }
+            Body::Beam(beam) => beam.add_foundation_force(at, f),
             Body::Reduced(reduced) if reduced.reduction().is_grounded => {
                 reduced.force(at, f);
             }
@@ -120,11 +136,12 @@ impl Body {
         }
     }
 
-    /// Whether its forces on the system have no resultant and no moment. Those of springs and dashpots may have both: on the
-    /// ground, and across their nodes; so may those of a reduced body that supports hold.
+    /// Whether its forces on the system have no resultant and no moment. Those of springs, of dashpots and of an elastic foundation
+    /// may have both: on the ground, and across their nodes; so may those of a reduced body that supports hold.
     pub fn balances_itself(&self) -> bool {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => true,
+            Body::Solid(_) | Body::LargeBeam(_) | Body::Rigid(_) => true,
+            Body::Beam(beam) => !beam.has_foundation(),
             Body::Discrete(discrete) => !discrete.has_stiffness(),
             Body::Reduced(reduced) => !reduced.reduction().is_grounded,
         }
@@ -133,7 +150,7 @@ impl Body {
     /// Whether it has dashpots ([`Body::add_damping_force`]).
     pub fn has_damping(&self) -> bool {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => false,
+            Body::Solid(_) | Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) => false,
             Body::Discrete(discrete) => discrete.has_damping(),
             Body::Reduced(reduced) => reduced.reduction().damping.is_some(),
         }
@@ -144,6 +161,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.name(),
             Body::Beam(beam) => beam.name(),
+            Body::LargeBeam(beam) => beam.small().name(),
             Body::Discrete(discrete) => discrete.name(),
             Body::Rigid(rigid) => rigid.name(),
             Body::Reduced(reduced) => reduced.name(),
@@ -155,6 +173,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.cells(),
             Body::Beam(beam) => beam.cells(),
+            Body::LargeBeam(beam) => beam.small().cells(),
             Body::Discrete(discrete) => discrete.cells(),
             Body::Rigid(rigid) => rigid.cells(),
             Body::Reduced(reduced) => reduced.cells(),
@@ -167,7 +186,7 @@ impl Body {
             Body::Solid(solid) => solid.is_linear(),
             Body::Beam(_) => true,
             Body::Discrete(discrete) => discrete.is_linear(),
-            Body::Rigid(_) => false,
+            Body::LargeBeam(_) | Body::Rigid(_) => false,
             Body::Reduced(_) => true,
         }
     }
@@ -177,6 +196,7 @@ impl Body {
         match self {
             Body::Solid(solid) => Some(solid.wave_speed()),
             Body::Beam(beam) => Some(beam.wave_speed()),
+            Body::LargeBeam(beam) => Some(beam.small().wave_speed()),
             Body::Rigid(_) | Body::Discrete(_) => None,
             Body::Reduced(reduced) => reduced.reduction().full.wave_speed(),
         }
@@ -187,6 +207,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.smallest_size(),
             Body::Beam(beam) => beam.smallest_size(),
+            Body::LargeBeam(beam) => beam.small().smallest_size(),
             Body::Rigid(_) | Body::Discrete(_) => f64::INFINITY,
             Body::Reduced(reduced) => reduced.reduction().full.smallest_size(),
         }
@@ -196,6 +217,7 @@ impl Body {
     pub fn lumps(&self) -> bool {
         match self {
             Body::Beam(beam) => beam.lumps(),
+            Body::LargeBeam(beam) => beam.lumps(),
             Body::Solid(_) | Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => true,
         }
     }
@@ -239,6 +261,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.internal_force(u, scratch, f),
             Body::Beam(beam) => beam.internal_force(u, f),
+            Body::LargeBeam(_) => 0.0,
             Body::Discrete(discrete) => discrete.internal_force(u, f),
             Body::Rigid(_) => 0.0,
             Body::Reduced(reduced) => reduced.internal_force(u, f),
@@ -263,6 +286,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.force(at, new, scratch, f),
             Body::Beam(beam) => Ok(beam.force(at, f)),
+            Body::LargeBeam(beam) => Ok(beam.force(at, f)),
             Body::Discrete(discrete) => Ok(discrete.add_spring_force(at, f)),
             Body::Reduced(reduced) => Ok(reduced.force(at, f)),
             Body::Rigid(rigid) => {
@@ -291,6 +315,10 @@ impl Body {
                 beam.add_tangent(at, by_u, matrix);
                 Ok(())
             }
+            Body::LargeBeam(beam) => {
+                beam.add_tangent(at, [by_u, by_v], matrix);
+                Ok(())
+            }
             Body::Rigid(rigid) => {
                 rigid.add_tangent(at, by_v, matrix);
                 Ok(())
@@ -310,7 +338,7 @@ impl Body {
     /// [`Body::force`], since all their work is dissipated; their derivative is a part of [`Body::add_tangent`].
     pub fn add_damping_force(&self, v: &[f64], f: &mut [f64]) {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::Rigid(_) => {}
+            Body::Solid(_) | Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.add_damping_force(v, f),
             Body::Reduced(reduced) => reduced.add_damping_force(v, f),
         }
@@ -321,6 +349,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.add_lumped_mass(mass),
             Body::Beam(beam) => beam.add_lumped_mass(mass),
+            Body::LargeBeam(beam) => beam.add_lumped_mass(mass),
             Body::Discrete(discrete) => discrete.add_lumped_mass(mass),
             Body::Rigid(rigid) => rigid.add_mass(mass),
             // its mass is not diagonal
@@ -335,9 +364,25 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.assemble(factors[0], factors[2], part, matrix),
             Body::Beam(beam) => beam.assemble([factors[0], factors[2]], part, matrix),
+            Body::LargeBeam(beam) if factors[2] != 0.0 => beam.add_mass(factors[2], part, matrix),
+            Body::LargeBeam(_) => {}
             Body::Discrete(discrete) => discrete.assemble(factors, part, matrix),
             Body::Rigid(_) => {}
             Body::Reduced(reduced) => reduced.assemble(factors, part, matrix),
+        }
+    }
+
+    /// The beams that move a fluid along, whose mass has no weight: in a fluid at rest beside it gravity and the motion of the base
+    /// act on the displaced fluid alike.
+    pub fn in_fluid(&self) -> Option<&Beam> {
+        self.as_beam().filter(|beam| beam.has_fluid())
+    }
+
+    /// Whether its mass couples nodes, so that it is never lumped.
+    pub fn couples_mass(&self) -> bool {
+        match self {
+            Body::Discrete(discrete) => discrete.couples_mass(),
+            _ => false,
         }
     }
 
@@ -346,6 +391,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.each_element(visit),
             Body::Beam(beam) => beam.each_element(visit),
+            Body::LargeBeam(beam) => beam.small().each_element(visit),
             Body::Discrete(discrete) => discrete.each_element(visit),
             Body::Rigid(rigid) => visit(&[rigid.node()]),
             Body::Reduced(reduced) => reduced.each_element(visit),
@@ -357,6 +403,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.stresses(u, history),
             Body::Beam(beam) => beam.stresses(u),
+            Body::LargeBeam(beam) => beam.stresses(u),
             // neither volume nor stress
             Body::Discrete(discrete) => vec![(0.0, Mat3::zeros()); discrete.cells().len()],
             Body::Rigid(rigid) => vec![(0.0, Mat3::zeros()); rigid.cells().len()],
@@ -379,6 +426,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.frequency_bound(),
             Body::Beam(beam) => beam.frequency_bound(),
+            Body::LargeBeam(beam) => beam.small().frequency_bound(),
             Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => 0.0,
         }
     }
@@ -391,14 +439,17 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.frequency_bound_at(at),
             Body::Beam(beam) => Ok(beam.frequency_bound()),
+            Body::LargeBeam(beam) => Ok(beam.small().frequency_bound()),
             Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => Ok(0.0),
         }
     }
 
-    /// Visits the rows n of springs, as unknowns and coefficients of the elongation: motions that they hold.
+    /// Visits the rows n of springs and of foundations, as unknowns and coefficients of the elongation: motions that they hold.
     pub fn each_spring(&self, visit: &mut VisitRow) {
-        if let Body::Discrete(discrete) = self {
-            discrete.each_spring(visit);
+        match self {
+            Body::Beam(beam) => beam.each_spring(visit),
+            Body::Discrete(discrete) => discrete.each_spring(visit),
+            _ => {}
         }
     }
 
@@ -416,7 +467,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.distortion(u, point, before),
             Body::Beam(beam) => Some(beam.distortion(u, before)),
-            Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => None,
+            Body::LargeBeam(_) | Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => None,
         }
     }
 }

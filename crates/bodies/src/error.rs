@@ -57,6 +57,22 @@ pub enum Error {
         /// Name of the body.
         body: String,
     },
+    /// A beam element that its releases leave without stiffness.
+    #[error("body '{body}': the hinges of element {} make a mechanism of it", cell.index)]
+    Mechanism {
+        /// Name of the body.
+        body: String,
+        /// The element.
+        cell: ElementId,
+    },
+    /// Beams with finite rotations that have what only linear ones have.
+    #[error("body '{body}': beams with finite rotations do not have {what}")]
+    LargeBeam {
+        /// Name of the body.
+        body: String,
+        /// What it is.
+        what: &'static str,
+    },
     /// A beam element that has no axes.
     #[error("body '{body}': element {} {why}", cell.index)]
     BeamAxes {
@@ -190,6 +206,8 @@ impl Error {
             | Error::QuadraticBar { body, .. }
             | Error::BeamOnLine { body }
             | Error::BeamAxes { body, .. }
+            | Error::Mechanism { body, .. }
+            | Error::LargeBeam { body, .. }
             | Error::BeamWeights { body }
             | Error::NotSolid { body, .. }
             | Error::NegativeRadius { body, .. }

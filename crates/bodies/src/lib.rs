@@ -17,6 +17,7 @@ mod force;
 mod kinematics;
 mod nodes;
 mod reduced;
+mod release;
 mod rigid;
 mod scratch;
 mod single;
@@ -26,16 +27,20 @@ mod stability;
 mod together;
 mod weights;
 
-pub use beam::{Beam, BeamSection, BeamTheory, SectionForces, SectionProperties, SectionShape};
+pub use beam::{
+    Beam, BeamSection, BeamTheory, LargeBeam, Rotations, SectionForces, SectionProperties,
+    SectionShape,
+};
 pub use body::Body;
 pub use discrete::{
-    Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, Link, PointMass, VisitRow,
+    Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, FluidGap, Link, PointMass, VisitRow,
 };
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};
 pub use kinematics::{Kinematics, MassKind};
 pub use reduced::{Reduced, Reduction};
+pub use release::Release;
 pub use rigid::{Inertia, Rigid};
 pub use scratch::Scratch;
 pub use size::{height, smallest as smallest_size};

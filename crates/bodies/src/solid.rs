@@ -16,6 +16,7 @@ use crate::block::{Block, Physics, Visit};
 use crate::continuum;
 use crate::finite::{Finite, Formulation, Shape};
 use crate::nodes::Nodes;
+use crate::release::Release;
 use crate::scratch::Scratch;
 use crate::together::Together;
 use crate::weights::CellWeights;
@@ -36,6 +37,8 @@ pub struct BodySpec {
     pub formulation: Formulation,
     /// Weights of inertia and internal work; none for a body that is alone in its volume.
     pub weights: Option<CellWeights>,
+    /// Hinges of beams.
+    pub releases: Vec<Release>,
 }
 
 impl BodySpec {
@@ -53,6 +56,7 @@ impl BodySpec {
             material: material.into(),
             formulation: Formulation::Full,
             weights: None,
+            releases: Vec::new(),
         }
     }
 }

@@ -172,6 +172,10 @@ fn discrete_fact(discrete: &Discrete) -> Fact {
     let (kind, text) = match discrete.kind() {
         DiscreteKind::Mass(point) => ("mass", format!("{:.6} kg", point.mass)),
         DiscreteKind::Spring(link) => ("spring", linked(link, ["stiffness", "N/m"])),
+        DiscreteKind::Fluid(gap) => (
+            "fluid",
+            format!("{:.6} kg added to the inner node", gap.masses[0]),
+        ),
         DiscreteKind::Dashpot(link) => ("dashpot", linked(link, ["damping", "N s/m"])),
     };
     let places = match count {

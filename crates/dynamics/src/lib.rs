@@ -51,7 +51,7 @@ pub use small::{Largest, SmallSliding, SmallStrain, Smallness};
 pub use state::{InterfaceState, State};
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::{
-    Adaptive, Closing, Damping, Iteration, Load, LoadKind, Mass, Model, ModelBody, ModelContact,
-    ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget, Motion, NodalLoad, Nonlinear,
-    Order, Preload, Prescribed, PrescribedTurn, Refused, Support, System,
+    Adaptive, Closing, Damping, Iteration, Load, LoadKind, Mass, Model, ModelBody, ModelConstraint,
+    ModelContact, ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget, Motion,
+    NodalLoad, Nonlinear, Order, Preload, Prescribed, PrescribedTurn, Refused, Support, System,
 };

@@ -17,7 +17,7 @@ pub mod units;
 pub use nearest::nearest;
 pub use quantity::{
     Acceleration, Angle, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density,
-    Duration, Energy, Force, Frequency, Length, Modulus, MomentOfInertia, Rate, SecondMoment,
-    SignedForce, SignedMoment, SignedStress, Stiffness, Stress, SurfaceDamping, SurfaceStiffness,
-    Vector, Velocity, Weight,
+    Duration, Energy, Force, Frequency, Length, LineMass, Modulus, MomentOfInertia, Rate,
+    SecondMoment, SignedForce, SignedMoment, SignedStress, Stiffness, Stress, SurfaceDamping,
+    SurfaceStiffness, Vector, Velocity, Weight,
 };

@@ -160,6 +160,14 @@ quantity!(
     "A mass density greater than zero, kg/m³."
 );
 quantity!(
+    LineMass,
+    "mass per length",
+    "kg/m",
+    "12 kg/m",
+    POSITIVE,
+    "A mass per length greater than zero, kg/m."
+);
+quantity!(
     Modulus,
     "stress",
     "Pa",

@@ -117,6 +117,9 @@ impl System {
         check_masses(&bodies, &body_masses, &mesh_node)?;
         let masses = (&mut mass, &mut body_masses[..]);
         let massless = redistribute(&model, &bodies, &number, (&x, &unknowns), masses)?;
+        let damping = |k: usize| model.nonlinear.damping.get(k).map_or(0.0, |d| d.mass);
+        let both = (&bodies[..], &model.bodies[..]);
+        let damping_mass = Mass::of_damping(both, &damping, &body_masses, &unknowns);
         let load = mass.weight((&bodies, &unknowns), model.gravity);
         let nonlinear =
             NumberedNonlinear::new(&model, (&number, &unknowns), (&bodies, &mass), &fixed)?;
@@ -124,7 +127,7 @@ impl System {
             &model,
             (&bodies, &body_masses),
             &fixed,
-            (&unknowns, &initial_frames),
+            (&unknowns, &initial_frames, &x),
         );
         for follows in &nonlinear.follows {
             fixed[follows.unknown as usize] = true;
@@ -178,9 +181,12 @@ impl System {
         });
         let part_of_body: Vec<usize> = part_of_body.collect();
         let (schemes, zone_of_body, spans) = schemes(&model, &bodies, &part_of_body, &parts)?;
-        let (links, link_rows) = links(&model, &number, &unknowns);
+        let (links, link_rows) = links(&model, &number, &unknowns)?;
         let rows = model.links.iter().flat_map(|link| &link.rows);
-        let inner_terms = rows.map(|row| row.inner.len()).collect();
+        let inner_terms = rows.map(|row| row.inner.len());
+        let constrained = model.constraints.iter().flat_map(|some| &some.rows);
+        // what a constraint holds is on one side
+        let inner_terms = inner_terms.chain(constrained.map(Vec::len)).collect();
         let system = System {
             part_of_body,
             origin,
@@ -200,6 +206,7 @@ impl System {
             bodies,
             body_masses,
             mass,
+            damping_mass,
             massless,
             fixed,
             load,
@@ -275,11 +282,13 @@ fn nearest_corner(x: &[[f64; 3]]) -> [f64; 3] {
 }
 
 /// Name and range of the rows of each link, and the rows.
-fn links(
-    model: &Model,
-    number: &[u32],
-    unknowns: &Unknowns,
-) -> (Vec<(String, Range<usize>)>, Vec<LinkRow>) {
+type Links = (Vec<(String, Range<usize>)>, Vec<LinkRow>);
+
+/// Name and range of the rows of each link and of each constraint, and the rows.
+///
+/// # Errors
+/// A constraint of an unknown that a node does not have.
+fn links(model: &Model, number: &[u32], unknowns: &Unknowns) -> Result<Links, Error> {
     let mut rows: Vec<LinkRow> = Vec::new();
     let mut links = Vec::new();
     for link in &model.links {
@@ -296,7 +305,24 @@ fn links(
         }
         links.push((link.name.clone(), first..rows.len()));
     }
-    (links, rows)
+    for constraint in &model.constraints {
+        let first = rows.len();
+        for given in &constraint.rows {
+            let mut row: LinkRow = Vec::new();
+            for &(node, kind, c) in given {
+                let own = number[node as usize];
+                let found = (own != u32::MAX).then(|| unknowns.find(own, kind));
+                let unknown = found.flatten().ok_or_else(|| Error::NoSuchUnknown {
+                    constraint: constraint.name.clone(),
+                    node,
+                })?;
+                row.push((unknown as u32, c));
+            }
+            rows.push(row);
+        }
+        links.push((constraint.name.clone(), first..rows.len()));
+    }
+    Ok((links, rows))
 }
 
 /// The schemes, each once, the number of each body's, and the unknowns by scheme.
@@ -371,7 +397,7 @@ fn initial(
     model: &Model,
     (system_bodies, masses): (&[Body], &[NodeMasses]),
     fixed: &[bool],
-    (unknowns, frames): (&Unknowns, &[Rotation]),
+    (unknowns, frames, x): (&Unknowns, &[Rotation], &[[f64; 3]]),
 ) -> (Vec<f64>, Vec<f64>) {
     let (mut u, mut v) = (vec![0.0; fixed.len()], vec![0.0; fixed.len()]);
     let bodies = model.bodies.iter();
@@ -397,7 +423,7 @@ fn initial(
             }
         }
     }
-    spin(model, masses, (unknowns, frames), &mut v);
+    spin(model, masses, (unknowns, frames, x), &mut v);
     for (v, _) in v.iter_mut().zip(fixed).filter(|(_, fixed)| **fixed) {
         *v = 0.0;
     }

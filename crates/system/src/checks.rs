@@ -65,6 +65,15 @@ impl System {
         let of_zone = |body: usize| self.zone_of_body[body] == zone;
         let own = || bodies.iter().enumerate().filter(|(k, _)| of_zone(*k));
         let mut own = own().map(|(_, body)| body).collect::<Vec<_>>().into_iter();
+        let coupled = self.bodies.iter().find(|body| body.couples_mass());
+        if scheme.needs_lumped_mass()
+            && let Some(body) = coupled
+        {
+            return Err(Error::ConsistentMass {
+                scheme: scheme.name(),
+                body: body.name().to_owned(),
+            });
+        }
         if scheme.needs_lumped_mass()
             && let Some(body) = own.clone().find(|body| body.mass == MassKind::Consistent)
         {
@@ -136,7 +145,7 @@ impl System {
             return Ok(());
         }
         let refuse = |what: Refused, why| Err(Error::Nonlinear { what, why });
-        self.check_rigid()?;
+        self.check_rotations()?;
         let weak = |contact: &Contact| matches!(contact.integration, Integration::Weak { .. });
         for (contact, friction) in self.contacts.iter().zip(&self.friction) {
             let refused = || Refused::Integration(contact.name.clone());

@@ -54,6 +54,16 @@ pub enum Error {
         /// Name of the body.
         body: String,
     },
+    /// A constraint of an unknown that a node does not have.
+    #[error(
+        "constraint '{constraint}': node {node} of the mesh does not have this unknown: only nodes of bodies move, and only those of beams and of rigid bodies turn"
+    )]
+    NoSuchUnknown {
+        /// Name of the constraint.
+        constraint: String,
+        /// The node.
+        node: u32,
+    },
     /// A displacement law on a scheme whose end displacement does not depend on the forces of the step.
     #[error(
         "contact '{contact}': with an explicit scheme the displacement at the end of the step does not depend on the contact force: the displacement law is impossible"

@@ -33,8 +33,8 @@ pub use loads::{Load, LoadKind, NodalLoad};
 pub use maps::Maps;
 pub use mass::Mass;
 pub use model::{
-    Model, ModelBody, ModelContact, ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget,
-    Support,
+    Model, ModelBody, ModelConstraint, ModelContact, ModelDiscrete, ModelLink, ModelRigid,
+    ModelScheme, ModelTarget, Support,
 };
 pub use motion::Motion;
 pub use nonlinear::{Damping, Iteration, Nonlinear, Preload, Prescribed, PrescribedTurn};

@@ -17,6 +17,56 @@ pub struct Mass {
     pub lumped: Vec<f64>,
     /// Consistent mass of the other bodies.
     pub consistent: Option<Csr>,
+    /// What of it has no weight: that of fluids around beams.
+    weightless: Option<Box<Mass>>,
+}
+
+/// Visits a body's part of a vector.
+type AddLumped<'a> = dyn Fn(usize, &mut [f64]) + 'a;
+
+/// Visits a body's part of a matrix over so many unknowns.
+type AddConsistent<'a> = dyn Fn(usize, usize, &mut Csr) + 'a;
+
+/// What each body adds to a mass.
+#[derive(Clone, Copy)]
+struct Parts<'a> {
+    bodies: &'a [Body],
+    unknowns: &'a Unknowns,
+    kind: &'a dyn Fn(usize) -> MassKind,
+    lumped: &'a AddLumped<'a>,
+    consistent: &'a AddConsistent<'a>,
+}
+
+impl Parts<'_> {
+    /// The sum over some of the bodies.
+    fn gather(&self, takes: &dyn Fn(usize) -> bool) -> Mass {
+        let n = self.unknowns.len();
+        let mut mass = Mass {
+            lumped: vec![0.0; n],
+            consistent: None,
+            weightless: None,
+        };
+        let mut cliques = Cliques::new();
+        let mut consistent = Vec::new();
+        for (k, body) in self.bodies.iter().enumerate().filter(|(k, _)| takes(*k)) {
+            match (self.kind)(k) {
+                MassKind::Lumped => (self.lumped)(k, &mut mass.lumped),
+                MassKind::Consistent => {
+                    push_cliques(body, self.unknowns, &(0..n), &mut cliques);
+                    consistent.push(k);
+                }
+            }
+        }
+        if consistent.is_empty() {
+            return mass;
+        }
+        let mut matrix = Csr::from_cliques(n, &cliques);
+        for k in consistent {
+            (self.consistent)(k, n, &mut matrix);
+        }
+        mass.consistent = Some(matrix);
+        mass
+    }
 }
 
 impl Mass {
@@ -31,7 +81,7 @@ impl Mass {
         }
     }
 
-    /// M g in N: of a consistent mass the work of gravity (m/s²) over the shapes of the elements, moments included.
+    /// M g in N, without the mass of fluids around beams: of a consistent mass the work of gravity (m/s²) over the shapes of the elements, moments included.
     pub(crate) fn weight(
         &self,
         (bodies, unknowns): (&[Body], &Unknowns),
@@ -48,6 +98,13 @@ impl Mass {
         }
         let mut load = vec![0.0; unknowns.len()];
         self.multiply(&field, &mut load);
+        if let Some(weightless) = &self.weightless {
+            let mut without = vec![0.0; unknowns.len()];
+            weightless.multiply(&field, &mut without);
+            for (load, without) in load.iter_mut().zip(without) {
+                *load -= without;
+            }
+        }
         for body in bodies.iter().filter_map(Body::as_reduced) {
             for (axis, g) in gravity.iter().enumerate().filter(|(_, g)| **g != 0.0) {
                 for (unknown, missing) in body.missing(axis) {
@@ -60,34 +117,74 @@ impl Mass {
 
     /// That of bodies.
     pub fn of(bodies: &[Body], specs: &[ModelBody], unknowns: &Unknowns) -> Mass {
-        let n = unknowns.len();
-        let mut lumped = vec![0.0; n];
-        let mut cliques = Cliques::new();
-        let mut consistent = Vec::new();
-        for (k, body) in bodies.iter().enumerate() {
+        let kind = |k: usize| match bodies[k].couples_mass() {
+            true => MassKind::Consistent,
             // point masses are on the diagonal
-            match specs.get(k).map_or(MassKind::Lumped, |spec| spec.mass) {
-                MassKind::Lumped => body.add_lumped_mass(&mut lumped),
-                MassKind::Consistent => {
-                    push_cliques(body, unknowns, &(0..n), &mut cliques);
-                    consistent.push(body);
+            false => specs.get(k).map_or(MassKind::Lumped, |spec| spec.mass),
+        };
+        let whole = Parts {
+            bodies,
+            unknowns,
+            kind: &kind,
+            lumped: &|k, mass| bodies[k].add_lumped_mass(mass),
+            consistent: &|k, n, matrix| bodies[k].assemble([0.0, 0.0, 1.0], &(0..n), matrix),
+        };
+        let mut mass = whole.gather(&|_| true);
+        let fluid = Parts {
+            lumped: &|k, mass| {
+                if let Some(beam) = bodies[k].in_fluid() {
+                    beam.add_lumped_fluid(mass);
                 }
-            }
+            },
+            consistent: &|k, _, matrix| {
+                if let Some(beam) = bodies[k].in_fluid() {
+                    beam.add_fluid_mass(matrix);
+                }
+            },
+            ..whole
+        };
+        let wet = |k: usize| bodies[k].in_fluid().is_some();
+        if (0..bodies.len()).any(wet) {
+            mass.weightless = Some(Box::new(fluid.gather(&wet)));
         }
-        if consistent.is_empty() {
-            return Mass {
-                lumped,
-                consistent: None,
-            };
+        mass
+    }
+
+    /// Σ α M of bodies with the factors α of Rayleigh's damping, kg/s; `None` where all are zero. `masses`: of the nodes of each
+    /// body, which contacts without mass have moved.
+    pub(crate) fn of_damping(
+        (bodies, specs): (&[Body], &[ModelBody]),
+        factors: &dyn Fn(usize) -> f64,
+        masses: &[Vec<(u32, f64)>],
+        unknowns: &Unknowns,
+    ) -> Option<Mass> {
+        let damped = |k: usize| factors(k) != 0.0;
+        if !(0..bodies.len()).any(damped) {
+            return None;
         }
-        let mut matrix = Csr::from_cliques(n, &cliques);
-        for body in consistent {
-            body.assemble([0.0, 0.0, 1.0], &(0..n), &mut matrix);
-        }
-        Mass {
-            lumped,
-            consistent: Some(matrix),
-        }
+        let kind = |k: usize| match bodies[k].couples_mass() {
+            true => MassKind::Consistent,
+            false => specs.get(k).map_or(MassKind::Lumped, |spec| spec.mass),
+        };
+        let parts = Parts {
+            bodies,
+            unknowns,
+            kind: &kind,
+            lumped: &|k, sum| {
+                let mut own = vec![0.0; sum.len()];
+                bodies[k].add_lumped_mass(&mut own);
+                for &(node, m) in &masses[k] {
+                    own[unknowns.translations_of(node)].fill(m);
+                }
+                for (sum, m) in sum.iter_mut().zip(own) {
+                    *sum += factors(k) * m;
+                }
+            },
+            consistent: &|k, n, matrix| {
+                bodies[k].assemble([0.0, 0.0, factors(k)], &(0..n), matrix);
+            },
+        };
+        Some(parts.gather(&damped))
     }
 
     /// Adds factor · M over the unknowns of `part` to a matrix whose first unknown is `origin`.

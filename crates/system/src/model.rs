@@ -33,6 +33,8 @@ pub struct Model {
     pub zones: Vec<ModelScheme>,
     /// Links between velocities of bodies.
     pub links: Vec<ModelLink>,
+    /// Linear constraints between unknowns.
+    pub constraints: Vec<ModelConstraint>,
     /// Step in s; the largest of an adaptive step.
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
@@ -54,6 +56,7 @@ impl Model {
             scheme,
             zones: Vec::new(),
             links: Vec::new(),
+            constraints: Vec::new(),
             dt,
             adaptive: None,
             nonlinear: Nonlinear::default(),
@@ -94,6 +97,57 @@ pub struct ModelLink {
     pub rows: Vec<Row>,
 }
 
+/// Linear constraints `Σ c v = 0` between the velocities of unknowns, held by multipliers.
+#[derive(Clone, Debug)]
+pub struct ModelConstraint {
+    /// Name as in the case file.
+    pub name: String,
+    /// Terms of each row: a node of the mesh, which of its unknowns, and the coefficient c, in m of rotations.
+    pub rows: Vec<Vec<(u32, Kind, f64)>>,
+}
+
+impl ModelConstraint {
+    /// A rigid link: nodes move with another one as parts of a rigid body that turns by small angles,
+    /// `u = u₀ + θ₀ × (x - x₀)`, and their rotations, if `turns`, are θ₀. A first node without rotations
+    /// (`leads` is false) gives its translation only.
+    pub fn rigid_link(
+        name: impl Into<String>,
+        mesh: &Mesh,
+        first: u32,
+        nodes: &[(u32, bool)],
+        leads: bool,
+    ) -> ModelConstraint {
+        let (dim, mut rows) = (mesh.dim, Vec::new());
+        let axes = if dim == 2 { 2..3 } else { 0..3 };
+        for &(node, turns) in nodes {
+            let [x, from] = [node, first].map(|node| mesh.nodes[node as usize]);
+            let arm = [0, 1, 2].map(|i| x[i] - from[i]);
+            for i in 0..dim {
+                let mut row = vec![
+                    (node, Kind::Translation(i), 1.0),
+                    (first, Kind::Translation(i), -1.0),
+                ];
+                // (θ × r)_i = θ_j r_k - θ_k r_j
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let turned = [(j, -arm[k]), (k, arm[j])].into_iter();
+                let turned = turned.filter(|(axis, c)| leads && axes.contains(axis) && *c != 0.0);
+                row.extend(turned.map(|(axis, c)| (first, Kind::Rotation(axis), c)));
+                rows.push(row);
+            }
+            for axis in axes.clone().filter(|_| turns && leads) {
+                rows.push(vec![
+                    (node, Kind::Rotation(axis), 1.0),
+                    (first, Kind::Rotation(axis), -1.0),
+                ]);
+            }
+        }
+        ModelConstraint {
+            name: name.into(),
+            rows,
+        }
+    }
+}
+
 impl Model {
     /// The length that absolute tolerances are fractions of, m: the size of the mesh. Of a mesh without extent, such as a single
     /// point mass, the largest of initial displacements and gaps, and of the ways of the first step; 1 where all are zero.
@@ -128,6 +182,9 @@ pub struct ModelBody {
     pub velocity: [f64; 3],
     /// Initial displacement of all its nodes, m.
     pub displacement: [f64; 3],
+    /// Initial angular velocity of beams with finite rotations about the axes of coordinates, about the mean place of their nodes,
+    /// rad/s.
+    pub spin: [f64; 3],
     /// What it is as a rigid body; its cells then only say which nodes it carries.
     pub rigid: Option<ModelRigid>,
     /// What it is reduced to: retained nodes and modes.
@@ -151,6 +208,7 @@ impl ModelBody {
             mass: MassKind::Lumped,
             velocity: [0.0; 3],
             displacement: [0.0; 3],
+            spin: [0.0; 3],
             rigid: None,
             reduced: None,
         }

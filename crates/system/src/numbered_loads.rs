@@ -112,6 +112,13 @@ fn nodal_forces(
                 (Kind::Translation(axis), load.force[axis]),
                 (Kind::Rotation(axis), load.moment[axis]),
             ];
+            let turns = unknowns.dim() == 3 && unknowns.frame(own).is_some();
+            if turns && load.moment != [0.0; 3] {
+                return Err(Error::Nonlinear {
+                    what: Refused::NodalLoad(load.name.clone()),
+                    why: "in space moments on nodes with finite rotations are not available: they would depend on the rotation",
+                });
+            }
             for (kind, value) in parts.into_iter().filter(|(_, value)| *value != 0.0) {
                 match unknowns.find(own, kind) {
                     Some(unknown) => forces.push((unknown as u32, value)),

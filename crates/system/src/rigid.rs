@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Vec3;
 use carom_algebra::unknowns::{Carrier, Kind, NodeKind, Unknowns};
-use carom_bodies::{Body, DiscreteKind, Kinematics};
+use carom_bodies::{Body, DiscreteKind, Kinematics, Rotations};
 use carom_contact::{Contact, Frames, Places, Sliding};
 
 use crate::error::Error;
@@ -53,10 +53,31 @@ pub(crate) fn unknowns(
     mesh_node: &[u32],
 ) -> Result<(Unknowns, Vec<Rotation>), Error> {
     let mut kinds = vec![NodeKind::Translations; mesh_node.len()];
-    for body in &model.bodies {
-        if let Kinematics::Beam(_) = body.spec.kinematics {
+    let mut frames = Vec::new();
+    for rotations in [Rotations::Small, Rotations::Finite] {
+        for body in &model.bodies {
+            let Kinematics::Beam(section) = body.spec.kinematics else {
+                continue;
+            };
+            if section.rotations != rotations {
+                continue;
+            }
             for node in nodes_of(model, body) {
-                kinds[number[node as usize] as usize] = NodeKind::SmallRotations;
+                let kind = &mut kinds[number[node as usize] as usize];
+                match (rotations, *kind) {
+                    (Rotations::Small, _) => *kind = NodeKind::SmallRotations,
+                    (Rotations::Finite, NodeKind::Turning) => {}
+                    (Rotations::Finite, NodeKind::Translations) => {
+                        *kind = NodeKind::Turning;
+                        frames.push((number[node as usize], Rotation::IDENTITY));
+                    }
+                    (Rotations::Finite, _) => {
+                        return Err(Error::Nonlinear {
+                            what: Refused::LargeBeam(body.spec.name.clone()),
+                            why: "it shares a node with beams of small rotations; give both finite ones",
+                        });
+                    }
+                }
             }
         }
     }
@@ -75,7 +96,6 @@ pub(crate) fn unknowns(
         let amplitudes = NodeKind::Amplitudes(reduced.amplitudes.len());
         kinds[number[centre as usize] as usize] = amplitudes;
     }
-    let mut frames = Vec::new();
     for (body, centre) in model.bodies.iter().zip(centres) {
         let (Some(rigid), Some(centre)) = (body.rigid, *centre) else {
             continue;
@@ -108,7 +128,7 @@ pub(crate) fn unknowns(
 fn turned_by_masses(model: &Model) -> BTreeSet<u32> {
     let has_inertia = |some: &&ModelDiscrete| match &some.spec.kind {
         DiscreteKind::Mass(point) => point.inertia != [0.0; 3],
-        DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) => false,
+        DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) | DiscreteKind::Fluid(_) => false,
     };
     let masses = model.discrete.iter().filter(has_inertia);
     let cells = masses.flat_map(|some| &some.spec.cells);
@@ -168,9 +188,30 @@ pub(crate) fn hold_axisymmetric(
 pub(crate) fn spin(
     model: &Model,
     masses: &[Vec<(u32, f64)>],
-    (unknowns, frames): (&Unknowns, &[Rotation]),
+    (unknowns, frames, x): (&Unknowns, &[Rotation], &[[f64; 3]]),
     v: &mut [f64],
 ) {
+    for (body, masses) in model.bodies.iter().zip(masses) {
+        if body.spin == [0.0; 3] {
+            continue;
+        }
+        let whole: f64 = masses.iter().map(|(_, m)| m).sum();
+        let mut centre = Vec3::zeros();
+        for &(node, m) in masses {
+            centre += Vec3::from(x[node as usize]) * (m / whole);
+        }
+        let spin = Vec3::from(body.spin);
+        for &(node, _) in masses {
+            let moved = spin.cross(&(Vec3::from(x[node as usize]) - centre));
+            for unknown in unknowns.of(node) {
+                match unknowns.kind(unknown) {
+                    Kind::Translation(axis) => v[unknown] = body.velocity[axis] + moved[axis],
+                    Kind::Rotation(axis) => v[unknown] = spin[axis],
+                    Kind::Amplitude(_) => {}
+                }
+            }
+        }
+    }
     for (body, masses) in model.bodies.iter().zip(masses) {
         let (Some(rigid), Some(&(node, _))) = (body.rigid, masses.first()) else {
             continue;
@@ -239,6 +280,13 @@ impl System {
         moved.into()
     }
 
+    /// Whether a node is one of beams with finite rotations.
+    pub fn bends_at(&self, node: u32) -> bool {
+        let bodies = self.bodies.iter().zip(&self.body_masses);
+        let mut large = bodies.filter(|(body, _)| matches!(body, Body::LargeBeam(_)));
+        large.any(|(_, masses)| masses.binary_search_by_key(&node, |(own, _)| *own).is_ok())
+    }
+
     /// Whether an unknown is one of a node with a frame, empty without any, and the part by which the own response of points of such
     /// nodes grows.
     ///
@@ -255,14 +303,28 @@ impl System {
             self.unknowns.len()
         };
         let mut rigid = vec![false; count];
-        for &node in turning {
+        for &node in turning.iter().filter(|&&node| !self.bends_at(node)) {
             rigid[self.unknowns.of(node)].fill(true);
         }
         (rigid, if self.tangents() > 0 { ROUGH } else { SMOOTH })
     }
 
+    /// Refuses what nodes with finite rotations do not take.
+    pub(crate) fn check_rotations(&self) -> Result<(), Error> {
+        let large = |body: &&Body| matches!(body, Body::LargeBeam(_));
+        let explicit = self.schemes.iter().any(|scheme| scheme.get().is_explicit());
+        match self.bodies.iter().find(large) {
+            Some(body) if explicit => Err(Error::Nonlinear {
+                what: Refused::LargeBeam(body.name().to_owned()),
+                why: "an explicit step would take the moment W × J W at the velocity before it and keep neither energy nor \
+                      angular momentum; take energy-momentum, theta, newmark, generalised-alpha or hht",
+            }),
+            _ => self.check_rigid(),
+        }
+    }
+
     /// Refuses what rigid bodies do not take.
-    pub(crate) fn check_rigid(&self) -> Result<(), Error> {
+    fn check_rigid(&self) -> Result<(), Error> {
         let Some(body) = self.bodies.iter().find_map(Body::as_rigid) else {
             return Ok(());
         };

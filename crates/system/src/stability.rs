@@ -41,6 +41,7 @@ impl System {
                 u: &motion.u,
                 v: &motion.v,
                 from: None,
+                frames: &motion.frames,
                 dt: self.dt,
                 old: &motion.history[history.clone()],
             };

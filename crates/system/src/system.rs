@@ -55,6 +55,8 @@ pub struct System {
     pub body_masses: Vec<Vec<(u32, f64)>>,
     /// Mass matrix.
     pub mass: Mass,
+    /// Σ α M over the bodies with the factors α of Rayleigh's damping, kg/s.
+    pub damping_mass: Option<Mass>,
     /// Unknowns of contact nodes without mass, ascending: they follow their equilibrium.
     pub massless: Vec<u32>,
     /// Whether an unknown is held at zero.

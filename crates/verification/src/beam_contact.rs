@@ -38,11 +38,8 @@ fn rod(radius: f64, theory: BeamTheory) -> BeamSection {
         diameter: 2.0 * radius,
     };
     BeamSection {
-        theory,
-        properties: shape.properties(STEEL.poisson),
-        orientation: None,
-        offset: [0.0; 2],
         radius: Some(radius),
+        ..BeamSection::new(theory, shape.properties(STEEL.poisson))
     }
 }
 
@@ -125,7 +122,7 @@ fn rolling(elements: usize) -> Result<Vec<Row>, Error> {
             3e-3,
         ),
     ];
-    rows.extend(closed("rolling", driver.state()));
+    rows.extend(balances("rolling", driver.state(), 0.0));
     Ok(rows)
 }
 

@@ -23,13 +23,7 @@ pub(crate) fn section(size: f64, theory: BeamTheory) -> BeamSection {
         height: size,
         width: 0.6 * size,
     };
-    BeamSection {
-        theory,
-        properties: shape.properties(STEEL.poisson),
-        orientation: None,
-        offset: [0.0; 2],
-        radius: None,
-    }
+    BeamSection::new(theory, shape.properties(STEEL.poisson))
 }
 
 /// A straight beam with consistent mass.

@@ -75,6 +75,7 @@ impl Tube {
             dt: self.dt,
             zones: Vec::new(),
             links: Vec::new(),
+            constraints: Vec::new(),
             adaptive: None,
             nonlinear: Nonlinear::default(),
             mesh,

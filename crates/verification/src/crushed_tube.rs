@@ -70,6 +70,7 @@ fn newton(mesh: &str, facing_itself: bool) -> Result<Driver, Error> {
         dt: STEP,
         zones: Vec::new(),
         links: Vec::new(),
+        constraints: Vec::new(),
         adaptive: None,
         nonlinear: Nonlinear::default(),
         mesh,

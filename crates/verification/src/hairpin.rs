@@ -104,6 +104,7 @@ impl Hairpin {
             dt: self.dt,
             zones: Vec::new(),
             links: Vec::new(),
+            constraints: Vec::new(),
             adaptive: None,
             nonlinear,
             mesh,

@@ -53,6 +53,7 @@ mod base_motion;
 mod beam_contact;
 mod beam_deflections;
 mod beam_frequencies;
+mod beam_joints;
 mod beam_on_stop;
 mod beam_pulse;
 mod beams;
@@ -79,6 +80,7 @@ mod interface_problems;
 mod invariance;
 mod ironing;
 mod knocking_oscillators;
+mod large_beams;
 pub mod long_run;
 mod mass_on_stop;
 mod modes;
@@ -176,6 +178,8 @@ registry! {
     beam_contact
     beam_deflections
     beam_frequencies
+    beam_joints
+    large_beams
     beam_on_stop
     beam_pulse
     block_drop

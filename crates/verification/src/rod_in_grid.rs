@@ -63,11 +63,10 @@ fn model(scheme: Scheme, dt: f64, end: f64) -> Result<Model, Error> {
         thickness: WALL,
     };
     let section = BeamSection {
-        theory: BeamTheory::EulerBernoulli,
-        properties: shape.properties(CLAD.poisson),
         orientation: Some([1.0, 0.0, 0.0]),
         offset: [0.0; 2],
         radius: Some(RADIUS),
+        ..BeamSection::new(BeamTheory::EulerBernoulli, shape.properties(CLAD.poisson))
     };
     let mesh = generate::line("rod", [0.0; 3], [0.0, 0.0, LENGTH], ELEMENTS, 3);
     let mut rod = body(&mesh, "rod", Kinematics::Beam(section), CLAD)?;

@@ -129,6 +129,7 @@ impl Zoned {
             scheme: part.scheme,
             zones: Vec::new(),
             links: Vec::new(),
+            constraints: Vec::new(),
             dt: whole.dt / f64::from(part.substeps),
             adaptive: whole.adaptive.map(|rules| Adaptive {
                 smallest: rules.smallest / f64::from(part.substeps),

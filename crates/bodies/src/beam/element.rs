@@ -18,7 +18,9 @@
 //!
 //! `ρA L³ (Φ + 1/5)/(12 (1 + Φ)) g d + ρI Φ L³/(12 (1 + Φ)) (κ² - 12/(L² (1 + Φ)) g t)`,
 //!
-//! `d = (v₂ - v₁)/L`, `t = (θ₁ + θ₂)/2`, `g = d - t`, `κ = (θ₂ - θ₁)/L`. It vanishes in rigid motions. Without it errors of both waves are of
+//! `d = (v₂ - v₁)/L`, `t = (θ₁ + θ₂)/2`, `g = d - t`, `κ = (θ₂ - θ₁)/L`. It vanishes in rigid motions.
+//! Where an element is long against the height of its section its mass may then not be positive definite: the least multiple of g² that
+//! makes it so is added, at most ρA L³/48. There g is of the order L² ∂³v/∂x³, and its square of a higher order. Without it errors of both waves are of
 //! second order in L wherever L is not long against the height of the section, with it of fourth order.
 
 use carom_materials::Elastic;
@@ -36,6 +38,9 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
+/// By how much more than needed a mass is made positive definite, of what is needed.
+const MARGIN: f64 = 0.05;
+
 /// What bends in one of the two planes.
 struct Bending {
     /// Places of the four unknowns, and their signs.
@@ -49,6 +54,7 @@ struct Bending {
 }
 
 /// An element of a length (m) with a section and a material.
+#[derive(Clone, Copy)]
 pub(super) struct Element<'a> {
     pub(super) length: f64,
     pub(super) section: &'a BeamSection,
@@ -101,8 +107,7 @@ impl Element<'_> {
             }
         }
         for plane in self.planes() {
-            plane.add(1.0, &self.mass_of(&plane), &mut m);
-            plane.add(1.0, &self.inside(&plane), &mut m);
+            plane.add(1.0, &self.whole_mass(&plane), &mut m);
         }
         m
     }
@@ -111,13 +116,18 @@ impl Element<'_> {
     /// consistent mass scaled to the mass of the element. Hinton, Rock and Zienkiewicz (1976).
     pub(super) fn lumped(&self) -> [f64; 12] {
         let half = 0.5 * self.weight();
-        let mut lumped = [half; 12];
+        let mut lumped = [0.0; 12];
+        (lumped[0], lumped[6]) = (half, half);
         (lumped[3], lumped[9]) = (0.5 * self.polar(), 0.5 * self.polar());
+        let across = self.across() * self.length;
         for plane in self.planes() {
             let own = self.mass_of(&plane);
-            let scale = self.weight() / (own[0][0] + own[2][2]);
-            for k in [1, 3] {
-                lumped[plane.unknowns[k].0] = scale * own[k][k];
+            let scale = across / (own[0][0] + own[2][2]);
+            for (k, (place, _)) in plane.unknowns.iter().enumerate() {
+                lumped[*place] = match k % 2 {
+                    0 => 0.5 * across,
+                    _ => scale * own[k][k],
+                };
             }
         }
         lumped
@@ -171,38 +181,117 @@ impl Element<'_> {
 
     fn mass_of(&self, plane: &Bending) -> [[f64; 4]; 4] {
         let (l, phi) = (self.length, plane.shear);
-        let line = self.material.density * self.section.properties.area;
+        let line = self.across();
         let mut m = [[0.0; 4]; 4];
         for (xi, weight) in GAUSS {
-            let (square, cube) = (xi * xi, xi * xi * xi);
-            let v = [
-                2.0 * cube - 3.0 * square - phi * xi + 1.0 + phi,
-                l * (cube - (2.0 + 0.5 * phi) * square + (1.0 + 0.5 * phi) * xi),
-                -2.0 * cube + 3.0 * square + phi * xi,
-                l * (cube - (1.0 - 0.5 * phi) * square - 0.5 * phi * xi),
-            ];
+            let (square, v) = (xi * xi, plane.deflection(l, xi));
             let theta = [
                 6.0 * (square - xi) / l,
                 3.0 * square - (4.0 + phi) * xi + 1.0 + phi,
                 -6.0 * (square - xi) / l,
                 3.0 * square - (2.0 - phi) * xi,
             ];
-            let dx = weight * l / (1.0 + phi).powi(2);
+            let dx = weight * l;
+            let rotary = plane.rotary / (1.0 + phi).powi(2);
             for a in 0..4 {
                 for b in 0..4 {
-                    m[a][b] += (line * v[a] * v[b] + plane.rotary * theta[a] * theta[b]) * dx;
+                    m[a][b] += (line * v[a] * v[b] + rotary * theta[a] * theta[b]) * dx;
                 }
             }
         }
         m
     }
+
+    /// Mass per length that moves across the axis, kg/m.
+    fn across(&self) -> f64 {
+        self.material.density * self.section.properties.area + self.section.added_mass
+    }
+
+    /// ∫ k N Nᵀ dx of the foundation.
+    pub(super) fn foundation(&self) -> Matrix {
+        let mut k = [[0.0; 12]; 12];
+        self.each_foundation_row(&mut |row, stiffness| {
+            for (k, a) in k.iter_mut().zip(row) {
+                for (k, b) in k.iter_mut().zip(row) {
+                    *k += stiffness * a * b;
+                }
+            }
+        });
+        k
+    }
+
+    /// Visits the displacements that the foundation opposes, as coefficients of the unknowns, and the stiffness of each, N/m.
+    pub(super) fn each_foundation_row(&self, visit: &mut dyn FnMut(&[f64; 12], f64)) {
+        let [along, rest @ ..] = self.section.foundation;
+        for (xi, weight) in GAUSS {
+            let dx = weight * self.length;
+            let mut row = [0.0; 12];
+            (row[0], row[6]) = (1.0 - xi, xi);
+            if along != 0.0 {
+                visit(&row, along * dx);
+            }
+            for (plane, stiffness) in self.planes().iter().zip(rest) {
+                let mut row = [0.0; 12];
+                let shapes = plane.deflection(self.length, xi);
+                for (&(place, sign), value) in plane.unknowns.iter().zip(shapes) {
+                    row[place] = sign * value;
+                }
+                if stiffness != 0.0 {
+                    visit(&row, stiffness * dx);
+                }
+            }
+        }
+    }
+
+    /// The part of the consistent mass that is of the fluid around the section.
+    pub(super) fn fluid_mass(&self) -> Matrix {
+        let section = BeamSection {
+            added_mass: 0.0,
+            ..*self.section
+        };
+        let (mut mass, dry) = (
+            self.mass(),
+            Element {
+                section: &section,
+                ..*self
+            }
+            .mass(),
+        );
+        for (row, dry) in mass.iter_mut().zip(dry) {
+            for (m, dry) in row.iter_mut().zip(dry) {
+                *m -= dry;
+            }
+        }
+        mass
+    }
 }
 
 impl Element<'_> {
+    /// The consistent mass of a plane with the motion of the inside.
+    fn whole_mass(&self, plane: &Bending) -> [[f64; 4]; 4] {
+        let (mut m, inside) = (self.mass_of(plane), self.inside(plane));
+        for (m, inside) in m.iter_mut().flatten().zip(inside.iter().flatten()) {
+            *m += inside;
+        }
+        let l = self.length;
+        let g = [-1.0 / l, -0.5, 1.0 / l, -0.5];
+        // det(M + c g gᵀ) = (1 + c g·M⁻¹g) det M, and M has one negative eigenvalue at most
+        let inverse: f64 = solved(m, g).iter().zip(g).map(|(x, g)| x * g).sum();
+        if inverse < 0.0 {
+            let c = -(1.0 + MARGIN) / inverse;
+            for (row, a) in m.iter_mut().zip(g) {
+                for (m, b) in row.iter_mut().zip(g) {
+                    *m += c * a * b;
+                }
+            }
+        }
+        m
+    }
+
     /// What the motion of the inside beyond the shapes adds to the consistent mass.
     fn inside(&self, plane: &Bending) -> [[f64; 4]; 4] {
         let (l, phi) = (self.length, plane.shear);
-        let line = self.material.density * self.section.properties.area;
+        let line = self.across();
         let d = [-1.0 / l, 0.0, 1.0 / l, 0.0];
         let t = [0.0, 0.5, 0.0, 0.5];
         let kappa = [0.0, -1.0 / l, 0.0, 1.0 / l];
@@ -223,11 +312,95 @@ impl Element<'_> {
     }
 }
 
+/// Solution of four equations, by elimination with exchanges of rows.
+fn solved(mut m: [[f64; 4]; 4], mut right: [f64; 4]) -> [f64; 4] {
+    for k in 0..4 {
+        let largest = (k..4).fold(k, |best, i| match m[i][k].abs() > m[best][k].abs() {
+            true => i,
+            false => best,
+        });
+        m.swap(k, largest);
+        right.swap(k, largest);
+        let pivot = m[k];
+        for i in k + 1..4 {
+            let factor = m[i][k] / pivot[k];
+            for (m, pivot) in m[i].iter_mut().zip(pivot) {
+                *m -= factor * pivot;
+            }
+            right[i] -= factor * right[k];
+        }
+    }
+    for k in (0..4).rev() {
+        let known: f64 = (k + 1..4).map(|j| m[k][j] * right[j]).sum();
+        right[k] = (right[k] - known) / m[k][k];
+    }
+    right
+}
+
 impl Bending {
+    /// N_v at ξ of an element of a length, m.
+    fn deflection(&self, l: f64, xi: f64) -> [f64; 4] {
+        let phi = self.shear;
+        let (square, cube) = (xi * xi, xi * xi * xi);
+        [
+            2.0 * cube - 3.0 * square - phi * xi + 1.0 + phi,
+            l * (cube - (2.0 + 0.5 * phi) * square + (1.0 + 0.5 * phi) * xi),
+            -2.0 * cube + 3.0 * square + phi * xi,
+            l * (cube - (1.0 - 0.5 * phi) * square - 0.5 * phi * xi),
+        ]
+        .map(|n| n / (1.0 + phi))
+    }
+
     fn add(&self, factor: f64, own: &[[f64; 4]; 4], to: &mut Matrix) {
         for (row, &(a, sign)) in own.iter().zip(&self.unknowns) {
             for (value, &(b, other)) in row.iter().zip(&self.unknowns) {
                 to[a][b] += factor * sign * other * value;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::beam::SectionShape;
+
+    /// Whether Gauss's pivots, each over the diagonal, are above a bound.
+    fn is_positive(mut m: Matrix) -> bool {
+        let diagonal: Vec<f64> = (0..12).map(|i| m[i][i]).collect();
+        for k in 0..12 {
+            if m[k][k] <= 1e-9 * diagonal[k] {
+                return false;
+            }
+            for i in k + 1..12 {
+                let factor = m[i][k] / m[k][k];
+                for j in 0..12 {
+                    m[i][j] -= factor * m[k][j];
+                }
+            }
+        }
+        true
+    }
+
+    #[test]
+    fn the_mass_of_an_element_is_positive_definite_however_long_it_is() {
+        for theory in [BeamTheory::EulerBernoulli, BeamTheory::Timoshenko] {
+            for poisson in [0.0, 0.3, 0.49] {
+                let material = Elastic {
+                    density: 1.0,
+                    young: 1.0,
+                    poisson,
+                };
+                let shape = SectionShape::Circle { diameter: 1.0 };
+                let section = BeamSection::new(theory, shape.properties(poisson));
+                for k in -20..20 {
+                    let element = Element {
+                        length: 1.5_f64.powi(k),
+                        section: &section,
+                        material: &material,
+                    };
+                    assert!(is_positive(element.mass()), "{theory:?} {poisson} {k}");
+                }
             }
         }
     }

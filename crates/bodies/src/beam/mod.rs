@@ -3,8 +3,12 @@
 //! The axis of an element runs through the centroids of its ends; a node may stand beside it, at a distance that is fixed in the
 //! section: `u_centroid = u + θ × e`. Forces are `f = K u` with one constant matrix for each element.
 
+mod condensation;
 mod element;
+mod large;
+mod results;
 mod section;
+mod strain;
 
 use std::ops::Range;
 
@@ -15,10 +19,12 @@ use carom_elements::Kind;
 use carom_materials::{Elastic, Plane};
 use carom_mesh::{ElementId, Mesh};
 
-pub use self::section::{BeamSection, BeamTheory, SectionProperties, SectionShape};
+pub use self::large::LargeBeam;
+pub use self::section::{BeamSection, BeamTheory, Rotations, SectionProperties, SectionShape};
 
 use self::element::{Element, Matrix};
-use crate::distortion::{Distortion, Extreme};
+use crate::discrete::VisitRow;
+use crate::release::Release;
 use crate::solid::BodySpec;
 use crate::stability::largest_eigenvalue;
 use crate::{Error, Formulation, Kinematics, Placement, Stored};
@@ -57,6 +63,10 @@ pub struct Beam {
     axes: Vec<Mat3>,
     /// K of each element over its unknowns, row-major.
     stiffness: Vec<f64>,
+    /// T of elements with released rotations.
+    condensed: Vec<Option<Box<Matrix>>>,
+    /// Released rotations of these.
+    released: Vec<[bool; 12]>,
 }
 
 impl Beam {
@@ -83,6 +93,8 @@ impl Beam {
             lengths: Vec::new(),
             axes: Vec::new(),
             stiffness: Vec::new(),
+            condensed: Vec::new(),
+            released: Vec::new(),
             name: spec.name,
             cells: spec.cells,
         };
@@ -105,12 +117,119 @@ impl Beam {
             beam.first.push(nodes.map(|node| unknowns.first(node)));
             beam.nodes.push(nodes);
         }
+        for (element, cell) in beam.cells.iter().enumerate() {
+            let released = released(&spec.releases, *cell, beam.dim);
+            let t = match released.contains(&true) {
+                false => None,
+                true => {
+                    let t = condensation::transformation(&beam.whole_stiffness(element), &released);
+                    Some(t.ok_or_else(|| Error::Mechanism {
+                        body: beam.name.clone(),
+                        cell: *cell,
+                    })?)
+                }
+            };
+            beam.condensed.push(t);
+            beam.released.push(released);
+        }
         for element in 0..beam.nodes.len() {
-            let local = beam.element(element).stiffness();
+            let local = beam.kept(element, beam.whole_stiffness(element));
             let own = beam.turned(element, &local);
             beam.stiffness.extend(own);
         }
         Ok(beam)
+    }
+
+    /// K of an element in its own axes, with that of its foundation.
+    fn whole_stiffness(&self, element: usize) -> Matrix {
+        let mut k = self.element(element).stiffness();
+        let ground = self.element(element).foundation();
+        for (k, ground) in k.iter_mut().flatten().zip(ground.iter().flatten()) {
+            *k += ground;
+        }
+        k
+    }
+
+    /// A matrix of an element without its released rotations.
+    fn kept(&self, element: usize, matrix: Matrix) -> Matrix {
+        match &self.condensed[element] {
+            Some(t) => condensation::condensed(&matrix, t),
+            None => matrix,
+        }
+    }
+
+    /// Whether an elastic foundation holds it.
+    pub(crate) fn has_foundation(&self) -> bool {
+        self.section.foundation != [0.0; 3]
+    }
+
+    /// Whether a fluid moves with it.
+    pub(crate) fn has_fluid(&self) -> bool {
+        self.section.added_mass != 0.0
+    }
+
+    /// Visits the displacements that the foundation opposes, as unknowns and coefficients.
+    pub(crate) fn each_spring(&self, visit: &mut VisitRow) {
+        if !self.has_foundation() {
+            return;
+        }
+        let mut row = Vec::new();
+        for element in 0..self.nodes.len() {
+            let t = self.transformation(element);
+            self.element(element).each_foundation_row(&mut |local, _| {
+                row.clear();
+                for (k, unknown) in self.unknowns(element).enumerate() {
+                    let value: f64 = local.iter().zip(&t).map(|(n, t)| n * t[k]).sum();
+                    row.push((unknown, value));
+                }
+                visit(&row);
+            });
+        }
+    }
+
+    /// Adds the forces of the foundation alone: with released rotations those of their ends count at the nodes.
+    pub(crate) fn add_foundation_force(&self, at: &Placement, f: &mut [f64]) {
+        if !self.has_foundation() {
+            return;
+        }
+        for element in 0..self.nodes.len() {
+            let mut local = self.local(element, at.u);
+            if let Some(from) = at.from {
+                let start = self.local(element, from);
+                local = std::array::from_fn(|i| 0.5 * (local[i] + start[i]));
+            }
+            let ground = self.element(element).foundation();
+            let forces = ground.map(|row| row.iter().zip(&local).map(|(k, u)| k * u).sum::<f64>());
+            let t = self.transformation(element);
+            for (k, unknown) in self.unknowns(element).enumerate() {
+                f[unknown] += t.iter().zip(&forces).map(|(t, f)| t[k] * f).sum::<f64>();
+            }
+        }
+    }
+
+    /// Adds the mass of the fluid, consistent, to a matrix over all unknowns.
+    pub fn add_fluid_mass(&self, matrix: &mut Csr) {
+        for element in 0..self.nodes.len() {
+            let local = self.kept(element, self.element(element).fluid_mass());
+            let own = self.turned(element, &local);
+            self.add(element, 1.0, &own, &(0..usize::MAX), matrix);
+        }
+    }
+
+    /// Adds the diagonal of the lumped mass of the fluid.
+    pub fn add_lumped_fluid(&self, mass: &mut [f64]) {
+        let n = 2 * self.per_node();
+        for element in 0..self.nodes.len() {
+            let half = 0.5 * self.section.added_mass * self.lengths[element];
+            let mut local = [[0.0; 12]; 12];
+            for i in [1, 2, 7, 8] {
+                local[i][i] = half;
+            }
+            let own = self.turned(element, &local);
+            for (k, i) in self.unknowns(element).enumerate() {
+                mass[i] += own[k * n + k];
+            }
+        }
     }
 
     /// Name as in the case file.
@@ -297,7 +416,8 @@ impl Beam {
         }
         if mass != 0.0 {
             for element in 0..self.nodes.len() {
-                let own = self.turned(element, &self.element(element).mass());
+                let local = self.kept(element, self.element(element).mass());
+                let own = self.turned(element, &local);
                 self.add(element, mass, &own, part, matrix);
             }
         }
@@ -317,8 +437,10 @@ impl Beam {
     /// The lumped mass of an element over its unknowns, row-major.
     fn lumped(&self, element: usize) -> Vec<f64> {
         let mut local = [[0.0; 12]; 12];
+        let released = &self.released[element];
         for (i, m) in self.element(element).lumped().into_iter().enumerate() {
-            local[i][i] = m;
+            // the inertia of a rotation without a node is left out
+            local[i][i] = if released[i] { 0.0 } else { m };
         }
         self.turned(element, &local)
     }
@@ -343,95 +465,28 @@ impl Beam {
         };
         let mut scaled = Vec::new();
         let of = |element: usize| {
-            let element = self.element(element);
-            let (k, m) = (element.stiffness(), element.lumped());
+            let k = self.kept(element, self.whole_stiffness(element));
+            let (m, released) = (self.element(element).lumped(), &self.released[element]);
             scaled.clear();
-            for &i in kept {
-                scaled.extend(kept.iter().map(|&j| k[i][j] / (m[i] * m[j]).sqrt()));
+            for &i in kept.iter().filter(|&&i| !released[i]) {
+                let kept = kept.iter().filter(|&&j| !released[j]);
+                scaled.extend(kept.map(|&j| k[i][j] / (m[i] * m[j]).sqrt()));
             }
             largest_eigenvalue(&mut scaled)
         };
         (0..self.nodes.len()).map(of).fold(0.0, f64::max).sqrt()
     }
+}
 
-    /// Volume (m³) and mean stress (Pa) of each element: normal and shear forces over the area. Bending and torsion have no mean.
-    pub(crate) fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
-        let area = self.section.properties.area;
-        let of = |(element, forces): (usize, SectionForces)| {
-            let axes = &self.axes[element];
-            let mut local = Mat3::zeros();
-            for (i, force) in forces.force.iter().enumerate() {
-                (local[(0, i)], local[(i, 0)]) = (force / area, force / area);
-            }
-            (
-                area * self.lengths[element],
-                axes.transpose() * local * axes,
-            )
-        };
-        self.section_forces(u)
-            .into_iter()
-            .enumerate()
-            .map(of)
-            .collect()
-    }
-
-    /// Forces and moments in the sections of each element.
-    pub fn section_forces(&self, u: &[f64]) -> Vec<SectionForces> {
-        let of = |element: usize| {
-            let local = self.local(element, u);
-            let k = self.element(element).stiffness();
-            let f = k.map(|row| row.iter().zip(&local).map(|(k, u)| k * u).sum::<f64>());
-            SectionForces {
-                force: [f[6], f[7], f[8]],
-                moment_first: [-f[3], -f[4], -f[5]],
-                moment_second: [f[9], f[10], f[11]],
-            }
-        };
-        (0..self.nodes.len()).map(of).collect()
-    }
-
-    /// The twelve unknowns of an element in its own axes, at the centroid.
-    fn local(&self, element: usize, u: &[f64]) -> [f64; 12] {
-        let axes = &self.axes[element];
-        let [y, z] = self.section.offset;
-        let beside = axes.tr_mul(&Vec3::new(0.0, y, z));
-        let mut local = [0.0; 12];
-        for (local, first) in local.chunks_exact_mut(6).zip(self.first[element]) {
-            let own = &u[first..first + self.per_node()];
-            let (moved, turned) = match self.dim {
-                2 => (Vec3::new(own[0], own[1], 0.0), unit(2) * own[2]),
-                _ => (
-                    Vec3::new(own[0], own[1], own[2]),
-                    Vec3::new(own[3], own[4], own[5]),
-                ),
-            };
-            let (moved, turned) = (axes * (moved + turned.cross(&beside)), axes * turned);
-            local[..3].copy_from_slice(moved.as_slice());
-            local[3..].copy_from_slice(turned.as_slice());
+/// Which of the unknowns of a cell are released; in the plane only the rotation about z is there to be.
+fn released(releases: &[Release], cell: ElementId, dim: usize) -> [bool; 12] {
+    let mut released = [false; 12];
+    for release in releases.iter().filter(|release| release.cell == cell) {
+        for axis in (0..3).filter(|&axis| dim == 3 || axis == 2) {
+            released[6 * release.end + 3 + axis] |= release.rotations[axis];
         }
-        local
     }
-
-    /// The largest rotation of a section, and the largest strain at the radius of gyration: `|N|/(E A) + |θ₂ - θ₁|/L √(I/A)`.
-    pub(crate) fn distortion(&self, u: &[f64], before: &Distortion) -> Distortion {
-        let properties = &self.section.properties;
-        let [y, z] = properties
-            .second_moments
-            .map(|i| (i / properties.area).sqrt());
-        let mut found = *before;
-        for (cell, length) in self.lengths.iter().enumerate() {
-            let local = self.local(cell, u);
-            let cell = cell as u32;
-            for turn in [&local[3..6], &local[9..12]] {
-                let value = Vec3::new(turn[0], turn[1], turn[2]).norm();
-                found.rotation = found.rotation.or(Extreme { value, cell });
-            }
-            let change = |i: usize| (local[6 + i] - local[i]) / length;
-            let value = change(0).abs() + (change(4) * y).hypot(change(5) * z);
-            found.strain = found.strain.or(Extreme { value, cell });
-        }
-        found
-    }
+    released
 }
 
 fn unit(axis: usize) -> Vec3 {

@@ -154,9 +154,39 @@ pub struct BeamSection {
     pub offset: [f64; 2],
     /// Distance of the surface from the axis in contacts, m, the same all around; none where no contact knows it.
     pub radius: Option<f64>,
+    /// Stiffness of an elastic foundation along x, y and z, N/m²: force per length over displacement.
+    pub foundation: [f64; 3],
+    /// Mass of a fluid that moves with the section across its axis, kg/m.
+    pub added_mass: f64,
+    /// How far its nodes turn.
+    pub rotations: Rotations,
+}
+
+/// How far nodes of beams turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rotations {
+    /// Little: rotations add up like displacements.
+    #[default]
+    Small,
+    /// By any angle.
+    Finite,
 }
 
 impl BeamSection {
+    /// A section in its nodes, without a surface, a foundation or a fluid around it.
+    pub fn new(theory: BeamTheory, properties: SectionProperties) -> BeamSection {
+        BeamSection {
+            theory,
+            properties,
+            orientation: None,
+            offset: [0.0; 2],
+            radius: None,
+            foundation: [0.0; 3],
+            added_mass: 0.0,
+            rotations: Rotations::Small,
+        }
+    }
+
     /// Width of the surface around the axis that a contact law per area counts, m: the diameter, or that of a square of the same
     /// area where there is no radius.
     pub fn width(&self) -> f64 {
@@ -173,7 +203,9 @@ impl BeamSection {
             shear_areas,
             ..
         } = self.properties;
-        same(second_moments) && same(shear_areas) && self.offset == [0.0; 2]
+        let [_, y, z] = self.foundation;
+        let alike = same(second_moments) && same(shear_areas) && (y - z).abs() <= 1e-12 * y.abs();
+        alike && self.offset == [0.0; 2]
     }
 }
 

@@ -9,6 +9,7 @@
 //! [`Body::balances_itself`](crate::Body::balances_itself).
 
 mod curve;
+mod fluid;
 
 use std::ops::Range;
 
@@ -17,6 +18,7 @@ use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_mesh::{ElementId, Mesh};
 
 pub use self::curve::{Curve, CurveError};
+pub use self::fluid::FluidGap;
 use crate::{Error, Placement, Stored};
 
 /// What is called for each row, of unknowns and coefficients.
@@ -38,7 +40,7 @@ impl DiscreteSpec {
     /// Whether the linear driver can take it: a dashpot has forces of the velocity, and a curve is not linear.
     pub fn is_linear(&self) -> bool {
         match &self.kind {
-            DiscreteKind::Mass(_) => true,
+            DiscreteKind::Mass(_) | DiscreteKind::Fluid(_) => true,
             DiscreteKind::Spring(link) => link.curve.is_line(),
             DiscreteKind::Dashpot(_) => false,
         }
@@ -54,6 +56,8 @@ pub enum DiscreteKind {
     Spring(Link),
     /// A dashpot: force (N) over the rate of elongation (m/s).
     Dashpot(Link),
+    /// The inertia of a fluid in a gap between two bodies.
+    Fluid(FluidGap),
 }
 
 /// A mass at a node, and its moments of inertia.
@@ -148,9 +152,10 @@ impl Discrete {
         };
         let most = match spec.kind {
             DiscreteKind::Mass(_) => 1,
-            DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) => 2,
+            DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) | DiscreteKind::Fluid(_) => 2,
         };
-        let unfit = |cell: &&ElementId| of(cell).len() != per || per > most;
+        let alone = |per: usize| per == 1 && matches!(spec.kind, DiscreteKind::Fluid(_));
+        let unfit = |cell: &&ElementId| of(cell).len() != per || per > most || alone(per);
         if let Some(&cell) = spec.cells.iter().find(unfit) {
             return Err(Error::NotDiscrete {
                 body: spec.name,
@@ -165,7 +170,9 @@ impl Discrete {
         let first = |ends: &[u32; 2]| ends.map(|node| unknowns.first(node));
         let rotations = match &spec.kind {
             DiscreteKind::Mass(point) => rotations(&spec.name, point, &nodes, unknowns)?,
-            DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) => Vec::new(),
+            DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) | DiscreteKind::Fluid(_) => {
+                Vec::new()
+            }
         };
         Ok(Discrete {
             rotations,
@@ -209,9 +216,14 @@ impl Discrete {
         matches!(self.kind, DiscreteKind::Spring(_))
     }
 
+    /// Whether its mass couples nodes.
+    pub(crate) fn couples_mass(&self) -> bool {
+        matches!(self.kind, DiscreteKind::Fluid(_))
+    }
+
     fn link(&self) -> Option<&Link> {
         match &self.kind {
-            DiscreteKind::Mass(_) => None,
+            DiscreteKind::Mass(_) | DiscreteKind::Fluid(_) => None,
             DiscreteKind::Spring(link) | DiscreteKind::Dashpot(link) => Some(link),
         }
     }
@@ -246,12 +258,13 @@ impl Discrete {
         }
     }
 
-    /// Name of the kind: `mass`, `spring` or `dashpot`.
+    /// Name of the kind: `mass`, `spring`, `dashpot` or `fluid`.
     pub fn kind_name(&self) -> &'static str {
         match self.kind {
             DiscreteKind::Mass(_) => "mass",
             DiscreteKind::Spring(_) => "spring",
             DiscreteKind::Dashpot(_) => "dashpot",
+            DiscreteKind::Fluid(_) => "fluid",
         }
     }
 
@@ -309,6 +322,7 @@ impl Discrete {
             u,
             v: &[],
             from: None,
+            frames: &[],
             dt: 0.0,
             old: &[],
         };
@@ -345,7 +359,7 @@ impl Discrete {
             for direction in 0..self.directions() {
                 let along = |x| self.elongation(element, direction, x);
                 let slope = match &self.kind {
-                    DiscreteKind::Mass(_) => 0.0,
+                    DiscreteKind::Mass(_) | DiscreteKind::Fluid(_) => 0.0,
                     DiscreteKind::Dashpot(link) => by_v * link.curve.slope(along(at.v)),
                     DiscreteKind::Spring(link) => {
                         by_u * match at.from {
@@ -433,6 +447,13 @@ impl Discrete {
                     for i in first - part.start..first - part.start + self.dim {
                         matrix.add(i, i, mass * point.mass);
                     }
+                    continue;
+                }
+                DiscreteKind::Fluid(gap) => {
+                    let add = &mut |i: usize, j: usize, m: f64| {
+                        matrix.add(i - part.start, j - part.start, mass * m);
+                    };
+                    gap.each_entry((&self.first[element], self.dim), add);
                     continue;
                 }
                 DiscreteKind::Spring(link) => stiffness * link.curve.slope(0.0),

@@ -1,5 +1,7 @@
 //! Where internal forces are taken, and the energies there.
 
+use carom_algebra::rotation::Rotation;
+
 /// Where internal forces are taken.
 #[derive(Clone, Copy, Debug)]
 pub struct Placement<'a> {
@@ -10,6 +12,9 @@ pub struct Placement<'a> {
     /// Displacement at the start of the step, for the algorithmic stress between the two, whose work over the step is the
     /// change of the stored energy; none for the stress at `u`.
     pub from: Option<&'a [f64]>,
+    /// Rotations of the nodes with finite ones at the start of the step, in the order of
+    /// [`Unknowns::turning`](carom_algebra::unknowns::Unknowns::turning).
+    pub frames: &'a [Rotation],
     /// Time since the history `old`, s.
     pub dt: f64,
     /// History of this body at the start of the step, [`Solid::history_len`](crate::Solid::history_len) numbers.

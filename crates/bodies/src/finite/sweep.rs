@@ -261,6 +261,7 @@ impl Finite {
             u,
             v: &[],
             from: None,
+            frames: &[],
             dt: 0.0,
             old: history,
         };

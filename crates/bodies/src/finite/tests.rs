@@ -90,6 +90,7 @@ fn swept(finite: &Finite, block: &Block, u: &[f64], way: usize) -> Swept {
             u: &u,
             v: &[],
             from: None,
+            frames: &[],
             dt: 0.7,
             old: &old,
         };

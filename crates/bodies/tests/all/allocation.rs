@@ -55,6 +55,7 @@ fn forces_at_finite_strain_allocate_nothing_after_the_first_call() {
                     u: &u,
                     v: &[],
                     from,
+                    frames: &[],
                     dt: 1.0,
                     old: &[],
                 };

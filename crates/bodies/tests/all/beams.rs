@@ -26,11 +26,9 @@ const RECTANGLE: SectionShape = SectionShape::Rectangle {
 
 fn section(theory: BeamTheory, orientation: Option<[f64; 3]>, offset: [f64; 2]) -> BeamSection {
     BeamSection {
-        theory,
-        properties: RECTANGLE.properties(STEEL.poisson),
         orientation,
         offset,
-        radius: None,
+        ..BeamSection::new(theory, RECTANGLE.properties(STEEL.poisson))
     }
 }
 
@@ -229,6 +227,7 @@ fn forces_are_the_matrix_times_the_motion_and_their_work_between_two_states_is_t
             u: &to,
             v: &[],
             from: Some(&from),
+            frames: &[],
             dt: 1.0,
             old: &[],
         };

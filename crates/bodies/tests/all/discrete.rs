@@ -67,6 +67,7 @@ fn placement<'a>((u, v): (&'a [f64], &'a [f64]), from: Option<&'a [f64]>) -> Pla
         u,
         v,
         from,
+        frames: &[],
         dt: 0.1,
         old: &[],
     }

@@ -1,6 +1,8 @@
 //! Beams: sections from shapes and properties, and what beams refuse.
 
-use carom_bodies::{BeamSection, BeamTheory, Kinematics, SectionProperties, SectionShape};
+use carom_bodies::{
+    BeamSection, BeamTheory, Kinematics, Rotations, SectionProperties, SectionShape,
+};
 use carom_materials::Law;
 use carom_mesh::Mesh;
 
@@ -80,15 +82,23 @@ impl Builder<'_> {
             self.problems
                 .push(problem.found(format!("{} m", offset[1])).accepted(["0"]));
         }
+        let diameter = match &given.shape {
+            BeamShape::Circle(circle) => Some(circle.diameter.0),
+            BeamShape::Tube(tube) => Some(tube.diameter.0),
+            _ => None,
+        };
+        let round = shape.ok().and_then(|shape| shape.radius(mesh.dim));
         Some(Kinematics::Beam(BeamSection {
-            theory,
-            properties,
             orientation,
             offset,
-            radius: given
-                .radius
-                .map(|radius| radius.0)
-                .or(shape.ok().and_then(|shape| shape.radius(mesh.dim))),
+            radius: given.radius.map(|radius| radius.0).or(round),
+            foundation: self.foundation(mesh, &path, given.foundation)?,
+            added_mass: self.added_mass(&path, given.added_mass, diameter)?,
+            rotations: match given.rotations {
+                schema::Rotations::Small => Rotations::Small,
+                schema::Rotations::Finite => Rotations::Finite,
+            },
+            ..BeamSection::new(theory, properties)
         }))
     }
 
@@ -159,12 +169,62 @@ impl Builder<'_> {
         if !is_beam(body) {
             return;
         }
+        let on_ground =
+            matches!(&body.section, Some(Section::Beam(section)) if section.foundation.is_some());
+        let damped = body
+            .damping
+            .is_some_and(|damping| damping.stiffness.is_some());
+        if on_ground && damped {
+            let message =
+                "damping proportional to the stiffness would also be one of the foundation";
+            let problem = Problem::new(format!("{path}.damping.stiffness"), message);
+            self.problems
+                .push(problem.accepted(["damping.mass", "no `foundation`"]));
+        }
         if body.rigid.is_some() {
             let message = "a rigid body of beams has no cells from which its inertia follows";
             let problem = Problem::new(format!("{path}.rigid"), message);
             self.problems
                 .push(problem.accepted(["a rigid body of solid cells", "no `rigid`"]));
         }
+    }
+
+    /// Initial angular velocity of beams, rad/s.
+    pub(super) fn spin_of_beams(
+        &mut self,
+        mesh: &Mesh,
+        (path, body): (&str, &Body),
+        kinematics: Kinematics,
+    ) -> [f64; 3] {
+        let given = body
+            .initial
+            .as_ref()
+            .and_then(|initial| initial.spin.as_ref());
+        let (Kinematics::Beam(section), Some(given)) = (kinematics, given) else {
+            return [0.0; 3];
+        };
+        let spin = match (given.given(), mesh.dim) {
+            (1, 2) => [0.0, 0.0, given.si()[0]],
+            _ => given.si(),
+        };
+        let flat = mesh.dim == 3 || spin[0] == 0.0 && spin[1] == 0.0;
+        if section.rotations == Rotations::Finite && flat {
+            return spin;
+        }
+        let (message, accepted) = match flat {
+            true => (
+                "beams with small rotations do not spin",
+                "rotations = \"finite\"",
+            ),
+            false => (
+                "in the plane a body turns about z only",
+                "one component, about z",
+            ),
+        };
+        let problem = Problem::new(format!("{path}.initial.spin"), message);
+        self.problems
+            .push(problem.found(format!("{spin:?}")).accepted([accepted]));
+        [0.0; 3]
     }
 
     /// The mass of a body: that of beams is consistent where nothing else is said and its scheme takes it.

@@ -67,7 +67,10 @@ impl Builder<'_> {
                 material,
                 formulation: formulation(body.formulation),
                 weights: None,
+                releases: Vec::new(),
             };
+            let spec = self.hinged(mesh, (&path, body), spec);
+            let spin = self.spin_of_beams(mesh, (&path, body), kinematics);
             let rigid = match kinematics {
                 Kinematics::Beam(_) => None,
                 _ => self.rigid(mesh, &path, body, &spec),
@@ -80,6 +83,7 @@ impl Builder<'_> {
                 },
                 velocity,
                 displacement,
+                spin,
                 rigid,
                 reduced: None,
             });

@@ -281,6 +281,7 @@ pub(super) fn kind_name(kind: &DiscreteKind) -> &'static str {
         DiscreteKind::Mass(_) => "mass",
         DiscreteKind::Spring(_) => "spring",
         DiscreteKind::Dashpot(_) => "dashpot",
+        DiscreteKind::Fluid(_) => "fluid",
     }
 }
 

@@ -5,9 +5,11 @@ mod arlequin;
 mod beams;
 mod bodies;
 mod builder;
+mod constraints;
 mod contacts;
 mod course;
 mod discrete;
+mod fluids;
 mod held;
 mod laws;
 mod levels;
@@ -130,7 +132,9 @@ impl Builder<'_> {
         let mut mesh = self.mesh(input)?;
         self.own_nodes(&mut mesh);
         let mut bodies = self.bodies(&mesh, &materials);
-        let discrete = self.discrete(&mut mesh);
+        let mut discrete = self.discrete(&mut mesh);
+        discrete.extend(self.fluids(&mut mesh));
+        let constraints = self.constraints(&mesh);
         let (supports, motions, turns) = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
         let loads = self.loads(&mesh, &bodies);
@@ -168,6 +172,7 @@ impl Builder<'_> {
             dt: f64::MIN_POSITIVE,
             zones: Vec::new(),
             links: Vec::new(),
+            constraints,
             adaptive: None,
             nonlinear: Nonlinear {
                 nodal,

@@ -116,6 +116,7 @@ impl Builder<'_> {
             Refused::Load { .. } => "load".to_string(),
             Refused::NodalLoad(load) => format!("load.{load}"),
             Refused::Rigid(body) => format!("body.{body}.rigid"),
+            Refused::LargeBeam(body) => format!("body.{body}.section.beam.rotations"),
         };
         Problem::new(path, format!("{what}: {why}"))
     }
@@ -180,6 +181,8 @@ fn key(error: &carom_bodies::Error) -> &'static str {
         Error::LinearFormulation { .. } | Error::NotReduced { .. } => "formulation",
         Error::NoBetween { .. } => "material",
         Error::BeamAxes { .. } => "section.beam",
+        Error::LargeBeam { .. } => "section.beam.rotations",
+        Error::Mechanism { .. } => "hinges",
         _ => "region",
     }
 }

@@ -5,10 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use carom_quantities::{Area, Clearance, Coordinate, Length, SecondMoment};
 
+use super::joint::{AddedMass, Foundation};
 use super::obstacle::NormalVector;
 
 /// Section of beams: bars of two nodes, in the plane or in space, that resist extension, shear, bending and torsion. Their nodes
-/// have rotations, which must remain small. x is along the element from its first node to its second one; y and z are the principal
+/// have rotations, small ones unless the section says otherwise. x is along the element from its first node to its second one; y and z are the principal
 /// axes of the section. In the plane y is x turned by 90 degrees counter-clockwise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -26,6 +27,24 @@ pub struct BeamSection {
     /// Distance of the surface from the axis in contacts, the same all around; 0 where a beam strikes with the flat face of its end.
     /// Default: half the diameter of a round section; in the plane half the height of a rectangle or an I.
     pub radius: Option<Clearance>,
+    /// How far the nodes turn.
+    #[serde(default)]
+    pub rotations: Rotations,
+    /// Elastic foundation. Default: none.
+    pub foundation: Option<Foundation>,
+    /// Fluid that moves with the beam. Default: none.
+    pub added_mass: Option<AddedMass>,
+}
+
+/// How far nodes of beams turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rotations {
+    /// Little: rotations add up like displacements.
+    #[default]
+    Small,
+    /// By any angle: the geometrically exact beam. For the schemes with iterations, best `energy-momentum`.
+    Finite,
 }
 
 /// Theory of bending.

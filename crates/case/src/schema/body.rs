@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::axis::Axis;
 use super::beam::BeamSection;
+use super::joint::Hinge;
 use carom_quantities::{
     Angle, AngularVelocity, Area, Coordinate, Delay, Length, MomentOfInertia, Rate, Vector,
     Velocity, Weight,
@@ -26,6 +28,9 @@ pub struct Body {
     pub formulation: Formulation,
     /// Rayleigh damping. Default: none.
     pub damping: Option<Damping>,
+    /// Hinges of beams. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub hinges: Vec<Hinge>,
     /// Makes the body rigid: its cells keep their shape, and it moves as one. Default: deformable.
     pub rigid: Option<Rigid>,
     /// Reduces the body to the nodes on which something acts and to modes, for a material at small strain. Default: not reduced.
@@ -133,7 +138,7 @@ pub enum Section {
     /// Bars: axial force only.
     Bar(BarSection),
     /// Beams: extension, shear, bending and torsion, with rotations of the nodes.
-    Beam(BeamSection),
+    Beam(Box<BeamSection>),
     /// Plane cells whose strain across the plane is zero.
     PlaneStrain(PlaneSection),
     /// Plane cells whose stress across the plane is zero.
@@ -252,38 +257,4 @@ pub struct MovementPoint {
     pub time: Delay,
     /// Displacement at that time.
     pub displacement: Coordinate,
-}
-
-/// A direction of the axes.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
-)]
-#[serde(rename_all = "kebab-case")]
-pub enum Axis {
-    /// The first axis.
-    X,
-    /// The second axis.
-    Y,
-    /// The third axis.
-    Z,
-    /// The rotation about the first axis.
-    Rx,
-    /// The rotation about the second axis.
-    Ry,
-    /// The rotation about the third axis, the only one in the plane.
-    Rz,
-}
-
-impl Axis {
-    /// Component number, from 0, and whether it is a rotation.
-    pub fn index(self) -> (usize, bool) {
-        match self {
-            Axis::X => (0, false),
-            Axis::Y => (1, false),
-            Axis::Z => (2, false),
-            Axis::Rx => (0, true),
-            Axis::Ry => (1, true),
-            Axis::Rz => (2, true),
-        }
-    }
 }

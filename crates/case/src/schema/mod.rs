@@ -4,10 +4,12 @@
 //! ([`json_schema`]); every file is checked against that schema, with all its errors, before serde fills the types; and the reference
 //! page of the manual is written from it ([`crate::reference_page`]). A choice is an enum with one key for each variant.
 
+mod axis;
 mod beam;
 mod body;
 mod contact;
 mod discrete;
+mod joint;
 mod load;
 mod material;
 mod mesh;
@@ -22,12 +24,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+pub use axis::Axis;
 pub use beam::{
-    BeamSection, BeamShape, BeamTheory, CircleShape, IShape, RectangleShape, SectionProperties,
-    TubeShape,
+    BeamSection, BeamShape, BeamTheory, CircleShape, IShape, RectangleShape, Rotations,
+    SectionProperties, TubeShape,
 };
 pub use body::{
-    Axis, AxisymmetricSection, BarSection, Body, Damping as RayleighDamping, Formulation,
+    AxisymmetricSection, BarSection, Body, Damping as RayleighDamping, Formulation,
     FormulationName, FormulationWith, Initial, Mass, Movement, MovementCourse, MovementPoint,
     PlaneSection, Reduced, Rigid, Section, Support,
 };
@@ -43,6 +46,9 @@ pub use contact::{
     Penetration, Sliding,
 };
 pub use discrete::{Dashpot, DashpotPoint, Ends, PointMass, Spring, SpringPoint, Stop};
+pub use joint::{
+    AddedMass, Channel, Constraint, ConstraintTerm, FluidGap, Foundation, Hinge, RigidLink,
+};
 pub use load::{
     AmplitudeCourse, AmplitudePoint, BaseAcceleration, DensityPoint, Load, RandomForce,
 };
@@ -104,6 +110,15 @@ pub struct Case {
     /// Stops, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub stop: Named<Stop>,
+    /// Rigid links, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub rigid_link: Named<RigidLink>,
+    /// Linear constraints, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub constraint: Named<Constraint>,
+    /// Fluids in gaps between two bodies, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub fluid: Named<FluidGap>,
     /// Functions of time, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub signal: Named<Signal>,

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
+use carom_algebra::rotation::Rotation;
 use carom_algebra::solver::FactorStats;
 use carom_bodies::Placement;
 use carom_contact::Pairing;
@@ -83,6 +84,8 @@ pub(super) struct At<'a> {
     pub(super) v: &'a [f64],
     /// The one at the start, for stresses between the two.
     pub(super) from: Option<&'a [f64]>,
+    /// Rotations at the start of the step.
+    pub(super) frames: &'a [Rotation],
     /// Histories at the start of the step.
     pub(super) history: &'a [f64],
     /// Parts with a proximal term, and its part of the diagonal.
@@ -507,6 +510,7 @@ impl Matrices {
                 u: at.u,
                 v: at.v,
                 from: at.from,
+                frames: at.frames,
                 dt: match at.between {
                     true => at.dt,
                     false => map.instant(at.dt),
@@ -522,13 +526,6 @@ impl Matrices {
                 };
                 body.add_tangent(&now, [rate * damping.stiffness, 0.0], a)?;
             }
-            if damping.mass != 0.0 {
-                for &(node, m) in &system.body_masses[k] {
-                    for unknown in system.unknowns.translations_of(node) {
-                        a.add(unknown, unknown, rate * damping.mass * m);
-                    }
-                }
-            }
         }
         for (part, _) in system
             .parts
@@ -539,6 +536,9 @@ impl Matrices {
             let inertia = at.maps.of(part.start).inertia.x;
             if inertia != 0.0 {
                 system.mass.add_to(inertia, part, 0, a);
+            }
+            if let Some(mass) = &system.damping_mass {
+                mass.add_to(damping_rate(at.maps.of(part.start)).x, part, 0, a);
             }
         }
         super::loads::add_tangent(system, (at.maps, at.start, at.dt), at.u, a);

@@ -68,15 +68,14 @@ impl Driver {
         for body in &system.bodies {
             body.add_damping_force(&vectors.rate, &mut vectors.damping);
         }
+        if let Some(mass) = &system.damping_mass {
+            mass.multiply(&vectors.rate, &mut vectors.work);
+            for (damping, force) in vectors.damping.iter_mut().zip(&vectors.work) {
+                *damping += force;
+            }
+        }
         vectors.work.copy_from_slice(&vectors.rate);
         for (k, damping) in system.nonlinear.damping.iter().enumerate() {
-            if damping.mass != 0.0 {
-                for &(node, m) in &system.body_masses[k] {
-                    for unknown in system.unknowns.translations_of(node) {
-                        vectors.damping[unknown] += damping.mass * m * vectors.work[unknown];
-                    }
-                }
-            }
             if damping.stiffness != 0.0 {
                 for v in vectors.work.iter_mut() {
                     *v *= damping.stiffness;
@@ -109,9 +108,12 @@ impl Driver {
             history,
             ..
         } = &mut self.vectors;
-        let (u, v) = match place {
-            Which::Place => (&configuration[..], &rate[..]),
-            Which::Next => (&self.next.motion.u[..], &self.next.motion.v[..]),
+        let (u, v, frames) = match place {
+            Which::Place => (&configuration[..], &rate[..], &self.state.motion.frames),
+            Which::Next => {
+                let next = &self.next.motion;
+                (&next.u[..], &next.v[..], &next.frames)
+            }
         };
         let from = from.then_some(&self.state.motion.u[..]);
         internal.fill(0.0);
@@ -123,6 +125,7 @@ impl Driver {
                 u,
                 v,
                 from,
+                frames,
                 dt: dt(&self.maps.all()[system.zone_of_body[k]]),
                 old: &self.state.motion.history[range.clone()],
             };

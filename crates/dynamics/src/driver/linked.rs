@@ -194,6 +194,8 @@ impl Driver {
                 u: &origin.u,
                 v: &still,
                 from: None,
+                // zones that step apart have no frames
+                frames: &[],
                 dt: self.dt,
                 old: &origin.history[system.nonlinear.histories[k].clone()],
             };

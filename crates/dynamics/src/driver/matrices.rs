@@ -65,6 +65,7 @@ impl Driver {
             u: &self.vectors.place,
             v: &self.vectors.rate,
             from: self.between().then_some(&motion.u[..]),
+            frames: &motion.frames,
             history: &motion.history,
             proximal: (floats, self.floating.weight),
         };

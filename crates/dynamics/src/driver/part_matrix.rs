@@ -35,17 +35,8 @@ pub(super) fn part_matrix(
     }
     let of_body = |body: usize| stiffness + rate * damping(body).stiffness;
     let mut a = assembled(system, part, [map.inertia.x, rate], &of_body);
-    for (k, masses) in system.body_masses.iter().enumerate() {
-        let factor = rate * damping(k).mass;
-        if factor == 0.0 || system.parts[system.part_of_body[k]] != *part {
-            continue;
-        }
-        for &(node, m) in masses {
-            for unknown in system.unknowns.translations_of(node) {
-                let i = unknown - part.start;
-                a.add(i, i, factor * m);
-            }
-        }
+    if let Some(mass) = &system.damping_mass {
+        mass.add_to(rate, part, part.start, &mut a);
     }
     Some(a)
 }

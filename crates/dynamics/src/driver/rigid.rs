@@ -233,12 +233,42 @@ impl<'a> Rigid<'a> {
         (&self.parts[most / count], self.modes[most % count].0)
     }
 
+    /// Turns of the parts by finite angles that are those of a motion: nodes with finite rotations, and the angle of each in space, rad.
+    pub(super) fn turns(&self, c: &[f64]) -> impl Iterator<Item = (u32, [f64; 3])> + '_ {
+        let angles: Vec<[f64; 3]> = (0..self.parts.len()).map(|k| self.angle(k, c)).collect();
+        let unknowns = &self.system.unknowns;
+        unknowns.turning().iter().filter_map(move |&node| {
+            let part = self.part_of(unknowns.first(node))?;
+            Some((node, angles[part]))
+        })
+    }
+
+    /// What holding an unknown at its initial place takes from the motions of its part: of a finite rotation the turn about its axis.
+    fn held_by(&self, unknown: usize) -> Vec<f64> {
+        let unknowns = &self.system.unknowns;
+        let node = unknowns.node(unknown);
+        let (Kind::Rotation(axis), Some(frame)) = (unknowns.kind(unknown), unknowns.frame(node))
+        else {
+            return self.of([(unknown, 1.0)]);
+        };
+        let mut held = vec![0.0; self.parts.len() * self.modes.len()];
+        if let Some(part) = self.part_of(unknown) {
+            let matrix = self.system.initial_frames[frame].matrix();
+            for (k, mode) in self.modes.iter().enumerate() {
+                let turn = turn_of(mode);
+                let along: f64 = (0..3).map(|i| matrix[(i, axis)] * turn[i]).sum();
+                held[part * self.modes.len() + k] = along;
+            }
+        }
+        held
+    }
+
     /// The first of the motions that neither supports nor springs hold, with those before it held.
     pub(super) fn free_motion(&self) -> Option<&'static str> {
         let mut held = Span::default();
         for i in self.parts.iter().flat_map(Range::clone) {
             if self.system.fixed[i] {
-                held.add(self.of([(i, 1.0)]));
+                held.add(self.held_by(i));
             }
         }
         for body in &self.system.bodies {

@@ -5,6 +5,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use carom_algebra::rotation::Rotation;
+use carom_algebra::tensor::Vec3;
+use carom_algebra::unknowns::Kind;
 use carom_contact::Search;
 
 use super::Driver;
@@ -345,6 +348,16 @@ impl Driver {
         for (i, u) in rigid.motion(&c).chain(rigid.arc(&c)) {
             if moved(i) {
                 vectors.x[i] += u / factor(i);
+            }
+        }
+        for (node, angle) in rigid.turns(&c).filter(|(node, _)| system.bends_at(*node)) {
+            let frame = system.unknowns.frame(node);
+            let start = frame.map_or(Rotation::IDENTITY, |frame| motion.frames[frame]);
+            let turn = start.matrix().tr_mul(&Vec3::from(angle));
+            for i in system.unknowns.rotations_of(node).filter(|&i| moved(i)) {
+                if let Kind::Rotation(axis) = system.unknowns.kind(i) {
+                    vectors.x[i] += turn[axis] / factor(i);
+                }
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Forces of springs in the balance of momentum: they may have a resultant and a moment, on the ground and across their nodes, which is
+//! Forces of springs and of elastic foundations in the balance of momentum: they may have a resultant and a moment, on the ground and across their nodes, which is
 //! counted with that of the supports.
 
 use carom_bodies::Placement;
@@ -27,6 +27,7 @@ impl Driver {
             u: &self.vectors.place,
             v: &self.vectors.rate,
             from: between.then_some(&self.state.motion.u[..]),
+            frames: &self.state.motion.frames,
             dt: self.dt,
             old: &[],
         };
@@ -58,6 +59,7 @@ impl Driver {
             u: place,
             v: &[],
             from: None,
+            frames: &[],
             dt: 0.0,
             old: &[],
         };

@@ -30,11 +30,8 @@ fn beam(dim: usize, scheme: Scheme, mass: MassKind) -> Model {
         width: 0.02,
     };
     let section = BeamSection {
-        theory: BeamTheory::Timoshenko,
-        properties: shape.properties(0.3),
         orientation: (dim == 3).then_some([0.0, 1.0, 0.2]),
-        offset: [0.0; 2],
-        radius: None,
+        ..BeamSection::new(BeamTheory::Timoshenko, shape.properties(0.3))
     };
     let cells = mesh.groups["a"].elements.clone();
     let spec = BodySpec::new("a", cells, Kinematics::Beam(section), STEEL);

@@ -30,10 +30,12 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             material: Material::NeoHooke(NeoHooke { initial }),
             formulation: Formulation::BBar,
             weights: None,
+            releases: Vec::new(),
         },
         mass: MassKind::Lumped,
         velocity: [0.0; 3],
         displacement: [0.0; 3],
+        spin: [0.0; 3],
         rigid: None,
         reduced: None,
     }
@@ -78,6 +80,7 @@ fn sheared(secondary: usize) -> Driver {
         dt: 1.0,
         zones: Vec::new(),
         links: Vec::new(),
+        constraints: Vec::new(),
         adaptive: None,
         nonlinear: Nonlinear {
             motions: vec![Prescribed {

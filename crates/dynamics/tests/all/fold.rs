@@ -23,10 +23,12 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             material: SOFT.into(),
             formulation: Formulation::Full,
             weights: None,
+            releases: Vec::new(),
         },
         mass: MassKind::Lumped,
         velocity: [0.0; 3],
         displacement: [0.0; 3],
+        spin: [0.0; 3],
         rigid: None,
         reduced: None,
     }
@@ -81,6 +83,7 @@ fn pressed(depth: f64, way: f64) -> Driver {
         dt: 1.0,
         zones: Vec::new(),
         links: Vec::new(),
+        constraints: Vec::new(),
         adaptive: None,
         nonlinear: Nonlinear {
             motions: vec![Prescribed {

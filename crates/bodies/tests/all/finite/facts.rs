@@ -129,6 +129,7 @@ fn forces_energies_and_tangents_have_the_same_bits_on_any_number_of_threads() {
                     u: &u,
                     v: &[],
                     from: None,
+                    frames: &[],
                     dt: 1.0,
                     old: &[],
                 };

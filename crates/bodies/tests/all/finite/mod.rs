@@ -131,6 +131,7 @@ impl<'a> Step<'a> {
             u,
             v: &[],
             from: self.from,
+            frames: &[],
             dt: 0.1,
             old: &self.old,
         }

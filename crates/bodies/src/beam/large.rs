@@ -1,0 +1,398 @@
+//! Beams with finite rotations: geometrically exact elements after Simo and Reissner.
+//!
+//! The nodes have a place and a rotation R, whose increment θ of the step, angular velocity W and its rate are about axes that turn
+//! with the node, as those of [rigid bodies](crate::Rigid); in the reference position R is the identity. The strains and the energy of
+//! an element are those of [`strain`](super::strain). The shear stiffness is `1/(1/(κ G A) + L²/(12 E I))` (MacNeal 1978): an element
+//! that bends little has the stiffness of the linear one, exact under forces at its nodes. Without shear deformation it is
+//! `12 E I/L²`.
+//!
+//! **Energy-momentum.** The invariants s are bilinear in q, the places and directors: `s₊ - s = ∂s(q_m) Δq` with the means q_m,
+//! and with Cayley's map `d₊ - d = (R θ) × d_m`. So the forces `∂s(q_m)ᵀ D`, D the mean of ∂U/∂s on the straight way between s and s₊, do
+//! the work ΔU over the step, and have no resultant and no moment in its middle, because s does not change where all q turn. The
+//! moments m in space are T = A Rᵀ m in the equation `J Ẇ + W × J W = T`, A = I - θ̂/2: that keeps the angular momentum R J W, and
+//! θ·T = (R θ)·m the energy. D is found with four points of Gauss's rule: its error is of the order Δs⁹.
+//!
+//! Mass: of translations linear between the nodes (consistent) or half at each (lumped); of rotations at both half of ρ L I about the axes
+//! of the section, also with Euler-Bernoulli: a constant tensor J about the axes of the node.
+
+use std::ops::Range;
+
+use carom_algebra::csr::Csr;
+use carom_algebra::rotation::Rotation;
+use carom_algebra::tensor::{Mat3, Vec3};
+use carom_algebra::unknowns::Unknowns;
+
+use super::section::BeamTheory;
+use super::strain::{Elastic, Invariants, Pair};
+use super::{Beam, SectionForces};
+use crate::{Error, Placement, Stored};
+
+/// Beams on nodes with finite rotations.
+#[derive(Debug)]
+pub struct LargeBeam {
+    /// Cells, nodes, axes and section.
+    small: Beam,
+    elements: Vec<Elastic>,
+    /// Reference way between the nodes of each element, m.
+    ways: Vec<Vec3>,
+    /// Frames of the nodes of each element.
+    frames: Vec<[usize; 2]>,
+    /// Tensor of inertia of half an element about the axes of coordinates, kg m².
+    inertia: Vec<Mat3>,
+}
+
+/// The state of an element's nodes.
+struct Ends {
+    pair: Pair,
+    /// R at the start of the step, and θ since.
+    starts: [Mat3; 2],
+    increments: [Vec3; 2],
+}
+
+impl LargeBeam {
+    /// The same beams with finite rotations. `x`: reference places by system number, m.
+    ///
+    /// # Errors
+    /// An eccentric axis, hinges, a foundation.
+    pub(crate) fn new(
+        small: Beam,
+        x: &dyn Fn(u32) -> [f64; 3],
+        unknowns: &Unknowns,
+    ) -> Result<LargeBeam, Error> {
+        let refused = |what| Error::LargeBeam {
+            body: small.name.clone(),
+            what,
+        };
+        if small.section.offset != [0.0; 2] {
+            return Err(refused("an offset"));
+        }
+        if small.released.iter().flatten().any(|released| *released) {
+            return Err(refused("hinges"));
+        }
+        if small.has_foundation() || small.has_fluid() {
+            return Err(refused("a foundation or a fluid around them"));
+        }
+        let properties = &small.section.properties;
+        let (young, shear) = (small.material.young, small.material.shear_modulus());
+        let [about_y, about_z] = properties.second_moments;
+        let element = |&length: &f64| {
+            let across = |area: f64, second: f64| {
+                let bends = length * length / (12.0 * young * second);
+                match small.section.theory {
+                    BeamTheory::Timoshenko => 1.0 / (1.0 / (shear * area) + bends),
+                    BeamTheory::EulerBernoulli => 1.0 / bends,
+                }
+            };
+            let [along_y, along_z] = properties.shear_areas;
+            Elastic {
+                length,
+                stiffness: [
+                    young * properties.area,
+                    across(along_y, about_z),
+                    across(along_z, about_y),
+                    shear * properties.torsion,
+                    young * about_y,
+                    young * about_z,
+                ],
+            }
+        };
+        let half = |(axes, length): (&Mat3, &f64)| {
+            let local = Vec3::new(about_y + about_z, about_y, about_z);
+            let local = Mat3::from_diagonal(&(local * (0.5 * small.material.density * length)));
+            axes.transpose() * local * axes
+        };
+        let way = |nodes: &[u32; 2]| {
+            let [from, to] = nodes.map(|node| Vec3::from(x(node)));
+            to - from
+        };
+        let frames =
+            |nodes: &[u32; 2]| nodes.map(|node| unknowns.frame(node).unwrap_or(usize::MAX));
+        Ok(LargeBeam {
+            elements: small.lengths.iter().map(element).collect(),
+            inertia: small.axes.iter().zip(&small.lengths).map(half).collect(),
+            ways: small.nodes.iter().map(way).collect(),
+            frames: small.nodes.iter().map(frames).collect(),
+            small,
+        })
+    }
+
+    /// The linear beams that they are where they turn little.
+    pub fn small(&self) -> &Beam {
+        &self.small
+    }
+
+    /// Translations and rotations of a node of an element, the latter about the axes of the node.
+    fn of_node(&self, first: usize, values: &[f64]) -> [Vec3; 2] {
+        let own = &values[first..first + self.small.per_node()];
+        match self.small.dim {
+            2 => [Vec3::new(own[0], own[1], 0.0), Vec3::new(0.0, 0.0, own[2])],
+            _ => [
+                Vec3::new(own[0], own[1], own[2]),
+                Vec3::new(own[3], own[4], own[5]),
+            ],
+        }
+    }
+
+    fn ends(&self, element: usize, frames: &[Rotation], u: &[f64]) -> Ends {
+        let nodes = self.small.first[element].map(|first| self.of_node(first, u));
+        let starts =
+            self.frames[element].map(|k| frames.get(k).copied().unwrap_or_default().matrix());
+        let sections = self.small.axes[element].transpose();
+        let turned = |a: usize| starts[a] * Rotation::cayley(&nodes[a][1]).matrix() * sections;
+        Ends {
+            pair: Pair {
+                way: self.ways[element] + nodes[1][0] - nodes[0][0],
+                directors: [turned(0), turned(1)],
+            },
+            starts,
+            increments: [nodes[0][1], nodes[1][1]],
+        }
+    }
+
+    fn invariants(&self, element: usize, ends: &Ends) -> Invariants {
+        ends.pair.invariants(self.elements[element].length)
+    }
+
+    /// Where forces are taken in an element, its configuration and D there.
+    fn acting(&self, element: usize, at: &Placement) -> (Ends, Pair, Invariants) {
+        let end = self.ends(element, at.frames, at.u);
+        let s = self.invariants(element, &end);
+        match at.from {
+            None => {
+                let d = self.elements[element].gradient(&s);
+                let pair = end.pair;
+                (end, pair, d)
+            }
+            Some(from) => {
+                let start = self.ends(element, at.frames, from);
+                let before = self.invariants(element, &start);
+                let d = self.elements[element].mean_gradient([&before, &s]);
+                let pair = start.pair.mean(&end.pair);
+                (end, pair, d)
+            }
+        }
+    }
+
+    /// Adds internal forces and W × J W; see [`Body::force`](crate::Body::force).
+    pub(crate) fn force(&self, at: &Placement, f: &mut [f64]) -> Stored {
+        let mut stored = Stored::default();
+        for element in 0..self.elements.len() {
+            let length = self.elements[element].length;
+            let (end, pair, d) = self.acting(element, at);
+            stored.strain += self.elements[element].energy(&self.invariants(element, &end));
+            let rows = pair.derivatives(length);
+            let own: [f64; 12] = std::array::from_fn(|k| (0..6).map(|i| rows[i][k] * d[i]).sum());
+            for (node, own) in own.chunks_exact(6).enumerate() {
+                let force = Vec3::new(own[0], own[1], own[2]);
+                let moment = end.starts[node].tr_mul(&Vec3::new(own[3], own[4], own[5]));
+                let moment = balanced(&moment, &end.increments[node], at.from.is_some());
+                self.add_node(self.small.first[element][node], [&force, &moment], f);
+            }
+            self.add_gyroscopic(element, at.v, f);
+        }
+        stored
+    }
+
+    /// Adds a force and a moment to the entries of a node.
+    fn add_node(&self, first: usize, [force, moment]: [&Vec3; 2], f: &mut [f64]) {
+        let dim = self.small.dim;
+        for i in 0..dim {
+            f[first + i] += force[i];
+        }
+        match dim {
+            2 => f[first + 2] += moment.z,
+            _ => (0..3).for_each(|i| f[first + 3 + i] += moment[i]),
+        }
+    }
+
+    fn add_gyroscopic(&self, element: usize, v: &[f64], f: &mut [f64]) {
+        if self.small.dim < 3 {
+            return;
+        }
+        for first in self.small.first[element] {
+            let [_, spin] = self.of_node(first, v);
+            let moment = spin.cross(&(self.inertia[element] * spin));
+            self.add_node(first, [&Vec3::zeros(), &moment], f);
+        }
+    }
+
+    /// Adds `by_u` ∂f/∂u + `by_v` ∂f/∂v, their symmetric parts, of forces between two configurations at the means of both.
+    pub(crate) fn add_tangent(&self, at: &Placement, [by_u, by_v]: [f64; 2], matrix: &mut Csr) {
+        let share = if at.from.is_some() { 0.5 } else { 1.0 };
+        for element in 0..self.elements.len() {
+            let elastic = &self.elements[element];
+            let (end, pair, d) = self.acting(element, at);
+            let rows = pair.derivatives(elastic.length);
+            let inner = elastic.tangent(&pair.invariants(elastic.length));
+            let mut k = pair.curvature(elastic.length, &d);
+            for a in 0..12 {
+                for i in 0..6 {
+                    let left: f64 = (0..6).map(|j| rows[j][a] * inner[j][i]).sum();
+                    for b in 0..12 {
+                        k[a][b] += left * rows[i][b];
+                    }
+                }
+            }
+            let turns = [0, 1].map(|a| spatial(&end.starts[a], &end.increments[a]));
+            let column = |a: usize, part: usize| match part {
+                0 => Mat3::identity(),
+                _ => turns[a],
+            };
+            for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                for (p, q) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                    let block = Mat3::from_fn(|i, j| k[6 * a + 3 * p + i][6 * b + 3 * q + j]);
+                    let own = column(a, p).transpose() * block * column(b, q) * (share * by_u);
+                    self.add_block(element, [(a, p), (b, q)], &own, matrix);
+                }
+            }
+            self.add_gyroscopic_tangent(element, at.v, by_v, matrix);
+        }
+    }
+
+    fn add_gyroscopic_tangent(&self, element: usize, v: &[f64], by_v: f64, matrix: &mut Csr) {
+        if self.small.dim < 3 || by_v == 0.0 {
+            return;
+        }
+        for (node, first) in self.small.first[element].into_iter().enumerate() {
+            let [_, spin] = self.of_node(first, v);
+            let inertia = &self.inertia[element];
+            let slope = spin.cross_matrix() * inertia - (inertia * spin).cross_matrix();
+            let mean = (slope + slope.transpose()) * (0.5 * by_v);
+            self.add_block(element, [(node, 1), (node, 1)], &mean, matrix);
+        }
+    }
+
+    /// Adds a block over the translations (part 0) or the rotations (part 1) of two nodes.
+    fn add_block(
+        &self,
+        element: usize,
+        [(a, p), (b, q)]: [(usize, usize); 2],
+        own: &Mat3,
+        to: &mut Csr,
+    ) {
+        let dim = self.small.dim;
+        let places = |node: usize, part: usize| {
+            let first = self.small.first[element][node];
+            let all: [Option<usize>; 3] = match (part, dim) {
+                (0, _) => [0, 1, 2].map(|i| (i < dim).then_some(first + i)),
+                (_, 2) => [None, None, Some(first + 2)],
+                _ => [0, 1, 2].map(|i| Some(first + 3 + i)),
+            };
+            all
+        };
+        let columns = places(b, q);
+        for (i, row) in places(a, p).into_iter().enumerate() {
+            for (j, column) in columns.iter().enumerate() {
+                if let (Some(row), Some(column)) = (row, *column) {
+                    to.add(row, column, own[(i, j)]);
+                }
+            }
+        }
+    }
+
+    /// Adds `mass` M; see [`Body::assemble`](crate::Body::assemble).
+    pub(crate) fn add_mass(&self, mass: f64, part: &Range<usize>, matrix: &mut Csr) {
+        let dim = self.small.dim;
+        for (element, first) in self.small.first.iter().enumerate() {
+            if !part.contains(&first[0]) {
+                continue;
+            }
+            let whole = mass * self.weight(element);
+            let nodes = first.map(|first| first - part.start);
+            for (a, &row) in nodes.iter().enumerate() {
+                for (b, &column) in nodes.iter().enumerate() {
+                    let m = if a == b { whole / 3.0 } else { whole / 6.0 };
+                    (0..dim).for_each(|i| matrix.add(row + i, column + i, m));
+                }
+                let inertia = self.inertia[element] * mass;
+                match dim {
+                    2 => matrix.add(row + 2, row + 2, inertia[(2, 2)]),
+                    _ => {
+                        for i in 0..3 {
+                            for j in 0..3 {
+                                matrix.add(row + 3 + i, row + 3 + j, inertia[(i, j)]);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn weight(&self, element: usize) -> f64 {
+        let line = self.small.material.density * self.small.section.properties.area;
+        line * self.elements[element].length
+    }
+
+    /// Adds the diagonal of the lumped mass.
+    pub(crate) fn add_lumped_mass(&self, mass: &mut [f64]) {
+        let dim = self.small.dim;
+        for (element, first) in self.small.first.iter().enumerate() {
+            for &first in first {
+                for m in &mut mass[first..first + dim] {
+                    *m += 0.5 * self.weight(element);
+                }
+                let inertia = &self.inertia[element];
+                match dim {
+                    2 => mass[first + 2] += inertia[(2, 2)],
+                    _ => (0..3).for_each(|i| mass[first + 3 + i] += inertia[(i, i)]),
+                }
+            }
+        }
+    }
+
+    /// Whether the lumped mass is diagonal in the axes of coordinates.
+    pub(crate) fn lumps(&self) -> bool {
+        self.small.dim == 2
+            || self.inertia.iter().all(|inertia| {
+                let off = [inertia[(0, 1)], inertia[(1, 2)], inertia[(0, 2)]];
+                off.iter()
+                    .all(|i| i.abs() <= super::ROUNDING * inertia.trace())
+            })
+    }
+
+    /// Volume (m³) and mean stress (Pa) of each element: the normal force along the line between its nodes, over the area.
+    pub(crate) fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
+        let of = |element: usize| {
+            let [from, to] = self.small.first[element].map(|first| self.of_node(first, u)[0]);
+            let (way, length) = (
+                self.ways[element] + to - from,
+                self.elements[element].length,
+            );
+            let (now, along) = (way.norm(), way.normalize());
+            let stress = self.small.material.young * (now / length - 1.0);
+            let volume = self.small.section.properties.area * length;
+            (volume, along * along.transpose() * stress)
+        };
+        (0..self.elements.len()).map(of).collect()
+    }
+
+    /// Forces and moments in the sections at these rotations and displacements, in the axes in the middle of each element.
+    pub fn section_forces(&self, frames: &[Rotation], u: &[f64]) -> Vec<SectionForces> {
+        let of = |element: usize| {
+            let s = self.invariants(element, &self.ends(element, frames, u));
+            let f = self.elements[element].stresses(&s);
+            let moment = [f[3], f[4], f[5]];
+            SectionForces {
+                force: [f[0], f[1], f[2]],
+                moment_first: moment,
+                moment_second: moment,
+            }
+        };
+        (0..self.elements.len()).map(of).collect()
+    }
+}
+
+/// Moments about the axes at the start of a step in those in which they balance: A z of forces over the step, `cay(θ)ᵀ z` of others.
+fn balanced(moment: &Vec3, increment: &Vec3, between: bool) -> Vec3 {
+    match between {
+        true => moment - (increment * 0.5).cross(moment),
+        false => Rotation::cayley(increment).matrix().tr_mul(moment),
+    }
+}
+
+/// What a change of the increment θ turns in space: R (I + θ̂/2)/(1 + θ²/4).
+fn spatial(start: &Mat3, increment: &Vec3) -> Mat3 {
+    let half = increment * 0.5;
+    start * (Mat3::identity() + half.cross_matrix()) / (1.0 + half.norm_squared())
+}

@@ -1,0 +1,188 @@
+//! What moves with bodies and holds them along their length: fluids around beams and between two bodies, elastic foundations.
+
+use carom_bodies::{DiscreteKind, DiscreteSpec, FluidGap};
+use carom_dynamics::ModelDiscrete;
+use carom_elements::Kind;
+use carom_mesh::{ElementId, Group, Mesh};
+
+use super::{Builder, plural};
+use crate::error::Problem;
+use crate::schema::{self, AddedMass};
+
+/// Distance along the axis, over the length of the body, up to which nodes stand beside each other.
+const BESIDE: f64 = 1e-6;
+
+/// An inner and an outer node, and the length that they stand for, m.
+type Pair = ([u32; 2], f64);
+
+impl Builder<'_> {
+    /// Stiffness of an elastic foundation along the axes of the section, N/m²; `path`: of the section.
+    pub(super) fn foundation(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        given: Option<schema::Foundation>,
+    ) -> Option<[f64; 3]> {
+        let Some(given) = given else {
+            return Some([0.0; 3]);
+        };
+        if mesh.dim == 2 && given.z.is_some() {
+            let problem = Problem::new(
+                format!("{path}.foundation.z"),
+                "in the plane nothing moves along z",
+            );
+            self.problems.push(problem.accepted(["x", "y"]));
+            return None;
+        }
+        Some([given.x, given.y, given.z].map(|k| k.map_or(0.0, |k| k.0)))
+    }
+
+    /// Mass per length of the fluid around a section of this outer diameter, kg/m.
+    pub(super) fn added_mass(
+        &mut self,
+        path: &str,
+        given: Option<AddedMass>,
+        diameter: Option<f64>,
+    ) -> Option<f64> {
+        let channel = match given {
+            None => return Some(0.0),
+            Some(AddedMass::PerLength(mass)) => return Some(mass.0),
+            Some(AddedMass::Channel(channel)) => channel,
+        };
+        let path = format!("{path}.added-mass.channel");
+        let Some(diameter) = diameter else {
+            let problem = Problem::new(
+                path,
+                "the added mass in a channel is known of round sections",
+            );
+            self.problems
+                .push(problem.accepted(["shape.circle", "shape.tube", "`per-length`"]));
+            return None;
+        };
+        let outer = channel.diameter.0;
+        if outer <= diameter {
+            let problem = Problem::new(
+                format!("{path}.diameter"),
+                "the channel is not around the section",
+            );
+            self.problems.push(
+                problem
+                    .found(format!("{outer} m"))
+                    .accepted([format!("more than {diameter} m")]),
+            );
+            return None;
+        }
+        Some(FluidGap::around(
+            channel.density.0,
+            [0.5 * diameter, 0.5 * outer],
+        ))
+    }
+
+    /// The fluids in gaps; their cells are added to the mesh.
+    pub(super) fn fluids(&mut self, mesh: &mut Mesh) -> Vec<ModelDiscrete> {
+        let mut made = Vec::new();
+        for (name, fluid) in self.case.fluid.iter() {
+            let path = format!("fluid.{name}");
+            let [inner, outer] = fluid.diameters.map(|d| 0.5 * d.0);
+            if inner >= outer {
+                let problem = Problem::new(
+                    format!("{path}.diameters"),
+                    "no gap is between these diameters",
+                );
+                self.problems.push(
+                    problem
+                        .found(format!("{} m and {} m", 2.0 * inner, 2.0 * outer))
+                        .accepted(["the inner one first, and less than the outer one"]),
+                );
+                continue;
+            }
+            let Some((pairs, axis)) = self.beside(mesh, &path, fluid) else {
+                continue;
+            };
+            // pairs that stand for the same length are one set
+            let mut sets: Vec<(f64, Vec<ElementId>)> = Vec::new();
+            for (nodes, length) in pairs {
+                let cell = mesh.push(Kind::Bar2, &nodes);
+                let same = |(other, _): &&mut (f64, Vec<ElementId>)| {
+                    (*other - length).abs() <= BESIDE * length
+                };
+                match sets.iter_mut().find(same) {
+                    Some((_, cells)) => cells.push(cell),
+                    None => sets.push((length, vec![cell])),
+                }
+            }
+            for (k, (length, cells)) in sets.into_iter().enumerate() {
+                let name = match k {
+                    0 => name.to_owned(),
+                    _ => format!("{name}.{}", k + 1),
+                };
+                made.push(ModelDiscrete::new(DiscreteSpec {
+                    name,
+                    cells,
+                    kind: DiscreteKind::Fluid(FluidGap {
+                        axis: Some(axis),
+                        ..FluidGap::new(fluid.density.0, [inner, outer], length)
+                    }),
+                }));
+            }
+        }
+        made
+    }
+
+    /// Pairs of nodes beside each other with the length that each stands for (m), and the axis.
+    fn beside(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        fluid: &schema::FluidGap,
+    ) -> Option<(Vec<Pair>, [f64; 3])> {
+        let inner = self.group(mesh, &format!("{path}.inner"), &fluid.inner)?;
+        let outer = self.group(mesh, &format!("{path}.outer"), &fluid.outer)?;
+        let lines = |group: &Group| group.dim == 1;
+        if !lines(inner) || !lines(outer) {
+            let key = if lines(inner) { "outer" } else { "inner" };
+            let problem = Problem::new(format!("{path}.{key}"), "a fluid gap is along lines");
+            self.problems
+                .push(problem.accepted(["a group of bars or beams"]));
+            return None;
+        }
+        let (own, others) = (mesh.group_nodes(inner), mesh.group_nodes(outer));
+        let [from, to] = [own.first()?, own.last()?].map(|&node| mesh.nodes[node as usize]);
+        let way = [0, 1, 2].map(|i| to[i] - from[i]);
+        let size = way.iter().map(|w| w * w).sum::<f64>().sqrt();
+        let axis = way.map(|w| w / size);
+        let place = |node: u32| -> f64 {
+            let x = mesh.nodes[node as usize];
+            (0..3).map(|i| axis[i] * (x[i] - from[i])).sum()
+        };
+        let mut pairs: Vec<Pair> = Vec::new();
+        for &node in &own {
+            let off = |other: &&u32| (place(**other) - place(node)).abs();
+            let nearest = others.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+            if off(&nearest) > BESIDE * size {
+                let problem = Problem::new(
+                    format!("{path}.outer"),
+                    "nodes of the two bodies must stand beside each other along the axis",
+                );
+                self.problems.push(
+                    problem
+                        .found(format!(
+                            "{}, none within {:.3e} m of node {node} of the inner body",
+                            plural(others.len(), "node"),
+                            BESIDE * size
+                        ))
+                        .accepted(["bodies with the same division along the axis"]),
+                );
+                return None;
+            }
+            let around = |id: &&ElementId| mesh.element_nodes(**id).contains(&node);
+            let half = |id: &ElementId| {
+                let nodes = mesh.element_nodes(*id);
+                0.5 * (place(nodes[1]) - place(nodes[0])).abs()
+            };
+            let length = inner.elements.iter().filter(around).map(half).sum();
+            pairs.push(([node, *nearest], length));
+        }
+        Some((pairs, axis))
+    }
+}

@@ -1,0 +1,98 @@
+//! `[rigid-link]`, `[constraint]`, `[fluid]`, and what joins beams: hinges, foundations, added mass.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use carom_quantities::{Density, Length, LineMass, Modulus};
+
+use super::axis::Axis;
+
+/// A hinge in a body of beams.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Hinge {
+    /// Group of nodes of the body.
+    pub on: String,
+    /// Rotations, about the axes of the section, in which the cells of the body that meet in a node do not turn together. The first of
+    /// the cells keeps to the node, and so do other bodies; of a node with one cell of the body this cell is released.
+    #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
+    pub free: Vec<Axis>,
+}
+
+/// An elastic foundation of beams: a force per length that opposes the displacement of the axis, in the axes of the section.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("minProperties" = 1))]
+pub struct Foundation {
+    /// Stiffness along the axis, a force per length over displacement. Default: 0.
+    pub x: Option<Modulus>,
+    /// Stiffness along y. Default: 0.
+    pub y: Option<Modulus>,
+    /// Stiffness along z. Default: 0.
+    pub z: Option<Modulus>,
+}
+
+/// The mass of a fluid that moves with a beam across its axis. It has no weight, and the motion of a base does not act on it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum AddedMass {
+    /// Its mass per length.
+    PerLength(LineMass),
+    /// That of a fluid at rest in a round channel around a round section.
+    Channel(Channel),
+}
+
+/// A fluid in a round channel.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Channel {
+    /// Density of the fluid.
+    pub density: Density,
+    /// Diameter of the channel, larger than that of the section.
+    pub diameter: Length,
+}
+
+/// Nodes that move as parts of a rigid body, which turns by small angles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct RigidLink {
+    /// Group of one node, which leads: `u = u₀ + θ₀ × (x - x₀)`. Without rotations of its own it gives its translation only.
+    pub first: String,
+    /// Group of the nodes that follow. Those of beams also turn with the first one.
+    pub nodes: String,
+}
+
+/// A linear constraint: the sum of its terms keeps its initial value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Constraint {
+    /// Terms of the sum.
+    #[schemars(extend("minItems" = 1))]
+    pub terms: Vec<ConstraintTerm>,
+}
+
+/// A displacement or a rotation times a factor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ConstraintTerm {
+    /// Group of one node.
+    pub on: String,
+    /// Direction of the displacement, or axis of the rotation.
+    pub direction: Axis,
+    /// Factor, of rotations in m.
+    pub factor: f64,
+}
+
+/// The inertia of a fluid in the gap between two coaxial bodies: a mass matrix between nodes that stand beside each other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct FluidGap {
+    /// Group of the cells of the inner body, lines.
+    pub inner: String,
+    /// Group of the cells of the outer body, lines with as many nodes at the same places along the axis.
+    pub outer: String,
+    /// Density of the fluid.
+    pub density: Density,
+    /// Inner and outer diameter of the gap.
+    pub diameters: [Length; 2],
+}
