@@ -198,7 +198,7 @@ impl Body {
             Body::Beam(beam) => Some(beam.wave_speed()),
             Body::LargeBeam(beam) => Some(beam.small().wave_speed()),
             Body::Rigid(_) | Body::Discrete(_) => None,
-            Body::Reduced(reduced) => reduced.reduction().full.wave_speed(),
+            Body::Reduced(reduced) => Some(reduced.reduction().full.wave_speed()),
         }
     }
 

@@ -14,6 +14,7 @@ mod distortion;
 mod error;
 mod finite;
 mod force;
+mod full;
 mod kinematics;
 mod nodes;
 mod reduced;
@@ -38,6 +39,7 @@ pub use discrete::{
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};
+pub use full::Full;
 pub use kinematics::{Kinematics, MassKind};
 pub use reduced::{Reduced, Reduction};
 pub use release::Release;

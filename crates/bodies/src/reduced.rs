@@ -12,14 +12,14 @@ use carom_algebra::tensor::Mat3;
 use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_mesh::ElementId;
 
-use crate::body::Body;
+use crate::full::Full;
 use crate::{Placement, SectionForces, Stored};
 
 /// A body and what it is reduced to, in the numbers of the mesh.
 #[derive(Debug)]
 pub struct Reduction {
     /// The full body, in numbers of its own.
-    pub full: Body,
+    pub full: Full,
     /// Unknowns of the full body.
     pub unknowns: Unknowns,
     /// Node of the mesh of each node of the full body.
@@ -164,7 +164,7 @@ impl Reduced {
         energy
     }
 
-    /// Adds the internal forces; see [`Body::force`].
+    /// Adds the internal forces; see [`Body::force`](crate::Body::force).
     pub(crate) fn force(&self, at: &Placement, f: &mut [f64]) -> Stored {
         let strain = match at.from {
             None => self.internal_force(at.u, f),
@@ -192,13 +192,13 @@ impl Reduced {
         }
     }
 
-    /// Adds `by_u` K + `by_v` C to a matrix over all unknowns; see [`Body::add_tangent`].
+    /// Adds `by_u` K + `by_v` C to a matrix over all unknowns; see [`Body::add_tangent`](crate::Body::add_tangent).
     pub(crate) fn add_tangent(&self, at: &Placement, [by_u, by_v]: [f64; 2], matrix: &mut Csr) {
         let share = if at.from.is_some() { 0.5 } else { 1.0 };
         self.assemble([share * by_u, by_v, 0.0], &(0..usize::MAX), matrix);
     }
 
-    /// Adds `factors` of K, C and M; see [`Body::assemble`].
+    /// Adds `factors` of K, C and M; see [`Body::assemble`](crate::Body::assemble).
     pub(crate) fn assemble(&self, factors: [f64; 3], part: &Range<usize>, matrix: &mut Csr) {
         let in_part = |unknown: &u32| part.contains(&(*unknown as usize));
         if !self.unknowns.first().is_some_and(in_part) {
@@ -228,7 +228,7 @@ impl Reduced {
 
     /// Volume (m³) and mean stress (Pa) of each element.
     pub(crate) fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
-        self.data.full.stresses(&self.recover(u), &[])
+        self.data.full.stresses(&self.recover(u))
     }
 
     /// Forces and moments in the sections of beams.

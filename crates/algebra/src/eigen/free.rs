@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::Problem;
+use super::problem::Problem;
 use crate::csr::Csr;
 use crate::solver::SparseRow;
 

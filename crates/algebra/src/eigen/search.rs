@@ -3,7 +3,7 @@
 use super::free::Free;
 use super::lanczos;
 use super::operator::Operator;
-use super::{Count, Eigenpairs};
+use super::problem::{Count, Eigenpairs};
 use crate::Error;
 use crate::csr::Csr;
 use crate::dense_eigen::{eigenpairs, symmetric};

@@ -1,7 +1,9 @@
 use std::f64::consts::PI;
 
 use super::*;
+use crate::csr::Csr;
 use crate::pattern::Cliques;
+use crate::solver::SparseRow;
 
 /// Chains of unit springs: of `n` unit masses each, `copies` of them side by side.
 fn chains(n: usize, copies: usize) -> (Csr, Csr, Vec<u32>) {

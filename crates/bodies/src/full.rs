@@ -1,0 +1,82 @@
+//! A body that a reduced one stands for.
+
+use carom_algebra::tensor::Mat3;
+use carom_algebra::unknowns::Unknowns;
+use carom_mesh::{ElementId, Mesh};
+
+use crate::beam::{Beam, SectionForces};
+use crate::solid::{BodySpec, Solid};
+use crate::{Error, Kinematics};
+
+/// A body that can be reduced: small strain and small rotations.
+#[derive(Debug)]
+// A system has few bodies.
+#[allow(clippy::large_enum_variant)]
+pub enum Full {
+    /// A solid or a bar.
+    Solid(Solid),
+    /// Beams.
+    Beam(Beam),
+}
+
+impl Full {
+    /// Builds a body on a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the system.
+    ///
+    /// # Errors
+    /// As [`Body::new`](crate::Body::new).
+    pub fn new(
+        mesh: &Mesh,
+        spec: BodySpec,
+        number: &[u32],
+        unknowns: &Unknowns,
+    ) -> Result<Full, Error> {
+        match spec.kinematics {
+            Kinematics::Beam(section) => {
+                Beam::new(mesh, spec, section, number, unknowns).map(Full::Beam)
+            }
+            _ => Solid::new(mesh, spec, number, unknowns).map(Full::Solid),
+        }
+    }
+
+    pub(crate) fn name(&self) -> &str {
+        match self {
+            Full::Solid(solid) => solid.name(),
+            Full::Beam(beam) => beam.name(),
+        }
+    }
+
+    pub(crate) fn cells(&self) -> &[ElementId] {
+        match self {
+            Full::Solid(solid) => solid.cells(),
+            Full::Beam(beam) => beam.cells(),
+        }
+    }
+
+    pub(crate) fn wave_speed(&self) -> f64 {
+        match self {
+            Full::Solid(solid) => solid.wave_speed(),
+            Full::Beam(beam) => beam.wave_speed(),
+        }
+    }
+
+    pub(crate) fn smallest_size(&self) -> f64 {
+        match self {
+            Full::Solid(solid) => solid.smallest_size(),
+            Full::Beam(beam) => beam.smallest_size(),
+        }
+    }
+
+    pub(crate) fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
+        match self {
+            Full::Solid(solid) => solid.stresses(u, &[]),
+            Full::Beam(beam) => beam.stresses(u),
+        }
+    }
+
+    pub(crate) fn section_forces(&self, u: &[f64]) -> Option<Vec<SectionForces>> {
+        match self {
+            Full::Solid(_) => None,
+            Full::Beam(beam) => Some(beam.section_forces(u)),
+        }
+    }
+}
