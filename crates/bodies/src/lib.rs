@@ -14,10 +14,11 @@ mod distortion;
 mod error;
 mod finite;
 mod force;
-mod full;
+
 mod kinematics;
 mod nodes;
 mod reduced;
+mod reducible;
 mod release;
 mod rigid;
 mod scratch;
@@ -39,9 +40,10 @@ pub use discrete::{
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};
-pub use full::Full;
+
 pub use kinematics::{Kinematics, MassKind};
 pub use reduced::{Reduced, Reduction};
+pub use reducible::Reducible;
 pub use release::Release;
 pub use rigid::{Inertia, Rigid};
 pub use scratch::Scratch;

@@ -12,14 +12,14 @@ use carom_algebra::tensor::Mat3;
 use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_mesh::ElementId;
 
-use crate::full::Full;
+use crate::reducible::Reducible;
 use crate::{Placement, SectionForces, Stored};
 
 /// A body and what it is reduced to, in the numbers of the mesh.
 #[derive(Debug)]
 pub struct Reduction {
     /// The full body, in numbers of its own.
-    pub full: Full,
+    pub full: Reducible,
     /// Unknowns of the full body.
     pub unknowns: Unknowns,
     /// Node of the mesh of each node of the full body.

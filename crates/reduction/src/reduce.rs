@@ -8,7 +8,7 @@ use carom_algebra::csr::Csr;
 use carom_algebra::dense::DenseCholesky;
 use carom_algebra::eigen::{Eigenpairs, Problem, lowest};
 use carom_algebra::unknowns::Kind;
-use carom_bodies::{Full, MassKind, Reduction};
+use carom_bodies::{MassKind, Reducible, Reduction};
 use carom_system::{Damping, Model, ModelBody, System};
 
 use crate::error::Error;
@@ -113,7 +113,7 @@ fn reduction(model: &Model, body: usize, keep: &Keep) -> Result<Reduction, Error
     let rows = (0..unknowns).flat_map(|i| condensed.columns.iter().map(move |column| column[i]));
     let system = &full.system;
     let spec = model.bodies[body].spec.clone();
-    let own = Full::new(&system.mesh, spec, &system.number, &system.unknowns);
+    let own = Reducible::new(&system.mesh, spec, &system.number, &system.unknowns);
     let masses = system.body_masses[0].iter();
     let centre = [0, 1, 2].map(|i| {
         let moments = system.body_masses[0].iter();

@@ -12,14 +12,14 @@ use crate::{Error, Kinematics};
 #[derive(Debug)]
 // A system has few bodies.
 #[allow(clippy::large_enum_variant)]
-pub enum Full {
+pub enum Reducible {
     /// A solid or a bar.
     Solid(Solid),
     /// Beams.
     Beam(Beam),
 }
 
-impl Full {
+impl Reducible {
     /// Builds a body on a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the system.
     ///
     /// # Errors
@@ -29,54 +29,54 @@ impl Full {
         spec: BodySpec,
         number: &[u32],
         unknowns: &Unknowns,
-    ) -> Result<Full, Error> {
+    ) -> Result<Reducible, Error> {
         match spec.kinematics {
             Kinematics::Beam(section) => {
-                Beam::new(mesh, spec, section, number, unknowns).map(Full::Beam)
+                Beam::new(mesh, spec, section, number, unknowns).map(Reducible::Beam)
             }
-            _ => Solid::new(mesh, spec, number, unknowns).map(Full::Solid),
+            _ => Solid::new(mesh, spec, number, unknowns).map(Reducible::Solid),
         }
     }
 
     pub(crate) fn name(&self) -> &str {
         match self {
-            Full::Solid(solid) => solid.name(),
-            Full::Beam(beam) => beam.name(),
+            Reducible::Solid(solid) => solid.name(),
+            Reducible::Beam(beam) => beam.name(),
         }
     }
 
     pub(crate) fn cells(&self) -> &[ElementId] {
         match self {
-            Full::Solid(solid) => solid.cells(),
-            Full::Beam(beam) => beam.cells(),
+            Reducible::Solid(solid) => solid.cells(),
+            Reducible::Beam(beam) => beam.cells(),
         }
     }
 
     pub(crate) fn wave_speed(&self) -> f64 {
         match self {
-            Full::Solid(solid) => solid.wave_speed(),
-            Full::Beam(beam) => beam.wave_speed(),
+            Reducible::Solid(solid) => solid.wave_speed(),
+            Reducible::Beam(beam) => beam.wave_speed(),
         }
     }
 
     pub(crate) fn smallest_size(&self) -> f64 {
         match self {
-            Full::Solid(solid) => solid.smallest_size(),
-            Full::Beam(beam) => beam.smallest_size(),
+            Reducible::Solid(solid) => solid.smallest_size(),
+            Reducible::Beam(beam) => beam.smallest_size(),
         }
     }
 
     pub(crate) fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
         match self {
-            Full::Solid(solid) => solid.stresses(u, &[]),
-            Full::Beam(beam) => beam.stresses(u),
+            Reducible::Solid(solid) => solid.stresses(u, &[]),
+            Reducible::Beam(beam) => beam.stresses(u),
         }
     }
 
     pub(crate) fn section_forces(&self, u: &[f64]) -> Option<Vec<SectionForces>> {
         match self {
-            Full::Solid(_) => None,
-            Full::Beam(beam) => Some(beam.section_forces(u)),
+            Reducible::Solid(_) => None,
+            Reducible::Beam(beam) => Some(beam.section_forces(u)),
         }
     }
 }
