@@ -14,7 +14,6 @@ mod distortion;
 mod error;
 mod finite;
 mod force;
-
 mod kinematics;
 mod nodes;
 mod reduced;
@@ -40,7 +39,6 @@ pub use discrete::{
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{FollowerPressure, Formulation, Placement, Stored};
-
 pub use kinematics::{Kinematics, MassKind};
 pub use reduced::{Reduced, Reduction};
 pub use reducible::Reducible;
