@@ -128,6 +128,7 @@ fn sweep(criterion: &mut Criterion, mesh: &Mesh, spec: BodySpec) -> f64 {
             let at = Placement {
                 u: &u,
                 v: &[],
+                frames: &[],
                 from: None,
                 dt: 1e-6,
                 old: &old,
