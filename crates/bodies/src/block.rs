@@ -354,7 +354,8 @@ impl Sweep<'_> {
     ) -> f64 {
         let mut energy = 0.0;
         for (place, batch) in self.chunk.connectivity.chunks(N * W).enumerate() {
-            let (x, u) = self.chunk.lanes::<W, N, D>(batch, self.u);
+            let (mut x, mut u) = ([[Lanes::ZERO; D]; N], [[Lanes::ZERO; D]; N]);
+            self.chunk.lanes(batch, self.u, [&mut x, &mut u]);
             let mut f = [[Lanes::ZERO; D]; N];
             let energies = kernel.force::<W>(&x, &u, w.batch(place * W), &mut f);
             for (k, element) in batch.chunks_exact(N).enumerate() {

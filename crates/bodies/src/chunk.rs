@@ -1,6 +1,5 @@
 //! Neighbouring elements with the places of their nodes.
 
-use carom_algebra::lanes::{Lanes, Vector};
 use carom_algebra::number::Number;
 
 use crate::weights::ChunkWeights;
@@ -33,33 +32,10 @@ impl Chunk {
         }
     }
 
-    /// Places and displacements of the nodes of W elements; a short batch repeats its last element, whose results are dropped.
+    /// Writes places and displacements of the nodes of as many elements as a number has lanes; a short batch repeats its last
+    /// element, whose results are dropped.
     #[inline(always)]
-    pub(crate) fn lanes<const W: usize, const N: usize, const D: usize>(
-        &self,
-        batch: &[u32],
-        u: &[f64],
-    ) -> ([Vector<W, D>; N], [Vector<W, D>; N]) {
-        let count = batch.len() / N;
-        let (mut x, mut moved) = ([[Lanes::ZERO; D]; N], [[Lanes::ZERO; D]; N]);
-        for k in 0..W {
-            let element = &batch[N * k.min(count - 1)..][..N];
-            for a in 0..N {
-                let place = element[a] as usize;
-                let x_a = &self.x[place];
-                let u_a = &u[self.first[place] as usize..][..D];
-                for i in 0..D {
-                    x[a][i].0[k] = x_a[i];
-                    moved[a][i].0[k] = u_a[i];
-                }
-            }
-        }
-        (x, moved)
-    }
-
-    /// [`Chunk::lanes`] of any number.
-    #[inline(always)]
-    pub(crate) fn gather_lanes<T: Number, const N: usize, const D: usize>(
+    pub(crate) fn lanes<T: Number, const N: usize, const D: usize>(
         &self,
         batch: &[u32],
         u: &[f64],

@@ -23,21 +23,27 @@ impl Zones {
         }
     }
 
+    /// Makes what a zone computed its state, with its share of the works.
+    fn take(&mut self, k: usize) {
+        let driver = &mut self.drivers[k];
+        record(
+            driver,
+            &self.rows[k],
+            &mut self.mixes[k],
+            (&self.links, &mut self.works[0]),
+        );
+        if let Some(between) = &mut self.between {
+            between.record(k, driver);
+        }
+        driver.take();
+        sample(k, driver, &mut self.samples);
+    }
+
     /// Makes the attempt the state.
     pub(crate) fn accept(&mut self) {
-        for (k, driver) in self.drivers.iter_mut().enumerate() {
+        for k in 0..self.drivers.len() {
             if self.substeps[k] == 1 {
-                record(
-                    driver,
-                    &self.rows[k],
-                    &mut self.mixes[k],
-                    (&self.links, &mut self.works[0]),
-                );
-                if let Some(between) = &mut self.between {
-                    between.record(k, driver);
-                }
-                driver.take();
-                sample(k, driver, &mut self.samples);
+                self.take(k);
             }
             let [_, last, before] = &mut self.mixes[k];
             before.copy_from_slice(last);
@@ -154,18 +160,7 @@ impl Zones {
                 if j == 0 {
                     self.look_ahead(k);
                 }
-                let driver = &mut self.drivers[k];
-                record(
-                    driver,
-                    &self.rows[k],
-                    &mut self.mixes[k],
-                    (&self.links, &mut self.works[0]),
-                );
-                if let Some(between) = &mut self.between {
-                    between.record(k, driver);
-                }
-                driver.take();
-                sample(k, driver, &mut self.samples);
+                self.take(k);
             }
         }
         let driver = &self.drivers[k];

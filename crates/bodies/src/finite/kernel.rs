@@ -108,7 +108,7 @@ impl Sweep<'_> {
         for (place, batch) in self.chunk.connectivity.chunks(N * S::F64_LANES).enumerate() {
             let (first, count) = (place * S::F64_LANES, batch.len() / N);
             self.chunk
-                .gather_lanes(batch, self.at.u, [&mut room.x, &mut room.u]);
+                .lanes(batch, self.at.u, [&mut room.x, &mut room.u]);
             for (q, weight) in room.law.weights.iter_mut().enumerate() {
                 self.chunk.weigh(first, q, weight);
             }
