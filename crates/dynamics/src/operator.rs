@@ -360,7 +360,7 @@ pub(crate) fn of_part(
             }
         }
     }
-    if explicit && system.mass.consistent.is_none() {
+    if explicit && !system.mass.couples(part) {
         let lumped = system.mass.lumped[part.clone()].iter();
         let diagonal: Vec<f64> = lumped.map(|m| mass_factor * m).collect();
         return Ok(Operator::diagonal(&diagonal, &held));

@@ -65,9 +65,10 @@ impl System {
         let of_zone = |body: usize| self.zone_of_body[body] == zone;
         let own = || bodies.iter().enumerate().filter(|(k, _)| of_zone(*k));
         let mut own = own().map(|(_, body)| body).collect::<Vec<_>>().into_iter();
-        let coupled = self.bodies.iter().find(|body| body.couples_mass());
+        let mut of_system = self.bodies.iter().enumerate();
+        let coupled = of_system.find(|(k, body)| of_zone(*k) && body.couples_mass());
         if scheme.needs_lumped_mass()
-            && let Some(body) = coupled
+            && let Some((_, body)) = coupled
         {
             return Err(Error::ConsistentMass {
                 scheme: scheme.name(),

@@ -70,6 +70,12 @@ impl Parts<'_> {
 }
 
 impl Mass {
+    /// Whether it has a consistent part among these unknowns.
+    pub fn couples(&self, unknowns: &Range<usize>) -> bool {
+        let of = |matrix: &Csr| unknowns.clone().any(|i| matrix.get(i, i) != 0.0);
+        self.consistent.as_ref().is_some_and(of)
+    }
+
     /// y = M x.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         match &self.consistent {

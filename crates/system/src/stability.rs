@@ -59,14 +59,17 @@ impl System {
     /// `bodies`: bound of the frequencies of the bodies, rad/s.
     fn critical_with(&self, bodies: f64) -> f64 {
         let (springs, dashpots) = self.discrete_bounds();
-        let contacts = self
-            .contacts
-            .iter()
-            .map(|contact| self.contact_bound(contact))
+        let explicit = |body: usize| self.is_explicit(self.zone_of_body[body]);
+        let touching = self.contacts.iter().zip(&self.sides);
+        let touching =
+            touching.filter(|(_, (one, other))| explicit(*one) || other.is_some_and(explicit));
+        let contacts = touching
+            .map(|(contact, _)| self.contact_bound(contact))
             .sum::<f64>();
         let squared = bodies * bodies + contacts + springs;
-        let damping = self.nonlinear.damping.iter();
-        let rates = damping.map(|damping| damping.mass + damping.stiffness * bodies * bodies);
+        let damping = self.nonlinear.damping.iter().enumerate();
+        let damping = damping.filter(|(body, _)| explicit(*body));
+        let rates = damping.map(|(_, damping)| damping.mass + damping.stiffness * bodies * bodies);
         let rate = rates.fold(0.0, f64::max) + dashpots;
         let critical = self
             .schemes
@@ -80,13 +83,15 @@ impl System {
         }
     }
 
-    /// Bounds of the eigenvalues of the stiffness of all springs (1/s²) and of the damping matrix of all dashpots (1/s)
-    /// against the lumped mass: the largest sums of magnitudes in their rows, over the mass (Gershgorin).
+    /// Bounds of the eigenvalues of the stiffness of the springs of explicit zones (1/s²) and of the damping matrix of their
+    /// dashpots (1/s) against the lumped mass: the largest sums of magnitudes in their rows, over the mass (Gershgorin).
     fn discrete_bounds(&self) -> (f64, f64) {
-        let discrete = self.bodies.iter().filter(|b| b.as_discrete().is_some());
+        let bodies = self.bodies.iter().zip(&self.zone_of_body);
+        let discrete =
+            bodies.filter(|(body, zone)| body.as_discrete().is_some() && self.is_explicit(**zone));
         let [mut springs, mut dashpots] = [0, 1].map(|_| vec![0.0; self.unknowns()]);
         let mut some = false;
-        for body in discrete {
+        for (body, _) in discrete {
             body.add_row_sums(&mut springs, &mut dashpots);
             some = true;
         }

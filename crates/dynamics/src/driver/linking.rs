@@ -125,9 +125,9 @@ pub(super) fn of_mass(system: &System, operators: &mut Operators) -> Result<Cond
     let factors = vec![[1.0; 2]; system.parts.len()];
     condensed(system, &factors, operators, |part| {
         let span = &system.parts[part];
-        match system.mass.consistent {
-            None => Matrix::Diagonal(system.mass.lumped[span.clone()].to_vec()),
-            Some(_) => Matrix::Sparse(crate::operator::assembled(
+        match system.mass.couples(span) {
+            false => Matrix::Diagonal(system.mass.lumped[span.clone()].to_vec()),
+            true => Matrix::Sparse(crate::operator::assembled(
                 system,
                 span,
                 [1.0, 0.0],

@@ -30,7 +30,7 @@ pub(super) fn part_matrix(
     } else {
         map.force.x
     };
-    if map.force.x == 0.0 && system.mass.consistent.is_none() {
+    if map.force.x == 0.0 && !system.mass.couples(part) {
         return None;
     }
     let of_body = |body: usize| stiffness + rate * damping(body).stiffness;

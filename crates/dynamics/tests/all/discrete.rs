@@ -1,9 +1,9 @@
 //! Point masses, springs and dashpots in whole steps.
 
-use carom_bodies::{BodySpec, Curve, DiscreteKind, DiscreteSpec, Kinematics, Link};
+use carom_bodies::{BodySpec, Curve, DiscreteKind, DiscreteSpec, FluidGap, Kinematics, Link};
 use carom_dynamics::scheme::{CentralDifference, EnergyMomentum, GeneralisedAlpha, Newmark, Theta};
 use carom_dynamics::{
-    Driver, Error, Model, ModelBody, ModelDiscrete, Preload, Scheme, State, System,
+    Driver, Error, Model, ModelBody, ModelDiscrete, ModelScheme, Preload, Scheme, State, System,
 };
 use carom_elements::Kind;
 use carom_materials::Elastic;
@@ -297,6 +297,73 @@ fn a_spring_joins_two_bars_and_a_mass_their_ends() {
         balance.strain
     );
     assert_balanced(&run, 4.0);
+}
+
+/// A free bar of one unit speed at its left half; with it, or not, two masses with a fluid between them on a stiff spring.
+fn bar_and_wet_masses(schemes: [Scheme; 2], wet: bool) -> Model {
+    let line = generate::line("bar", [0.0; 3], [1.0, 0.0, 0.0], 8, 2);
+    let mut model = Model {
+        mesh: line,
+        ..empty(2, schemes[1], 0.05)
+    };
+    let steel = Elastic {
+        density: 1.0,
+        young: 1.0,
+        poisson: 0.0,
+    };
+    let cells = model.mesh.groups["bar"].elements.clone();
+    let kinematics = Kinematics::Bar { area: 1.0 };
+    let spec = BodySpec::new("bar", cells, kinematics, steel);
+    model.bodies.push(ModelBody {
+        velocity: [1.0, 0.0, 0.0],
+        ..ModelBody::new(spec)
+    });
+    let scheme = schemes[0];
+    let bodies = vec![0];
+    model.zones.push(ModelScheme { bodies, scheme });
+    // the bar deforms
+    let stop = mass(&mut model, 1e3, [0.0, 1.0, 0.0], [0.0; 3]);
+    link(
+        &mut model,
+        &[stop],
+        DiscreteKind::Spring,
+        (Curve::line(1.0), None),
+    );
+    if wet {
+        let nodes = [2.0, 3.0].map(|x| mass(&mut model, 1.0, [x, 0.0, 0.0], [0.3, 0.0, 0.0]));
+        let fluid = DiscreteKind::Fluid(FluidGap::new(1.0, [0.5, 0.8], 1.0));
+        let cell = model.mesh.push(Kind::Bar2, &nodes);
+        model.discrete.push(made("water".to_string(), cell, fluid));
+        link(
+            &mut model,
+            &nodes[..1],
+            DiscreteKind::Spring,
+            (Curve::line(1e6), None),
+        );
+    }
+    model
+}
+
+/// What does not touch an explicit zone neither refuses it, nor bounds its step, nor gives it a factor.
+#[test]
+fn a_fluid_in_an_implicit_zone_leaves_an_explicit_one_alone() {
+    let schemes = [CENTRAL, TRAPEZOID];
+    let [alone, both] = [false, true].map(|wet| run(bar_and_wet_masses(schemes, wet), 20));
+    let [one, other] = [&alone, &both].map(|run| &run.state().motion.u[..18]);
+    assert_eq!(one, other);
+    assert_eq!(
+        both.costs().factors.len(),
+        alone.costs().factors.len() + 1,
+        "the masses in the fluid have the only other factor"
+    );
+    // the impulse of the spring in a step, v √(k m) dt
+    assert_balanced(&both, 15.0);
+    let refused = System::new(bar_and_wet_masses([TRAPEZOID, CENTRAL], true));
+    let error = refused.unwrap_err().to_string();
+    assert!(
+        error.contains("water") && error.contains("lumped"),
+        "{error}"
+    );
 }
 
 #[test]
