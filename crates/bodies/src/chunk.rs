@@ -64,16 +64,6 @@ impl Chunk {
         }
     }
 
-    /// Adds its list of forces to a system vector.
-    pub(crate) fn add(&self, dim: usize, list: &[[f64; 3]], f: &mut [f64]) {
-        for (&first, f_a) in self.first.iter().zip(list) {
-            let first = first as usize;
-            for i in 0..dim {
-                f[first + i] += f_a[i];
-            }
-        }
-    }
-
     pub(crate) fn gather<const N: usize>(
         &self,
         element: &[u32],

@@ -14,6 +14,7 @@ mod distortion;
 mod error;
 mod finite;
 mod force;
+mod gather;
 mod kinematics;
 mod nodes;
 mod reduced;

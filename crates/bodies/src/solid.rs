@@ -15,6 +15,7 @@ use crate::bar::Bar;
 use crate::block::{Block, Physics, Visit};
 use crate::continuum;
 use crate::finite::{Finite, Formulation, Shape};
+use crate::gather::Gather;
 use crate::nodes::Nodes;
 use crate::release::Release;
 use crate::scratch::Scratch;
@@ -73,6 +74,8 @@ pub struct Solid {
     pub(crate) finite: Option<Finite>,
     dim: usize,
     smallest: f64,
+    /// How the forces of chunks are added.
+    pub(crate) gather: Gather,
 }
 
 impl Solid {
@@ -142,6 +145,7 @@ impl Solid {
                 .iter()
                 .map(|&cell| size::smallest(mesh, cell))
                 .fold(f64::INFINITY, f64::min),
+            gather: Gather::new(mesh.dim, &blocks),
             cells,
             blocks,
             finite: (spec.material.finite().is_some()).then(|| Finite::new(spec.material, shape)),
@@ -246,10 +250,7 @@ impl Solid {
             energies = rest;
             block.forces(self.dim, u, block_forces, block_energies);
         }
-        let chunks = self.blocks.iter().flat_map(|block| &block.chunks);
-        for (chunk, force) in chunks.zip(&scratch.forces) {
-            chunk.add(self.dim, force, f);
-        }
+        self.gather.add(&scratch.forces, f);
         scratch.energies.iter().sum()
     }
 

@@ -113,9 +113,6 @@ pub struct Control {
     pub failed: u64,
     /// Part of the critical step that an explicit step at finite strain may have, s; infinite before it is known.
     pub(crate) stable: f64,
-    /// Relative change of lengths in the elements since an explicit step at finite strain was last compared with the
-    /// critical one.
-    pub(crate) changed: f64,
     /// Factor by which an iteration with a fresh factor between two states reduced the residual when it was last seen; zero
     /// before.
     pub(crate) pace: f64,

@@ -19,6 +19,7 @@ pub mod operator;
 pub mod records;
 mod report;
 mod resultant;
+pub(crate) mod shapes;
 mod small;
 pub mod state;
 mod sum;

@@ -11,6 +11,7 @@ use crate::impact::Impact;
 use crate::ledger::Ledger;
 use crate::records::Records;
 use crate::scheme::Scheme;
+use crate::shapes::Shapes;
 
 /// State at an accepted instant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,6 +37,8 @@ pub struct State {
     pub records: Records,
     /// Momentum that contacts have given to the bodies since the start.
     pub exchange: Exchange,
+    /// Shapes of the elements since their frequencies were last looked at, of an explicit scheme.
+    pub shapes: Shapes,
 }
 
 /// Links at an accepted instant; empty without links.
@@ -214,5 +217,6 @@ pub fn empty_state(system: &System) -> State {
         ledger: Ledger::default(),
         records: Records::default(),
         exchange: Exchange::default(),
+        shapes: Shapes::default(),
     }
 }

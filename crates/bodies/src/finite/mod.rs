@@ -77,8 +77,10 @@ impl Solid {
         match &self.finite {
             None => Ok(self.linear_force(at, scratch, f)),
             Some(finite) => {
-                let stored = finite.force(self.blocks(), at, new, scratch, f);
-                stored.map_err(|failed| self.failed(failed))
+                let stored = finite.force(self.blocks(), at, new, scratch);
+                let stored = stored.map_err(|failed| self.failed(failed))?;
+                self.gather.add(&scratch.forces, f);
+                Ok(stored)
             }
         }
     }

@@ -47,18 +47,16 @@ impl Finite {
         }
     }
 
-    /// Adds all forces to `f`.
+    /// Leaves all forces in the lists of the chunks.
     pub(super) fn force(
         &self,
         blocks: &[Block],
         at: &Placement,
         mut new: &mut [f64],
         scratch: &mut Scratch,
-        f: &mut [f64],
     ) -> Result<Stored, Failed> {
         scratch.prepare(blocks);
         let (mut stored, mut first, mut kept, mut chunk) = (Stored::default(), 0, 0, 0);
-        let dim = self.shape.dim();
         for block in blocks {
             let length = block.len() * self.kept_of_element(block);
             let old = &at.old[kept..kept + length];
@@ -68,13 +66,17 @@ impl Finite {
             chunk = chunks.end;
             let lists = &mut scratch.forces[chunks.clone()];
             let outcomes = &mut scratch.outcomes[chunks];
-            self.sweep(block, &Placement { old, ..*at }, own, (lists, outcomes));
-            for ((chunk, list), outcome) in block.chunks.iter().zip(lists).zip(outcomes) {
+            self.sweep(
+                block,
+                &Placement { old, ..*at },
+                own,
+                (lists, &mut *outcomes),
+            );
+            for (chunk, outcome) in block.chunks.iter().zip(outcomes) {
                 if let Some((place, fault)) = outcome.fault.take() {
                     return Err((first + place, fault));
                 }
                 stored.include(&outcome.stored);
-                chunk.add(dim, list, f);
                 first += chunk.len(block.kind.table().nodes);
             }
         }

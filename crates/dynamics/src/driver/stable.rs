@@ -1,13 +1,28 @@
 //! Explicit steps at finite strain: elements that shorten take the critical step down as they deform.
+//!
+//! To find the frequencies of all elements costs many steps, so it is done anew where a length in an element may have changed by
+//! [`CHANGE`]. That no length has is known without a look at the elements as long as `Σ dt 2 max |v_a - w| / l` is below it, with any
+//! velocity w and the shortest length l; otherwise lengths are compared with those of the last look.
+
+use carom_bodies::Body;
+use rayon::prelude::*;
 
 use super::Driver;
 use crate::error::Error;
+use crate::shapes::Shape;
+use crate::system::System;
 
 /// Part of the critical step that is taken, for what elements change until they are looked at again.
 const PART: f64 = 0.9;
 
-/// Change of the lengths in an element, relative, after which its frequencies are looked at again: that costs several steps.
+/// Largest change of the lengths in an element, relative, between looks at its frequencies.
 const CHANGE: f64 = 0.1;
+
+/// Part of this change from which on they are looked at whenever lengths are compared.
+const WORTH: f64 = 0.5;
+
+/// Nodes whose velocities are compared at a time.
+const NODES: usize = 4096;
 
 impl Driver {
     /// Looks at the critical step of an explicit scheme anew, before a step of `dt` (s), where elements have changed; what was
@@ -21,16 +36,31 @@ impl Driver {
             .schemes
             .iter()
             .any(|scheme| scheme.get().is_explicit());
-        if !explicit || self.is_static() || system.bodies.iter().all(|body| body.is_linear()) {
+        if !explicit || self.is_static() || !system.bodies.iter().any(changes) {
             return Ok(());
         }
-        let change = self.state.control.changed + dt * self.largest_rate();
-        self.state.control.changed = change;
-        if self.state.step == 0 || change > CHANGE {
-            let critical = self.system.critical_step_at(&self.state.motion)?;
-            self.state.control.stable = PART * critical;
-            self.state.control.changed = 0.0;
+        let (motion, shapes) = (&self.state.motion, &mut self.state.shapes);
+        let known = !shapes.u.is_empty();
+        if known {
+            shapes.changed += dt * largest_rate(system, &shapes.bodies, &motion.v);
+            if shapes.changed <= CHANGE {
+                return Ok(());
+            }
+            shapes.changed = largest_change(system, &shapes.u, &motion.u);
         }
+        if !known || shapes.changed > WORTH * CHANGE {
+            let critical = system.critical_step_at(motion)?;
+            self.state.control.stable = PART * critical;
+            shapes.u.clone_from(&motion.u);
+            shapes.changed = 0.0;
+        }
+        let shape = |(k, body): (usize, &Body)| {
+            changes(body).then(|| Shape {
+                velocity: system.mean_velocity(k, &motion.v),
+                shortest: shortest(system, body, &shapes.u),
+            })
+        };
+        shapes.bodies = system.bodies.iter().enumerate().map(shape).collect();
         Ok(())
     }
 
@@ -51,33 +81,76 @@ impl Driver {
         })
     }
 
-    /// Largest rate at which the distance of two nodes of an element changes, relative to it, 1/s.
-    fn largest_rate(&self) -> f64 {
-        let (system, motion) = (&*self.system, &self.state.motion);
-        let mut largest: f64 = 0.0;
-        let mut visit = |nodes: &[u32]| {
-            for (k, &a) in nodes.iter().enumerate() {
-                for &b in &nodes[..k] {
-                    let [u, v] = [&motion.u, &motion.v].map(|values| {
-                        let [a, b] = [a, b].map(|node| system.unknowns.vector(node, values));
-                        [0, 1, 2].map(|i| a[i] - b[i])
-                    });
-                    let [a, b] = [a, b].map(|node| system.x[node as usize]);
-                    let (mut square, mut product) = (0.0, 0.0);
-                    for i in 0..system.dim {
-                        let x = a[i] - b[i] + u[i];
-                        square += x * x;
-                        product += x * v[i];
-                    }
-                    largest = largest.max(product.abs() / square);
-                }
-            }
-        };
-        // the bound of springs holds for all elongations
-        let solids = system.bodies.iter().filter(|b| b.as_solid().is_some());
-        for body in solids.filter(|body| !body.is_linear()) {
-            body.each_element(&mut visit);
-        }
-        largest
+    /// Makes the attempt the state; what is known of the shapes goes along.
+    pub(super) fn swap_states(&mut self) {
+        self.next.motion.compose(&self.system.unknowns);
+        std::mem::swap(&mut self.state.shapes, &mut self.next.shapes);
+        std::mem::swap(&mut self.state, &mut self.next);
     }
+}
+
+/// Whether the critical step of a body changes with its shape; the bound of springs holds for all elongations.
+fn changes(body: &Body) -> bool {
+    body.as_solid().is_some() && !body.is_linear()
+}
+
+/// Bound of the rate at which the distance of two nodes of an element changes, relative to the shortest, 1/s.
+fn largest_rate(system: &System, shapes: &[Option<Shape>], v: &[f64]) -> f64 {
+    let of_body = |(nodes, shape): (&Vec<(u32, f64)>, &Option<Shape>)| {
+        let shape = shape.as_ref()?;
+        let square = |&(node, _): &(u32, f64)| {
+            let v = system.unknowns.vector(node, v);
+            let relative = [0, 1, 2].map(|i| v[i] - shape.velocity[i]);
+            relative.iter().map(|v| v * v).sum::<f64>()
+        };
+        let largest = |nodes: &[(u32, f64)]| nodes.iter().map(square).fold(0.0, f64::max);
+        let squares = nodes.par_chunks(NODES).map(largest);
+        Some(2.0 * squares.reduce(|| 0.0, f64::max).sqrt() / shape.shortest)
+    };
+    let bodies = system.body_masses.iter().zip(shapes);
+    bodies.filter_map(of_body).fold(0.0, f64::max)
+}
+
+/// Calls `visit` with the nodes of each pair of an element.
+fn each_pair(body: &Body, visit: &mut impl FnMut(u32, u32)) {
+    body.each_element(&mut |nodes| {
+        for (k, &a) in nodes.iter().enumerate() {
+            for &b in &nodes[..k] {
+                visit(a, b);
+            }
+        }
+    });
+}
+
+/// Square of the distance of two nodes, m².
+fn square(system: &System, [a, b]: [u32; 2], u: &[f64]) -> f64 {
+    let place = |node: u32| {
+        let (x, u) = (system.x[node as usize], system.unknowns.vector(node, u));
+        [0, 1, 2].map(|i| x[i] + u[i])
+    };
+    let (a, b) = (place(a), place(b));
+    (0..system.dim).map(|i| (a[i] - b[i]).powi(2)).sum()
+}
+
+/// Shortest distance of two nodes of an element of a body, m.
+fn shortest(system: &System, body: &Body, u: &[f64]) -> f64 {
+    let mut least = f64::INFINITY;
+    each_pair(body, &mut |a, b| {
+        least = least.min(square(system, [a, b], u))
+    });
+    least.sqrt()
+}
+
+/// Largest change of the distance of two nodes of an element from one motion to another, relative.
+fn largest_change(system: &System, before: &[f64], now: &[f64]) -> f64 {
+    let mut range: [f64; 2] = [1.0; 2];
+    for body in system.bodies.iter().filter(|body| changes(body)) {
+        each_pair(body, &mut |a, b| {
+            let [before, now] = [before, now].map(|u| square(system, [a, b], u));
+            let ratio = now / before;
+            range = [range[0].min(ratio), range[1].max(ratio)];
+        });
+    }
+    let [least, most] = range.map(f64::sqrt);
+    f64::max(1.0 - least, most - 1.0)
 }

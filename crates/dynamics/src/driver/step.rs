@@ -77,8 +77,7 @@ impl Driver {
                     }
                     if done < parts {
                         start.get_or_insert_with(|| self.state.clone());
-                        self.next.motion.compose(&self.system.unknowns);
-                        std::mem::swap(&mut self.state, &mut self.next);
+                        self.swap_states();
                         self.state.time = to;
                         // parts of a step are of the same stage
                         (self.state.step, self.state.control) = (taken, control);
@@ -127,8 +126,7 @@ impl Driver {
     pub(super) fn accept(&mut self, control: Control, size: f64) {
         self.next.control = control;
         self.prepared = false;
-        self.next.motion.compose(&self.system.unknowns);
-        std::mem::swap(&mut self.state, &mut self.next);
+        self.swap_states();
         self.tell(size);
     }
 
