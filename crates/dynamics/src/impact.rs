@@ -34,6 +34,8 @@ pub struct Impact {
     pub peak_force: f64,
     /// End of the step of the largest force, s.
     pub peak_time: f64,
+    /// Steps of the interval with a force in which the largest one is: the force of a few steps is not resolved.
+    pub peak_steps: u64,
     /// Impulse on the secondary body, N s.
     pub impulse: f64,
     /// The part of it, along it, that is in no force of a step, N s: of a projection or another stage after a step.
@@ -88,6 +90,10 @@ pub(crate) struct OpenImpact {
     intervals: u64,
     peak_force: f64,
     peak_time: f64,
+    /// Steps of the interval that goes on, whether the largest force is in it, and steps of the interval of that force.
+    steps: u64,
+    holds_peak: bool,
+    peak_steps: u64,
     impulse: [Sum; 3],
     impulsive: [Sum; 3],
     /// Sums of the normal impulses of the steps and of their magnitudes, N s.
@@ -161,8 +167,14 @@ impl OpenImpact {
             // radial forces of a full turn cancel
             (impulse[0], normal[0]) = (0.0, 0.0);
         }
+        self.steps = if given.active { self.steps + 1 } else { 0 };
+        self.holds_peak &= given.active;
         if given.force > self.peak_force {
             (self.peak_force, self.peak_time) = (given.force, given.span[1]);
+            self.holds_peak = true;
+        }
+        if self.holds_peak {
+            self.peak_steps = self.steps;
         }
         self.work.add(given.work);
         self.taken = self.taken.max(-self.work.get());
@@ -197,6 +209,7 @@ impl OpenImpact {
             intervals: self.intervals,
             peak_force: self.peak_force,
             peak_time: self.peak_time,
+            peak_steps: self.peak_steps,
             impulse: norm(impulse),
             impulsive: match norm(impulse) > 0.0 {
                 true => dot(

@@ -19,6 +19,8 @@ pub struct ImpactRow {
     /// Largest contact force of a single step, N. The raw peak does not converge with the mesh: read it beside
     /// `peak_mean_force`.
     pub peak_force: f64,
+    /// Steps of the closed interval in which it is: below some ten, the peak is one of the step.
+    pub peak_steps: u64,
     /// Largest mean of the contact force over a window of `window` seconds, N.
     pub peak_mean_force: f64,
     /// Length of that window, s.
@@ -50,7 +52,7 @@ pub struct ImpactRow {
 }
 
 /// Names of the columns of `impacts.csv`, with their units.
-pub const COLUMNS: [&str; 16] = [
+pub const COLUMNS: [&str; 17] = [
     "pair",
     "start_s",
     "duration_s",
@@ -67,6 +69,7 @@ pub const COLUMNS: [&str; 16] = [
     "energy_crushed_j",
     "intervals",
     "impulsive_n_s",
+    "peak_steps",
 ];
 
 /// The file `impacts.csv`, open for appending.
@@ -108,6 +111,7 @@ impl ImpactTable {
             Cell::Number(impact.energy_crushed),
             Cell::Number(impact.intervals as f64),
             Cell::Number(impact.impulsive),
+            Cell::Number(impact.peak_steps as f64),
         ];
         self.rows.push(cells.into_iter())?;
         self.rows.flush()

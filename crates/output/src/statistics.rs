@@ -61,6 +61,9 @@ pub struct Worst {
     pub time: f64,
     /// Largest force, N.
     pub peak_force: f64,
+    /// Steps of the closed interval in which it is.
+    #[serde(default)]
+    pub peak_steps: u64,
     /// Impulse, N s.
     pub impulse: f64,
     /// Duration, s.
@@ -124,6 +127,7 @@ impl Statistics {
             contact: name(impact.contact as usize).to_owned(),
             time: impact.peak_time,
             peak_force: impact.peak_force,
+            peak_steps: impact.peak_steps,
             impulse: impact.impulse,
             duration: impact.duration,
             energy_taken: impact.energy_taken,

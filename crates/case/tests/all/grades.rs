@@ -131,3 +131,59 @@ fn contacts_that_small_sliding_loses_or_invents_are_bad_and_the_default_has_none
         assert_ne!(verdict.grade, Grade::Bad, "{:?}", verdict.reasons());
     }
 }
+
+/// A mass that meets a stop at 1 m/s, for half a period of `steps` steps.
+fn on_a_stop(steps: f64, law: &str) -> Verdict {
+    let step = std::f64::consts::PI / steps;
+    verdict(&format!(
+        r#"
+carom = 1
+mass.ball = {{ mass = 1.0, at = [0.0], initial.velocity = [1.0] }}
+stop.wall = {{ ends = ["ball", "ground"], axis = [1.0], gap = {:?}, stiffness = 1.0{law} }}
+time = {{ end = 5.0, step = {step:?}, scheme.newmark = {{}} }}
+"#,
+        0.5 * step
+    ))
+}
+
+#[test]
+fn a_peak_of_few_steps_is_to_be_looked_at() {
+    // contact for π s; it begins and ends within a step
+    for (steps, expected) in [(40.0, Grade::Good), (5.0, Grade::Look)] {
+        let verdict = on_a_stop(steps, "");
+        let line = verdict.line("step-in-contact").unwrap();
+        assert!((1.0 / line.value - steps).abs() <= 1.5, "{line:?}");
+        assert_eq!(line.grade, expected, "{line:?}");
+    }
+}
+
+#[test]
+fn a_force_without_a_duration_is_told_as_such() {
+    let verdict = on_a_stop(40.0, ", law.velocity = {}");
+    assert!(verdict.line("step-in-contact").is_none());
+    let told = |why: &String| why.starts_with("peak forces of contact `wall`");
+    assert!(verdict.unchecked.iter().any(told), "{verdict:?}");
+}
+
+#[test]
+fn what_is_not_known_of_reduced_bodies_is_told() {
+    let verdict = verdict(
+        r#"
+carom = 1
+mesh.dimension = 2
+mesh.generate.rod.line = { from = [0.0, 0.0], to = [1.0, 0.0], elements = 10 }
+material.m = { density = 7800.0, elastic = { young = 2e11, poisson = 0.3 } }
+body.rod = { region = "rod", material = "m", section.beam.shape.circle.diameter = 0.02, initial.velocity = [0.0, -1.0], reduction.modes = 3 }
+stop.end = { ends = ["rod.right", "ground"], axis = [0.0, -1.0], gap = 1e-3, stiffness = 1e6 }
+time = { end = 5e-3, step = 1e-5, scheme.newmark = {} }
+"#,
+    );
+    assert!(verdict.line("small-strain").is_none());
+    for start in [
+        "whether rotations and strains of `rod`",
+        "whether the modes of `rod`",
+    ] {
+        let told = |why: &String| why.starts_with(start);
+        assert!(verdict.unchecked.iter().any(told), "{verdict:?}");
+    }
+}

@@ -123,6 +123,7 @@ impl Impacts {
             start: impact.start,
             duration: over(impact.duration),
             peak_force: impact.peak_force,
+            peak_steps: impact.peak_steps,
             peak_mean_force,
             window: totals.window,
             impulse: impact.impulse,

@@ -12,3 +12,13 @@ pub(super) fn of_mesh_and_step(evidence: &Evidence) -> Finding {
         ),
     }
 }
+
+/// A basis does not know what it leaves out.
+pub(super) fn of_modes(evidence: &Evidence) -> Finding {
+    match evidence.reduced() {
+        None => Finding::Absent,
+        Some((names, first)) => Finding::Unchecked(format!(
+            "whether the modes of {names} are enough: double `body.{first}.reduction.modes` and compare"
+        )),
+    }
+}

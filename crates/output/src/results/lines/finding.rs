@@ -17,6 +17,17 @@ pub(crate) struct Evidence<'a> {
     pub(crate) exact: Option<&'a Exact>,
 }
 
+impl Evidence<'_> {
+    /// The names of the reduced bodies in one text, and the first; `None` without any.
+    pub(super) fn reduced(&self) -> Option<(String, &str)> {
+        let bodies = self.system.bodies.iter();
+        let reduced = bodies.filter(|body| body.as_reduced().is_some());
+        let names: Vec<&str> = reduced.map(|body| body.name()).collect();
+        let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+        Some((quoted.join(", "), *names.first()?))
+    }
+}
+
 /// What a line finds.
 pub(crate) enum Finding {
     /// A number with its grade.

@@ -9,6 +9,7 @@ mod finding;
 mod finite;
 mod momentum;
 mod penetration;
+mod resolution;
 mod small;
 
 use crate::verdict::Verdict;
@@ -28,14 +29,18 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     finite::states,
     chatter::of_contacts,
     penetration::of_contacts,
+    resolution::of_peaks,
+    resolution::of_impulses,
     exact::force,
     small::rotation,
     small::strain,
+    small::of_reduced,
     small::slide,
     small::turn,
     small::invented,
     small::lost,
     convergence::of_mesh_and_step,
+    convergence::of_modes,
 ];
 
 /// The verdict on a run that came to its end (`unfinished` is `None`) or did not (`unfinished` says why).

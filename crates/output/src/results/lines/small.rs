@@ -46,6 +46,16 @@ pub(super) fn strain(evidence: &Evidence) -> Finding {
     )
 }
 
+/// Reduced bodies: their rotations and strains are recovered for fields alone.
+pub(super) fn of_reduced(evidence: &Evidence) -> Finding {
+    match evidence.reduced() {
+        None => Finding::Absent,
+        Some((names, _)) => Finding::Unchecked(format!(
+            "whether rotations and strains of {names} stay small: reduced bodies recover them for fields and pictures only"
+        )),
+    }
+}
+
 /// Way of points with a force along the surface that they were paired with.
 pub(super) fn slide(evidence: &Evidence) -> Finding {
     let quantity = "sliding of a point with a force under small sliding, in face lengths";
@@ -99,7 +109,7 @@ fn of_bodies(
 ) -> Finding {
     let found = &evidence.last.records.small.bodies;
     let system = evidence.system;
-    let small = (0..found.len()).filter(|&body| system.bodies[body].is_linear());
+    let small = (0..found.len()).filter(|&body| is_watched(system, body));
     let worst = small.max_by(|&a, &b| of(&found[a]).value.total_cmp(&of(&found[b]).value));
     let Some(body) = worst else {
         return Finding::Absent;
@@ -117,6 +127,12 @@ fn of_bodies(
         bounds,
         &remedy,
     ))
+}
+
+/// Whether a body has elements at small strain that the driver looks at.
+fn is_watched(system: &System, body: usize) -> bool {
+    let body = &system.bodies[body];
+    body.as_beam().is_some() || body.as_solid().is_some_and(|solid| solid.is_linear())
 }
 
 /// What to write for a body that turns or stretches.

@@ -1,0 +1,87 @@
+//! Whether the steps resolve the forces of the impacts.
+
+use carom_contact::law::Level;
+use carom_dynamics::{Impact, System};
+
+use crate::form::Form;
+use crate::results::lines::{Evidence, Finding, worst};
+use crate::verdict::{Bounds, Line};
+
+/// The step over the duration of a contact. Of half a sine in n steps the trapezoid has the duration too long by (π/n)²/12, and
+/// meets the closing to within a step: some percent of the peak at ten steps. Impulses and energies may be right all the same.
+const BOUNDS: Bounds = Bounds::Look(0.1);
+
+/// Peak over the largest of the run, below which nobody relies on it.
+const LESSER: f64 = 0.1;
+
+/// The contact whose largest force lasts the fewest steps.
+pub(super) fn of_peaks(evidence: &Evidence) -> Finding {
+    let peaks = peaks(evidence);
+    let resolved = peaks
+        .iter()
+        .filter(|impact| has_duration(evidence.system, impact.contact as usize));
+    let named = resolved.map(|impact| (name(evidence, impact), 1.0 / impact.peak_steps as f64));
+    let Some((name, value)) = worst(named) else {
+        return Finding::Absent;
+    };
+    Finding::Line(Line::new(
+        "step-in-contact",
+        (
+            &format!(
+                "step relative to the time that contact `{name}` was closed around its largest force"
+            ),
+            value,
+            Form::Percent,
+        ),
+        BOUNDS,
+        "use a smaller `time.step`, or judge by impulses and energies: peaks of so few steps are those of the step",
+    ))
+}
+
+/// Contacts whose forces have no duration of their own.
+pub(super) fn of_impulses(evidence: &Evidence) -> Finding {
+    let peaks = peaks(evidence);
+    let found = peaks
+        .iter()
+        .find(|impact| !has_duration(evidence.system, impact.contact as usize));
+    match found {
+        Some(impact) => Finding::Unchecked(format!(
+            "peak forces of contact `{}`: neither its bodies nor its law give an impact a duration; its force is an impulse over the step, and only the impulse means something",
+            name(evidence, impact)
+        )),
+        None => Finding::Absent,
+    }
+}
+
+/// The impact of the largest force of each contact that comes near the largest of the run; those that have ended.
+fn peaks(evidence: &Evidence) -> Vec<Impact> {
+    let records = &evidence.last.records;
+    let mut largest: Vec<Option<Impact>> = vec![None; records.contacts.len()];
+    for impact in records.ended().filter(|impact| impact.peak_steps > 0) {
+        let of_contact = &mut largest[impact.contact as usize];
+        if of_contact
+            .as_ref()
+            .is_none_or(|other| other.peak_force < impact.peak_force)
+        {
+            *of_contact = Some(impact);
+        }
+    }
+    let all = largest.iter().flatten();
+    let most = all.map(|impact| impact.peak_force).fold(0.0, f64::max);
+    let mut near: Vec<Impact> = largest.into_iter().flatten().collect();
+    near.retain(|impact| impact.peak_force >= LESSER * most);
+    near
+}
+
+/// Whether something gives an impact of this contact a duration: waves in a body, or the stiffness of the law.
+fn has_duration(system: &System, contact: usize) -> bool {
+    let (secondary, primary) = system.sides[contact];
+    let bodies = [Some(secondary), primary];
+    let mut bodies = bodies.into_iter().flatten();
+    system.contacts[contact].law.get().level() == Level::GapAndRate
+        || bodies.any(|body| system.bodies[body].wave_speed().is_some())
+}
+
+fn name<'a>(evidence: &'a Evidence, impact: &Impact) -> &'a str {
+    &evidence.system.contacts[impact.contact as usize].name
+}
