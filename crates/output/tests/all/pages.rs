@@ -211,6 +211,7 @@ fn what_does_not_exist_is_a_dash() {
         start: 0.0,
         duration: None,
         peak_force: 1.0,
+        peak_steps: 1,
         peak_mean_force: 1.0,
         window: 1e-6,
         impulse: 1.0,

@@ -124,6 +124,7 @@ fn an_impact_that_is_not_over_has_empty_cells() {
         start: 1e-4,
         duration: Some(2e-4),
         peak_force: 7e4,
+        peak_steps: 12,
         peak_mean_force: 6.6e4,
         window: 5e-6,
         impulse: 6.6,
@@ -152,7 +153,7 @@ fn an_impact_that_is_not_over_has_empty_cells() {
         rows[0],
         [
             "a, \"b\"", "0.0001", "0.0002", "70000.0", "66000.0", "5e-6", "6.6", "5.0", "4.5",
-            "0.9", "16.0", "15.0", "0.1", "0.04", "2.0", "0.0"
+            "0.9", "16.0", "15.0", "0.1", "0.04", "2.0", "0.0", "12.0"
         ]
     );
     table.push(&open).unwrap();
