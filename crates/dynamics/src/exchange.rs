@@ -47,7 +47,8 @@ fn total(system: &System, part: &Range<usize>, force: &impl Fn(usize) -> f64) ->
     axial(system, total)
 }
 
-fn sum(system: &System, part: &Range<usize>, forces: &[f64]) -> [f64; 3] {
+/// Sum of a vector over the unknowns of a part.
+pub(crate) fn sum(system: &System, part: &Range<usize>, forces: &[f64]) -> [f64; 3] {
     total(system, part, &|unknown| forces[unknown])
 }
 
@@ -93,12 +94,23 @@ impl Exchange {
     pub(crate) fn add(
         &mut self,
         system: &System,
-        (kind, dt, impulse): (usize, f64, impl Fn(usize) -> Impulse),
+        kind: (usize, f64, impl Fn(usize) -> Impulse),
         force: impl Fn(usize) -> f64,
     ) {
-        for (part, range) in self.parts.iter_mut().zip(&system.parts) {
-            let impulse = impulse(range.start);
-            let total = total(system, range, &force);
+        let sums = |part: usize| total(system, &system.parts[part], &force);
+        self.add_sums(system, kind, sums);
+    }
+
+    /// The same from the sum of the forces on each part.
+    pub(crate) fn add_sums(
+        &mut self,
+        system: &System,
+        (kind, dt, impulse): (usize, f64, impl Fn(usize) -> Impulse),
+        sums: impl Fn(usize) -> [f64; 3],
+    ) {
+        for (number, part) in self.parts.iter_mut().enumerate() {
+            let impulse = impulse(system.parts[number].start);
+            let total = axial(system, sums(number));
             for i in 0..3 {
                 let before = part.before[kind][i];
                 let now = impulse.gain * total[i] - impulse.carry * before;
@@ -125,10 +137,15 @@ impl Exchange {
         }
     }
 
-    /// Compares with the records of the contacts at the end of a step. `momentum`: of each unknown.
-    pub(crate) fn close(&mut self, system: &System, momentum: &[f64], records: &[ContactRecord]) {
-        for (part, range) in self.parts.iter().zip(&system.parts) {
-            let now = sum(system, range, momentum);
+    /// Compares with the records of the contacts at the end of a step. `momenta`: of each part.
+    pub(crate) fn close(
+        &mut self,
+        system: &System,
+        momenta: impl Fn(usize) -> [f64; 3],
+        records: &[ContactRecord],
+    ) {
+        for (number, (part, range)) in self.parts.iter().zip(&system.parts).enumerate() {
+            let now = axial(system, momenta(number));
             let mut given = [0.0; 3];
             for (record, (secondary, primary)) in records.iter().zip(&system.sides) {
                 let impulse = axial(system, record.exchanged());

@@ -23,6 +23,7 @@ pub(crate) mod shapes;
 mod small;
 pub mod state;
 mod sum;
+mod update;
 mod watch;
 
 use carom_nonsmooth::{coulomb, interface};

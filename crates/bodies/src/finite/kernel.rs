@@ -102,6 +102,7 @@ impl Sweep<'_> {
             cell: Cell::new(physics, &self.block.stiffness_points),
             together: self.together(E),
             kind: self.block.kind,
+            weighted: self.chunk.weights.is_some(),
         };
         let points = self.finite.shape.points(self.block);
         let mut room = Room::<_, N, D, E>::new(zero);

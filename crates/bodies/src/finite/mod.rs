@@ -21,6 +21,7 @@ mod gradient;
 mod hourglass;
 mod kernel;
 mod linear;
+mod mean;
 mod passes;
 mod placement;
 mod pressure;

@@ -7,13 +7,15 @@ use pulp::NullaryFnOnce;
 
 use super::batch::{AtLaw, Bad, Energies, POINTS, Together, Watch};
 use super::hourglass::{pattern, patterns};
-use crate::force::{self, Batch, Cell, Metric, OfEdges};
+use crate::force::{self, Cell, Metric, OfEdges};
 
 /// What is the same for all batches of a chunk.
 pub(super) struct Elements<'a, const D: usize, const E: usize> {
     pub(super) cell: Cell<'a, D, E>,
     pub(super) together: Together,
     pub(super) kind: Kind,
+    /// Whether the internal work has weights.
+    pub(super) weighted: bool,
 }
 
 /// Several elements on their way through the functions.
@@ -31,8 +33,8 @@ pub(super) struct Room<T, const N: usize, const D: usize, const E: usize> {
     mean: T,
     /// V.
     volume: T,
-    /// Mean gradients of one point along the edges, and around the axis by node.
-    slopes: OfEdges<T, D, E>,
+    /// Mean gradients of one point, in 1/m, and those around the axis.
+    gradients: [[T; D]; N],
     ring: [[T; D]; N],
 }
 
@@ -49,18 +51,10 @@ impl<T: Number, const N: usize, const D: usize, const E: usize> Room<T, N, D, E>
             stretches: [zero; POINTS],
             mean: zero,
             volume: zero,
-            slopes: [[[zero; D]; E]; D],
+            gradients: [[zero; D]; N],
             ring: [[zero; D]; N],
         }
     }
-}
-
-/// Means of several elements.
-struct Mean<T, const N: usize, const D: usize, const E: usize> {
-    h: Tensor<T>,
-    slopes: OfEdges<T, D, E>,
-    ring: [[T; D]; N],
-    weighted: T,
 }
 
 /// Displacement gradients at all points.
@@ -86,8 +80,8 @@ impl<T: Number, const N: usize, const D: usize, const E: usize> NullaryFnOnce
         let batch = elements.cell.batch(&room.x, &room.u);
         if let Together::OnePoint(_) = elements.together {
             let mean = elements.mean_gradient(&batch, &room.law.weights);
-            (room.slopes, room.ring, room.mean) = (mean.slopes, mean.ring, mean.weighted);
-            room.law.h[0] = mean.h;
+            (room.gradients, room.ring, room.mean) = (mean.gradients, mean.ring, mean.weighted);
+            room.law.h[0] = elements.whole(&mean.h, mean.hoop);
             return Ok(());
         }
         for (q, point) in elements.cell.points().iter().enumerate() {
@@ -226,56 +220,6 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
         energies
     }
 
-    /// Mean gradients, and H by them.
-    #[inline(always)]
-    fn mean_gradient<T: Number, const N: usize>(
-        &self,
-        of: &Batch<T, N, D, E>,
-        weights: &[T; POINTS],
-    ) -> Mean<T, N, D, E> {
-        let (zero, one) = (of.x[0][0].like(0.0), of.x[0][0].like(1.0));
-        let mut unit = [[zero; D]; D];
-        for i in 0..D {
-            unit[i][i] = one;
-        }
-        let (mut slopes, mut ring) = ([[[zero; D]; E]; D], [[zero; D]; N]);
-        let (mut volume, mut weighted) = (zero, zero);
-        for (q, point) in self.cell.points().iter().enumerate() {
-            let metric = self.cell.metric(point, of);
-            volume += metric.volume();
-            weighted = metric.volume().mul_add(weights[q], weighted);
-            self.cell
-                .spread((point, &metric), &unit, metric.measure, &mut slopes);
-            if self.cell.has_hoop() {
-                self.cell.spread_hoop((point, &metric), one, one, &mut ring);
-            }
-        }
-        let inverse = one / volume;
-        let (mut h, mut hoop) = ([[zero; D]; D], zero);
-        for c in 0..D {
-            for e in 0..E {
-                for i in 0..D {
-                    slopes[c][e][i] = slopes[c][e][i] * inverse;
-                }
-                for i in 0..D {
-                    for j in 0..D {
-                        h[i][j] = of.du[c][e][i].mul_add(slopes[c][e][j], h[i][j]);
-                    }
-                }
-            }
-        }
-        for a in 0..N {
-            ring[a][0] = ring[a][0] * inverse;
-            hoop = ring[a][0].mul_add(of.u[a][0], hoop);
-        }
-        Mean {
-            h: self.whole(&h, hoop),
-            slopes,
-            ring,
-            weighted,
-        }
-    }
-
     /// One point with mean gradients, and hourglass control.
     #[inline(always)]
     fn one_point<T: Number, const N: usize>(
@@ -294,17 +238,17 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
             }
         }
         energies[0] += self.hourglass(modulus, room, &mut pull);
-        let mut df = [[[zero; D]; E]; D];
-        for c in 0..D {
-            for e in 0..E {
-                for i in 0..D {
-                    for j in 0..D {
-                        df[c][e][i] = pull[i][j].mul_add(room.slopes[c][e][j], df[c][e][i]);
-                    }
+        // the first node bears what the others give, so that the sum is nothing
+        for a in 1..N {
+            for i in 0..D {
+                let mut force = zero;
+                for j in 0..D {
+                    force = pull[i][j].mul_add(room.gradients[a][j], force);
                 }
+                room.f[a][i] += force;
+                room.f[0][i] -= force;
             }
         }
-        self.cell.add_differences(&df, &mut room.f);
         if self.cell.has_hoop() {
             let hoop = answer.stress[2][2] * weighted;
             for a in 0..N {
@@ -325,12 +269,10 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
         pull: &mut [[T; D]; D],
     ) -> T {
         let zero = room.mean.like(0.0);
-        let mut gradients = [[zero; D]; N];
-        self.cell.add_differences(&room.slopes, &mut gradients);
         let mut square = zero;
         for a in 0..N {
             for i in 0..D {
-                square = gradients[a][i].mul_add(gradients[a][i], square);
+                square = room.gradients[a][i].mul_add(room.gradients[a][i], square);
             }
         }
         let stiffness = (room.mean * square).scale(modulus);

@@ -17,10 +17,17 @@ impl Driver {
         let outcome = self.attempt_after_jump(Driver::take_stages);
         self.forget_predictor();
         outcome?;
+        if self.is_known_finite() {
+            return Ok(());
+        }
         check_finite(&self.next.motion, self.state.step + 1, self.state.time)
     }
 
     pub(super) fn take_stages(&mut self) -> Result<(), Error> {
+        if self.is_direct() {
+            return self.step_directly();
+        }
+        self.leave_direct();
         if !self.prepared {
             self.project_predictor()?;
         }

@@ -126,7 +126,7 @@ impl Driver {
     }
 
     /// Gaps and rates at the end of the step, and times without force.
-    fn end_interface(&mut self) {
+    pub(super) fn end_interface(&mut self) {
         let system = Arc::clone(&self.system);
         let interface = &mut self.next.interface;
         interface.carried.clone_from(&interface.force);
@@ -164,7 +164,7 @@ impl Driver {
     }
 
     /// Renews the memory of the laws at the points that carry a force at the end of the step.
-    fn crush(&mut self) {
+    pub(super) fn crush(&mut self) {
         let (old, new) = (&self.state.interface, &mut self.next.interface);
         new.crush.clone_from(&old.crush);
         for point in 0..new.crush.len() {

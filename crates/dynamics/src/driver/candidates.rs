@@ -85,7 +85,7 @@ impl Driver {
 
     /// Points that may carry a force. Some laws say so before the forces; of others, those are taken that carried one or that
     /// close at the x of the iteration or at twice the rate at the start, and the rest is looked at after the solve.
-    fn choose_candidates(&mut self) {
+    pub(super) fn choose_candidates(&mut self) {
         self.candidates.clear();
         for point in 0..self.system.points() {
             let chosen = match self.told(point) {
@@ -195,7 +195,7 @@ impl Driver {
     }
 
     /// No contact force at all.
-    fn release(&mut self) {
+    pub(super) fn release(&mut self) {
         let interface = &mut self.next.interface;
         interface.force.fill(0.0);
         interface.friction.fill([0.0; 2]);

@@ -2,13 +2,56 @@
 
 use std::time::Instant;
 
-use carom_bodies::{Placement, Stored};
+use carom_algebra::rotation::Rotation;
+use carom_bodies::{Placement, Scratch, Stored};
 
 use super::loads::factor;
 use super::{Driver, Vectors, Which};
 use crate::error::Error;
 use crate::step_map::StepMap;
-use crate::system::{Maps, NumberedForce};
+use crate::system::{Maps, NumberedForce, System};
+
+/// Where the internal forces of all bodies are taken.
+pub(super) struct Bodies<'a> {
+    /// Displacement, m, and velocity, m/s.
+    pub(super) u: &'a [f64],
+    pub(super) v: &'a [f64],
+    /// Displacement at the start, m, for forces between the two.
+    pub(super) from: Option<&'a [f64]>,
+    /// Rotations and histories at the start.
+    pub(super) frames: &'a [Rotation],
+    pub(super) history: &'a [f64],
+}
+
+/// Adds the internal forces of all bodies (N) and writes their histories. `dt`: time since the start of the step, by body, s.
+///
+/// # Errors
+/// An element turned inside out, a material without stress.
+pub(super) fn add_up(
+    system: &System,
+    of: &Bodies,
+    dt: impl Fn(usize) -> f64,
+    (history, internal): (&mut [f64], &mut [f64]),
+    scratch: &mut [Scratch],
+) -> Result<Stored, Error> {
+    let mut sum = Stored::default();
+    for (k, body) in system.bodies.iter().enumerate() {
+        let range = system.nonlinear.histories[k].clone();
+        let at = Placement {
+            u: of.u,
+            v: of.v,
+            from: of.from,
+            frames: of.frames,
+            dt: dt(k),
+            old: &of.history[range.clone()],
+        };
+        let stored = body.force(&at, &mut history[range], &mut scratch[k], internal)?;
+        sum.strain += stored.strain;
+        sum.hardening += stored.hardening;
+        sum.dissipated += stored.dissipated;
+    }
+    Ok(sum)
+}
 
 impl Driver {
     /// Loads in the balance of the step, which holds at an instant of its own in each zone, at the configuration in `place`, N.
@@ -118,22 +161,16 @@ impl Driver {
         let from = from.then_some(&self.state.motion.u[..]);
         internal.fill(0.0);
         self.force_sweeps += 1;
-        let mut sum = Stored::default();
-        for (k, body) in system.bodies.iter().enumerate() {
-            let range = system.nonlinear.histories[k].clone();
-            let at = Placement {
-                u,
-                v,
-                from,
-                frames,
-                dt: dt(&self.maps.all()[system.zone_of_body[k]]),
-                old: &self.state.motion.history[range.clone()],
-            };
-            let stored = body.force(&at, &mut history[range], &mut self.scratch[k], internal)?;
-            sum.strain += stored.strain;
-            sum.hardening += stored.hardening;
-            sum.dissipated += stored.dissipated;
-        }
+        let at = Bodies {
+            u,
+            v,
+            from,
+            frames,
+            history: &self.state.motion.history,
+        };
+        let maps = &self.maps;
+        let dt = |body: usize| dt(&maps.all()[system.zone_of_body[body]]);
+        let sum = add_up(system, &at, dt, (history, internal), &mut self.scratch)?;
         self.phases.forces += begin.elapsed();
         Ok(sum)
     }

@@ -69,6 +69,8 @@ impl Driver {
     /// As [`Driver::step`]; a step of a zone is not halved.
     pub fn complete(&mut self) -> Result<(), Error> {
         self.report.attempts = 1;
+        // all forces of a step are kept for the works of links
+        self.direct = None;
         if self.prepared {
             self.take_stages()?;
             check_finite(&self.next.motion, self.state.step + 1, self.state.time)?;

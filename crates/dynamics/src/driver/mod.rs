@@ -20,6 +20,7 @@ mod candidates;
 mod carried;
 mod contacts;
 mod describe;
+mod direct;
 mod effective;
 mod floating;
 mod forces;
@@ -28,6 +29,7 @@ mod held;
 mod identity;
 mod impulse;
 mod landing;
+mod leapfrog;
 pub mod linked;
 mod linking;
 mod links;
@@ -72,6 +74,7 @@ use carried::Carried;
 use effective::Effective;
 use floating::Floating;
 use impulse::Impulses;
+use leapfrog::Direct;
 use linking::Multipliers;
 use mixing::Mixing;
 use scratch::{Pace, Predictor, Projected, Restoring, Vectors};
@@ -87,6 +90,8 @@ pub struct Driver {
     /// The energy identity of the scheme; none of a static step, or where none is known.
     identity: Option<EnergyIdentity>,
     effective: Effective,
+    /// For steps whose matrix is the lumped mass; none where there are no such steps.
+    direct: Option<Direct>,
     floating: Floating,
     /// Every which step is dropped once, in tests.
     forced: Option<u64>,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use carom_contact::Rows;
 
 use super::Driver;
+use crate::exchange::sum;
 use crate::records::Step;
 use crate::report::ContactReport;
 use crate::state::{InterfaceState, State};
@@ -12,8 +13,21 @@ use crate::step_map::Impulse;
 use crate::system::System;
 
 impl Driver {
-    /// Records of the contacts.
+    /// Records of the contacts, and what they give to each part.
     pub(super) fn record(&mut self) {
+        self.record_contacts();
+        if !self.maps.is_static() {
+            let system = Arc::clone(&self.system);
+            let work = &mut self.vectors.work;
+            system.mass.multiply(&self.next.motion.v, work);
+            let records = &self.next.records.contacts;
+            let momenta = |part: usize| sum(&system, &system.parts[part], work);
+            self.next.exchange.close(&system, momenta, records);
+        }
+    }
+
+    /// Records of the contacts.
+    pub(super) fn record_contacts(&mut self) {
         let system = Arc::clone(&self.system);
         self.next.records.follow(&self.state.records);
         self.next.time = self.state.time + self.dt;
@@ -64,12 +78,6 @@ impl Driver {
         }
         self.watch
             .look(&system, self.state.step + 1, &mut self.next);
-        if !self.maps.is_static() {
-            let work = &mut self.vectors.work;
-            system.mass.multiply(&self.next.motion.v, work);
-            let records = &self.next.records.contacts;
-            self.next.exchange.close(&system, work, records);
-        }
     }
 
     /// Work of the normal forces of one contact on the motion of the step, J.

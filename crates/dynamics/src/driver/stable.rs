@@ -54,13 +54,16 @@ impl Driver {
             shapes.u.clone_from(&motion.u);
             shapes.changed = 0.0;
         }
+        let at = &shapes.u;
         let shape = |(k, body): (usize, &Body)| {
             changes(body).then(|| Shape {
                 velocity: system.mean_velocity(k, &motion.v),
-                shortest: shortest(system, body, &shapes.u),
+                shortest: shortest(system, body, at),
             })
         };
-        shapes.bodies = system.bodies.iter().enumerate().map(shape).collect();
+        shapes.bodies.clear();
+        let bodies = system.bodies.iter().enumerate();
+        shapes.bodies.extend(bodies.map(shape));
         Ok(())
     }
 

@@ -10,6 +10,7 @@ use super::effective::Effective;
 use super::floating::Floating;
 use super::identity::{End, energies};
 use super::impulse::Impulses;
+use super::leapfrog::Direct;
 use super::linking::Multipliers;
 use super::mixing::Mixing;
 use super::paired::sums_compliances;
@@ -58,6 +59,7 @@ impl Driver {
             maps,
             identity: None,
             effective: Effective::new(),
+            direct: Direct::of(&system),
             floating: Floating::new(&system)?,
             forced: None,
             ahead: system.dt,

@@ -1,0 +1,322 @@
+//! Explicit steps whose matrix is the lumped mass: central differences of solids.
+//!
+//! Displacements and forces of the end are known before the accelerations, and there is nothing to iterate. So the vectors of the
+//! end are written where they stay, and one pass ([`Update`]) finds accelerations, velocities and all terms of the balances. Contact
+//! forces are those of the interface problem of the other steps; where no point may carry one, it is not looked at.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use carom_contact::Search;
+use rayon::prelude::*;
+
+use super::Driver;
+use super::forces::{Bodies, add_up};
+use super::leapfrog::{Direct, is_leapfrog};
+use crate::error::Error;
+use crate::ledger::{Beyond, Energies, Squares, Tolerated};
+use crate::resultant::Resultant;
+use crate::step_map::{Impulse, Known, Row};
+use crate::update::{Sums, Update};
+
+/// Unknowns of which one thread writes the displacement, at least.
+const UNKNOWNS: usize = 8192;
+
+impl Driver {
+    /// Whether the attempt is such a step.
+    pub(super) fn is_direct(&self) -> bool {
+        let leapfrog = match (self.maps.only(), &self.identity) {
+            (Some(map), Some(identity)) => is_leapfrog(map, identity),
+            _ => false,
+        };
+        leapfrog
+            && self.direct.is_some()
+            && !self.maps.is_static()
+            && self.impulses.is_none()
+            && self.link_force.is_empty()
+    }
+
+    /// Whether the motion of the attempt is known to be finite without a look at it.
+    pub(super) fn is_known_finite(&self) -> bool {
+        self.direct.as_ref().is_some_and(|direct| direct.finite)
+    }
+
+    /// Tells that an attempt of another kind begins.
+    pub(super) fn leave_direct(&mut self) {
+        if let Some(direct) = &mut self.direct {
+            (direct.clean, direct.finite) = (false, false);
+        }
+    }
+
+    /// Takes the attempt.
+    pub(super) fn step_directly(&mut self) -> Result<(), Error> {
+        let Some(mut direct) = self.direct.take() else {
+            return Ok(());
+        };
+        let clean = std::mem::take(&mut direct.clean);
+        direct.finite = false;
+        let taken = self.leap(&mut direct, clean);
+        self.direct = Some(direct);
+        taken
+    }
+
+    fn leap(&mut self, direct: &mut Direct, clean: bool) -> Result<(), Error> {
+        let (begin, before) = (Instant::now(), self.phases);
+        self.take_matrices()?;
+        self.residuals.clear();
+        self.residuals.push(0.0);
+        (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
+        if !clean {
+            self.next.motion.contact_force.fill(0.0);
+            self.vectors.x.fill(0.0);
+        }
+        self.place_end();
+        self.forces_of_end()?;
+        let loads = self.loads_of_end(direct.loaded);
+        let touched = [carries(&self.state.interface), self.touch(loads)?];
+        self.count_contact(begin, before);
+        let begin = Instant::now();
+        let sums = self.end_motion(direct, loads, touched.contains(&true));
+        direct.finite = (sums.velocity + sums.acceleration[1] + sums.way).is_finite();
+        direct.clean = touched == [false; 2];
+        self.end_points();
+        self.balance_directly(&sums, &direct.parts);
+        self.record_contacts();
+        let records = &self.next.records.contacts;
+        let momenta = |part: usize| direct.parts[part].momentum.linear;
+        self.next.exchange.close(&self.system, momenta, records);
+        self.phases.balance += begin.elapsed();
+        Ok(())
+    }
+
+    /// Displacements of the end.
+    fn place_end(&mut self) {
+        let (row, motion) = (self.maps.first().displacement, &self.state.motion);
+        let start = Known::from(motion);
+        let ends = self.next.motion.u.par_chunks_mut(UNKNOWNS).enumerate();
+        ends.for_each(|(chunk, end)| {
+            let first = chunk * UNKNOWNS;
+            row.known(start.within(first..first + end.len()), end);
+        });
+        self.next.motion.frames.clone_from(&motion.frames);
+    }
+
+    /// Internal forces and histories of the end.
+    fn forces_of_end(&mut self) -> Result<(), Error> {
+        let begin = Instant::now();
+        self.force_sweeps += 1;
+        let motion = &mut self.next.motion;
+        motion.internal_force.fill(0.0);
+        let at = Bodies {
+            u: &motion.u,
+            v: &[],
+            from: None,
+            frames: &self.state.motion.frames,
+            history: &self.state.motion.history,
+        };
+        let out = (&mut motion.history[..], &mut motion.internal_force[..]);
+        let dt = self.dt;
+        self.stored = add_up(&self.system, &at, |_| dt, out, &mut self.scratch)?;
+        self.phases.forces += begin.elapsed();
+        Ok(())
+    }
+
+    /// Loads at the end: those of `load` where they vary, otherwise what the dead loads are multiplied with.
+    fn loads_of_end(&mut self, loaded: bool) -> Loads {
+        if !self.system.nonlinear.loads.is_empty() {
+            self.vectors.place.copy_from_slice(&self.next.motion.u);
+            self.evaluate_loads_of_step();
+            return Loads::Varying;
+        }
+        let time = self.state.time;
+        let ramp = [time, time + self.dt].map(|time| self.system.nonlinear.ramp(time));
+        if loaded {
+            Loads::Dead(ramp)
+        } else {
+            Loads::None
+        }
+    }
+
+    /// Forces of the contacts; whether there are any.
+    fn touch(&mut self, loads: Loads) -> Result<bool, Error> {
+        self.next.interface.follow(&self.state.interface);
+        self.guess_slips();
+        self.take_weak();
+        self.vectors.jumps = false;
+        if self.system.contacts.is_empty() {
+            self.candidates.clear();
+            return Ok(false);
+        }
+        self.vectors.ahead.clear();
+        self.search.iter_mut().for_each(Search::begin_step);
+        self.pair(true);
+        self.choose_candidates();
+        if self.candidates.is_empty() {
+            self.release();
+            return Ok(false);
+        }
+        let system = Arc::clone(&self.system);
+        let internal = &self.next.motion.internal_force;
+        let super::Vectors { residual, load, .. } = &mut self.vectors;
+        for (i, left) in residual.iter_mut().enumerate() {
+            let outside = match loads {
+                Loads::None => 0.0,
+                Loads::Dead([_, factor]) => factor * system.load[i],
+                Loads::Varying => load[i],
+            };
+            *left = if system.fixed[i] {
+                0.0
+            } else {
+                outside - internal[i]
+            };
+        }
+        self.solve_interface()?;
+        self.spread();
+        let forces = &self.vectors.contact;
+        self.next.motion.contact_force.copy_from_slice(forces);
+        Ok(carries(&self.next.interface))
+    }
+
+    /// Accelerations and velocities of the end, and the sums of the step.
+    fn end_motion(&mut self, direct: &mut Direct, loads: Loads, touched: bool) -> Sums {
+        let system = Arc::clone(&self.system);
+        let map = self.maps.first();
+        let means = [map.impulse.old, map.impulse.new];
+        let moves = system.is_nonlinear();
+        let (old, new) = (&self.state.motion, &mut self.next.motion);
+        let varying = &self.vectors.load[..];
+        let before = self.state.forces.first().map_or(varying, |load| &load[..]);
+        let update = Update {
+            system: &system,
+            u: &new.u,
+            f: [&old.internal_force, &new.internal_force],
+            v: &old.v,
+            a: &old.a,
+            load: match loads {
+                Loads::None => None,
+                Loads::Dead(factors) => Some(factors.map(|factor| (&system.load[..], factor))),
+                Loads::Varying => Some([(before, 1.0), (varying, 1.0)]),
+            },
+            contact: touched
+                .then(|| [&old.contact_force, &new.contact_force].map(|f| (&f[..], 1.0))),
+            way: map.displacement.since(&Row::START),
+            velocity: map.velocity,
+            weights: [means, if moves { means } else { [0.0, 1.0] }],
+            moves,
+        };
+        update.run(&direct.blocks, &mut direct.sums, [&mut new.v, &mut new.a]);
+        let forces = &mut self.next.forces;
+        match loads {
+            Loads::Varying => {
+                forces.resize_with(1, Vec::new);
+                forces[0].clone_from(&self.vectors.load);
+            }
+            Loads::None | Loads::Dead(_) => forces.clear(),
+        }
+        direct.gather(system.axisymmetric)
+    }
+
+    /// Gaps, rates and memories of the contact points.
+    fn end_points(&mut self) {
+        // the unknown is the acceleration
+        std::mem::swap(&mut self.vectors.x, &mut self.next.motion.a);
+        self.end_interface();
+        std::mem::swap(&mut self.vectors.x, &mut self.next.motion.a);
+        self.crush();
+    }
+
+    /// Energy and momentum of the step.
+    fn balance_directly(&mut self, sums: &Sums, parts: &[Sums]) {
+        let system = Arc::clone(&self.system);
+        let identity = self.identity_of_ledger();
+        let map = *self.maps.first();
+        let weights = [[map.impulse.old, map.impulse.new]];
+        let (friction, obstacles) = (self.friction_work(&weights), self.obstacle_work(&weights));
+        let [inertia, internal, load, touch] = sums.works;
+        let stored = self.stored;
+        let energies = Energies {
+            kinetic: 0.5 * sums.velocity,
+            strain: stored.strain,
+            acceleration: sums.acceleration[1],
+            memory: 0.0,
+            lagged: 0.0,
+            momentum: sums.momentum,
+        };
+        let before = identity.inertia * sums.acceleration[0];
+        let start = &self.state.ledger.balance;
+        let gained = energies.kinetic - start.kinetic + energies.of_scheme(&identity) - before;
+        let kept = energies.strain - start.strain + stored.hardening - start.hardening;
+        let ledger = &mut self.next.ledger;
+        ledger.clone_from(&self.state.ledger);
+        ledger.resize_to(before);
+        let (mut squares, one) = (Squares::default(), Impulse::weights(0.0, 1.0));
+        // forces that are means already, or those of the end
+        let mut impulses = [&map.impulse, &map.contact_impulse];
+        if system.is_nonlinear() {
+            impulses = [&one, &one];
+            squares.stage = inertia - gained + internal - kept - stored.dissipated;
+            self.left_over = self.system.nonlinear.iteration.tolerance * scale(sums, self.dt);
+            let nodes = system.x.len() as f64;
+            ledger.go_beyond(&Beyond {
+                work_obstacles: obstacles,
+                dissipation_material: stored.dissipated,
+                dissipation_friction: -friction,
+                hardening: stored.hardening,
+                tolerated: Tolerated {
+                    energy: self.left_over * sums.way.sqrt(),
+                    momentum: self.left_over * nodes.sqrt() * self.dt,
+                },
+                ..Beyond::default()
+            });
+        }
+        let [loads, contacts, supports] = sums.forces;
+        let none = Resultant::default();
+        ledger.add(
+            (self.dt, &identity, impulses),
+            &energies,
+            [load, touch - friction - obstacles, 0.0],
+            &squares,
+            [loads, contacts, supports, none, none],
+        );
+        let exchange = &mut self.next.exchange;
+        exchange.follow(&self.state.exchange);
+        let apart = system.is_nonlinear();
+        let outside = |part: usize| {
+            let [own, held] = parts[part].outside;
+            match apart {
+                true => own,
+                false => [0, 1, 2].map(|i| own[i] + held[i]),
+            }
+        };
+        exchange.add_sums(&system, (0, self.dt, |_| map.impulse), outside);
+        if apart {
+            let held = |part: usize| parts[part].outside[1];
+            exchange.add_sums(&system, (1, self.dt, |_| map.contact_impulse), held);
+        }
+    }
+}
+
+/// Loads of such a step.
+#[derive(Clone, Copy)]
+enum Loads {
+    None,
+    /// The dead loads, times these factors at start and end.
+    Dead([f64; 2]),
+    /// Those in the vector of loads.
+    Varying,
+}
+
+/// Whether any point carries a force.
+fn carries(interface: &crate::state::InterfaceState) -> bool {
+    interface.force.iter().any(|force| *force != 0.0)
+        || interface.friction.iter().any(|force| *force != [0.0; 2])
+}
+
+/// Largest norm of the forces that balance, and of the momentum over the step, N.
+fn scale(sums: &Sums, dt: f64) -> f64 {
+    let [forces @ .., momentum] = sums.squares;
+    let forces = forces.iter().map(|square| square.sqrt());
+    forces
+        .fold(momentum.sqrt() / dt, f64::max)
+        .max(f64::MIN_POSITIVE)
+}

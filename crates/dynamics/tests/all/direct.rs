@@ -1,0 +1,254 @@
+//! Explicit steps with lumped mass, taken in one pass, are the steps that the iterations take; they allocate nothing.
+
+use std::sync::Arc;
+
+use carom_bodies::{BodySpec, Formulation, Kinematics};
+use carom_contact::law::{Capture, Reading, Velocity};
+use carom_contact::{Integration, Law, Plane, Sliding};
+use carom_dynamics::scheme::CentralDifference;
+use carom_dynamics::{
+    Amplitude, Balance, Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support,
+    System,
+};
+use carom_materials::{Elastic, J2Plasticity, Law as Material, StVenantKirchhoff};
+use carom_mesh::{Surface, generate};
+use carom_testing::allocations;
+
+const SOFT: Elastic = Elastic {
+    density: 1000.0,
+    young: 1e7,
+    poisson: 0.3,
+};
+
+const STEPS: usize = 60;
+
+/// What a block is made of, and what acts on it.
+#[derive(Clone, Copy)]
+struct Case {
+    name: &'static str,
+    material: Material,
+    formulation: Formulation,
+    /// Whether a plane is in the way, with which friction.
+    friction: Option<f64>,
+    gravity: f64,
+    /// Whether the ground shakes.
+    shakes: bool,
+    /// Whether the top is held.
+    held: bool,
+}
+
+fn cases() -> Vec<Case> {
+    let svk = Material::StVenantKirchhoff(StVenantKirchhoff { initial: SOFT });
+    let plastic = Material::J2Plasticity(J2Plasticity {
+        initial: SOFT,
+        yield_stress: 1e5,
+        hardening: 1e6,
+    });
+    let free = Case {
+        name: "free",
+        material: Material::Elastic(SOFT),
+        formulation: Formulation::Full,
+        friction: None,
+        gravity: 0.0,
+        shakes: false,
+        held: false,
+    };
+    let impact = Case {
+        name: "impact",
+        friction: Some(0.0),
+        gravity: -100.0,
+        ..free
+    };
+    vec![
+        free,
+        Case {
+            name: "hanging",
+            gravity: -100.0,
+            held: true,
+            ..free
+        },
+        impact,
+        Case {
+            name: "finite, hanging, shaken",
+            material: svk,
+            gravity: -100.0,
+            shakes: true,
+            held: true,
+            ..free
+        },
+        Case {
+            name: "finite, rubbing",
+            material: svk,
+            friction: Some(0.3),
+            ..impact
+        },
+        Case {
+            name: "plastic, one point",
+            material: plastic,
+            formulation: Formulation::Reduced { hourglass: 0.1 },
+            friction: Some(0.3),
+            ..impact
+        },
+    ]
+}
+
+fn driver(case: &Case) -> Driver {
+    Driver::new(System::new(model(case)).unwrap()).unwrap()
+}
+
+/// A cube of 1 m, 5 mm above the plane, that falls, glides and shears.
+fn model(case: &Case) -> Model {
+    let mesh = generate::box_("cube", [0.0, 0.0, 0.005], [1.0; 3], [3; 3], false);
+    let cells = mesh.groups["cube"].elements.clone();
+    let bottom = Surface::new(&mesh, &mesh.groups["cube.bottom"], &cells).unwrap();
+    let top = mesh.group_nodes(&mesh.groups["cube.top"]);
+    let mut spec = BodySpec::new("cube", cells, Kinematics::Solid, case.material);
+    spec.formulation = case.formulation;
+    let body = ModelBody {
+        velocity: [1.0, 0.5, -3.0],
+        ..ModelBody::new(spec)
+    };
+    let ground = |friction| ModelContact {
+        sliding: Sliding::Finite,
+        integration: Integration::Node,
+        friction,
+        ..ModelContact::new(
+            "ground",
+            bottom.clone(),
+            ModelTarget::rigid(Plane {
+                point: [0.0; 3],
+                normal: [0.0, 0.0, 1.0],
+            }),
+            Law::Velocity(Velocity {
+                capture: Capture::Now,
+                reading: Reading::Closed,
+            }),
+        )
+    };
+    let scheme = Scheme::CentralDifference(CentralDifference {});
+    let dt = 0.2 / 3.0 / 120.0;
+    let mut model = Model {
+        gravity: [0.0, 0.0, case.gravity],
+        contacts: case.friction.into_iter().map(ground).collect(),
+        ..Model::new(vec![body], mesh, scheme, dt)
+    };
+    if case.held {
+        model.supports = vec![Support {
+            nodes: top,
+            fix: [true, false, true],
+            fix_rotations: [false; 3],
+        }];
+    }
+    if case.shakes {
+        let course = vec![[0.0, 50.0], [10.0 * dt, -80.0], [40.0 * dt, 30.0]];
+        model.nonlinear.base[1] = Some(Amplitude::new(course).unwrap());
+    }
+    model
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    largest(&difference) / largest(b).max(f64::MIN_POSITIVE)
+}
+
+/// Energies and works, momenta and impulses.
+fn terms(balance: &Balance) -> [Vec<f64>; 2] {
+    let resultants = [
+        balance.momentum,
+        balance.impulse_loads,
+        balance.impulse_contact,
+        balance.impulse_supports,
+    ];
+    let energies = vec![
+        balance.kinetic,
+        balance.strain,
+        balance.hardening,
+        balance.scheme_energy,
+        balance.work_loads,
+        balance.work_contact,
+        balance.work_supports,
+        balance.dissipation_scheme,
+        balance.dissipation_material,
+        balance.dissipation_friction,
+        balance.energy_residual,
+    ];
+    let momenta = resultants
+        .iter()
+        .flat_map(|r| r.linear.into_iter().chain(r.angular));
+    [energies, momenta.collect()]
+}
+
+/// Both do the same operations in another order: 1e-10 is rounding that some hundred steps amplify.
+#[test]
+fn steps_in_one_pass_are_those_of_the_iterations() {
+    for case in cases() {
+        let (mut direct, mut iterated) = (driver(&case), driver(&case));
+        let mut touched = false;
+        for step in 0..STEPS {
+            direct.step().unwrap();
+            iterated.complete().unwrap();
+            iterated.take();
+            let at = format!("{}, step {step}", case.name);
+            let [a, b] = [&direct, &iterated].map(|driver| &driver.state().motion);
+            for (a, b) in [(&a.u, &b.u), (&a.v, &b.v), (&a.a, &b.a)] {
+                assert!(distance(a, b) < 1e-10, "{at}: {}", distance(a, b));
+            }
+            let [a, b] = [&direct, &iterated].map(|driver| driver.state());
+            assert!(
+                distance(&a.interface.force, &b.interface.force) < 1e-9,
+                "{at}"
+            );
+            touched |= a.interface.force.iter().any(|force| *force != 0.0);
+            let [a, b] = [&a.ledger, &b.ledger].map(|ledger| terms(&ledger.balance));
+            for (a, b) in a.iter().zip(&b) {
+                assert!(distance(a, b) < 1e-10, "{at}: {a:?} {b:?}");
+            }
+            let [a, b] = [&direct, &iterated].map(|driver| &driver.state().ledger);
+            let (a, b) = (a.tolerated, b.tolerated);
+            assert!((a.energy - b.energy).abs() <= 1e-9 * b.energy, "{at}");
+            assert!((a.momentum - b.momentum).abs() <= 1e-9 * b.momentum, "{at}");
+        }
+        assert_eq!(touched, case.friction.is_some(), "{}", case.name);
+        let state = direct.state();
+        let residual = state.ledger.largest_energy_residual / state.ledger.largest_energy;
+        assert!(residual < 1e-12, "{}: {residual}", case.name);
+        let exchange = state.exchange.relative().unwrap();
+        assert!(exchange < 1e-12, "{}: {exchange}", case.name);
+    }
+}
+
+/// With a contact in reach and without.
+#[test]
+fn such_steps_allocate_nothing() {
+    for case in cases().into_iter().filter(|case| case.friction.is_none()) {
+        let mut driver = driver(&case);
+        for _ in 0..5 {
+            driver.step().unwrap();
+        }
+        let before = allocations();
+        for _ in 0..20 {
+            driver.step().unwrap();
+        }
+        assert_eq!(allocations() - before, 0, "{}", case.name);
+    }
+}
+
+/// A run that goes on from its saved state has the same bits.
+#[test]
+fn resumed_steps_have_the_same_bits() {
+    for case in cases() {
+        let mut whole = driver(&case);
+        let system = System::new(model(&case)).unwrap();
+        let mut parts = Driver::new(Arc::clone(&system)).unwrap();
+        for step in 0..STEPS {
+            whole.step().unwrap();
+            parts.step().unwrap();
+            if step % 7 == 3 {
+                let state = parts.state().clone();
+                parts = Driver::resume(Arc::clone(&system), state).unwrap();
+            }
+        }
+        assert_eq!(whole.state(), parts.state(), "{}", case.name);
+    }
+}
