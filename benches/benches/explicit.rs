@@ -4,7 +4,7 @@
 //! `cargo bench -p carom-benches --bench explicit`; `CAROM_BENCH_N=48` sets the cells along an edge (24 unless given),
 //! `CAROM_BENCH_THREADS=2` the threads (1 unless given), `CAROM_BENCH_ONLY=J2` takes only what has this in its name. A block flies and
 //! spins while waves run through it; with `wall` its lower face is a contact with a rigid plane that it never reaches. Best of
-//! groups of ten steps, since other processes may be running. Not a criterion benchmark: no two steps are alike.
+//! groups of four steps, since other processes may be running. Not a criterion benchmark: no two steps are alike.
 //!
 //! `memory` is the rate of a plain copy of a vector that no cache holds; the step outside of the forces is told in `passes` of that
 //! kind, which read and write 48 bytes a node.
@@ -21,8 +21,8 @@ use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Phases
 use carom_materials::{Elastic, J2Plasticity, Law, Plane as Stress, StVenantKirchhoff};
 use carom_mesh::{Surface, generate};
 
-const GROUPS: usize = 8;
-const STEPS: usize = 10;
+const GROUPS: usize = 40;
+const STEPS: usize = 4;
 /// Numbers of a vector that no cache holds.
 const LARGE: usize = 24_000_000;
 const MATERIAL: Elastic = Elastic {
