@@ -1,8 +1,13 @@
 //! What a part of the schema accepts, in words: for messages and for the reference page.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value};
 
 use carom_quantities::units::with_article;
+
+/// Keys above a key that stands in the wrong table, at most, where it is looked for.
+const DEEPEST: usize = 4;
 
 /// The schema with its `$ref`, if it is one, replaced by what it refers to.
 pub(crate) fn resolve<'a>(root: &'a Value, schema: &'a Value) -> &'a Value {
@@ -73,6 +78,45 @@ pub(crate) fn keyed(branch: &Value) -> Option<(&str, &Value)> {
         (Some((name, value)), None) if name == key => Some((name, value)),
         _ => None,
     }
+}
+
+/// Tables below some keys that know another one, as paths of keys: all that are nearest to the top, within [`DEEPEST`] keys.
+pub(crate) fn below(root: &Value, known: &BTreeMap<&str, &Value>, key: &str) -> Vec<String> {
+    let mut level: Vec<(String, &Value)> = Vec::new();
+    level.extend(
+        known
+            .iter()
+            .map(|(name, schema)| ((*name).to_owned(), *schema)),
+    );
+    for _ in 0..DEEPEST {
+        let knows = |at: &&(String, &Value)| keys(root, at.1).iter().any(|(name, _)| *name == key);
+        let found: Vec<String> = level
+            .iter()
+            .filter(knows)
+            .map(|(path, _)| path.clone())
+            .collect();
+        if !found.is_empty() {
+            return found;
+        }
+        let deeper = level.iter().flat_map(|(path, schema)| {
+            let inner = keys(root, schema);
+            inner
+                .into_iter()
+                .map(move |(name, schema)| (format!("{path}.{name}"), schema))
+        });
+        level = deeper.collect();
+    }
+    Vec::new()
+}
+
+/// The keys of a table, or of the tables that a choice offers.
+fn keys<'a>(root: &'a Value, schema: &'a Value) -> Vec<(&'a str, &'a Value)> {
+    let schema = resolve(root, schema);
+    let branches = alternatives(root, schema);
+    let of_branches = branches
+        .into_iter()
+        .flat_map(|branch| entries(branch, "properties"));
+    entries(schema, "properties").chain(of_branches).collect()
 }
 
 /// The texts that a schema lists, of all its alternatives.

@@ -7,7 +7,9 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use crate::describe::{accepted, allows, alternatives, entries, keyed, listed, range, resolve};
+use crate::describe::{
+    accepted, allows, alternatives, below, entries, keyed, listed, range, resolve,
+};
 use crate::error::{Place, Problem};
 use crate::input::Input;
 use crate::keys::{Keys, of};
@@ -17,6 +19,9 @@ use carom_quantities::units::{Dimension, UnitError, length_of_unit, parse_quanti
 
 /// Longest value that a message shows whole.
 const SHOWN: usize = 60;
+
+/// Most places that a message names for a key that stands in the wrong table.
+const MOST_PLACES: usize = 3;
 
 /// Every problem of the case `root` against `schema`.
 pub(crate) fn validate(schema: &Value, root: &Item, input: &Input) -> Vec<Problem> {
@@ -110,7 +115,7 @@ impl<'a> Walker<'a> {
                     chosen.push((key, inner));
                     self.visit(schema, inner, &join(path, key));
                 }
-                None => self.unknown_key(key, inner, path, choices.keys().copied()),
+                None => self.unknown_key(key, inner, path, choices),
             }
         }
         chosen.sort_by_key(|(_, inner)| inner.place());
@@ -157,7 +162,7 @@ impl<'a> Walker<'a> {
                     }
                     self.visit(schema, inner, &inner_path);
                 }
-                (None, None) => self.unknown_key(key, inner, path, properties.keys().copied()),
+                (None, None) => self.unknown_key(key, inner, path, &properties),
             }
         }
         if others.is_some() && found.is_empty() {
@@ -289,18 +294,27 @@ impl<'a> Walker<'a> {
         self.problems.push(problem.at(item.value));
     }
 
-    fn unknown_key<'n>(
+    fn unknown_key(
         &mut self,
         key: &str,
         item: &Item,
         path: &str,
-        names: impl Iterator<Item = &'n str>,
+        known: &BTreeMap<&str, &'a Value>,
     ) {
         let message = format!("unknown key `{key}`{}", of(path));
-        let problem = Problem {
+        let mut problem = Problem {
             found: None,
-            ..Problem::new(join(path, key), message).unknown(key, names)
+            ..Problem::new(join(path, key), message).unknown(key, known.keys().copied())
         };
+        if problem.nearest.is_none() {
+            let places = below(self.schema, known, key);
+            if (1..=MOST_PLACES).contains(&places.len()) {
+                let above = if path.is_empty() { "" } else { "." };
+                let named = |keys: &String| format!("`{path}{above}{keys}`");
+                let places: Vec<String> = places.iter().map(named).collect();
+                problem = problem.note(format!("it is a key of {}", places.join(", ")));
+            }
+        }
         self.problems.push(problem.at(key_place(item)));
     }
 
