@@ -205,10 +205,12 @@ pub(crate) struct Jump {
     pub(crate) work_obstacles: f64,
     /// What the scheme's term in |a|² loses, J.
     pub(crate) dissipation: f64,
-    /// Its impulses, from contacts and supports.
-    pub(crate) impulses: [Resultant; 2],
+    /// Its impulses, from contacts, supports and links.
+    pub(crate) impulses: [Resultant; 3],
     /// Forces of contacts and supports that the next step begins with.
     pub(crate) forces: [Resultant; 2],
+    /// What it adds to those of links.
+    pub(crate) links: Resultant,
 }
 
 /// What changed in a step: |Δv|²_M, |Δu|²_K, |Δa|²_M, |Δm|²_K, Δu·MΔa, Δa·NᵀP.
@@ -366,13 +368,14 @@ impl Ledger {
         self.work_contact.add(jump.work);
         self.beyond[4].add(jump.work_obstacles);
         self.dissipation.add(jump.dissipation);
-        for (k, impulse) in jump.impulses.iter().enumerate() {
+        for (k, impulse) in [1, 2, 4].into_iter().zip(&jump.impulses) {
             for i in 0..3 {
-                self.impulses[1 + k][i].add(impulse.linear[i]);
-                self.impulses[1 + k][3 + i].add(impulse.angular[i]);
+                self.impulses[k][i].add(impulse.linear[i]);
+                self.impulses[k][3 + i].add(impulse.angular[i]);
             }
-            self.forces[1 + k] = jump.forces[k];
         }
+        self.forces[1..3].copy_from_slice(&jump.forces);
+        self.forces[4] = self.forces[4].plus(&jump.links);
         self.close(energies, identity);
     }
 

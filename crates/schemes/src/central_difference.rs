@@ -87,8 +87,4 @@ impl TimeScheme for CentralDifference {
     fn critical(&self) -> Option<f64> {
         Some(2.0)
     }
-
-    fn link_weights(&self) -> Option<[f64; 2]> {
-        Some([0.0, 1.0])
-    }
 }

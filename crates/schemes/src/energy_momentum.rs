@@ -65,8 +65,4 @@ impl TimeScheme for EnergyMomentum {
     fn is_between(&self) -> bool {
         true
     }
-
-    fn link_weights(&self) -> Option<[f64; 2]> {
-        Some([0.5, 0.5])
-    }
 }

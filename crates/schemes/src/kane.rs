@@ -81,6 +81,11 @@ impl TimeScheme for Kane {
         })
     }
 
+    /// Links act as loads do, as in Newmark's scheme.
+    fn link_work(&self, _dt: f64) -> [f64; 2] {
+        [1.0 - self.gamma, self.gamma]
+    }
+
     fn keeps_acceleration(&self) -> bool {
         true
     }

@@ -104,10 +104,6 @@ impl TimeScheme for Newmark {
         None
     }
 
-    fn link_weights(&self) -> Option<[f64; 2]> {
-        Some([0.0, 1.0])
-    }
-
     fn usual() -> Vec<Newmark> {
         vec![
             Newmark {

@@ -81,10 +81,26 @@ pub trait TimeScheme {
     fn is_between(&self) -> bool {
         false
     }
-    /// Weights of the multipliers of links at the start and the end of a step in the force that the momentum balance sees;
-    /// `None` of schemes that no link takes.
-    fn link_weights(&self) -> Option<[f64; 2]> {
-        None
+    /// Weights of the multipliers of links at the start and the end of a step in the force that the momentum balance sees: those of
+    /// a course that is linear between the two, at the instant of the balance. A scheme that balances at the start sees the
+    /// multiplier that the step finds.
+    fn link_weights(&self) -> [f64; 2] {
+        let part = self.step_map(1.0).instant(1.0);
+        match part > 0.0 {
+            true => [1.0 - part, part],
+            false => [0.0, 1.0],
+        }
+    }
+    /// Weights of the forces of links at the start and of the step in their work, over the same displacements as that of contact
+    /// forces ([`EnergyIdentity`]), and those of contact forces in most schemes.
+    fn link_work(&self, dt: f64) -> [f64; 2] {
+        match self.energy_identity(dt) {
+            Some(identity) => [identity.old, identity.new],
+            None => {
+                let impulse = self.step_map(dt).impulse;
+                [impulse.old, impulse.new]
+            }
+        }
     }
     /// Parameters with which the batteries run over the scheme.
     fn usual() -> Vec<Self>

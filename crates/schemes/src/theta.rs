@@ -99,10 +99,6 @@ impl TimeScheme for Theta {
         None
     }
 
-    fn link_weights(&self) -> Option<[f64; 2]> {
-        Some([1.0 - self.theta, self.theta])
-    }
-
     fn usual() -> Vec<Theta> {
         vec![Theta { theta: 0.5 }, Theta { theta: 0.75 }]
     }

@@ -52,13 +52,6 @@ impl System {
             .zip(&self.part_of_body)
             .zip(&self.zone_of_body);
         for ((body, _), &zone) in bodies.filter(|((_, part), _)| linked[**part]) {
-            let scheme = self.schemes[zone].get();
-            if scheme.link_weights().is_none() {
-                return Err(Error::LinkScheme {
-                    zone: body.name().to_string(),
-                    scheme: scheme.name(),
-                });
-            }
             if !body.is_linear() && maps.all()[zone].force.x != 0.0 {
                 return Err(Error::LinkedNonlinear {
                     body: body.name().to_string(),
@@ -79,7 +72,7 @@ impl System {
                     continue;
                 }
                 let zone = self.zone_of_body[body];
-                let [_, weight] = maps.link_weights(&self.schemes[zone]);
+                let [_, weight] = maps.link_weights(zone);
                 let own = weight / maps.link_row(&maps.all()[zone]).x;
                 if (*ratio.get_or_insert(own) / own - 1.0).abs() > 1e-12 {
                     let names = self.schemes.iter().map(|scheme| scheme.get().name());

@@ -194,16 +194,6 @@ pub enum Error {
         /// Why.
         cause: &'static str,
     },
-    /// A zone with a scheme that no link takes.
-    #[error(
-        "zone '{zone}': links accept the schemes theta, newmark, central-difference and energy-momentum, not {scheme}"
-    )]
-    LinkScheme {
-        /// Name of the zone.
-        zone: String,
-        /// Name of the scheme.
-        scheme: &'static str,
-    },
     /// Something that a model with loads in time, friction, finite strain or a static stage does not accept.
     #[error("{what}: {why}")]
     Nonlinear {

@@ -20,6 +20,10 @@ pub struct Maps {
     maps: Vec<StepMap>,
     /// Factor of |a|²_M in the energy that the scheme of each conserves, s².
     factors: Vec<f64>,
+    /// Weights of the multipliers of links at the start and the end of the step in the balance of each.
+    weights: Vec<[f64; 2]>,
+    /// Whether there are links.
+    linked: bool,
     /// Unknowns that follow each other and have one map, and its number; ascending.
     spans: Vec<(Range<usize>, usize)>,
 }
@@ -34,6 +38,8 @@ impl Maps {
                 .map(|s| s.get().step_map(dt))
                 .collect(),
             factors: vec![0.0; system.schemes.len()],
+            weights: vec![[0.0, 1.0]; system.schemes.len()],
+            linked: !system.link_rows.is_empty(),
             spans: system.spans.clone(),
         };
         maps.resize(&system.schemes, (dt, next));
@@ -50,6 +56,9 @@ impl Maps {
                 .filter(|_| scheme.keeps_acceleration());
             *factor = identity.map_or(0.0, |identity| identity.inertia);
         }
+        for (weights, scheme) in self.weights.iter_mut().zip(schemes) {
+            *weights = scheme.get().link_weights();
+        }
         for (map, scheme) in self.maps.iter_mut().zip(schemes) {
             let own = scheme.get().step_map_before(dt, next);
             // systems of several zones have rates that depend on x
@@ -65,6 +74,7 @@ impl Maps {
     pub fn rest(&mut self) {
         self.maps.fill(StepMap::equilibrium());
         self.factors.fill(0.0);
+        self.weights.fill([0.0, 1.0]);
     }
 
     /// The map of the first zone; of all where no zones differ.
@@ -95,19 +105,27 @@ impl Maps {
         self.maps[0].contact
     }
 
-    /// The velocity that links join, that of the end; in a static step the way.
+    /// The velocity that links join: that of the end, or where the unknown is not in it the rate that contact laws constrain; in a
+    /// static step the way. Accelerations that forces give by themselves satisfy the links and are left out.
     pub fn link_row(&self, map: &StepMap) -> Row {
-        match self.is_static() {
-            true => map.displacement.since(&Row::START),
-            false => map.velocity,
-        }
+        let row = match (self.is_static(), map.velocity.x == 0.0) {
+            (true, _) => map.displacement.since(&Row::START),
+            (false, true) => map.rate,
+            (false, false) => map.velocity,
+        };
+        Row { c: 0.0, ..row }
     }
 
     /// Weights of the multipliers of links at the start and the end of the step in the balance of a zone.
-    pub fn link_weights(&self, scheme: &Scheme) -> [f64; 2] {
-        match self.is_static() {
-            true => [0.0, 1.0],
-            false => scheme.get().link_weights().unwrap_or([0.0, 1.0]),
+    pub fn link_weights(&self, zone: usize) -> [f64; 2] {
+        self.weights[zone]
+    }
+
+    /// The factor of x in the rows of links, which are part of the matrices of the step; zero without links.
+    pub fn link_factor(&self, map: &StepMap) -> f64 {
+        match self.linked {
+            true => self.link_row(map).x,
+            false => 0.0,
         }
     }
 

@@ -396,6 +396,9 @@ fn reason_of_zones(error: &carom_zones::Error) -> Option<String> {
         E::Zone { cause, .. } => reason_of_run(cause),
         E::Dynamics(error) => reason_of_run(error),
         E::System(error) => reason_of(error),
+        E::LinkScheme { cause, .. } => {
+            Some(format!("links between zones of unequal steps: {cause}"))
+        }
         E::AcrossZones { cause, .. } => Some(format!("between zones of unequal steps: {cause}")),
         _ => None,
     }
@@ -428,9 +431,6 @@ fn reason_of(error: &carom_system::Error) -> Option<String> {
             "the scheme conserves energy by a stress between the two ends of a step, which a material that dissipates does not have"
         }
         E::MasslessContact { cause, .. } => return Some(format!("massless nodes: {cause}")),
-        E::LinkScheme { .. } => {
-            "links between zones accept theta, newmark, central-difference and energy-momentum"
-        }
         _ => return None,
     };
     Some(words.to_string())

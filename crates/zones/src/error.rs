@@ -53,6 +53,18 @@ pub enum Error {
         /// What would do.
         accepted: &'static str,
     },
+    /// A scheme of a zone that no link to zones of other steps takes.
+    #[error(
+        "zone '{zone}': links between zones that step apart do not take the scheme {scheme}: {cause}"
+    )]
+    LinkScheme {
+        /// Name of the zone.
+        zone: String,
+        /// Name of the scheme.
+        scheme: &'static str,
+        /// Why.
+        cause: &'static str,
+    },
     /// Multipliers of links that were not found.
     #[error(
         "step {step}: the velocities of the zones still differ by {defect:e} m/s at a link after {passes} passes"

@@ -54,14 +54,31 @@ impl Zoned {
             }
             .into());
         }
+        self.check_schemes()?;
         self.check_steps()
     }
 
-    /// Refuses schemes that no link takes, and numbers of inner steps that do not go together.
-    pub(crate) fn check_steps(&self) -> Result<(), Error> {
-        let linked = |zone: &usize| self.links.iter().any(|link| link.zones.contains(zone));
-        let mut many = None;
+    /// Refuses schemes whose velocities the multipliers of links between zones that step apart cannot hold.
+    fn check_schemes(&self) -> Result<(), Error> {
+        let linked = |zone: usize| self.links.iter().any(|link| link.zones.contains(&zone));
         for (k, zone) in self.zones.iter().enumerate() {
+            let scheme = zone.scheme.get();
+            let answers = scheme.step_map(self.model.dt).velocity.x != 0.0;
+            if linked(k) && !answers {
+                return Err(Error::LinkScheme {
+                    zone: zone.name.clone(),
+                    scheme: scheme.name(),
+                    cause: "the velocity at the end of its step does not answer to the forces of the step; take equal steps",
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses numbers of inner steps that do not go together.
+    pub(crate) fn check_steps(&self) -> Result<(), Error> {
+        let mut many = None;
+        for zone in &self.zones {
             let refuse = |accepted| {
                 Err(Error::Substeps {
                     zone: zone.name.clone(),
@@ -74,13 +91,6 @@ impl Zoned {
             }
             if zone.substeps > 1 && *many.get_or_insert(zone.substeps) != zone.substeps {
                 return refuse("one, or as many as the other zones with more than one");
-            }
-            if linked(&k) && zone.scheme.get().link_weights().is_none() {
-                return Err(system::Error::LinkScheme {
-                    zone: zone.name.clone(),
-                    scheme: zone.scheme.get().name(),
-                }
-                .into());
             }
         }
         Ok(())

@@ -42,6 +42,13 @@ impl Builder<'_> {
                 ])
             }
             Error::Zone { zone, cause } => self.refused_zone(zone, cause),
+            Error::LinkScheme { zone, scheme, .. } => {
+                let given = self.plan.zones.iter().find(|own| own.name == *zone);
+                let path = given.map_or("time.scheme", |own| &own.scheme_path);
+                Problem::new(path, error.to_string())
+                    .found(*scheme)
+                    .accepted(["equal steps", "another scheme"])
+            }
             other => Problem::new("time", other.to_string()),
         }
     }

@@ -158,7 +158,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Refuses joints of unknown bodies, of one zone, and of zones whose scheme no link takes.
+    /// Refuses joints of unknown bodies, and of one zone.
     fn joints(&mut self, plan: &Plan) {
         let case = self.case;
         let overlaps = case.arlequin.iter();
@@ -174,7 +174,6 @@ impl Builder<'_> {
                 self.problems.push(problem.accepted(["another name"]));
             }
         }
-        let mut linked = vec![false; plan.zones.len()];
         for (path, bodies) in overlaps.chain(borders) {
             let sides = ["inner", "outer"].iter().zip(bodies);
             let found: Vec<Option<usize>> = sides
@@ -200,28 +199,6 @@ impl Builder<'_> {
                 let problem = Problem::new(format!("{path}.outer"), message).found(bodies[1]);
                 self.problems
                     .push(problem.accepted(["a body of another zone"]));
-            }
-            (linked[one], linked[other]) = (true, true);
-        }
-        let zones = plan
-            .zones
-            .iter()
-            .zip(&linked)
-            .filter(|(_, linked)| **linked);
-        for (zone, _) in zones {
-            let own = zone.scheme;
-            if own.get().link_weights().is_none() {
-                let message = format!(
-                    "the zone `{}` is joined, and no link takes its scheme",
-                    zone.name
-                );
-                let problem = Problem::new(&zone.scheme_path, message).found(own.get().name());
-                self.problems.push(problem.accepted([
-                    "theta",
-                    "newmark",
-                    "central-difference",
-                    "energy-momentum",
-                ]));
             }
         }
     }

@@ -15,8 +15,8 @@ pub struct Zone {
     /// Names of its bodies.
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub bodies: Vec<String>,
-    /// Time scheme of the zone. Default: `time.scheme`. Zones that are joined use theta, newmark, central-difference or
-    /// energy-momentum.
+    /// Time scheme of the zone. Default: `time.scheme`. Zones that are joined and have unequal steps use any but
+    /// tchamwa-wielgosz.
     pub scheme: Option<Scheme>,
     /// Number of inner steps of this zone per outer step, which is `time.step`; or, in the outer zone, the numbers of
     /// other zones by name: `{ impact = 4 }`, or `{ impact = { near = 400, far = 1 } }` for fewer inner steps while

@@ -185,15 +185,20 @@ impl Driver {
 
     /// Weights of the forces at the start and of the step in their works, by zone.
     fn weights(&self) -> Vec<[f64; 2]> {
-        let (plain, at_rest) = (self.is_plain(), self.maps.is_static());
-        let of_zone = |map: &StepMap| match (plain, at_rest) {
+        let zones = 0..self.maps.all().len();
+        zones.map(|zone| self.weights_of(zone)).collect()
+    }
+
+    /// The same of one zone.
+    pub(super) fn weights_of(&self, zone: usize) -> [f64; 2] {
+        let impulse = &self.maps.all()[zone].impulse;
+        match (self.is_plain(), self.maps.is_static()) {
             _ if self.state.forces.is_empty() => [0.0, 1.0],
-            (true, _) => [map.impulse.old, map.impulse.new],
+            (true, _) => [impulse.old, impulse.new],
             // along a static step forces go from one equilibrium to the next
             (false, true) => [0.5, 0.5],
             (false, false) => [0.0, 1.0],
-        };
-        self.maps.all().iter().map(of_zone).collect()
+        }
     }
 
     /// Whether the forces of a dynamic step change the momentum as they are.

@@ -179,6 +179,7 @@ impl Driver {
             let pushed = &mut self.multipliers.change[1];
             linking.answer(&system, operators, forces, (&mut self.vectors.half, pushed));
         }
+        self.part_links();
         self.warn_of_circles();
         self.take_weak();
         Ok(())

@@ -296,6 +296,10 @@ impl Driver {
         }
         self.spread_friction();
         let (system, vectors) = (&*self.system, &mut self.vectors);
+        let pushes = !vectors.push.is_empty();
+        if let Some(stage) = self.impulses.as_mut().filter(|_| pushes) {
+            stage.hold(system, &mut vectors.contact);
+        }
         for (i, push) in vectors.push.iter_mut().enumerate() {
             *push = match system.fixed[i] {
                 true => 0.0,

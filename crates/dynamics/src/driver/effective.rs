@@ -26,12 +26,15 @@ use crate::system::{Maps, System, push_cliques};
 /// Sizes of the step and stages whose factors are kept beside those of the present one.
 const KEPT: usize = 3;
 
-/// What the matrices of linear parts depend on, of each zone: factors of mass, stiffness and damping.
-type Key = Vec<[f64; 3]>;
+/// What the matrices of linear parts depend on, of each zone: factors of mass, stiffness and damping, and of x in the rows of links.
+type Key = Vec<[f64; 4]>;
 
 /// The key of a step.
-fn key(maps: &Maps) -> impl Iterator<Item = [f64; 3]> {
-    let of_zone = |map: &StepMap| [map.inertia.x, map.force.x, damping_rate(map).x];
+fn key(maps: &Maps) -> impl Iterator<Item = [f64; 4]> {
+    let of_zone = |map: &StepMap| {
+        let links = maps.link_factor(map);
+        [map.inertia.x, map.force.x, damping_rate(map).x, links]
+    };
     maps.all().iter().map(of_zone)
 }
 

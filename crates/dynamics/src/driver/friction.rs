@@ -119,6 +119,7 @@ impl Driver {
             let pushed = &mut self.multipliers.change[1];
             linking.answer(&system, operators, forces, (&mut self.vectors.half, pushed));
         }
+        self.part_links();
         Ok(())
     }
 

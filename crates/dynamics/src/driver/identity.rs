@@ -124,7 +124,7 @@ impl Driver {
         let filtered = self.filtered(&identity);
         let [supports, held] = self.reactions();
         let stage = self.predictor_loss();
-        let weights = self.work_weights();
+        let (weights, of_links) = (self.work_weights(), self.link_work_weights(0));
         let (old, new) = (&self.state.motion, &self.next.motion);
         let contact = Resultant::of(&system, &new.contact_force);
         let loads = Resultant::of(&system, &system.load);
@@ -150,7 +150,7 @@ impl Driver {
         let work_links = match new.link_force.is_empty() {
             true => 0.0,
             false => {
-                let weights = &self.maps.first().impulse;
+                let weights = &of_links;
                 weights.old * dot(travel, &old.link_force)
                     + weights.new * dot(travel, &new.link_force)
             }

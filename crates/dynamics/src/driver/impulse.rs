@@ -1,9 +1,10 @@
 //! The mass alone: the stages of a step that change velocities, accelerations or a predictor by impulses of the contact
-//! points.
+//! points. Links hold in what these change too: M⁻¹ (Nᵀ I + Cᵀ J), C M⁻¹ (Nᵀ I + Cᵀ J) = 0.
 
 use carom_contact::law::{Displacement, Local, Status};
 use carom_contact::{Law, Rows};
 
+use super::linking::{Linking, add_all_forces};
 use super::weak::{WeakForms, WithWeak};
 use crate::compliance::Compliance;
 use crate::error::Error;
@@ -18,8 +19,9 @@ const MOST_SWEEPS: usize = 1000;
 /// already. Then q + D ΔI is the quantity closest to the one without any I, in the norm of the mass, among those that are
 /// not negative.
 pub(super) struct Impulses {
-    operators: Operators,
-    compliance: Compliance,
+    mass: OfMass,
+    /// J of the links in the last solve.
+    pub(super) links: Vec<f64>,
     with_weak: WithWeak,
     interface: Interface,
     candidates: Vec<Candidate>,
@@ -33,14 +35,42 @@ pub(super) struct Impulses {
     pub(super) change: Vec<f64>,
 }
 
+/// The mass, the compliance of the points in it, and what the rows of links change; none without links.
+struct OfMass {
+    operators: Operators,
+    compliance: Compliance,
+    linking: Option<Linking>,
+}
+
+impl OfMass {
+    /// D over some points (ascending) and its version.
+    fn matrix(&mut self, system: &System, rows: &Rows, points: &[u32]) -> (&[f64], u64) {
+        let (operators, compliance) = (&mut self.operators, &mut self.compliance);
+        compliance.update(points, rows, &system.fixed, operators);
+        match &mut self.linking {
+            Some(linking) => linking.compliance(system, (operators, compliance), rows),
+            None => (&compliance.matrix, compliance.version),
+        }
+    }
+}
+
 impl Impulses {
     pub(super) fn new(system: &System) -> Result<Impulses, Error> {
+        let mut operators = Operators::new(system, 1.0, 0.0, "mass matrix")?;
+        let linking = match system.link_rows.is_empty() {
+            true => None,
+            false => Some(Linking::of_mass(system, &mut operators)?),
+        };
         Ok(Impulses {
-            operators: Operators::new(system, 1.0, 0.0, "mass matrix")?,
-            compliance: Compliance::new(
-                system.points() * (1 + system.tangents()),
-                system.rigid_points(),
-            ),
+            mass: OfMass {
+                operators,
+                linking,
+                compliance: Compliance::new(
+                    system.points() * (1 + system.tangents()),
+                    system.rigid_points(),
+                ),
+            },
+            links: vec![0.0; system.link_rows.len()],
             with_weak: WithWeak::default(),
             interface: Interface::default(),
             candidates: Vec::new(),
@@ -61,10 +91,9 @@ impl Impulses {
         own: (f64, &[f64]),
         factor: f64,
     ) -> Option<&[f64]> {
-        self.compliance
-            .update(points, rows, &system.fixed, &mut self.operators);
+        let (d, _) = self.mass.matrix(system, rows, points);
         self.summed.clear();
-        let pairs = self.compliance.matrix.iter().zip(own.1);
+        let pairs = d.iter().zip(own.1);
         self.summed
             .extend(pairs.map(|(d, other)| factor * d + own.0 * other));
         (!points.is_empty()).then_some(&self.summed[..])
@@ -84,9 +113,7 @@ impl Impulses {
         works: &[f64],
     ) {
         let n = points.len();
-        self.compliance
-            .update(points, rows, &system.fixed, &mut self.operators);
-        let d = &self.compliance.matrix;
+        let (d, _) = self.mass.matrix(system, rows, points);
         self.added.clear();
         self.added.resize(n, 0.0);
         for _ in 0..MOST_SWEEPS {
@@ -107,7 +134,7 @@ impl Impulses {
                 break;
             }
         }
-        self.spread(points);
+        self.spread(system, points);
     }
 
     /// Solves for the points (ascending). `weak`: weak forms, and impulse over force. `values`: q of each; infinite where
@@ -122,13 +149,8 @@ impl Impulses {
         present: &[f64],
     ) -> Result<(), Failure> {
         let n = points.len();
-        self.compliance
-            .update(points, rows, &system.fixed, &mut self.operators);
-        let of = (
-            &self.compliance.matrix[..],
-            &self.compliance.candidates[..],
-            self.compliance.version,
-        );
+        let (matrix, version) = self.mass.matrix(system, rows, points);
+        let of = (matrix, points, version);
         let compliance = self.with_weak.of(weak.0, system, (of, rows), [weak.1; 2]);
         let d = compliance.0;
         self.candidates.clear();
@@ -161,17 +183,36 @@ impl Impulses {
             self.added.push(self.interface.forces[k] - present);
             self.active.push(self.interface.statuses[k] != Status::Open);
         }
-        self.spread(points);
+        self.spread(system, points);
         Ok(())
     }
 
-    /// The change that the added impulses make.
-    fn spread(&mut self, points: &[u32]) {
-        self.half.fill(0.0);
-        for (&point, &added) in points.iter().zip(&self.added) {
-            self.compliance
-                .add(point, added, &self.operators, &mut self.half);
+    /// Adds to nodal forces (N) those of links that keep the rows in the acceleration which they give by themselves.
+    pub(super) fn hold(&mut self, system: &System, forces: &mut [f64]) {
+        if let Some(linking) = &mut self.mass.linking {
+            let multipliers = (&*forces, &mut self.links[..]);
+            linking.balance(system, &mut self.mass.operators, multipliers);
+            add_all_forces(system, &self.links, forces);
         }
-        self.operators.end(&mut self.half, &mut self.change);
+    }
+
+    /// The change that the added impulses make.
+    fn spread(&mut self, system: &System, points: &[u32]) {
+        self.half.fill(0.0);
+        let OfMass {
+            operators,
+            compliance,
+            linking,
+        } = &mut self.mass;
+        let added = points.iter().copied().zip(self.added.iter().copied());
+        for (point, added) in added.clone() {
+            compliance.add(point, added, operators, &mut self.half);
+        }
+        if let Some(linking) = linking {
+            self.links.fill(0.0);
+            let begun = (&mut self.half[..], &mut self.links[..]);
+            linking.answer(system, operators, added, begun);
+        }
+        operators.end(&mut self.half, &mut self.change);
     }
 }

@@ -118,19 +118,17 @@ impl Driver {
 
     /// Weights of L at the start and the end of a step in Λ.
     pub fn link_weights(&self) -> [f64; 2] {
-        self.system
-            .scheme
-            .get()
-            .link_weights()
-            .unwrap_or([0.0, 1.0])
+        self.system.scheme.get().link_weights()
     }
 
     /// Work of the force of one row in the step just completed, J: `before` and `now` are the row's Λ of the step before and
     /// of this one.
     pub fn row_work(&self, terms: &LinkRow, before: f64, now: f64) -> f64 {
-        let impulse = &self.maps.first().impulse;
-        let travel = on(terms, &self.next.motion.u) - on(terms, &self.state.motion.u);
-        (impulse.old * before + impulse.new * now) * travel
+        let weights = &self.link_work_weights(0);
+        let [old, new] = [&self.state.motion, &self.next.motion];
+        let travel = on(terms, &new.u) - on(terms, &old.u);
+        let later = weights.lag * (on(terms, &new.v) - on(terms, &old.v));
+        (weights.old * before + weights.new * now) * (travel - later)
     }
 
     /// Factors of M and K in the effective matrix, and of its solution in the velocity at the end of a step.

@@ -52,7 +52,7 @@ struct Point {
 fn factors(system: &System, maps: &Maps) -> Vec<[f64; 2]> {
     let of_part = |part: &std::ops::Range<usize>| {
         let zone = system.zone_at(part.start);
-        let [_, weight] = maps.link_weights(&system.schemes[zone]);
+        let [_, weight] = maps.link_weights(zone);
         [weight, maps.link_row(&maps.all()[zone]).x]
     };
     system.parts.iter().map(of_part).collect()
@@ -137,6 +137,15 @@ pub(super) fn of_mass(system: &System, operators: &mut Operators) -> Result<Cond
     })
 }
 
+/// Adds Cᵀ L to a system vector, held unknowns included.
+pub(super) fn add_all_forces(system: &System, l: &[f64], force: &mut [f64]) {
+    for (row, l) in system.link_rows.iter().zip(l).filter(|(_, l)| **l != 0.0) {
+        for &(dof, c) in row {
+            force[dof as usize] += c * l;
+        }
+    }
+}
+
 /// Adds w Cᵀ L to a system vector; nothing on held unknowns.
 pub(super) fn add_forces(system: &System, factors: &[[f64; 2]], l: &[f64], force: &mut [f64]) {
     for (row, l) in system.link_rows.iter().zip(l).filter(|(_, l)| **l != 0.0) {
@@ -156,6 +165,32 @@ fn velocity(system: &System, factors: &[[f64; 2]], row: &LinkRow, x: &[f64]) -> 
 }
 
 impl Linking {
+    /// With the mass alone, whose factors are in `operators`: impulses, and multipliers that keep C M⁻¹ (Nᵀ P + Cᵀ J) = 0.
+    ///
+    /// # Errors
+    /// Rows that say the same twice.
+    pub(super) fn of_mass(system: &System, operators: &mut Operators) -> Result<Linking, Error> {
+        let factors = vec![[1.0; 2]; system.parts.len()];
+        Ok(Linking::with(of_mass(system, operators)?, factors, system))
+    }
+
+    fn with(condensed: Condensed, factors: Vec<[f64; 2]>, system: &System) -> Linking {
+        let n = system.unknowns();
+        let points = system.points() * (1 + system.tangents());
+        Linking {
+            condensed,
+            factors,
+            points: (0..points).map(|_| None).collect(),
+            matrix: Vec::new(),
+            of: None,
+            versions: 0,
+            half: vec![0.0; n],
+            x: vec![0.0; n],
+            force: vec![0.0; n],
+            moved: Vec::new(),
+        }
+    }
+
     /// # Errors
     /// Rows that say the same twice.
     pub(super) fn new(
@@ -175,20 +210,8 @@ impl Linking {
                 }
             }
         };
-        let n = system.unknowns();
-        let points = system.points() * (1 + system.tangents());
-        Ok(Linking {
-            condensed: condensed(system, &factors, operators, matrix)?,
-            factors,
-            points: (0..points).map(|_| None).collect(),
-            matrix: Vec::new(),
-            of: None,
-            versions: 0,
-            half: vec![0.0; n],
-            x: vec![0.0; n],
-            force: vec![0.0; n],
-            moved: Vec::new(),
-        })
+        let condensed = condensed(system, &factors, operators, matrix)?;
+        Ok(Linking::with(condensed, factors, system))
     }
 
     /// Moves the multipliers by `change` (added to it) so that rows hold which the forces `work`, begun in `half`, miss by themselves.
@@ -287,6 +310,21 @@ impl Linking {
             held,
         });
         true
+    }
+
+    /// The multipliers that keep the rows where nodal forces act, N: into `l`.
+    pub(super) fn balance(
+        &mut self,
+        system: &System,
+        operators: &mut Operators,
+        (force, l): (&[f64], &mut [f64]),
+    ) {
+        operators.begin(force, &mut self.half);
+        operators.end(&mut self.half, &mut self.x);
+        for (l, row) in l.iter_mut().zip(&system.link_rows) {
+            *l = -velocity(system, &self.factors, row, &self.x);
+        }
+        self.condensed.solve(l);
     }
 
     /// Moves the multipliers by what the forces of points (N, times c) ask for, `change` (added to it), and adds the forces of that to the begun

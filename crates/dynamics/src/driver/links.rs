@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::Driver;
+use super::identity::WorkWeights;
 use super::linking::{Multipliers, add_forces, of_mass};
 use crate::error::Error;
 use crate::operator::Operators;
-use crate::step_map::StepMap;
 use crate::system::{LinkRow, on};
 
 impl Driver {
@@ -55,8 +55,7 @@ impl Driver {
         let (before, now) = (&self.state.links.multipliers, &self.multipliers.now);
         for (i, row) in system.link_rows.iter().enumerate() {
             for &(dof, c) in row {
-                let scheme = &system.schemes[system.zone_at(dof as usize)];
-                let [old, new] = self.maps.link_weights(scheme);
+                let [old, new] = self.maps.link_weights(system.zone_at(dof as usize));
                 self.link_force[dof as usize] += c * (old * before[i] + new * now[i]);
             }
         }
@@ -90,6 +89,23 @@ impl Driver {
         if let Some((operators, _, Some(linking))) = self.effective.all() {
             let forces = (&mut vectors.work[..], &mut vectors.half[..]);
             linking.hold(&system, operators, forces, (defect, free));
+        }
+    }
+
+    /// What contact forces give by themselves keeps the rows of links by multipliers of its own, which are among the contact forces:
+    /// takes them from the change of the others.
+    pub(super) fn part_links(&mut self) {
+        if self.vectors.push.is_empty() || !self.has_links() {
+            return;
+        }
+        self.spread();
+        // schemes in which forces give accelerations by themselves stand alone
+        let part = self.maps.contact() / self.maps.link_weights(0)[1];
+        if let Some(stage) = &self.impulses {
+            let changes = self.multipliers.change[1].iter_mut();
+            changes
+                .zip(&stage.links)
+                .for_each(|(change, l)| *change -= part * l);
         }
     }
 
@@ -167,22 +183,24 @@ impl Driver {
         next.clone_from(old);
         next.multipliers.clone_from(&self.multipliers.now);
         let [before, after] = [&self.state.motion.u, &self.next.motion.u];
-        for (zone, scheme) in system.schemes.iter().enumerate() {
-            let map: &StepMap = &self.maps.all()[zone];
-            let weights = self.maps.link_weights(scheme);
+        let rates = [&self.state.motion.v, &self.next.motion.v];
+        for zone in 0..system.schemes.len() {
+            let (weights, of_work) = (self.maps.link_weights(zone), self.link_work_weights(zone));
+            let next = &mut self.next.links;
             let own = |i: usize| system.zone_at(i) == zone;
             for (link, (_, rows)) in system.links.iter().enumerate() {
                 for row in rows.clone() {
                     let [l, mixed] = [old.multipliers[row], old.mixed[zone][row]];
                     let now = weights[0] * l + weights[1] * next.multipliers[row];
-                    let mean = map.impulse.old * mixed + map.impulse.new * now;
+                    let mean = of_work.old * mixed + of_work.new * now;
                     let terms = &system.link_rows[row];
                     let (inner, outer) = terms.split_at(system.inner_terms[row]);
                     for (work, terms) in next.works[link].iter_mut().zip([inner, outer]) {
                         let terms = terms.iter().filter(|(dof, _)| own(*dof as usize));
                         let way = |&(dof, c): &(u32, f64)| {
                             let i = dof as usize;
-                            c * (after[i] - before[i])
+                            let later = of_work.lag * (rates[1][i] - rates[0][i]);
+                            c * (after[i] - before[i] - later)
                         };
                         *work += mean * terms.map(way).sum::<f64>();
                     }
@@ -190,6 +208,23 @@ impl Driver {
                 }
             }
         }
+        // a projection after the step changes the forces that the next one begins with
+        let next = &mut self.next.links;
+        for (row, more) in self.projected.links.iter().enumerate() {
+            next.multipliers[row] += more;
+            next.mixed.iter_mut().for_each(|mixed| mixed[row] += more);
+        }
+    }
+
+    /// Weights of the forces of links at the start and of the step in their work in a zone: those of the ledger.
+    pub(super) fn link_work_weights(&self, zone: usize) -> WorkWeights {
+        if !self.system.is_nonlinear() {
+            let [old, new] = self.system.scheme.get().link_work(self.dt);
+            let lag = self.work_weights().lag;
+            return WorkWeights { old, new, lag };
+        }
+        let [old, new] = self.weights_of(zone);
+        WorkWeights { old, new, lag: 0.0 }
     }
 
     /// Multipliers of the rows of the links at the present instant, N per unit of the row.

@@ -15,6 +15,7 @@ use carom_algebra::reduce::dot;
 use carom_contact::law::Status;
 
 use super::identity::energies;
+use super::linking::add_all_forces;
 use super::scratch::Projected;
 use super::{Driver, Vectors};
 use crate::error::Error;
@@ -89,7 +90,10 @@ impl Driver {
             let own =
                 |i: usize| work[i] + held(i) + load[i] + new.link_of(i) - damping[i] - spring(i);
             self.next.exchange.renew(&system, own);
-            if let [_, contact, reaction, of_inertia, ..] = &mut self.next.forces[..] {
+            if let [_, contact, reaction, of_inertia, _, _, link, ..] = &mut self.next.forces[..] {
+                if !new.link_force.is_empty() {
+                    link.copy_from_slice(&new.link_force);
+                }
                 for (f, p) in contact.iter_mut().zip(&new.contact_force) {
                     *f = factor * p;
                 }
@@ -111,6 +115,10 @@ impl Driver {
             Resultant::of(&system, &new.contact_force),
             Resultant::of(&system, work),
         ];
+        let half = &mut self.vectors.half;
+        half.fill(0.0);
+        add_all_forces(&system, &self.projected.links, half);
+        jump.links = Resultant::of(&system, half);
         self.next.ledger.jump(&identity, &energies, &jump);
     }
 
@@ -129,8 +137,8 @@ impl Driver {
         closing
     }
 
-    /// Projects the velocity; impulses on the momentum from contacts and supports.
-    fn project_velocity(&mut self) -> Result<[Resultant; 2], Error> {
+    /// Projects the velocity; impulses on the momentum from contacts, supports and links.
+    fn project_velocity(&mut self) -> Result<[Resultant; 3], Error> {
         let weights = self.maps.first().contact_impulse;
         let [old, new] = [&self.state, &self.next].map(|state| &state.interface);
         let rows = &self.pairing.rows;
@@ -149,18 +157,21 @@ impl Driver {
     }
 
     /// Adds what the impulses of the stage change in the velocity, from the rates in `values`; impulses on the momentum from
-    /// contacts and supports.
-    pub(super) fn jump_velocity(&mut self) -> [Resultant; 2] {
+    /// contacts, supports and links.
+    pub(super) fn jump_velocity(&mut self) -> [Resultant; 3] {
         let system = Arc::clone(&self.system);
         let Some(stage) = &self.impulses else {
-            return [Resultant::default(); 2];
+            return [Resultant::default(); 3];
         };
         let (motion, interface) = (&mut self.next.motion, &mut self.next.interface);
         for (v, change) in motion.v.iter_mut().zip(&stage.change) {
             *v += change;
         }
         let Vectors {
-            place: known, work, ..
+            place: known,
+            work,
+            half,
+            ..
         } = &mut self.vectors;
         known.fill(0.0);
         let (projected, rows) = (&mut self.projected, &self.pairing.rows);
@@ -176,16 +187,21 @@ impl Driver {
             interface.rate[point] = rows.product(point, &motion.v) + rows.rate(point);
         }
         let contact = Resultant::of(&system, known);
+        half.fill(0.0);
+        add_all_forces(&system, &stage.links, half);
         system.mass.multiply(&stage.change, work);
         for i in 0..work.len() {
-            work[i] = if system.fixed[i] {
-                work[i] - known[i]
-            } else {
-                0.0
+            work[i] = match system.fixed[i] {
+                true => work[i] - known[i] - half[i],
+                false => 0.0,
             };
         }
+        let [supports, links] = [&*work, &*half].map(|p| Resultant::of(&system, p));
+        for (own, link) in work.iter_mut().zip(half) {
+            *own += *link;
+        }
         self.next.exchange.jump(&system, work);
-        [contact, Resultant::of(&system, work)]
+        [contact, supports, links]
     }
 
     /// Projects the acceleration and the force that the next step begins with; change of |a|²_M.
@@ -224,6 +240,10 @@ impl Driver {
         }
         for (f, change) in motion.contact_force.iter_mut().zip(known.iter()) {
             *f += change;
+        }
+        if !stage.links.is_empty() {
+            self.projected.links.extend_from_slice(&stage.links);
+            add_all_forces(&self.system, &stage.links, &mut motion.link_force);
         }
         // a vanishes at the supports, so that |a'|²_M - |a|²_M = Nᵀ Q · (a + a')
         Ok(before + dot(known, &motion.a))

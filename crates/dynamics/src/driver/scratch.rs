@@ -82,6 +82,8 @@ pub(super) struct Projected {
     /// Quantity of each of the points that the impulses change.
     pub(super) values: Vec<f64>,
     pub(super) present: Vec<f64>,
+    /// What the projection of the acceleration adds to the multipliers of links, N per unit of the rows; empty without.
+    pub(super) links: Vec<f64>,
 }
 
 impl Projected {
@@ -96,6 +98,7 @@ impl Projected {
     /// Forgets the step before.
     pub(super) fn clear(&mut self) {
         self.points.clear();
+        self.links.clear();
         self.impulse.fill(0.0);
         self.work.fill(0.0);
     }

@@ -49,8 +49,10 @@ impl Driver {
         let stages = scheme.projects_predictor()
             || scheme.restores_contact_work()
             || sums_compliances(&system, maps.first());
+        let pushes = maps.first().uses_contact_acceleration();
+        let stages = stages || pushes && !system.link_rows.is_empty();
         let staged = stages && points > 0 || system.contacts.iter().any(projects);
-        let push = match maps.first().uses_contact_acceleration() {
+        let push = match pushes {
             true => zeros(),
             false => Vec::new(),
         };

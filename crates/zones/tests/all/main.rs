@@ -6,6 +6,8 @@
 mod allocation;
 mod dense;
 mod monolithic;
+mod schemes;
+mod schemes_apart;
 mod whole;
 mod zones_nonlinear;
 

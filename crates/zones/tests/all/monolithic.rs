@@ -18,7 +18,7 @@ use carom_zones::{LinkKind, ModelZone, Zoned, Zones, ZonesState};
 use crate::dense::{Dense, Matrix, Random, dot, error};
 
 /// A bar of equal elements with weights at the ends of each.
-struct Bar {
+pub struct Bar {
     from: f64,
     size: f64,
     material: Elastic,
@@ -54,12 +54,12 @@ impl Bar {
         self.weights.inertia.len() / 2
     }
 
-    fn nodes(&self) -> usize {
+    pub fn nodes(&self) -> usize {
         self.elements() + 1
     }
 
     /// E A δ / h (1, -1; -1, 1), δ the mean of both ends.
-    fn stiffness(&self) -> Matrix {
+    pub fn stiffness(&self) -> Matrix {
         let mut k = vec![vec![0.0; self.nodes()]; self.nodes()];
         for (e, w) in self.weights.stiffness.chunks(2).enumerate() {
             let rate = self.material.young * AREA / self.size * 0.5 * (w[0] + w[1]);
@@ -71,7 +71,7 @@ impl Bar {
     }
 
     /// ∫ α ρ A N_a dx with α linear in each element.
-    fn mass(&self) -> Vec<f64> {
+    pub fn mass(&self) -> Vec<f64> {
         let mut m = vec![0.0; self.nodes()];
         for (e, w) in self.weights.inertia.chunks(2).enumerate() {
             let sixth = self.material.density * AREA * self.size / 6.0;
@@ -83,15 +83,18 @@ impl Bar {
 }
 
 /// What is solved both ways.
-struct Problem {
-    bars: [Bar; 2],
+pub struct Problem {
+    pub bars: [Bar; 2],
     /// Rows C_c and C_s.
-    rows: [Matrix; 2],
+    pub rows: [Matrix; 2],
     theta: f64,
     /// Newmark's β outside; zero for central differences.
     beta: f64,
+    /// Schemes of both zones, and the law of the wall.
+    pub schemes: [Scheme; 2],
+    pub law: Law,
     /// Outer step.
-    dt: f64,
+    pub dt: f64,
     substeps: usize,
     kind: LinkKind,
     contact: bool,
@@ -99,7 +102,7 @@ struct Problem {
 
 impl Problem {
     /// `free`: nodes of the inner bar from that in contact on which no row acts.
-    fn random(
+    pub fn random(
         (seed, free): (u64, usize),
         kind: LinkKind,
         substeps: usize,
@@ -115,9 +118,20 @@ impl Problem {
         let inner = (0..2).map(|_| row(&bars[0], free)).collect();
         let outer = (0..2).map(|_| row(&bars[1], 0)).collect();
         let rows = [inner, outer];
+        let theta = 0.5 + 0.5 * random.next();
+        let beta = [0.0, 0.25][usize::from(random.next() > 0.5)];
+        let outside = match beta {
+            0.0 => Scheme::CentralDifference(CentralDifference {}),
+            _ => Scheme::Newmark(Newmark { beta, gamma: 0.5 }),
+        };
         Problem {
-            theta: 0.5 + 0.5 * random.next(),
-            beta: [0.0, 0.25][usize::from(random.next() > 0.5)],
+            theta,
+            beta,
+            schemes: [Scheme::Theta(Theta { theta }), outside],
+            law: Law::Velocity(Velocity {
+                capture: Capture::Now,
+                reading: Reading::Closed,
+            }),
             dt: 0.05 + 0.1 * random.next(),
             bars,
             rows,
@@ -131,7 +145,7 @@ impl Problem {
         Zones::new(&self.zoned()).unwrap()
     }
 
-    fn zoned(&self) -> Zoned {
+    pub fn zoned(&self) -> Zoned {
         let [inner, outer] = &self.bars;
         let line = |name: &str, bar: &Bar| {
             let to = bar.from + bar.size * bar.elements() as f64;
@@ -167,10 +181,7 @@ impl Problem {
                     point: [0.0; 3],
                     normal: [1.0, 0.0, 0.0],
                 }),
-                Law::Velocity(Velocity {
-                    capture: Capture::Now,
-                    reading: Reading::Closed,
-                }),
+                self.law,
             )
         };
         let terms = |c: &[f64], first: usize| {
@@ -187,15 +198,7 @@ impl Problem {
             inner: terms(c, 0),
             outer: terms(s, inner.nodes()),
         };
-        let theta = Scheme::Theta(Theta { theta: self.theta });
-        let newmark = Scheme::Newmark(Newmark {
-            beta: self.beta,
-            gamma: 0.5,
-        });
-        let outside = match self.beta {
-            0.0 => Scheme::CentralDifference(CentralDifference {}),
-            _ => newmark,
-        };
+        let [inside, outside] = self.schemes;
         let zone = |name: &str, body, scheme, substeps| ModelZone {
             name: name.into(),
             bodies: vec![body],
@@ -205,7 +208,7 @@ impl Problem {
         };
         Zoned {
             zones: vec![
-                zone("inner", 0, theta, self.substeps as u32),
+                zone("inner", 0, inside, self.substeps as u32),
                 zone("outer", 1, outside, 1),
             ],
             links: vec![ModelLink {
@@ -221,13 +224,13 @@ impl Problem {
             kind: self.kind,
             model: Model {
                 contacts: if self.contact { vec![wall] } else { Vec::new() },
-                ..Model::new(bodies, mesh.clone(), theta, self.dt)
+                ..Model::new(bodies, mesh.clone(), inside, self.dt)
             },
         }
     }
 
     /// The motions of a start, towards the wall.
-    fn motions(&self, seed: u64) -> [[Vec<f64>; 2]; 2] {
+    pub fn motions(&self, seed: u64) -> [[Vec<f64>; 2]; 2] {
         let mut random = Random(900 + seed);
         self.bars.each_ref().map(|bar| {
             let u = random.list(bar.nodes()).iter().map(|u| 0.02 * u).collect();
