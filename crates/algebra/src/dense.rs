@@ -35,6 +35,15 @@ impl DenseCholesky {
         Ok(factor)
     }
 
+    /// Factorises a matrix of any size in the memory at hand. Errors are those of [`DenseCholesky::new`]; after one the factor must not be used
+    /// before another matrix is factorised.
+    pub fn renew(&mut self, n: usize, matrix: &[f64]) -> Result<(), Error> {
+        self.n = n;
+        self.values.clear();
+        self.values.resize(n * n, 0.0);
+        self.refactor(matrix)
+    }
+
     /// Factorises another matrix of the same size. After an error the factor must not be used before another `refactor`
     /// succeeds.
     pub fn refactor(&mut self, matrix: &[f64]) -> Result<(), Error> {
@@ -54,6 +63,10 @@ impl DenseCholesky {
             });
         }
         self.values.copy_from_slice(matrix);
+        if n == 1 && matrix[0] > 0.0 {
+            self.values[0] = matrix[0].sqrt();
+            return Ok(());
+        }
         let requirement = factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default());
         let mut memory = MemBuffer::try_new(requirement).map_err(|_| Error::Analysis {
             unknowns: n,

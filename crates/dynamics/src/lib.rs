@@ -11,6 +11,7 @@ mod costs;
 mod driver;
 mod error;
 mod exchange;
+mod groups;
 mod impact;
 pub mod landing;
 mod ledger;

@@ -132,6 +132,8 @@ pub struct Interface {
     pub circled: Option<usize>,
     factor: Option<DenseCholesky>,
     factor_of: (u64, Vec<(u32, Status)>),
+    /// Room for its matrix.
+    matrix: Vec<f64>,
     /// Compliances of their own of the closed points, x per N: at hand, and those of the factor.
     own: [Vec<f64>; 2],
     /// Points that are not open.
@@ -275,11 +277,15 @@ impl Interface {
         if !stands || at_hand != of_factor {
             of_factor.clone_from(at_hand);
             let shared = |i: u32| candidates[i as usize].faces_itself;
-            self.factor = factor(&self.coupled, d, n, own, shared)?;
-            self.factor_of = (version, self.coupled.clone());
+            self.factor_of.1.clear();
+            let room = (&mut self.factor, &mut self.matrix);
+            factor(&self.coupled, (d, n), own, shared, room)?;
+            self.factor_of.0 = version;
+            self.factor_of.1.clone_from(&self.coupled);
         }
-        let Some(factor) = &self.factor else {
-            return Ok(());
+        let factor = match &self.factor {
+            Some(factor) if !self.coupled.is_empty() => factor,
+            _ => return Ok(()),
         };
         self.rhs.clear();
         self.rhs.extend(self.coupled.iter().map(|&(i, status)| {
@@ -369,21 +375,21 @@ impl Interface {
     }
 }
 
-/// Factor of D over some points of `n`, with their own compliance on the diagonal; `None` for no point. Points of
+/// Renews the factor of D over some points of `n`, with their own compliance on the diagonal; not for no point. Points of
 /// surfaces that face themselves may say the same: [`SHIFT`] then tells them apart, and they share their force. `shared`: whether a
 /// point is one.
 fn factor(
     points: &[(u32, Status)],
-    d: &[f64],
-    n: usize,
+    (d, n): (&[f64], usize),
     own: impl Fn(u32, Status) -> f64,
     shared: impl Fn(u32) -> bool,
-) -> Result<Option<DenseCholesky>, Failure> {
+    (held, matrix): (&mut Option<DenseCholesky>, &mut Vec<f64>),
+) -> Result<(), Failure> {
     if points.is_empty() {
-        return Ok(None);
+        return Ok(());
     }
-    let matrix = |shift: f64| {
-        let mut matrix = Vec::with_capacity(points.len().pow(2));
+    let mut renew = |shift: f64| {
+        matrix.clear();
         for &(i, status) in points {
             matrix.extend(points.iter().map(|&(j, _)| {
                 let entry = d[i as usize * n + j as usize];
@@ -394,14 +400,18 @@ fn factor(
                 }
             }));
         }
-        DenseCholesky::new(points.len(), &matrix)
+        match held {
+            Some(factor) => factor.renew(points.len(), matrix)?,
+            None => *held = Some(DenseCholesky::new(points.len(), matrix)?),
+        }
+        Ok(held.as_ref().map_or(0.0, DenseCholesky::least_pivot))
     };
-    let factor = match matrix(0.0) {
-        Ok(factor) if factor.least_pivot() > DEPENDENT => Ok(factor),
+    let renewed = match renew(0.0) {
+        Ok(pivot) if pivot > DEPENDENT => Ok(pivot),
         other if points.iter().all(|&(i, _)| !shared(i)) => other,
-        _ => matrix(SHIFT),
+        _ => renew(SHIFT),
     };
-    factor.map(Some).map_err(|cause| Failure::Singular {
+    renewed.map(|_| ()).map_err(|cause| Failure::Singular {
         points: points.len(),
         cause,
     })

@@ -185,7 +185,7 @@ impl Driver {
         Ok(())
     }
 
-    fn warn_of_circles(&self) {
+    pub(super) fn warn_of_circles(&self) {
         if let Some(candidate) = self.interface.circled {
             let name = self.name(self.candidates[candidate] as usize);
             tracing::warn!(
@@ -228,7 +228,12 @@ impl Driver {
     }
 
     /// Keeps the interface problem that was not solved, and names the failure.
-    fn keep_problem(&mut self, failure: Failure, compliance: Vec<f64>, factors: [f64; 2]) -> Error {
+    pub(super) fn keep_problem(
+        &mut self,
+        failure: Failure,
+        compliance: Vec<f64>,
+        factors: [f64; 2],
+    ) -> Error {
         let names = self.candidates.iter();
         let names = names.map(|&point| self.name(point as usize));
         self.failed = Some(InterfaceProblem {

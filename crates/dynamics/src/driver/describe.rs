@@ -29,7 +29,7 @@ impl Driver {
     }
 
     /// What the law of a candidate knows. `free`: N x of the motion of the iteration without contact forces.
-    fn candidate(&self, point: usize, free: f64) -> Candidate {
+    pub(super) fn candidate(&self, point: usize, free: f64) -> Candidate {
         let contact = self.system.point(point).0;
         let (gap, rate) = self.now(point, false);
         let [closing, approach] = self.added(point, free);

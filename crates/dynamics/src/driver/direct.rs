@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::Driver;
 use super::forces::{Bodies, add_up};
-use super::leapfrog::{Direct, is_leapfrog};
+use super::leapfrog::{Apart, Direct, is_leapfrog};
 use crate::error::Error;
 use crate::ledger::{Beyond, Energies, Squares, Tolerated};
 use crate::resultant::Resultant;
@@ -73,7 +73,8 @@ impl Driver {
         self.place_end();
         self.forces_of_end()?;
         let loads = self.loads_of_end(direct.loaded);
-        let touched = [carries(&self.state.interface), self.touch(loads)?];
+        let before_it = carries(&self.state.interface);
+        let touched = [before_it, self.touch(&mut direct.apart, loads)?];
         self.count_contact(begin, before);
         let begin = Instant::now();
         let sums = self.end_motion(direct, loads, touched.contains(&true));
@@ -138,7 +139,7 @@ impl Driver {
     }
 
     /// Forces of the contacts; whether there are any.
-    fn touch(&mut self, loads: Loads) -> Result<bool, Error> {
+    fn touch(&mut self, apart: &mut Apart, loads: Loads) -> Result<bool, Error> {
         self.next.interface.follow(&self.state.interface);
         self.guess_slips();
         self.take_weak();
@@ -156,21 +157,24 @@ impl Driver {
             return Ok(false);
         }
         let system = Arc::clone(&self.system);
-        let internal = &self.next.motion.internal_force;
-        let super::Vectors { residual, load, .. } = &mut self.vectors;
-        for (i, left) in residual.iter_mut().enumerate() {
-            let outside = match loads {
-                Loads::None => 0.0,
-                Loads::Dead([_, factor]) => factor * system.load[i],
-                Loads::Varying => load[i],
-            };
-            *left = if system.fixed[i] {
-                0.0
-            } else {
-                outside - internal[i]
-            };
-        }
-        self.solve_interface()?;
+        let internal = std::mem::take(&mut self.next.motion.internal_force);
+        let load = std::mem::take(&mut self.vectors.load);
+        let left = |i: usize| match loads {
+            _ if system.fixed[i] => 0.0,
+            Loads::None => -internal[i],
+            Loads::Dead([_, factor]) => factor * system.load[i] - internal[i],
+            Loads::Varying => load[i] - internal[i],
+        };
+        let solved = match self.is_apart(apart) {
+            true => self.solve_apart(apart, |i| left(i) / system.mass.lumped[i]),
+            false => {
+                let residual = self.vectors.residual.iter_mut().enumerate();
+                residual.for_each(|(i, residual)| *residual = left(i));
+                self.solve_interface()
+            }
+        };
+        (self.next.motion.internal_force, self.vectors.load) = (internal, load);
+        solved?;
         self.spread();
         let forces = &self.vectors.contact;
         self.next.motion.contact_force.copy_from_slice(forces);

@@ -13,7 +13,8 @@ use crate::step_map::{Row, StepMap};
 
 impl Driver {
     /// What friction adds to each candidate.
-    fn tangential(&self) -> Vec<Tangential> {
+    /// `free`: product of a stacked row with the motion of the iteration without contact forces.
+    pub(super) fn tangential(&self, free: impl Fn(u32) -> f64) -> Vec<Tangential> {
         let (row, time) = self.sliding();
         // what the forces of the iteration give by themselves is in the matrix
         let without = move |map: &StepMap| Row { c: 0.0, ..row(map) };
@@ -25,7 +26,7 @@ impl Driver {
             for (k, q) in q.iter_mut().enumerate().take(tangents) {
                 let number = point * width + 1 + k as u32;
                 let factor = row(self.map_of(self.system.contact_of(at))).x;
-                let step = factor * self.free_along(number, &self.stacked);
+                let step = factor * free(number);
                 *q = self.slid(at, k, (without, time)) + step;
             }
             Tangential {
@@ -54,7 +55,7 @@ impl Driver {
         let begin = Instant::now();
         compliance.update(&stacked, &self.stacked, &system.fixed, operators);
         self.describe_candidates(Some(tangents as u32));
-        let friction = self.tangential();
+        let friction = self.tangential(|number| self.free_along(number, &self.stacked));
         let Some((operators, compliance, mut linking)) = self.effective.all() else {
             return Ok(());
         };
@@ -124,7 +125,12 @@ impl Driver {
     }
 
     /// Keeps the problem that was not solved.
-    fn keep_failed(&mut self, friction: Vec<Tangential>, compliance: Vec<f64>, factors: [f64; 3]) {
+    pub(super) fn keep_failed(
+        &mut self,
+        friction: Vec<Tangential>,
+        compliance: Vec<f64>,
+        factors: [f64; 3],
+    ) {
         let name = |&point: &u32| self.name(point as usize);
         self.failed_friction = Some(FrictionProblem {
             step: self.state.step + 1,
@@ -138,7 +144,7 @@ impl Driver {
         });
     }
 
-    fn friction_error(&self, failure: FrictionFailure) -> Error {
+    pub(super) fn friction_error(&self, failure: FrictionFailure) -> Error {
         Error::Friction {
             step: self.state.step + 1,
             point: self.name(self.candidates[failure.candidate] as usize),

@@ -2,6 +2,7 @@
 
 use carom_algebra::unknowns::Kind;
 
+use crate::groups::Groups;
 use crate::scheme::EnergyIdentity;
 use crate::step_map::{Impulse, Row, StepMap};
 use crate::system::System;
@@ -20,6 +21,32 @@ pub(super) struct Direct {
     pub(super) clean: bool,
     /// Whether the motion of the attempt is known to be finite.
     pub(super) finite: bool,
+    pub(super) apart: Apart,
+}
+
+/// What the contact problem of such steps needs.
+pub(super) struct Apart {
+    pub(super) groups: Groups,
+    /// The candidates, group after group.
+    pub(super) points: Vec<u32>,
+    /// Acceleration without contact forces of their unknowns, m/s²; other entries have no meaning.
+    pub(super) free: Vec<f64>,
+    /// D of one group, and a number that no other matrix has.
+    pub(super) matrix: Vec<f64>,
+    pub(super) version: u64,
+}
+
+impl Default for Apart {
+    fn default() -> Apart {
+        Apart {
+            groups: Groups::default(),
+            points: Vec::new(),
+            free: Vec::new(),
+            matrix: Vec::new(),
+            // those of kept columns count from zero
+            version: 1 << 63,
+        }
+    }
 }
 
 impl Direct {
@@ -45,6 +72,7 @@ impl Direct {
                 loaded: system.load.iter().any(|load| *load != 0.0),
                 clean: false,
                 finite: false,
+                apart: Apart::default(),
             }
         })
     }

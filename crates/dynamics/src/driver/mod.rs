@@ -13,6 +13,7 @@
 //! with the same bits.
 
 mod ahead;
+mod apart;
 mod approach;
 mod attempt;
 mod balance;

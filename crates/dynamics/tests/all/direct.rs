@@ -35,6 +35,8 @@ struct Case {
     shakes: bool,
     /// Whether the top is held.
     held: bool,
+    /// Cells along an edge.
+    cells: usize,
 }
 
 fn cases() -> Vec<Case> {
@@ -52,6 +54,7 @@ fn cases() -> Vec<Case> {
         gravity: 0.0,
         shakes: false,
         held: false,
+        cells: 3,
     };
     let impact = Case {
         name: "impact",
@@ -98,7 +101,7 @@ fn driver(case: &Case) -> Driver {
 
 /// A cube of 1 m, 5 mm above the plane, that falls, glides and shears.
 fn model(case: &Case) -> Model {
-    let mesh = generate::box_("cube", [0.0, 0.0, 0.005], [1.0; 3], [3; 3], false);
+    let mesh = generate::box_("cube", [0.0, 0.0, 0.005], [1.0; 3], [case.cells; 3], false);
     let cells = mesh.groups["cube"].elements.clone();
     let bottom = Surface::new(&mesh, &mesh.groups["cube.bottom"], &cells).unwrap();
     let top = mesh.group_nodes(&mesh.groups["cube.top"]);
@@ -126,7 +129,7 @@ fn model(case: &Case) -> Model {
         )
     };
     let scheme = Scheme::CentralDifference(CentralDifference {});
-    let dt = 0.2 / 3.0 / 120.0;
+    let dt = 0.2 / case.cells as f64 / 120.0;
     let mut model = Model {
         gravity: [0.0, 0.0, case.gravity],
         contacts: case.friction.into_iter().map(ground).collect(),
@@ -251,4 +254,27 @@ fn resumed_steps_have_the_same_bits() {
         }
         assert_eq!(whole.state(), parts.state(), "{}", case.name);
     }
+}
+
+/// With more than one panel of blocks and of nodes.
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let all = cases();
+    let case = Case {
+        cells: 17,
+        ..all[4]
+    };
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap().install(|| {
+            let mut driver = driver(&case);
+            for _ in 0..STEPS {
+                driver.step().unwrap();
+            }
+            driver.state().clone()
+        })
+    };
+    let one = run(1);
+    assert!(one.interface.force.iter().any(|force| *force != 0.0));
+    assert_eq!(one, run(3));
 }
