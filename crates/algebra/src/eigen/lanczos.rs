@@ -11,7 +11,8 @@ use crate::reduce::{dot, norm_squared};
 /// Vectors of a block.
 const BLOCK: usize = 6;
 
-/// Residual of a pair at which it has converged, over its own eigenvalue, and over the largest, which is rounding.
+/// Residual of a pair at which it has converged, over its own eigenvalue, and over the largest of the operator, which is rounding, also
+/// where its vector has been taken out.
 const CONVERGED: [f64; 2] = [1e-12, 1e-14];
 
 /// What is left of a vector after orthogonalisation, over its norm, below which it is rounding.
@@ -37,7 +38,7 @@ pub(super) fn largest(operator: &mut Operator, count: usize) -> Result<Vec<Vec<f
         let next = space.extend(std::mem::take(&mut block));
         let full = space.basis.len() >= LARGEST[0].max(LARGEST[1] * count);
         if blocks % LOOK == LOOK - 1 || next == 0 || full {
-            let found = space.converged(count)?;
+            let found = space.converged(count, operator)?;
             if found.len() == count || next == 0 || full {
                 return Ok(found);
             }
@@ -101,7 +102,7 @@ impl Space {
     }
 
     /// The vectors of the largest eigenvalues, as many as have converged before one that has not.
-    fn converged(&self, count: usize) -> Result<Vec<Vec<f64>>, Error> {
+    fn converged(&self, count: usize, operator: &mut Operator) -> Result<Vec<Vec<f64>>, Error> {
         let m = self.projected.len();
         let mut matrix = vec![0.0; m * m];
         for (i, row) in self.projected.iter().enumerate() {
@@ -122,7 +123,7 @@ impl Space {
             };
             (0..width).map(|k| part(k).powi(2)).sum::<f64>().sqrt()
         };
-        let top = values.last().copied().unwrap_or(0.0);
+        let top = operator.largest(values.last().copied().unwrap_or(0.0));
         let pairs = values.iter().zip(combinations.chunks_exact(m.max(1))).rev();
         let good = |(value, z): &(&f64, &[f64])| {
             **value > 0.0 && residual(z) <= CONVERGED[0] * **value + CONVERGED[1] * top

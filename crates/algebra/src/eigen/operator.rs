@@ -14,6 +14,8 @@ pub(super) struct Operator<'a> {
     work: Work,
     /// Orthonormal vectors that P takes out.
     out: Vec<Vec<f64>>,
+    /// Largest eigenvalue seen with this shift, also of a vector taken out since: images have its rounding.
+    largest: f64,
 }
 
 struct Work {
@@ -36,13 +38,21 @@ impl<'a> Operator<'a> {
             mass,
             work,
             out: Vec::new(),
+            largest: 0.0,
         })
     }
 
     /// Takes another shift; nothing is taken out any more.
     pub(super) fn refactor(&mut self, shifted: &Csr) -> Result<(), Error> {
         self.out.clear();
+        self.largest = 0.0;
         self.work.factor.refactor(shifted)
+    }
+
+    /// The largest eigenvalue seen, after one more.
+    pub(super) fn largest(&mut self, value: f64) -> f64 {
+        self.largest = self.largest.max(value);
+        self.largest
     }
 
     /// L⁻¹ f.
