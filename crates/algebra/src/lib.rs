@@ -10,6 +10,7 @@ pub mod dense;
 pub mod dense_eigen;
 pub mod eigen;
 mod error;
+pub mod fingerprint;
 mod functions;
 pub mod lanes;
 pub mod number;

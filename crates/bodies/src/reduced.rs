@@ -48,12 +48,28 @@ pub struct Reduction {
     pub centre: [f64; 3],
     /// Frequencies of the modes, Hz.
     pub frequencies: Vec<f64>,
+    /// Frequencies (Hz) that the reduced body by itself has, ascending, and estimates of their errors, relative to those of the full
+    /// body. None where they could not be computed.
+    pub estimates: Option<Vec<[f64; 2]>>,
+    /// Part of the mass, of what supports leave free, that the reduced body does not move with unit translations along the axes.
+    /// None as above.
+    pub unmoved: Option<[f64; 3]>,
 }
 
 impl Reduction {
     /// Number of unknowns.
     pub fn len(&self) -> usize {
         self.inertia[0].len()
+    }
+
+    /// Number of frequencies from the lowest that are within `error` of those of the full body by estimate, and the last of them, Hz.
+    pub fn band(&self, error: f64) -> Option<(usize, f64)> {
+        let estimates = self.estimates.as_ref()?;
+        let count = estimates
+            .iter()
+            .take_while(|[_, own]| *own <= error)
+            .count();
+        Some((count, estimates[count.checked_sub(1)?][0]))
     }
 
     /// Whether there is none.

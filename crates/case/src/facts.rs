@@ -46,7 +46,7 @@ pub fn facts(built: &Built) -> Vec<Fact> {
             facts.extend(body.as_discrete().map(discrete_fact));
             facts.extend(
                 body.as_reduced()
-                    .map(|reduced| reduced_fact(system, k, reduced)),
+                    .map(|reduced| reduced_fact(built, k, reduced)),
             );
             facts.extend(body.as_beam().map(|beam| beam_fact(system, k, beam)));
             continue;
@@ -107,8 +107,17 @@ pub fn facts(built: &Built) -> Vec<Fact> {
     facts
 }
 
+/// Error of a frequency up to which it counts as that of the full body.
+const BAND: f64 = 1e-3;
+
 /// A line for a reduced body: what it is reduced to, and how far its modes go.
-fn reduced_fact(system: &System, body: usize, reduced: &carom_bodies::Reduced) -> Fact {
+fn reduced_fact(built: &Built, body: usize, reduced: &carom_bodies::Reduced) -> Fact {
+    let system = &built.system;
+    let file = built
+        .reductions
+        .iter()
+        .find(|(name, _)| name == reduced.name());
+    let file = file.map_or_else(String::new, |(_, told)| format!("; {told}"));
     let data = reduced.reduction();
     let modes = data.frequencies.len();
     let mass = if data.is_massless {
@@ -117,10 +126,24 @@ fn reduced_fact(system: &System, body: usize, reduced: &carom_bodies::Reduced) -
         ""
     };
     let highest = data.frequencies.last().copied().unwrap_or(0.0);
+    let band = match data.band(BAND) {
+        Some((count, last)) => {
+            format!("its lowest {count} frequencies, to {last:.4e} Hz, within 0.1 % by estimate")
+        }
+        None => "none of its frequencies within 0.1 % by estimate".to_owned(),
+    };
+    let unmoved = data.unmoved.map_or_else(String::new, |parts| {
+        let parts = &parts[..system.dim];
+        let percent: Vec<String> = parts
+            .iter()
+            .map(|part| format!("{:.2}", 100.0 * part))
+            .collect();
+        format!(", residual mass {} % along the axes", percent.join(", "))
+    });
     fact(
         format!("body {}", reduced.name()),
         format!(
-            "reduced from {} unknowns to {} of {} retained nodes{mass} and {modes} modes up to {highest:.4e} Hz, {:.6} kg",
+            "reduced from {} unknowns to {} of {} retained nodes{mass} and {modes} modes up to {highest:.4e} Hz; {band}{unmoved}; {:.6} kg{file}",
             data.unknowns.len(),
             data.len() - modes,
             data.retained.len(),

@@ -41,6 +41,9 @@ pub fn run(arguments: &Arguments) -> u8 {
     for warning in &built.warnings {
         err!("warning: {}", line(warning));
     }
+    for (body, told) in &built.reductions {
+        err!("{}", line(&format!("reduction of {body}: {told}")));
+    }
     let folder = arguments
         .results
         .clone()

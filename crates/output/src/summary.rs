@@ -3,6 +3,7 @@
 //! Signs: gap positive when open, contact force positive in compression, energy lost positive when lost. A value
 //! that does not exist (the release of a contact that never opened) is `null`, never a made-up number.
 
+use carom_algebra::fingerprint::Fingerprint;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -435,12 +436,7 @@ pub fn hash(text: &str) -> String {
 
 /// The same fingerprint of bytes.
 pub(crate) fn hash_bytes(bytes: &[u8]) -> String {
-    let digest = bytes
-        .iter()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |digest, byte| {
-            (digest ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
-        });
-    format!("{digest:016x}")
+    Fingerprint::default().bytes(bytes).digits()
 }
 
 /// Numbers that may be NaN or infinite exactly when something went wrong: JSON has no word for them but `null`, so

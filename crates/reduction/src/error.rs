@@ -41,6 +41,14 @@ pub enum Error {
         /// Why.
         cause: carom_algebra::Error,
     },
+    /// Bytes of a reduction that cannot be used.
+    #[error("the saved reduction of body '{body}' cannot be used: {why}")]
+    Saved {
+        /// Its name.
+        body: String,
+        /// Why.
+        why: &'static str,
+    },
     /// The body by itself could not be built.
     #[error(transparent)]
     System(#[from] carom_system::Error),

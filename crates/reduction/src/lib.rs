@@ -4,14 +4,17 @@
 //! about their undeformed state. A body is reduced in a model, before its system is built. No step is taken here. Theory: the chapters
 //! on modes and reduced bodies of the documentation.
 
+mod condense;
 mod error;
 mod matrices;
 mod modes;
+mod quality;
 mod reduce;
 mod retained;
+mod saved;
 mod statics;
 
 pub use error::Error;
 pub use matrices::Matrices;
 pub use modes::{Modes, Participation, modes};
-pub use reduce::{Keep, reduce};
+pub use reduce::{Keep, Source, reduce, reduce_from};

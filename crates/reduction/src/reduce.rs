@@ -4,20 +4,17 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use carom_algebra::basis::Amplitude;
-use carom_algebra::csr::Csr;
 use carom_algebra::dense::DenseCholesky;
 use carom_algebra::eigen::{Eigenpairs, Problem, lowest};
 use carom_algebra::unknowns::Kind;
-use carom_bodies::{MassKind, Reducible, Reduction};
+use carom_bodies::{BodySpec, MassKind, Reducible, Reduction};
 use carom_system::{Damping, Model, ModelBody, System};
 
+use crate::condense::{Condensed, projected, rigid_modes};
 use crate::error::Error;
 use crate::matrices::Matrices;
 use crate::retained::retained;
-use crate::statics::{Statics, add, dot};
-
-/// Part of the shift below which ω² is that of a rigid motion.
-const RIGID: f64 = 1e-4;
+use crate::statics::{add, dot};
 
 /// Force of a rigid motion over the largest stiffness above which something else than the body holds it.
 const HELD: f64 = 1e-8;
@@ -48,42 +45,67 @@ pub struct Keep {
 /// A body that is rigid or not linear; more modes than there are; with `massless` so many that no flexibility is left to the retained
 /// nodes; no convergence.
 pub fn reduce(model: &mut Model, body: usize, keep: &Keep) -> Result<(), Error> {
-    let reduction = reduction(model, body, keep)?;
-    let given = &mut model.bodies[body];
-    given.mass = MassKind::Consistent;
-    given.reduced = Some(Arc::new(reduction));
-    Ok(())
+    let (full, retained) = Full::of(model, body, keep)?;
+    let condensed = full.condensed(keep)?;
+    full.put(model, body, (keep, retained, condensed))
+}
+
+/// Where a reduction comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The bytes given.
+    Saved,
+    /// It was made anew; these are its bytes.
+    Made(Vec<u8>),
+}
+
+/// As [`reduce`], with the bytes of an earlier reduction. They are used if that followed from the same full body, retained nodes and
+/// modes; the reduced body is then the same, bit for bit.
+///
+/// # Errors
+/// As [`reduce`]; bytes that are no reduction or are damaged.
+pub fn reduce_from(
+    model: &mut Model,
+    body: usize,
+    keep: &Keep,
+    saved: Option<&[u8]>,
+) -> Result<Source, Error> {
+    let (full, retained) = Full::of(model, body, keep)?;
+    let known = match saved {
+        Some(bytes) => full.decoded(keep, bytes)?,
+        None => None,
+    };
+    let (condensed, source) = match known {
+        Some(condensed) => (condensed, Source::Saved),
+        None => {
+            let condensed = full.condensed(keep)?;
+            let bytes = full.encoded(keep, &condensed)?;
+            (condensed, Source::Made(bytes))
+        }
+    };
+    full.put(model, body, (keep, retained, condensed))?;
+    Ok(source)
 }
 
 /// The full body by itself.
-struct Full {
-    name: String,
-    system: Arc<System>,
-    matrices: Matrices,
+pub(crate) struct Full {
+    pub(crate) name: String,
+    pub(crate) system: Arc<System>,
+    pub(crate) matrices: Matrices,
     /// Held by supports, and not retained.
-    fixed: Vec<bool>,
+    pub(crate) fixed: Vec<bool>,
     /// Retained unknowns.
-    border: Vec<usize>,
+    pub(crate) border: Vec<usize>,
 }
 
-/// Columns of T, and K and M.
-struct Condensed {
-    columns: Vec<Vec<f64>>,
-    stiffness: Vec<f64>,
-    mass: Vec<f64>,
-}
-
-fn reduction(model: &Model, body: usize, keep: &Keep) -> Result<Reduction, Error> {
-    let retained = retained(model, body, &keep.nodes);
-    let full = Full::new(model, body, &retained)?;
+fn reduction(
+    full: &Full,
+    spec: BodySpec,
+    (keep, retained, condensed): (&Keep, Vec<u32>, Condensed),
+) -> Result<Reduction, Error> {
     let total = full.system.body_mass(0);
-    let pairs = full.modes(keep)?;
-    let condensed = match keep.massless {
-        false => full.craig_bampton(&pairs, total)?,
-        true => full.macneal(&pairs, total)?,
-    };
     let (count, border) = (condensed.columns.len(), full.border.len());
-    let inertia = [0, 1, 2].map(|axis| full.inertia(&condensed, &full.translation(axis)));
+    let inertia = [0, 1, 2].map(|axis| full.inertia(&condensed.columns, &full.translation(axis)));
     let share = |motion: &[f64], inertia: &[f64]| -> Vec<f64> {
         let of = |q: usize| {
             let row = &condensed.mass[q * count..q * count + border];
@@ -99,8 +121,8 @@ fn reduction(model: &Model, body: usize, keep: &Keep) -> Result<Reduction, Error
         // nodes that supports hold do not move with the others
         let [moved, turned] = [full.translation(axis), full.rotation(axis, [0.0; 3])]
             .map(|motion| full.freed(motion));
-        let moves = share(&moved, &full.inertia(&condensed, &moved));
-        let turns = share(&turned, &full.inertia(&condensed, &turned));
+        let moves = share(&moved, &full.inertia(&condensed.columns, &moved));
+        let turns = share(&turned, &full.inertia(&condensed.columns, &turned));
         let mut motion: Vec<f64> = full.border.iter().map(|&unknown| moved[unknown]).collect();
         motion.extend(&moves);
         is_grounded |= holds(&condensed.stiffness, &motion);
@@ -108,11 +130,9 @@ fn reduction(model: &Model, body: usize, keep: &Keep) -> Result<Reduction, Error
             (amplitude.translation[axis], amplitude.rotation[axis]) = (*moves, *turns);
         }
     }
-    let squares: Vec<f64> = pairs.values.iter().map(|value| value.max(0.0)).collect();
     let unknowns = full.system.unknowns();
     let rows = (0..unknowns).flat_map(|i| condensed.columns.iter().map(move |column| column[i]));
     let system = &full.system;
-    let spec = model.bodies[body].spec.clone();
     let own = Reducible::new(&system.mesh, spec, &system.number, &system.unknowns);
     let masses = system.body_masses[0].iter();
     let centre = [0, 1, 2].map(|i| {
@@ -128,7 +148,7 @@ fn reduction(model: &Model, body: usize, keep: &Keep) -> Result<Reduction, Error
         unknowns: system.unknowns.clone(),
         mesh_node: system.mesh_node.clone(),
         retained,
-        damping: damping(&condensed, keep, (&squares, total)),
+        damping: damping(&condensed, keep, total),
         stiffness: condensed.stiffness,
         mass: condensed.mass,
         amplitudes,
@@ -139,8 +159,15 @@ fn reduction(model: &Model, body: usize, keep: &Keep) -> Result<Reduction, Error
             .map(|(node, m)| (system.mesh_node[*node as usize], *m))
             .collect(),
         centre,
-        frequencies: squares.iter().map(|square| square.sqrt() / TAU).collect(),
+        frequencies: hertz(&condensed.squares),
+        estimates: condensed.estimates,
+        unmoved: condensed.unmoved,
     })
+}
+
+/// Frequencies, Hz.
+fn hertz(squares: &[f64]) -> Vec<f64> {
+    squares.iter().map(|square| square.sqrt() / TAU).collect()
 }
 
 /// Whether a translation needs a force.
@@ -154,7 +181,7 @@ fn holds(stiffness: &[f64], motion: &[f64]) -> bool {
 }
 
 /// C = α M + β K, and 2 ζ ω m of the amplitudes.
-fn damping(condensed: &Condensed, keep: &Keep, (squares, mass): (&[f64], f64)) -> Option<Vec<f64>> {
+fn damping(condensed: &Condensed, keep: &Keep, mass: f64) -> Option<Vec<f64>> {
     let Damping {
         mass: alpha,
         stiffness: beta,
@@ -165,6 +192,7 @@ fn damping(condensed: &Condensed, keep: &Keep, (squares, mass): (&[f64], f64)) -
     let pairs = condensed.mass.iter().zip(&condensed.stiffness);
     let mut damping: Vec<f64> = pairs.map(|(m, k)| alpha * m + beta * k).collect();
     let count = condensed.columns.len();
+    let squares = &condensed.squares;
     for (q, square) in (count - squares.len()..count).zip(squares) {
         damping[q * count + q] += 2.0 * keep.ratio * square.sqrt() * mass;
     }
@@ -172,6 +200,26 @@ fn damping(condensed: &Condensed, keep: &Keep, (squares, mass): (&[f64], f64)) -
 }
 
 impl Full {
+    /// The full body, and the nodes of the mesh that are retained.
+    fn of(model: &Model, body: usize, keep: &Keep) -> Result<(Full, Vec<u32>), Error> {
+        let retained = retained(model, body, &keep.nodes);
+        Ok((Full::new(model, body, &retained)?, retained))
+    }
+
+    /// Puts the reduction in the place of the body.
+    fn put(
+        &self,
+        model: &mut Model,
+        body: usize,
+        parts: (&Keep, Vec<u32>, Condensed),
+    ) -> Result<(), Error> {
+        let given = &mut model.bodies[body];
+        let reduction = reduction(self, given.spec.clone(), parts)?;
+        given.mass = MassKind::Consistent;
+        given.reduced = Some(Arc::new(reduction));
+        Ok(())
+    }
+
     fn new(model: &Model, body: usize, retained: &[u32]) -> Result<Full, Error> {
         let given = &model.bodies[body];
         let refused = |why| Error::Refused {
@@ -205,6 +253,15 @@ impl Full {
             fixed,
             border,
         })
+    }
+
+    fn condensed(&self, keep: &Keep) -> Result<Condensed, Error> {
+        let pairs = self.modes(keep)?;
+        let total = self.system.body_mass(0);
+        match keep.massless {
+            false => self.craig_bampton(&pairs, total),
+            true => self.macneal(&pairs, total),
+        }
     }
 
     /// Modes with held retained nodes, or with free ones.
@@ -268,7 +325,7 @@ impl Full {
     }
 
     /// Unknowns that supports hold, and the retained ones.
-    fn held(&self, border: bool) -> Vec<bool> {
+    pub(crate) fn held(&self, border: bool) -> Vec<bool> {
         let mut held = self.fixed.clone();
         self.border
             .iter()
@@ -276,148 +333,22 @@ impl Full {
         held
     }
 
-    fn refused(&self, cause: carom_algebra::Error) -> Error {
+    pub(crate) fn refused(&self, cause: carom_algebra::Error) -> Error {
         Error::Static {
             body: self.name.clone(),
             cause,
         }
     }
 
-    /// M φ of the modes.
-    fn inertias(&self, pairs: &Eigenpairs) -> Vec<Vec<f64>> {
-        let of = |mode: &Vec<f64>| {
-            let mut image = vec![0.0; mode.len()];
-            self.matrices.mass.multiply(mode, &mut image);
-            image
-        };
-        pairs.vectors.iter().map(of).collect()
-    }
-
-    /// Static responses to unit displacements of the retained unknowns, and modes with these held, times the root of the mass.
-    fn craig_bampton(&self, pairs: &Eigenpairs, total: f64) -> Result<Condensed, Error> {
-        let Matrices { stiffness, mass } = &self.matrices;
-        let held = self.held(true);
-        let mut columns = Vec::new();
-        if !self.border.is_empty() {
-            let inertias = self.inertias(pairs);
-            let rigid = rigid_modes(pairs);
-            let modes = pairs.vectors[..rigid].iter().zip(&inertias);
-            let modes: Vec<_> = modes
-                .map(|(mode, inertia)| [&mode[..], &inertia[..]])
-                .collect();
-            let nodes = self.system.unknowns.node_of_each();
-            let statics = Statics::new((stiffness, mass), &held, (modes, rigid > 0), nodes);
-            let mut statics = statics.map_err(|cause| self.refused(cause))?;
-            for &unknown in &self.border {
-                let mut force = vec![0.0; held.len()];
-                let (others, values) = stiffness.row(unknown);
-                for (&i, k) in others.iter().zip(values) {
-                    force[i as usize] = -k;
-                }
-                let mut column = statics.solve(force);
-                column[unknown] = 1.0;
-                columns.push(column);
-            }
-        }
-        let root = total.sqrt();
-        let scaled = |mode: &Vec<f64>| mode.iter().map(|x| root * x).collect::<Vec<_>>();
-        columns.extend(pairs.vectors.iter().map(scaled));
-        Ok(Condensed {
-            stiffness: projected(stiffness, &columns),
-            mass: projected(mass, &columns),
-            columns,
-        })
-    }
-
-    /// With the flexibility G of the retained unknowns b that the modes Φ leave: u = Φ q + G_b G_bb⁻¹ (u_b - Φ_b q).
-    fn macneal(&self, pairs: &Eigenpairs, total: f64) -> Result<Condensed, Error> {
-        let Matrices { stiffness, mass } = &self.matrices;
-        let nodes = self.system.unknowns.node_of_each();
-        let inertias = self.inertias(pairs);
-        let modes = pairs.vectors.iter().zip(&inertias);
-        let modes: Vec<_> = modes
-            .map(|(mode, inertia)| [&mode[..], &inertia[..]])
-            .collect();
-        let floats = rigid_modes(pairs) > 0;
-        let statics = Statics::new((stiffness, mass), &self.fixed, (modes, floats), nodes);
-        let mut statics = statics.map_err(|cause| self.refused(cause))?;
-        let mut responses = Vec::new();
-        for &unknown in &self.border {
-            let mut force = vec![0.0; mass.n];
-            force[unknown] = 1.0;
-            responses.push(statics.solve(force));
-        }
-        let b = self.border.len();
-        let flexibility: Vec<f64> = (0..b * b)
-            .map(|e| {
-                let (i, j) = (e / b, e % b);
-                0.5 * (responses[i][self.border[j]] + responses[j][self.border[i]])
-            })
-            .collect();
-        let factor = DenseCholesky::new(b, &flexibility).map_err(|cause| self.refused(cause))?;
-        let root = total.sqrt();
-        let n = b + pairs.values.len();
-        let mut columns: Vec<Vec<f64>> = Vec::new();
-        let mut matrix = vec![0.0; n * n];
-        for j in 0..b {
-            let mut weights = vec![0.0; b];
-            weights[j] = 1.0;
-            factor.solve(&mut weights);
-            let mut column = vec![0.0; mass.n];
-            for (weight, response) in weights.iter().zip(&responses) {
-                add(*weight, response, &mut column);
-            }
-            for (i, weight) in weights.iter().enumerate() {
-                matrix[i * n + j] = *weight;
-            }
-            columns.push(column);
-        }
-        let mut inertia = vec![0.0; n * n];
-        let at_border: Vec<Vec<f64>> = pairs
-            .vectors
-            .iter()
-            .map(|mode| self.border.iter().map(|&i| root * mode[i]).collect())
-            .collect();
-        for (q, mode) in pairs.vectors.iter().enumerate() {
-            let mut forces = at_border[q].clone();
-            factor.solve(&mut forces);
-            let mut column: Vec<f64> = mode.iter().map(|x| root * x).collect();
-            for (x, response) in forces.iter().zip(&responses) {
-                add(-x, response, &mut column);
-            }
-            columns.push(column);
-            let row = b + q;
-            for (i, force) in forces.iter().enumerate() {
-                (matrix[i * n + row], matrix[row * n + i]) = (-force, -force);
-            }
-            for (p, other) in at_border.iter().enumerate() {
-                matrix[row * n + b + p] = dot(&forces, other);
-            }
-            matrix[row * n + row] += total * pairs.values[q].max(0.0);
-            inertia[row * n + row] = total;
-        }
-        // held retained unknowns must be exactly themselves
-        for (j, &unknown) in self.border.iter().enumerate() {
-            for (k, column) in columns.iter_mut().enumerate() {
-                column[unknown] = if k == j { 1.0 } else { 0.0 };
-            }
-        }
-        Ok(Condensed {
-            columns,
-            stiffness: matrix,
-            mass: inertia,
-        })
-    }
-
     /// 1 for translations along an axis.
-    fn translation(&self, axis: usize) -> Vec<f64> {
+    pub(crate) fn translation(&self, axis: usize) -> Vec<f64> {
         let moves = |i: usize| self.system.unknowns.kind(i) == Kind::Translation(axis);
         let all = 0..self.system.unknowns();
         all.map(|i| if moves(i) { 1.0 } else { 0.0 }).collect()
     }
 
     /// A motion without that of the unknowns that supports hold.
-    fn freed(&self, mut motion: Vec<f64>) -> Vec<f64> {
+    pub(crate) fn freed(&self, mut motion: Vec<f64>) -> Vec<f64> {
         for (motion, _) in motion
             .iter_mut()
             .zip(&self.fixed)
@@ -445,35 +376,9 @@ impl Full {
     }
 
     /// Tᵀ M r.
-    fn inertia(&self, condensed: &Condensed, motion: &[f64]) -> Vec<f64> {
+    pub(crate) fn inertia(&self, columns: &[Vec<f64>], motion: &[f64]) -> Vec<f64> {
         let mut image = vec![0.0; motion.len()];
         self.matrices.mass.multiply(motion, &mut image);
-        condensed
-            .columns
-            .iter()
-            .map(|column| dot(column, &image))
-            .collect()
+        columns.iter().map(|column| dot(column, &image)).collect()
     }
-}
-
-/// Number of modes that are rigid motions.
-fn rigid_modes(pairs: &Eigenpairs) -> usize {
-    pairs
-        .values
-        .partition_point(|value| *value < -RIGID * pairs.shift)
-}
-
-/// Tᵀ A T of a symmetric matrix.
-fn projected(matrix: &Csr, columns: &[Vec<f64>]) -> Vec<f64> {
-    let n = columns.len();
-    let mut projected = vec![0.0; n * n];
-    let mut image = vec![0.0; matrix.n];
-    for (i, column) in columns.iter().enumerate() {
-        matrix.multiply(column, &mut image);
-        for (j, other) in columns.iter().enumerate().take(i + 1) {
-            let entry = dot(other, &image);
-            (projected[i * n + j], projected[j * n + i]) = (entry, entry);
-        }
-    }
-    projected
 }

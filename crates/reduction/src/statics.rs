@@ -110,3 +110,10 @@ pub(crate) fn add(factor: f64, x: &[f64], y: &mut [f64]) {
         *y += factor * x;
     }
 }
+
+/// xᵀ M x.
+pub(crate) fn mass_of(mass: &Csr, x: &[f64]) -> f64 {
+    let mut image = vec![0.0; x.len()];
+    mass.multiply(x, &mut image);
+    dot(x, &image)
+}

@@ -14,6 +14,7 @@ use carom_dynamics::{
 };
 use carom_materials::{Branch, J2Plasticity, Law as Material, Maxwell, NeoHooke};
 use carom_mesh::{ElementId, Mesh};
+use carom_reduction::{Keep, reduce};
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
 use crate::Error;
@@ -39,10 +40,13 @@ pub(crate) enum Feature {
     Massless,
     BetweenZones,
     AdaptiveZones,
+    Reduced,
+    ReducedStage,
+    ReducedZones,
 }
 
 impl Feature {
-    pub(crate) const ALL: [Feature; 14] = [
+    pub(crate) const ALL: [Feature; 17] = [
         Feature::Friction,
         Feature::FiniteStrain,
         Feature::Plasticity,
@@ -57,6 +61,9 @@ impl Feature {
         Feature::Massless,
         Feature::BetweenZones,
         Feature::AdaptiveZones,
+        Feature::Reduced,
+        Feature::ReducedStage,
+        Feature::ReducedZones,
     ];
 
     pub(crate) fn name(self) -> &'static str {
@@ -75,6 +82,9 @@ impl Feature {
             Feature::Massless => "massless",
             Feature::BetweenZones => "contact between zones, m = 4",
             Feature::AdaptiveZones => "adaptive zones, m = 4",
+            Feature::Reduced => "reduced body",
+            Feature::ReducedStage => "reduced body, static stage",
+            Feature::ReducedZones => "reduced body, zones, m = 4",
         }
     }
 
@@ -115,9 +125,12 @@ impl Feature {
     /// Whether points are paired at every step: so is what moves or turns far.
     fn sliding(self) -> Sliding {
         match self {
-            Feature::Friction | Feature::Adaptive | Feature::StaticStage | Feature::Massless => {
-                Sliding::Small
-            }
+            Feature::Friction
+            | Feature::Adaptive
+            | Feature::StaticStage
+            | Feature::Massless
+            | Feature::Reduced
+            | Feature::ReducedStage => Sliding::Small,
             _ => Sliding::Finite,
         }
     }
@@ -185,6 +198,15 @@ impl Feature {
             Feature::Massless => model.contacts[0].massless = true,
             Feature::EqualZones => return Built::zoned(zones(model, 1)?),
             Feature::UnequalZones => return Built::zoned(zones(model, 4)?),
+            Feature::Reduced => reduced(&mut model)?,
+            Feature::ReducedStage => {
+                preloaded(&mut model)?;
+                reduced(&mut model)?;
+            }
+            Feature::ReducedZones => {
+                reduced(&mut model)?;
+                return Built::zoned(in_contact(model, 4));
+            }
             _ => {}
         }
         Ok(Built::One(System::new(model)?, None))
@@ -270,6 +292,15 @@ fn fly(model: &mut Model) {
         growth: None,
         patience: 10,
     });
+}
+
+/// The upper block has its nodes in contact, those of loads, and six modes.
+fn reduced(model: &mut Model) -> Result<(), Error> {
+    let keep = Keep {
+        modes: 6,
+        ..Keep::default()
+    };
+    Ok(reduce(model, 0, &keep)?)
 }
 
 /// Each block is a zone; the lower one takes `substeps` steps in one of the upper.
@@ -429,6 +460,9 @@ fn reason_of(error: &carom_system::Error) -> Option<String> {
         }
         E::Body(carom_bodies::Error::NoBetween { .. }) => {
             "the scheme conserves energy by a stress between the two ends of a step, which a material that dissipates does not have"
+        }
+        E::ConsistentMass { .. } => {
+            "explicit schemes divide by the mass of each node, and a reduced body has a matrix of mass"
         }
         E::MasslessContact { cause, .. } => return Some(format!("massless nodes: {cause}")),
         _ => return None,

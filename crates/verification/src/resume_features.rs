@@ -1,7 +1,7 @@
 //! Runs with each feature that are cut and resumed.
 //!
 //! Problem: the models of [`crate::features`] (friction, finite strain, plasticity, viscoelasticity, mortar, finite sliding, surfaces that face
-//! themselves, adaptive steps, zones, static stages, massless nodes), as `resume` has them of linear bodies. Closed solution: what the next
+//! themselves, adaptive steps, zones, static stages, massless nodes, reduced bodies), as `resume` has them of linear bodies. Closed solution: what the next
 //! step needs is in the state, so that the bytes of the state, read by a new run, give the same bytes after a step and at the
 //! end. Reference: the run that was not cut, a second formulation. Tolerance: none, bytes are equal or not.
 
@@ -13,7 +13,7 @@ use crate::repeated::{Pairs, advance, rows, stride};
 pub(crate) const CHECK: Check = Check {
     name: "resume-features",
     fact: "runs with friction, large strain, mortar, zones and the like, cut and resumed from bytes, end in the same bytes",
-    run: |size| rows(14, (stride(size), 1), resumed),
+    run: |size| rows(17, (stride(size), 1), resumed),
 };
 
 /// Compares each step of the run with that step taken by a new driver from the bytes before it, and the end with that of a run

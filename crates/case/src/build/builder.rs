@@ -22,6 +22,8 @@ pub(super) struct Builder<'a> {
     pub(super) plan: Plan,
     /// Path of the case file.
     pub(super) file: PathBuf,
+    /// Bodies whose reduction has a file, and where the reduction comes from.
+    pub(super) reductions: Vec<(String, String)>,
 }
 
 impl Builder<'_> {

@@ -77,6 +77,8 @@ pub struct Built {
     pub reference: Option<ExactReference>,
     /// What is strange but not wrong.
     pub warnings: Vec<String>,
+    /// Bodies whose reduction has a file, and where the reduction comes from.
+    pub reductions: Vec<(String, String)>,
 }
 
 /// A probe with its nodes.
@@ -111,6 +113,7 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
             .sources
             .first()
             .map_or_else(PathBuf::new, |source| PathBuf::from(&source.name)),
+        reductions: Vec::new(),
     };
     builder.plan = builder.plan_zones();
     let built = builder.build(input);
@@ -180,7 +183,7 @@ impl Builder<'_> {
                 ..self.nonlinear(loads, (motions, turns))
             },
         };
-        self.reduce(&mut model, &joints.links);
+        self.reduce(&mut model, &joints.links, &input.folder);
         if !self.problems.is_empty() {
             return None;
         }
@@ -246,6 +249,7 @@ impl Builder<'_> {
             probes,
             reference,
             warnings: std::mem::take(&mut self.warnings),
+            reductions: std::mem::take(&mut self.reductions),
         })
     }
 }

@@ -57,6 +57,9 @@ pub struct Reduction {
     #[serde(default)]
     #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
     pub damping_ratio: f64,
+    /// File in which the reduction is kept, relative to the case file. It is read where it follows from the same body and options, made
+    /// anew and saved there where it does not, or where the file does not exist. Default: it is made for each run.
+    pub file: Option<String>,
 }
 
 /// How cells integrate the internal work.

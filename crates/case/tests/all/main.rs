@@ -9,6 +9,7 @@ mod defaults;
 mod grades;
 mod large;
 mod quadrature;
+mod reductions;
 mod reference;
 mod refine;
 mod stage_one;
