@@ -1,0 +1,22 @@
+// An angle bracket: legs of 100 mm, 10 mm thick, 40 mm wide. gmsh -3 -format msh22 bracket.geo
+SetFactory("Built-in");
+a = 10; l = 100;
+Point(1) = {0, 0, 0}; Point(2) = {a, 0, 0}; Point(3) = {l, 0, 0};
+Point(4) = {0, 0, a}; Point(5) = {a, 0, a}; Point(6) = {l, 0, a};
+Point(7) = {0, 0, l}; Point(8) = {a, 0, l};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {4, 5}; Line(4) = {5, 6};
+Line(5) = {1, 4}; Line(6) = {2, 5}; Line(7) = {3, 6};
+Line(8) = {4, 7}; Line(9) = {5, 8}; Line(10) = {7, 8};
+Curve Loop(1) = {1, 6, -3, -5}; Plane Surface(1) = {1};
+Curve Loop(2) = {2, 7, -4, -6}; Plane Surface(2) = {2};
+Curve Loop(3) = {3, 9, -10, -8}; Plane Surface(3) = {3};
+Transfinite Curve {1, 3, 5, 6, 7, 10} = 2;
+Transfinite Curve {2, 4, 8, 9} = 10;
+Transfinite Surface {1, 2, 3}; Recombine Surface {1, 2, 3};
+out1[] = Extrude {0, 40, 0} { Surface{1}; Layers{4}; Recombine; };
+out2[] = Extrude {0, 40, 0} { Surface{2}; Layers{4}; Recombine; };
+out3[] = Extrude {0, 40, 0} { Surface{3}; Layers{4}; Recombine; };
+Physical Volume("bracket") = {out1[1], out2[1], out3[1]};
+Physical Surface("clamp") = {out3[4]};
+Physical Point("tip") = {3};
+Mesh.MshFileVersion = 2.2;
