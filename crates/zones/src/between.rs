@@ -7,6 +7,7 @@
 
 use std::sync::Arc;
 
+use carom_algebra::rotation::Rotation;
 use carom_contact::law::{Local, Status};
 use carom_contact::{Pairing, Search};
 use serde::{Deserialize, Serialize};
@@ -72,6 +73,8 @@ pub(crate) struct Between {
     /// Displacements and velocities of the whole at the start of the step, and at its end.
     start: [Vec<f64>; 2],
     end: [Vec<f64>; 2],
+    /// Rotations of the whole at the start of the step.
+    frames: Vec<Rotation>,
     place: Vec<f64>,
     still: Vec<f64>,
     pub(crate) state: BetweenState,
@@ -131,6 +134,7 @@ impl Between {
             data: Vec::new(),
             start: [zeros(), zeros()],
             end: [zeros(), zeros()],
+            frames: system.initial_frames.clone(),
             place: zeros(),
             still: zeros(),
             reports: vec![ContactReport::default(); count],
@@ -142,6 +146,14 @@ impl Between {
             now: vec![0.0; count],
             system,
         }))
+    }
+
+    fn gather_frames(&mut self, drivers: &[Driver]) {
+        for (driver, places) in drivers.iter().zip(&self.places) {
+            for &(own, whole) in &places.frames {
+                self.frames[whole] = driver.state().motion.frames[own];
+            }
+        }
     }
 
     /// The way of the points of a contact in the step, of `dt` (s), at which it is paired, as a part of `dt`.
@@ -160,7 +172,7 @@ impl Between {
             for (i, place) in self.place.iter_mut().enumerate() {
                 *place = u[i] + part * v[i];
             }
-            let places = system.places(time + part, &self.place, &system.initial_frames);
+            let places = system.places(time + part, &self.place, &self.frames);
             let kept = (&mut self.search[k], &mut self.initial[k]);
             append(contact, &places, &mut self.still, kept, &mut self.pairing);
         }
@@ -169,6 +181,7 @@ impl Between {
     /// Pairs and lists the candidates of an outer step of `dt` from `time` (both s), with the forces of the last one.
     pub(crate) fn begin(&mut self, drivers: &[Driver], (time, dt): (f64, f64)) {
         gather(drivers, &self.places, &mut self.start);
+        self.gather_frames(drivers);
         self.pair((time, dt));
         let system = Arc::clone(&self.system);
         self.candidates.clear();
@@ -396,6 +409,7 @@ impl Between {
         self.state.works.fill(0.0);
         self.state.records = Records::of(&self.system);
         gather(drivers, &self.places, &mut self.start);
+        self.gather_frames(drivers);
         self.pair((0.0, 0.0));
         let (rows, interface) = (&self.pairing.rows, &mut self.state.interface);
         for point in 0..self.system.points() {

@@ -77,17 +77,23 @@ pub enum Error {
         /// Largest defect of a row per sum of its coefficients, m/s.
         defect: f64,
     },
-    /// Beams in a model with zones.
-    #[error("body '{body}': beams are not available in zones")]
-    BeamInZones {
-        /// Name of the body.
-        body: String,
+    /// Constraints in a model whose zones step apart.
+    #[error("constraint '{constraint}': zones of unequal steps have none; take equal steps")]
+    ConstraintInZones {
+        /// Name of the constraint.
+        constraint: String,
     },
-    /// Discrete elements in a model with zones.
-    #[error("`{element}`: point masses, springs and dashpots are not available in zones")]
+    /// Discrete elements in several zones that step apart.
+    #[error(
+        "`{element}`: its nodes are in the zones '{one}' and '{other}', which step apart; give each zone elements of its own, or take equal steps"
+    )]
     DiscreteInZones {
         /// Name of the element.
         element: String,
+        /// Zone of one of its nodes.
+        one: String,
+        /// Zone of another.
+        other: String,
     },
 }
 

@@ -10,6 +10,7 @@
 
 mod between;
 mod control;
+mod discrete;
 mod error;
 mod model;
 mod moves;

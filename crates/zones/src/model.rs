@@ -80,7 +80,9 @@ impl Zoned {
         let zone_of = |body: usize| {
             let mut zones = self.zones.iter();
             let zone = zones.position(|zone| zone.bodies.contains(&body));
-            zone.unwrap_or(0)
+            // discrete elements count on after the bodies
+            let discrete = body.checked_sub(self.model.bodies.len());
+            zone.unwrap_or_else(|| discrete.map_or(0, |some| self.zone_of_discrete(some)))
         };
         let (secondary, primary) = sides(&self.model.contacts[contact], &self.model);
         let zone = zone_of(secondary);
@@ -114,7 +116,7 @@ impl Zoned {
         let whole = &self.model;
         Model {
             mesh: whole.mesh.clone(),
-            discrete: Vec::new(),
+            discrete: self.discrete_of(zone),
             bodies: part
                 .bodies
                 .iter()

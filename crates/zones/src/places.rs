@@ -12,6 +12,8 @@ pub(crate) struct Places {
     pub(crate) own: Vec<(u32, u32)>,
     /// Contact points.
     pub(crate) points: Vec<(u32, u32)>,
+    /// Rotations of nodes.
+    pub(crate) frames: Vec<(usize, usize)>,
     /// Histories of the bodies.
     pub(crate) histories: Vec<(Range<usize>, Range<usize>)>,
 }
@@ -32,6 +34,12 @@ impl Places {
                 own.zip(of_whole).map(|(own, of)| (own as u32, of as u32))
             })
             .collect();
+        let numbers = zone.mesh_node.iter().zip(0..);
+        let frames = numbers.filter_map(|(&node, own)| {
+            let of_whole = whole.unknowns.frame(whole.number[node as usize]);
+            Some((zone.unknowns.frame(own)?, of_whole?))
+        });
+        let frames = frames.collect();
         let mut own = unknowns.clone();
         own.retain(|(_, to)| !std::mem::replace(&mut taken[*to as usize], true));
         let mut points = Vec::new();
@@ -46,6 +54,7 @@ impl Places {
             (own.clone(), of_whole.clone())
         });
         Places {
+            frames,
             histories: histories.collect(),
             unknowns,
             own,

@@ -1,13 +1,12 @@
 //! What zones that step apart do not take.
 
-use carom_bodies::Kinematics;
 use carom_contact::Integration;
 use carom_contact::law::Level;
 
 use crate::error::Error;
 use crate::model::Zoned;
 use carom_schemes::step_map::Impulse;
-use carom_system::{self as system, ModelBody, Refused};
+use carom_system::{self as system, Refused};
 
 impl Zoned {
     /// Refuses contacts that zones of unequal steps cannot have between them.
@@ -28,23 +27,9 @@ impl Zoned {
 
     /// Refuses what zones that step apart do not take.
     pub(crate) fn check(&self) -> Result<(), Error> {
-        let mut bodies = self.model.bodies.iter();
-        if let Some(body) = bodies.find(|body| body.rigid.is_some()) {
-            return Err(system::Error::Nonlinear {
-                what: Refused::Rigid(body.spec.name.clone()),
-                why: "zones have no frames of rotations yet; leave out the zones",
-            }
-            .into());
-        }
-        let beam = |body: &&ModelBody| matches!(body.spec.kinematics, Kinematics::Beam(_));
-        if let Some(body) = self.model.bodies.iter().find(beam) {
-            return Err(Error::BeamInZones {
-                body: body.spec.name.clone(),
-            });
-        }
-        if let Some(some) = self.model.discrete.first() {
-            return Err(Error::DiscreteInZones {
-                element: some.spec.name.clone(),
+        if let Some(constraint) = self.model.constraints.first() {
+            return Err(Error::ConstraintInZones {
+                constraint: constraint.name.clone(),
             });
         }
         if self.model.nonlinear.preload.is_some() {
@@ -54,6 +39,7 @@ impl Zoned {
             }
             .into());
         }
+        self.check_discrete()?;
         self.check_schemes()?;
         self.check_steps()
     }

@@ -184,6 +184,9 @@ impl Whole {
                 whole.v[to] = motion.v[from];
                 whole.a[to] = motion.a[from];
             }
+            for &(from, to) in &places.frames {
+                whole.frames[to] = motion.frames[from];
+            }
             for (from, to) in &places.histories {
                 whole.history[to.clone()].copy_from_slice(&motion.history[from.clone()]);
             }

@@ -95,14 +95,6 @@ impl Builder<'_> {
                 discrete.push(model(name, cells, kind));
             }
         }
-        if let (Some(some), false) = (discrete.first(), self.plan.steps_are_equal()) {
-            let (kind, name) = (kind_name(&some.spec.kind), &some.spec.name);
-            let message =
-                "point masses, springs and dashpots are not available in zones of unequal steps";
-            let problem = Problem::new(format!("{kind}.{name}"), message);
-            self.problems
-                .push(problem.accepted(["substeps = 1", "a case without zones"]));
-        }
         discrete
     }
 
@@ -273,16 +265,6 @@ fn model(name: &str, cells: Vec<ElementId>, kind: DiscreteKind) -> ModelDiscrete
         cells,
         kind,
     })
-}
-
-/// Table of the case file of a kind of discrete elements.
-pub(super) fn kind_name(kind: &DiscreteKind) -> &'static str {
-    match kind {
-        DiscreteKind::Mass(_) => "mass",
-        DiscreteKind::Spring(_) => "spring",
-        DiscreteKind::Dashpot(_) => "dashpot",
-        DiscreteKind::Fluid(_) => "fluid",
-    }
 }
 
 fn points(mesh: &mut Mesh, nodes: &[u32]) -> Vec<ElementId> {

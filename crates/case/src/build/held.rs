@@ -6,15 +6,18 @@ use carom_arlequin::{Rows, Term};
 use carom_dynamics::Support;
 use carom_mesh::Mesh;
 
-/// Directions in which supports hold each node of the mesh.
-pub(super) struct Held(Vec<[bool; 3]>);
+/// Translations and, after them, rotations that supports hold at each node of the mesh.
+pub(super) struct Held(Vec<[bool; 6]>);
 
 impl Held {
     pub(super) fn new(mesh: &Mesh, supports: &[Support]) -> Held {
-        let mut held = vec![[false; 3]; mesh.nodes.len()];
+        let mut held = vec![[false; 6]; mesh.nodes.len()];
+        let turns = if mesh.dim == 2 { 2..3 } else { 0..3 };
         for support in supports {
+            let turned = &support.fix_rotations[turns.clone()];
             for &node in &support.nodes {
-                for (held, fix) in held[node as usize].iter_mut().zip(support.fix) {
+                let fixed = support.fix[..mesh.dim].iter().chain(turned);
+                for (held, fix) in held[node as usize].iter_mut().zip(fixed) {
                     *held |= fix;
                 }
             }

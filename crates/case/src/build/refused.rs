@@ -42,6 +42,17 @@ impl Builder<'_> {
                 ])
             }
             Error::Zone { zone, cause } => self.refused_zone(zone, cause),
+            Error::DiscreteInZones { element, .. } => {
+                let path = match self.case.spring.get(element) {
+                    Some(_) => format!("spring.{element}.ends"),
+                    None if self.case.dashpot.get(element).is_some() => {
+                        format!("dashpot.{element}.ends")
+                    }
+                    None => format!("mass.{element}.on"),
+                };
+                let problem = Problem::new(path, error.to_string());
+                problem.accepted(["nodes of one zone", "substeps = 1"])
+            }
             Error::LinkScheme { zone, scheme, .. } => {
                 let given = self.plan.zones.iter().find(|own| own.name == *zone);
                 let path = given.map_or("time.scheme", |own| &own.scheme_path);

@@ -88,12 +88,6 @@ impl Builder<'_> {
                 ..ModelContact::new(name, secondary, primary, law)
             });
         }
-        if let (Some(stop), false) = (stops.first(), self.plan.steps_are_equal()) {
-            let message = "stops are not available in zones of unequal steps";
-            let problem = Problem::new(format!("stop.{}", stop.name), message);
-            self.problems
-                .push(problem.accepted(["substeps = 1", "a case without zones"]));
-        }
         stops
     }
 

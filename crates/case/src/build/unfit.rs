@@ -43,7 +43,7 @@ impl Builder<'_> {
             .found(format!(
                 "a least eigenvalue of {:.1e} of the scaled rows, most of it of node {node}, {at}, in {}",
                 rank.smallest,
-                axis(component)
+                axis(mesh, component)
             ))
             .accepted([
                 format!("at least {LEAST_RANK:e}"),
@@ -127,7 +127,11 @@ impl Builder<'_> {
     /// Warns of rows, named by node and direction.
     pub(super) fn name_rows(&mut self, joint: &str, mesh: &Mesh, rows: &[(u32, u32)], what: &str) {
         let name = |&(node, component): &(u32, u32)| {
-            format!("{} of node {node}, {}", axis(component), place(mesh, node))
+            format!(
+                "{} of node {node}, {}",
+                axis(mesh, component),
+                place(mesh, node)
+            )
         };
         self.name_all(joint, rows.iter().map(name), "constraint", what);
     }
@@ -178,8 +182,14 @@ pub(super) fn doubt(warning: &Warning) -> String {
     }
 }
 
-fn axis(component: u32) -> &'static str {
-    ["x", "y", "z"][component.min(2) as usize]
+/// A translation, or after them a rotation.
+fn axis(mesh: &Mesh, component: u32) -> &'static str {
+    let component = component as usize;
+    match (mesh.dim, component.checked_sub(mesh.dim)) {
+        (_, None) => ["x", "y", "z"][component],
+        (2, Some(_)) => "rz",
+        (_, Some(turned)) => ["rx", "ry", "rz"][turned.min(2)],
+    }
 }
 
 fn place(mesh: &Mesh, node: u32) -> String {

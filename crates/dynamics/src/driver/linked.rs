@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
+use carom_algebra::rotation::Rotation;
 use carom_bodies::{Body, Placement};
 use serde::{Deserialize, Serialize};
 
@@ -194,8 +195,7 @@ impl Driver {
                 u: &origin.u,
                 v: &still,
                 from: None,
-                // zones that step apart have no frames
-                frames: &[],
+                frames: &origin.frames,
                 dt: self.dt,
                 old: &origin.history[system.nonlinear.histories[k].clone()],
             };
@@ -365,6 +365,8 @@ pub struct Origin {
     pub u: Vec<f64>,
     /// Histories of its materials.
     pub history: Vec<f64>,
+    /// Rotations of its nodes.
+    pub frames: Vec<Rotation>,
 }
 
 impl Origin {
@@ -376,6 +378,7 @@ impl Origin {
             false => Origin {
                 u: driver.state().motion.u.clone(),
                 history: driver.state().motion.history.clone(),
+                frames: driver.state().motion.frames.clone(),
             },
         }
     }

@@ -5,6 +5,7 @@
 
 mod allocation;
 mod dense;
+mod kinds;
 mod monolithic;
 mod schemes;
 mod schemes_apart;
