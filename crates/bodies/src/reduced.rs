@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use carom_algebra::basis::{Amplitude, Basis};
 use carom_algebra::csr::Csr;
+use carom_algebra::reduce::dot;
 use carom_algebra::tensor::Mat3;
 use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_mesh::ElementId;
@@ -86,6 +87,8 @@ pub struct Reduced {
     nodes: Vec<u32>,
     /// Unknowns of the system.
     unknowns: Vec<u32>,
+    /// The same, as ranges of those that follow each other.
+    runs: Vec<Range<usize>>,
 }
 
 impl Reduced {
@@ -105,8 +108,16 @@ impl Reduced {
                 first..first + data.unknowns.of(0).len()
             }
         };
+        let mut runs: Vec<Range<usize>> = Vec::new();
+        for next in nodes.iter().map(own) {
+            match runs.last_mut() {
+                Some(run) if run.end == next.start => run.end = next.end,
+                _ => runs.push(next),
+            }
+        }
         Reduced {
-            unknowns: nodes.iter().flat_map(own).map(|i| i as u32).collect(),
+            unknowns: runs.iter().cloned().flatten().map(|i| i as u32).collect(),
+            runs,
             nodes,
             data,
         }
@@ -158,22 +169,23 @@ impl Reduced {
         visit(&self.nodes);
     }
 
-    fn each_product(
-        &self,
-        matrix: &[f64],
-        u: &dyn Fn(usize) -> f64,
-        visit: &mut dyn FnMut(usize, f64),
-    ) {
+    /// Visits the entries of a matrix times a vector of the system, by unknown.
+    fn each_product(&self, matrix: &[f64], u: &[f64], visit: &mut dyn FnMut(usize, f64)) {
         for (row, i) in matrix.chunks_exact(self.unknowns.len()).zip(&self.unknowns) {
-            let terms = row.iter().zip(&self.unknowns);
-            visit(*i as usize, terms.map(|(k, j)| k * u(*j as usize)).sum());
+            let (mut product, mut rest) = (0.0, row);
+            for run in &self.runs {
+                let (own, others) = rest.split_at(run.len());
+                product += dot(own, &u[run.clone()]);
+                rest = others;
+            }
+            visit(*i as usize, product);
         }
     }
 
     /// Adds K u to `f` and returns the strain energy (J).
     pub(crate) fn internal_force(&self, u: &[f64], f: &mut [f64]) -> f64 {
         let mut energy = 0.0;
-        self.each_product(&self.data.stiffness, &|i| u[i], &mut |i, force| {
+        self.each_product(&self.data.stiffness, u, &mut |i, force| {
             f[i] += force;
             energy += 0.5 * force * u[i];
         });
@@ -185,13 +197,13 @@ impl Reduced {
         let strain = match at.from {
             None => self.internal_force(at.u, f),
             Some(from) => {
-                let mean = |i: usize| 0.5 * (from[i] + at.u[i]);
-                self.each_product(&self.data.stiffness, &mean, &mut |i, force| f[i] += force);
+                let stiffness = &self.data.stiffness;
                 let mut energy = 0.0;
-                let u = |i: usize| at.u[i];
-                self.each_product(&self.data.stiffness, &u, &mut |i, force| {
+                self.each_product(stiffness, at.u, &mut |i, force| {
+                    f[i] += 0.5 * force;
                     energy += 0.5 * force * at.u[i];
                 });
+                self.each_product(stiffness, from, &mut |i, force| f[i] += 0.5 * force);
                 energy
             }
         };
@@ -204,7 +216,7 @@ impl Reduced {
     /// Adds C v to `f`.
     pub(crate) fn add_damping_force(&self, v: &[f64], f: &mut [f64]) {
         if let Some(damping) = &self.data.damping {
-            self.each_product(damping, &|i| v[i], &mut |i, force| f[i] += force);
+            self.each_product(damping, v, &mut |i, force| f[i] += force);
         }
     }
 

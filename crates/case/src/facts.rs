@@ -416,7 +416,7 @@ fn contact_facts(built: &Built, contact: usize) -> String {
         "{law} law, {} points {}, {sliding} sliding, {gap}, {impact}{}",
         approach.points,
         where_it_holds(system, contact),
-        touching(pair)
+        touching(pair, approach.gap)
     )
 }
 
@@ -440,10 +440,10 @@ fn where_it_holds(system: &System, contact: usize) -> String {
     }
 }
 
-/// Mean gaps that count from where they are.
-fn touching(pair: &Contact) -> String {
+/// Mean gaps that count from where they are. `least`: gap at the start, m; one that is open has the offset of a clearance.
+fn touching(pair: &Contact, least: f64) -> String {
     let deepest = pair.offsets.iter().copied().fold(0.0, f64::max);
-    match deepest > 0.0 {
+    match deepest > 0.0 && least <= 1e-9 * deepest {
         true => format!(", mean gaps down to -{deepest:.4e} m at the start count as zero"),
         false => String::new(),
     }

@@ -19,6 +19,7 @@ mod modes;
 mod offenders;
 mod parse;
 mod reference;
+mod repeat;
 mod rules;
 mod run;
 mod study;

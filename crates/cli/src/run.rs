@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use carom_case::{Built, Finished, Input, schema::Case};
 
 use carom_output::plot::quantity;
-use carom_output::summary::Newton;
-use carom_output::{Grade, Summary};
+use carom_output::summary::{Contact, Newton};
+use carom_output::{Grade, Level, Summary};
 
 use crate::exit::{BAD, FAILED, INTERRUPTED};
 use crate::load::load;
@@ -133,50 +133,18 @@ fn print(summary: &Summary, folder: &Path) {
             out!("  links: {rows} constraints, work {work}{passes}");
         }
     }
-    for (name, contact) in &summary.contacts {
-        out!("  contact {name} ({} law)", contact.law);
-        let peak = quantity(contact.peak_force, "N");
-        match contact.mean_force.zip(contact.peak_mean_force) {
-            Some((mean, peak_of_mean)) => out!(
-                "    mean force {}, peak of the mean over {}: {}, raw peak {peak}",
-                quantity(mean, "N"),
-                quantity(contact.window, "s"),
-                quantity(peak_of_mean, "N")
-            ),
-            None => out!("    largest force {peak}"),
-        }
-        let times = match (contact.first_closing, contact.last_release) {
-            (Some(first), Some(last)) => format!(
-                ", closed from {} to {}",
-                quantity(first, "s"),
-                quantity(last, "s")
-            ),
-            (Some(first), None) => format!(", closed from {}", quantity(first, "s")),
-            (None, _) => ", never closed".to_string(),
-        };
-        let impulsive = match contact.impulsive == 0.0 {
-            true => String::new(),
-            false => format!(
-                ", of which {} in separate impulses",
-                quantity(contact.impulsive, "N s")
-            ),
-        };
-        match contact.impulse {
-            Some(impulse) => out!("    impulse {}{impulsive}{times}", quantity(impulse, "N s")),
-            None => out!("    static: no impulse{times}"),
-        }
-        if let Some(friction) = contact.friction {
-            out!(
-                "    friction coefficient {}, largest friction force {}",
-                friction.coefficient,
-                quantity(friction.peak_force, "N")
-            );
-        }
-        if let Some(mixed) = contact.mixed_supports {
-            out!(
-                "    weak form: at most {mixed} nodes with partly closed supports, where the pressure depends on r"
-            );
-        }
+    // contacts that are judged together are told together
+    let together = summary
+        .levels
+        .values()
+        .filter(|level| level.contacts.len() > 1);
+    let together: Vec<&String> = together.flat_map(|level| &level.contacts).collect();
+    for (name, level) in &summary.levels {
+        print_level(name, level);
+    }
+    let alone = summary.contacts.iter();
+    for (name, contact) in alone.filter(|(name, _)| !together.contains(name)) {
+        print_contact(name, contact);
     }
     if let Some(exact) = &summary.exact {
         let percent = |error: Option<f64>| {
@@ -212,6 +180,84 @@ fn print(summary: &Summary, folder: &Path) {
     out!("  {}", verdict(summary));
     out!("  report: {}", folder.join("report.html").display());
     out!("  figures: {}", folder.join("plots").display());
+}
+
+/// The forces of a contact.
+fn print_contact(name: &str, contact: &Contact) {
+    out!("  contact {name} ({} law)", contact.law);
+    let peak = quantity(contact.peak_force, "N");
+    match contact.mean_force.zip(contact.peak_mean_force) {
+        Some((mean, peak_of_mean)) => out!(
+            "    mean force {}, peak of the mean over {}: {}, raw peak {peak}",
+            quantity(mean, "N"),
+            quantity(contact.window, "s"),
+            quantity(peak_of_mean, "N")
+        ),
+        None => out!("    largest force {peak}"),
+    }
+    let times = match (contact.first_closing, contact.last_release) {
+        (Some(first), Some(last)) => format!(
+            ", closed from {} to {}",
+            quantity(first, "s"),
+            quantity(last, "s")
+        ),
+        (Some(first), None) => format!(", closed from {}", quantity(first, "s")),
+        (None, _) => ", never closed".to_string(),
+    };
+    let impulsive = match contact.impulsive == 0.0 {
+        true => String::new(),
+        false => format!(
+            ", of which {} in separate impulses",
+            quantity(contact.impulsive, "N s")
+        ),
+    };
+    match contact.impulse {
+        Some(impulse) => out!("    impulse {}{impulsive}{times}", quantity(impulse, "N s")),
+        None => out!("    static: no impulse{times}"),
+    }
+    if let Some(friction) = contact.friction {
+        out!(
+            "    friction coefficient {}, largest friction force {}",
+            friction.coefficient,
+            quantity(friction.peak_force, "N")
+        );
+    }
+    if let Some(mixed) = contact.mixed_supports {
+        out!(
+            "    weak form: at most {mixed} nodes with partly closed supports, where the pressure depends on r"
+        );
+    }
+}
+
+/// The impacts of the contacts of a level, and its margins.
+fn print_level(name: &str, level: &Level) {
+    let found = &level.statistics;
+    let most = match found.worst.first() {
+        Some(worst) => format!(
+            ", largest force {} ({} at {}), impulses {}, energy lost {}",
+            quantity(worst.peak_force, "N"),
+            worst.contact,
+            quantity(worst.time, "s"),
+            quantity(found.impulse, "N s"),
+            quantity(found.energy_lost, "J")
+        ),
+        None => String::new(),
+    };
+    out!("  level {name}: {} impacts{most}", found.count);
+    let margins = [
+        ("force", "N", &level.force_margin),
+        ("energy", "J", &level.energy_margin),
+    ];
+    for (of, unit, margin) in margins {
+        let Some(margin) = margin else { continue };
+        if let Some(left) = margin.margin {
+            let allowable = quantity(margin.allowable, unit);
+            out!(
+                "    margin to the allowable {of} of {allowable}: {:.0} %",
+                100.0 * left
+            );
+        }
+    }
 }
 
 /// What the scheme itself took from the energy, or made.

@@ -34,6 +34,9 @@ struct Part {
     own: [Sum; 3],
     /// R of loads, supports and links, and of supports against contact forces that have an impulse of their own.
     before: [[f64; 3]; 2],
+    /// Impulse of the contacts until now, while it is gathered.
+    #[serde(skip)]
+    given: [f64; 3],
 }
 
 /// Sum of the forces on the unknowns of a part; of an axisymmetric one only the axial sum is a force.
@@ -144,19 +147,24 @@ impl Exchange {
         momenta: impl Fn(usize) -> [f64; 3],
         records: &[ContactRecord],
     ) {
-        for (number, (part, range)) in self.parts.iter().zip(&system.parts).enumerate() {
-            let now = axial(system, momenta(number));
-            let mut given = [0.0; 3];
-            for (record, (secondary, primary)) in records.iter().zip(&system.sides) {
-                let impulse = axial(system, record.exchanged());
-                let on =
-                    |body: usize| f64::from(u8::from(range.contains(&system.first_unknown(body))));
-                let sign = on(*secondary) - primary.map_or(0.0, on);
-                for i in 0..3 {
-                    given[i] += sign * impulse[i];
-                }
-                self.largest_momentum = self.largest_momentum.max(largest(&impulse));
+        for (record, (secondary, primary)) in records.iter().zip(&system.sides) {
+            let impulse = axial(system, record.exchanged());
+            self.largest_momentum = self.largest_momentum.max(largest(&impulse));
+            let of = |body: usize| system.part_of_body[body];
+            let (one, other) = (of(*secondary), primary.map(of));
+            if Some(one) == other {
+                continue;
             }
+            for i in 0..3 {
+                self.parts[one].given[i] += impulse[i];
+                if let Some(other) = other {
+                    self.parts[other].given[i] -= impulse[i];
+                }
+            }
+        }
+        for (number, part) in self.parts.iter_mut().enumerate() {
+            let now = axial(system, momenta(number));
+            let given = std::mem::take(&mut part.given);
             let left = [0, 1, 2].map(|i| now[i] - part.start[i] - part.own[i].get() - given[i]);
             self.largest_residual = self.largest_residual.max(largest(&left));
             self.largest_momentum = self.largest_momentum.max(largest(&now));

@@ -139,6 +139,11 @@ impl ContactRecord {
 }
 
 impl ContactRecord {
+    /// Begins with this total force and force on the secondary body, N: what is compressed at the start.
+    pub(crate) fn begin(&mut self, force: (f64, [f64; 3])) {
+        self.last = force;
+    }
+
     /// Counts the points whose force begins in a step. `opened`: when that of each point ended last, s.
     fn count_closings(&mut self, system: &System, contact: usize, step: &Step, opened: &mut [f64]) {
         let first = system.first_point[contact];

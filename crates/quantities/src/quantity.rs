@@ -382,6 +382,7 @@ mod tests {
         reads::<super::SecondMoment>();
         reads::<super::Duration>();
         reads::<super::Density>();
+        reads::<super::LineMass>();
         reads::<super::Modulus>();
         reads::<super::Velocity>();
         reads::<super::Acceleration>();

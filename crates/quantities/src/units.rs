@@ -33,6 +33,7 @@ const NAMED: &[(&str, &str, Dimension)] = &[
     ("acceleration", "m/s^2", dimension(1, 0, -2)),
     ("force", "N", dimension(1, 1, -2)),
     ("moment of inertia", "kg*m^2", dimension(2, 1, 0)),
+    ("mass per length", "kg/m", dimension(-1, 1, 0)),
     ("energy", "J", dimension(2, 1, -2)),
     ("moment", "N*m", dimension(2, 1, -2)),
     ("power", "W", dimension(2, 1, -3)),

@@ -191,15 +191,6 @@ impl System {
         momentum.map(|p| p / total)
     }
 
-    /// An unknown of a body.
-    pub fn first_unknown(&self, body: usize) -> usize {
-        let mut first = None;
-        self.bodies[body].each_element(&mut |nodes| {
-            first.get_or_insert(self.unknowns.first(nodes[0]));
-        });
-        first.unwrap_or(0)
-    }
-
     /// Nodes of a range of unknowns that has all of theirs.
     pub fn nodes_of(&self, unknowns: &Range<usize>) -> Range<usize> {
         let [first, last] = [unknowns.start, unknowns.end - 1];

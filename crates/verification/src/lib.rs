@@ -35,6 +35,7 @@ mod arlequin_oblique;
 mod arlequin_pulse;
 mod arlequin_stability;
 mod arlequin_start;
+mod assembly_row;
 mod bar_dropped;
 mod bar_on_stop;
 mod bar_on_wall;
@@ -160,6 +161,7 @@ registry! {
     arlequin_pulse
     arlequin_stability
     arlequin_start
+    assembly_row
     bar_on_stop
     bar_dropped
     bar_on_wall

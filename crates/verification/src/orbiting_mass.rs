@@ -8,9 +8,7 @@
 //!
 //! Tolerance: the schemes are of second order: with x = ω dt, ω = V/ρ, they miss the angle by at most x² times it, 2π in one turn,
 //! and the start by a radial speed of V x², which swings on the stop at ω_r = √(K/m): x² V/ω_r in the radius, and that
-//! times K in the force, ω_r/ω x² of it; three times these, since the swing is resolved by 46 steps in the quick tier. Schemes
-//! with an acceleration in their state begin without a contact force: the first half step lacks it, a radial speed of
-//! V x/2, so that x ω/(2 ω_r) of the radius and x ω_r/(2 ω) of the force are added, of first order. The
+//! times K in the force, ω_r/ω x² of it; three times these, since the swing is resolved by 46 steps in the quick tier. The
 //! angular momentum changes by what the normal of a step is off, x² per radian at most. The off-centre profile adds its unevenness: with
 //! 48 points at an eccentricity of 30 % below 1e-6 of its radius, times K over the force.
 
@@ -63,22 +61,18 @@ fn orbit(
     let behind = y.atan2(x).abs();
     let second = (TAU / steps).powi(2);
     let swing = (STIFFNESS / MASS).sqrt() * radius / SPEED;
-    let late = match scheme.get().keeps_acceleration() {
-        true => 0.5 * TAU / steps,
-        false => 0.0,
-    };
     let name = format!("{name}, {}", scheme.get().name());
     let row = |what: &str, value, bound| Row::at_most(format!("{name}: {what}"), value, bound);
     let mut rows = vec![
         row(
             "error of the force",
             off,
-            swing * (late + 3.0 * second) + uneven * STIFFNESS / force,
+            swing * 3.0 * second + uneven * STIFFNESS / force,
         ),
         row(
             "error of the radius",
             away,
-            (late + 3.0 * second) / swing + uneven / radius,
+            3.0 * second / swing + uneven / radius,
         ),
         row(
             "error of the angular momentum",

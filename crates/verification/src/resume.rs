@@ -69,7 +69,7 @@ pub(crate) const CHECK: Check = Check {
 
 /// Compares the run of so many steps with those cut after so many, and each of its steps with that step taken by a new
 /// driver.
-fn cuts(
+pub(crate) fn cuts(
     battery: &mut Battery,
     system: &Arc<System>,
     (steps, cuts): (u64, [u64; 4]),

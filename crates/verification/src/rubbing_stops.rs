@@ -11,7 +11,7 @@
 //! The law holds there in the way of the step: the rate of sliding that it leaves is at most that before the step, which
 //! friction would undo in one step, 3 μ g dt or μ N dt (R1²/J1 + R2²/J2). Of speeds that is the tolerance, of the time one
 //! step and a half, of the energy the energy of that rate; of the time of the wheels under Newmark's scheme one step more, since it
-//! begins without a contact force and the first step has half of it. What both keep together: round-off.
+//! begins with the normal force of the stop but without friction, of which the first step has half. What both keep together: round-off.
 
 use carom_dynamics::{Driver, Scheme, Support, System};
 

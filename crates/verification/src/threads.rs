@@ -57,11 +57,11 @@ pub(crate) const CHECK: Check = Check {
     },
 };
 
-fn pool(threads: usize) -> Result<ThreadPool, Error> {
+pub(crate) fn pool(threads: usize) -> Result<ThreadPool, Error> {
     Ok(ThreadPoolBuilder::new().num_threads(threads).build()?)
 }
 
-fn run(pool: &ThreadPool, system: &Arc<System>, steps: u64) -> Result<State, Error> {
+pub(crate) fn run(pool: &ThreadPool, system: &Arc<System>, steps: u64) -> Result<State, Error> {
     pool.install(|| {
         let mut driver = Driver::new(system.clone())?;
         advance(&mut driver, steps)?;

@@ -83,19 +83,9 @@ impl Builder<'_> {
         let mut made = Vec::new();
         for (name, fluid) in self.case.fluid.iter() {
             let path = format!("fluid.{name}");
-            let [inner, outer] = fluid.diameters.map(|d| 0.5 * d.0);
-            if inner >= outer {
-                let problem = Problem::new(
-                    format!("{path}.diameters"),
-                    "no gap is between these diameters",
-                );
-                self.problems.push(
-                    problem
-                        .found(format!("{} m and {} m", 2.0 * inner, 2.0 * outer))
-                        .accepted(["the inner one first, and less than the outer one"]),
-                );
+            let Some(per_length) = self.fluid_per_length(&path, fluid) else {
                 continue;
-            }
+            };
             let Some((pairs, axis)) = self.beside(mesh, &path, fluid) else {
                 continue;
             };
@@ -120,13 +110,31 @@ impl Builder<'_> {
                     name,
                     cells,
                     kind: DiscreteKind::Fluid(FluidGap {
+                        masses: per_length.map(|mass| mass * length),
                         axis: Some(axis),
-                        ..FluidGap::new(fluid.density.0, [inner, outer], length)
                     }),
                 }));
             }
         }
         made
+    }
+
+    /// Masses of a fluid per length, kg/m.
+    fn fluid_per_length(&mut self, path: &str, fluid: &schema::FluidGap) -> Option<[f64; 3]> {
+        let (Some(diameters), Some(density)) = (fluid.diameters, fluid.density) else {
+            return fluid.relative_mass.map(|mass| [mass.0, -mass.0, mass.0]);
+        };
+        let [inner, outer] = diameters.map(|d| 0.5 * d.0);
+        if inner < outer {
+            return Some(FluidGap::new(density.0, [inner, outer], 1.0).masses);
+        }
+        let message = "no gap is between these diameters";
+        let problem = Problem::new(format!("{path}.diameters"), message);
+        let found = format!("{} m and {} m", 2.0 * inner, 2.0 * outer);
+        let accepted = "the inner one first, and less than the outer one";
+        self.problems
+            .push(problem.found(found).accepted([accepted]));
+        None
     }
 
     /// Pairs of nodes beside each other with the length that each stands for (m), and the axis.
@@ -138,12 +146,34 @@ impl Builder<'_> {
     ) -> Option<(Vec<Pair>, [f64; 3])> {
         let inner = self.group(mesh, &format!("{path}.inner"), &fluid.inner)?;
         let outer = self.group(mesh, &format!("{path}.outer"), &fluid.outer)?;
+        if let (Some(length), Some(axis)) = (fluid.length, &fluid.axis) {
+            let nodes = [inner, outer].map(|group| mesh.group_nodes(group));
+            let axis = self.normal(mesh, &format!("{path}.axis"), axis)?;
+            return match [&nodes[0][..], &nodes[1][..]] {
+                [[one], [other]] => Some((vec![([*one, *other], length.0)], axis)),
+                _ => {
+                    let problem =
+                        Problem::new(format!("{path}.length"), "a length is that of one node");
+                    let found = format!(
+                        "{} and {}",
+                        plural(nodes[0].len(), "node"),
+                        plural(nodes[1].len(), "node")
+                    );
+                    let accepted = ["groups of one node", "groups of lines, without `length`"];
+                    self.problems.push(problem.found(found).accepted(accepted));
+                    None
+                }
+            };
+        }
         let lines = |group: &Group| group.dim == 1;
         if !lines(inner) || !lines(outer) {
             let key = if lines(inner) { "outer" } else { "inner" };
             let problem = Problem::new(format!("{path}.{key}"), "a fluid gap is along lines");
-            self.problems
-                .push(problem.accepted(["a group of bars or beams"]));
+            let accepted = [
+                "a group of bars or beams",
+                "a group of one node with `length` and `axis`",
+            ];
+            self.problems.push(problem.accepted(accepted));
             return None;
         }
         let (own, others) = (mesh.group_nodes(inner), mesh.group_nodes(outer));

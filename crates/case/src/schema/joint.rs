@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use carom_quantities::{Density, Length, LineMass, Modulus};
 
 use super::axis::Axis;
+use super::obstacle::NormalVector;
 
 /// A hinge in a body of beams.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -83,16 +84,26 @@ pub struct ConstraintTerm {
     pub factor: f64,
 }
 
-/// The inertia of a fluid in the gap between two coaxial bodies: a mass matrix between nodes that stand beside each other.
+/// The inertia of a fluid between two bodies beside each other: a mass matrix between nodes that stand beside each other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend(
+    "oneOf" = [{ "required": ["diameters"] }, { "required": ["relative-mass"] }],
+    "dependentRequired" = { "diameters": ["density"], "density": ["diameters"], "length": ["axis"], "axis": ["length"] },
+))]
 pub struct FluidGap {
-    /// Group of the cells of the inner body, lines.
+    /// Group of the cells of the inner body, lines, or of one node.
     pub inner: String,
-    /// Group of the cells of the outer body, lines with as many nodes at the same places along the axis.
+    /// Group of the cells of the outer body, lines with as many nodes at the same places along the axis, or of one node.
     pub outer: String,
-    /// Density of the fluid.
-    pub density: Density,
-    /// Inner and outer diameter of the gap.
-    pub diameters: [Length; 2],
+    /// Density of the fluid between coaxial bodies.
+    pub density: Option<Density>,
+    /// Inner and outer diameter of the gap between coaxial bodies.
+    pub diameters: Option<[Length; 2]>,
+    /// Mass per length that opposes the motion of the bodies relative to each other across the axis.
+    pub relative_mass: Option<LineMass>,
+    /// Length that groups of one node stand for.
+    pub length: Option<Length>,
+    /// Axis of the bodies at groups of one node: the fluid opposes motion across it.
+    pub axis: Option<NormalVector>,
 }

@@ -89,6 +89,11 @@ pub struct Case {
     pub carom: u32,
     /// Title of the report.
     pub title: Option<String>,
+    /// Indices with their first and last values. A table with `{n}` in its name stands for one table for each value of the index `n`;
+    /// texts in it may have `{n}`, `{n+1}` or `{n*0.25}` as well. Where two make the same table, the keys of the one that has fewer
+    /// indices count, and those of a table that is written out before all.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub repeat: Named<[i64; 2]>,
     /// Source of the mesh.
     #[serde(default, skip_serializing_if = "Mesh::is_empty")]
     pub mesh: Mesh,

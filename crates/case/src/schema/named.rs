@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 
-/// Names, as a regular expression for editors.
-const NAME_PATTERN: &str = "^[A-Za-z0-9_-]+$";
+/// Names, as a regular expression for editors; in braces indices of `[repeat]`.
+const NAME_PATTERN: &str = "^([A-Za-z0-9_-]|\\{[^{}]+\\})+$";
 
 /// Things by name. A name is made of ASCII letters, digits, `_` and `-`: it becomes part of file and column names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -12,6 +12,7 @@ mod quadrature;
 mod reductions;
 mod reference;
 mod refine;
+mod repeat;
 mod stage_one;
 mod verdict;
 mod warnings;

@@ -2,51 +2,30 @@
 
 use std::sync::Arc;
 
+use carom_contact::Balance;
 use carom_contact::law::{End, Level, Local, Status};
-use carom_contact::{Balance, Sliding};
 
 use super::paired::{Paired, append, instant, looks_ahead, part_way, told};
 use super::{Driver, Vectors};
 use crate::step_map::{Row, StepMap};
 
 impl Driver {
-    /// The configuration in which a contact is paired: of a law in the gap the one that it constrains, of a law in the rate
-    /// the captured one, which is known; of a scheme between two states their middle. With small sliding gaps are linear in
-    /// the displacement, and are those of a configuration that is known.
+    /// The configuration in which a contact is paired.
     pub(super) fn paired_at(&self, number: usize) -> Paired {
-        let contact = &self.system.contacts[number];
-        let law = self.law(contact);
-        let captured = Paired::Captured(law.get().capture());
-        let dynamic = !self.maps.is_static();
-        if contact.sliding == Sliding::Small || dynamic && !self.system.pairs_anew(number) {
-            return captured;
-        }
-        if self.between() {
-            return Paired::Middle;
-        }
-        match law.get().level() {
-            Level::Rate => captured,
-            Level::Gap => Paired::Gap,
-            Level::GapAndRate => Paired::Compliant,
-        }
+        self.manners[number].paired
     }
 
     /// Derivative of the paired configuration by the unknown; zero where all of it is known before the step.
     pub(super) fn turning(&self, contact: usize) -> f64 {
-        let paired = self.paired_at(contact);
-        let (secondary, primary) = self.system.sides[contact];
-        let sides = [Some(secondary), primary].into_iter().flatten();
-        let maps = sides.map(|body| &self.maps.all()[self.system.zone_of_body[body]]);
-        maps.fold(0.0, |most, map| f64::max(most, paired.row(map).x))
+        self.manners[contact].turning
     }
 
     /// Pairs all contacts at the x of the iteration. `first`: those in known configurations too.
     pub(super) fn pair(&mut self, first: bool) {
         let system = Arc::clone(&self.system);
-        let mut contacts = 0..system.contacts.len();
         // moments about axes that turn depend on the rotation of the step
         let turns = !system.unknowns.turning().is_empty();
-        if !first && !turns && contacts.all(|k| self.turning(k) == 0.0) {
+        if !first && !turns && !self.turns {
             return;
         }
         if turns {
@@ -56,9 +35,11 @@ impl Driver {
                 .whole(|map| map.displacement, &self.state.motion, [x, push], end);
         }
         self.pairing.clear();
+        let predicts = !self.vectors.ahead.is_empty();
+        let mut placed = None;
         for (k, contact) in system.contacts.iter().enumerate() {
             let paired = self.paired_at(k);
-            let ahead = self.looks_ahead(k) && !self.vectors.ahead.is_empty();
+            let ahead = predicts && self.looks_ahead(k);
             let motion = &self.state.motion;
             let Vectors {
                 x,
@@ -67,12 +48,16 @@ impl Driver {
                 ahead: predicted,
                 ..
             } = &mut self.vectors;
+            let configuration = (!ahead).then_some(paired);
             match ahead {
                 true => part_way(motion, predicted, &contact.law, place),
+                // where the one before was paired
+                false if placed == configuration => {}
                 false => self
                     .maps
                     .whole(|map| paired.row(map), motion, [x, push], place),
             }
+            placed = configuration;
             self.pairing.span = self.span(k);
             let first = self.pairing.len();
             self.append(k, self.state.time + self.paired_after(k));
@@ -108,9 +93,9 @@ impl Driver {
         let motion = &self.state.motion;
         let xc = [&self.vectors.x[..], &self.vectors.push];
         let (law, paired) = (self.law(contact), self.paired_at(number));
-        let ahead = |map: &StepMap| instant(map, &law).0[0].since(&paired.row(map));
+        let ahead = |map: &StepMap| instant(map, law).0[0].since(&paired.row(map));
         let rate = |map: &StepMap| {
-            let mut rate = instant(map, &law).0[1];
+            let mut rate = instant(map, law).0[1];
             if !pushed {
                 rate.c = 0.0;
             }
@@ -134,7 +119,7 @@ impl Driver {
     /// the map.
     pub(super) fn constrained(&self, number: usize) -> ([Row; 2], [f64; 2]) {
         let law = self.law(&self.system.contacts[number]);
-        instant(self.map_of(number), &law)
+        instant(self.map_of(number), law)
     }
 
     /// What a motion of the unknown along the row of a point adds to the gap and the rate that its law constrains.
@@ -194,7 +179,7 @@ impl Driver {
             return law.get().watches(gap, tolerance);
         }
         let rate = self.rate_at_start(point);
-        told(&law, (gap, rate), self.moves(point), tolerance)
+        told(law, (gap, rate), self.moves(point), tolerance)
     }
 
     /// Takes the multipliers of the weak forms that belong to the forces as they stand.
@@ -322,15 +307,14 @@ impl Driver {
 
     /// Whether all is linear in the unknown, so that one iteration is all.
     pub(super) fn is_affine(&self) -> bool {
-        let mut contacts = 0..self.system.contacts.len();
-        !self.effective.iterates() && contacts.all(|k| self.turning(k) == 0.0)
+        !self.turns && !self.effective.iterates()
     }
 
     /// Whether a contact is paired where the step is predicted to lead.
     pub(super) fn looks_ahead(&self, contact: usize) -> bool {
         let map = self.map_of(contact);
         let contact = &self.system.contacts[contact];
-        !self.between() && looks_ahead(map, contact, &self.law(contact))
+        !self.between() && looks_ahead(map, contact, self.law(contact))
     }
 
     /// Moves the gaps of the points from `first` on, paired at the configuration in `place`, to another one.

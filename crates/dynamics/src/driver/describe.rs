@@ -34,7 +34,7 @@ impl Driver {
         let (gap, rate) = self.now(point, false);
         let [closing, approach] = self.added(point, free);
         Candidate {
-            law: self.law(contact),
+            law: *self.law(contact),
             local: self.local(point, gap + closing),
             rate_free: rate + approach,
             status: self.next.interface.status[point],

@@ -143,11 +143,12 @@ impl Driver {
             *v -= change;
         }
         self.evaluate_loads(self.state.time);
-        let (load, inside) = (&self.vectors.load, &self.state.motion.internal_force);
+        let (load, motion) = (&self.vectors.load, &self.state.motion);
+        let (inside, contact) = (&motion.internal_force, &motion.contact_force);
         let damping = &self.vectors.damping;
         let free = |i: usize| match system.fixed[i] {
             true => 0.0,
-            false => load[i] - inside[i] - damping[i],
+            false => load[i] + contact[i] - inside[i] - damping[i],
         };
         let balance: Vec<f64> = (0..n).map(free).collect();
         let accelerations = solve(&balance);

@@ -19,6 +19,7 @@ mod attempt;
 mod balance;
 mod candidates;
 mod carried;
+mod compressed;
 mod contacts;
 mod describe;
 mod direct;
@@ -35,6 +36,7 @@ pub mod linked;
 mod linking;
 mod links;
 mod loads;
+mod manner;
 mod matrices;
 mod mixing;
 mod obstacles;
@@ -77,10 +79,14 @@ use floating::Floating;
 use impulse::Impulses;
 use leapfrog::Direct;
 use linking::Multipliers;
+use manner::Manner;
 use mixing::Mixing;
 use scratch::{Pace, Predictor, Projected, Restoring, Vectors};
 use supports::Jump;
 use weak::{WeakForms, WithWeak};
+
+/// What a law in the rate is in a static stage.
+static AT_REST: Law = Law::Displacement(Displacement { projection: false });
 
 /// Takes steps.
 pub struct Driver {
@@ -88,6 +94,11 @@ pub struct Driver {
     /// Size of the attempt under way, s, and the maps of the zones.
     dt: f64,
     maps: Maps,
+    /// Size and stage of these maps; none before they are made.
+    sized: Option<(f64, f64, bool)>,
+    manners: Vec<Manner>,
+    /// Whether any contact is paired where the unknown leads.
+    turns: bool,
     /// The energy identity of the scheme; none of a static step, or where none is known.
     identity: Option<EnergyIdentity>,
     effective: Effective,
@@ -190,12 +201,10 @@ impl Driver {
 
     /// The law of a contact in the attempt under way. In a static stage nothing has a rate: a law in the rate holds in the
     /// gap there, as the displacement law.
-    pub(super) fn law(&self, contact: &Contact) -> Law {
+    pub(super) fn law<'a>(&self, contact: &'a Contact) -> &'a Law {
         match contact.law.get().level() {
-            Level::Rate if self.maps.is_static() => {
-                Law::Displacement(Displacement { projection: false })
-            }
-            _ => contact.law,
+            Level::Rate if self.maps.is_static() => &AT_REST,
+            _ => &contact.law,
         }
     }
 
@@ -241,6 +250,16 @@ impl Driver {
     /// The map of the step of this size from the present state, of an explicit scheme before one of the size `next` (both s).
     pub(super) fn size(&mut self, dt: f64, next: f64) {
         self.dt = dt;
+        let sized = Some((dt, next, self.is_static()));
+        if self.sized == sized {
+            return;
+        }
+        self.sized = sized;
+        self.renew_maps(dt, next);
+        self.renew_manners();
+    }
+
+    fn renew_maps(&mut self, dt: f64, next: f64) {
         if self.is_static() {
             self.maps.rest();
             self.identity = None;

@@ -7,7 +7,7 @@ use crate::step_map::{Row, StepMap};
 use crate::system::{Motion, System};
 
 /// The configuration in which a contact is paired.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) enum Paired {
     /// The newest known before the unknown, and a part of the way of the step on with its velocity.
     Captured(f64),

@@ -59,6 +59,9 @@ impl Driver {
         let mut driver = Driver {
             dt: 0.0,
             maps,
+            sized: None,
+            manners: Vec::new(),
+            turns: false,
             identity: None,
             effective: Effective::new(),
             direct: Direct::of(&system),
@@ -186,22 +189,20 @@ impl Driver {
         let system = Arc::clone(&self.system);
         self.size(system.dt, system.dt);
         self.prepared = false;
+        self.state.records = Records::of(&system);
+        self.vectors.x.fill(0.0);
+        self.compress();
         self.next.clone_from(&self.state);
         self.begin()?;
         if self.has_links() {
+            // links change the velocities, on which the forces depend that links answer to
+            self.start_links()?;
+            self.compress();
+            self.begin()?;
             self.start_links()?;
             self.begin()?;
         }
         self.state.control = Control::start(system.dt);
-        self.state.records = Records::of(&system);
-        self.vectors.x.fill(0.0);
-        self.pair_now();
-        for point in 0..system.points() {
-            self.state.interface.gap[point] = self.pairing.rows.gap(point);
-            self.state.interface.rate[point] =
-                self.pairing.rows.product(point, &self.state.motion.v)
-                    + self.pairing.rows.rate(point);
-        }
         self.next.clone_from(&self.state);
         self.tell(0.0);
         Ok(())
@@ -268,12 +269,17 @@ impl Driver {
             *force += system.load[i] + motion.link_of(i);
         }
         system.mass.multiply(&motion.v, place);
-        let none = vec![0.0; work.len()];
-        self.state.exchange = Exchange::start(&system, place, [work, &none]);
+        let map = self.maps.first();
+        let apart = map.impulse != map.contact_impulse;
+        let contact = &self.state.motion.contact_force;
+        let held = |(&force, &fixed): (&f64, &bool)| if apart && fixed { -force } else { 0.0 };
+        let held: Vec<f64> = contact.iter().zip(&system.fixed).map(held).collect();
+        self.state.exchange = Exchange::start(&system, place, [work, &held]);
+        let held = Resultant::of(&system, &held);
         let loads = Resultant::of(&system, &system.load);
         let link = Resultant::of(&system, &self.state.motion.link_force);
-        let none = Resultant::default();
-        let forces = [loads, none, supports, none, link];
+        let contact = Resultant::of(&system, &self.state.motion.contact_force);
+        let forces = [loads, contact, supports, held, link];
         let identity = self.identity.unwrap_or_default();
         self.state.ledger = Ledger::start(&energies, &identity, forces);
     }

@@ -1,0 +1,85 @@
+//! The forces of contacts that are compressed at the start.
+//!
+//! A law with a compliance gives its force for any gap and rate, so also for those at the start, where an acceleration in balance
+//! contains it: `M a_0 = p_0 - f_0 + Nᵀ P_0`. Without P_0 the first half step lacks it, an error of first order. Exact laws have no
+//! force before a step: theirs follows from it.
+
+use std::sync::Arc;
+
+use carom_contact::law::{ContactLaw, End, Level, Local, Status};
+
+use super::Driver;
+use super::record::total;
+
+/// Looks at the piece of a law's curve, each of which may lead to the next one.
+const LOOKS: u32 = 20;
+
+impl Driver {
+    /// Gives the state its gaps, rates, and the forces that laws with a compliance have there.
+    pub(super) fn compress(&mut self) {
+        let system = Arc::clone(&self.system);
+        self.pair_now();
+        for point in 0..system.points() {
+            let rows = &self.pairing.rows;
+            let (gap, rate) = (rows.gap(point), self.rate_at_start(point));
+            let interface = &mut self.state.interface;
+            (interface.gap[point], interface.rate[point]) = (gap, rate);
+            (interface.force[point], interface.carried[point]) = (0.0, 0.0);
+        }
+        self.state.motion.contact_force.fill(0.0);
+        for (number, contact) in system.contacts.iter().enumerate() {
+            let zone = system.zone_of_body[system.sides[number].0];
+            let law = self.law(contact);
+            let keeps = system.schemes[zone].get().keeps_acceleration();
+            if law.get().level() != Level::GapAndRate || !keeps || self.is_static() {
+                continue;
+            }
+            for point in system.points_of(number) {
+                let interface = &self.state.interface;
+                let (gap, rate) = (interface.gap[point], interface.rate[point]);
+                let (status, force) = at_rest(law.get(), (gap, rate), &self.local(point, gap));
+                if force == 0.0 {
+                    continue;
+                }
+                let interface = &mut self.state.interface;
+                interface.force[point] = force;
+                interface.carried[point] = force;
+                interface.status[point] = status;
+                let forces = &mut self.state.motion.contact_force;
+                self.pairing.rows.add_force(point, force, forces);
+            }
+            let force = |point: usize| self.state.interface.force[point];
+            let begun = total(&system, number, &self.pairing.rows, force);
+            self.state.records.contacts[number].begin(begun);
+        }
+    }
+}
+
+/// Status and force (N) of a law with a compliance at a gap (m) and a rate (m/s).
+fn at_rest(law: &dyn ContactLaw, (gap, rate): (f64, f64), local: &Local) -> (Status, f64) {
+    let (mut status, mut force) = (Status::Open, 0.0);
+    for look in 0..LOOKS {
+        let end = End {
+            gap_released: gap,
+            gap,
+            rate,
+            force,
+        };
+        let next = law.status(status, &end, local, look);
+        if next == status {
+            break;
+        }
+        status = next;
+        let relation = law.relation(status, local);
+        force = match status {
+            Status::Open => 0.0,
+            _ => {
+                -(relation.gap * gap + relation.rate * rate + relation.offset) / relation.compliance
+            }
+        };
+    }
+    match law.clips() {
+        true => (status, force.max(0.0)),
+        false => (status, force),
+    }
+}
