@@ -73,12 +73,7 @@ fn model(assemblies: u32, end: f64) -> Result<Model, Error> {
     }
     for own in &cells {
         let name = format!("a{}", bodies.len());
-        let spec = BodySpec::new(
-            &name,
-            own.clone(),
-            Kinematics::Beam(section.clone()),
-            BUNDLE,
-        );
+        let spec = BodySpec::new(&name, own.clone(), Kinematics::Beam(section), BUNDLE);
         bodies.push(ModelBody {
             mass: MassKind::Consistent,
             ..ModelBody::new(spec)
@@ -116,7 +111,7 @@ fn model(assemblies: u32, end: f64) -> Result<Model, Error> {
             };
             contacts.push(ModelContact {
                 initial: Initial::Gap(GAP),
-                ..ModelContact::new(&format!("g{k}-{gap}"), points, target, law)
+                ..ModelContact::new(format!("g{k}-{gap}"), points, target, law)
             });
         }
         for gap in 1..assemblies {
