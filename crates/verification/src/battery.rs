@@ -122,8 +122,9 @@ impl Battery {
     pub(crate) fn compare(&mut self, one: &State, other: &State) -> Result<(), Error> {
         self.pairs += 1;
         self.different += usize::from(one.to_bytes()? != other.to_bytes()?);
-        let closing = one.records.contacts[0].first_closing;
-        self.without_contact += usize::from(closing.is_none());
+        let mut contacts = one.records.contacts.iter();
+        let touched = contacts.any(|contact| contact.first_closing.is_some());
+        self.without_contact += usize::from(!touched);
         Ok(())
     }
 
