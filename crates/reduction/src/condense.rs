@@ -2,14 +2,14 @@
 
 use carom_algebra::csr::Csr;
 use carom_algebra::dense::DenseCholesky;
-use carom_algebra::eigen::Eigenpairs;
+use carom_algebra::eigen::{Eigenpairs, Problem, lowest};
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
+use crate::full::{Full, Keep};
 use crate::matrices::Matrices;
 use crate::quality::exact;
-use crate::reduce::Full;
 use crate::statics::{Statics, add, dot};
 
 /// Part of the shift below which ω² is that of a rigid motion.
@@ -43,6 +43,75 @@ impl Condensed {
 }
 
 impl Full {
+    pub(crate) fn condensed(&self, keep: &Keep) -> Result<Condensed, Error> {
+        let pairs = self.modes(keep)?;
+        let total = self.system.body_mass(0);
+        match keep.massless {
+            false => self.craig_bampton(&pairs, total),
+            true => self.macneal(&pairs, total),
+        }
+    }
+
+    /// Modes with held retained nodes, or with free ones.
+    fn modes(&self, keep: &Keep) -> Result<Eigenpairs, Error> {
+        let pairs = lowest(
+            &Problem {
+                stiffness: &self.matrices.stiffness,
+                mass: &self.matrices.mass,
+                fixed: &self.held(!keep.massless),
+                groups: self.system.unknowns.node_of_each(),
+                constraints: &[],
+            },
+            keep.modes,
+        );
+        let pairs = pairs.map_err(|cause| Error::Eigenvalues {
+            bodies: vec![self.name.clone()],
+            cause,
+        })?;
+        if keep.modes > pairs.existing {
+            return Err(Error::Count {
+                body: self.name.clone(),
+                asked: keep.modes,
+                exist: pairs.existing,
+            });
+        }
+        self.straightened(pairs)
+    }
+
+    /// The pairs, those of rigid motions exactly rigid: their combination nearest to each, where all of these are modes.
+    fn straightened(&self, mut pairs: Eigenpairs) -> Result<Eigenpairs, Error> {
+        let mass = self.system.body_masses[0].iter();
+        let total = self.system.body_mass(0);
+        let centre = [0, 1, 2].map(|i| {
+            let moments = mass
+                .clone()
+                .map(|(node, m)| m * self.system.x[*node as usize][i]);
+            moments.sum::<f64>() / total
+        });
+        let turned = (0..3).map(|axis| self.rotation(axis, centre));
+        let motions = (0..3).map(|axis| self.translation(axis)).chain(turned);
+        let moves = |motion: &Vec<f64>| motion.iter().any(|x| *x != 0.0);
+        let motions: Vec<Vec<f64>> = motions.filter(moves).collect();
+        let n = motions.len();
+        if rigid_modes(&pairs) != n {
+            return Ok(pairs);
+        }
+        let factor = DenseCholesky::new(n, &projected(&self.matrices.mass, &motions));
+        let factor = factor.map_err(|cause| self.refused(cause))?;
+        let mut image = vec![0.0; self.matrices.mass.n];
+        for mode in &mut pairs.vectors[..n] {
+            self.matrices.mass.multiply(mode, &mut image);
+            let mut parts: Vec<f64> = motions.iter().map(|motion| dot(motion, &image)).collect();
+            factor.solve(&mut parts);
+            mode.fill(0.0);
+            for (part, motion) in parts.iter().zip(&motions) {
+                add(*part, motion, mode);
+            }
+        }
+        pairs.values[..n].fill(0.0);
+        Ok(pairs)
+    }
+
     /// M φ of the modes.
     fn inertias(&self, pairs: &Eigenpairs) -> Vec<Vec<f64>> {
         let of = |mode: &Vec<f64>| {

@@ -6,6 +6,7 @@
 
 mod condense;
 mod error;
+mod full;
 mod matrices;
 mod modes;
 mod quality;
@@ -15,6 +16,7 @@ mod saved;
 mod statics;
 
 pub use error::Error;
+pub use full::Keep;
 pub use matrices::Matrices;
 pub use modes::{Modes, Participation, modes};
-pub use reduce::{Keep, Source, reduce, reduce_from};
+pub use reduce::{Source, reduce, reduce_from};

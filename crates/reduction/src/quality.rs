@@ -7,7 +7,7 @@ use carom_algebra::dense_eigen::eigenpairs;
 use carom_algebra::solver::Cholesky;
 
 use crate::error::Error;
-use crate::reduce::Full;
+use crate::full::Full;
 use crate::statics::{dot, mass_of};
 
 /// Frequencies (Hz) of modes that the basis has exactly.

@@ -4,35 +4,16 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use carom_algebra::basis::Amplitude;
-use carom_algebra::dense::DenseCholesky;
-use carom_algebra::eigen::{Eigenpairs, Problem, lowest};
-use carom_algebra::unknowns::Kind;
 use carom_bodies::{BodySpec, MassKind, Reducible, Reduction};
-use carom_system::{Damping, Model, ModelBody, System};
+use carom_system::{Damping, Model};
 
-use crate::condense::{Condensed, projected, rigid_modes};
+use crate::condense::Condensed;
 use crate::error::Error;
-use crate::matrices::Matrices;
-use crate::retained::retained;
-use crate::statics::{add, dot};
+use crate::full::{Full, Keep};
+use crate::statics::dot;
 
 /// Force of a rigid motion over the largest stiffness above which something else than the body holds it.
 const HELD: f64 = 1e-8;
-
-/// What a reduction keeps.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Keep {
-    /// Number of modes.
-    pub modes: usize,
-    /// Nodes of the mesh that are retained beside those on which something acts.
-    pub nodes: Vec<u32>,
-    /// Whether the retained unknowns have no mass: modes are then those of the body with free retained nodes.
-    pub massless: bool,
-    /// Damping ratio of the modes.
-    pub ratio: f64,
-    /// Rayleigh's damping.
-    pub rayleigh: Damping,
-}
 
 /// Reduces a body of a model: its system then has the unknowns of the retained nodes, on which contacts, links, other bodies,
 /// discrete elements, loads or motions act, and the amplitudes of modes.
@@ -85,17 +66,6 @@ pub fn reduce_from(
     };
     full.put(model, body, (keep, retained, condensed))?;
     Ok(source)
-}
-
-/// The full body by itself.
-pub(crate) struct Full {
-    pub(crate) name: String,
-    pub(crate) system: Arc<System>,
-    pub(crate) matrices: Matrices,
-    /// Held by supports, and not retained.
-    pub(crate) fixed: Vec<bool>,
-    /// Retained unknowns.
-    pub(crate) border: Vec<usize>,
 }
 
 fn reduction(
@@ -200,12 +170,6 @@ fn damping(condensed: &Condensed, keep: &Keep, mass: f64) -> Option<Vec<f64>> {
 }
 
 impl Full {
-    /// The full body, and the nodes of the mesh that are retained.
-    fn of(model: &Model, body: usize, keep: &Keep) -> Result<(Full, Vec<u32>), Error> {
-        let retained = retained(model, body, &keep.nodes);
-        Ok((Full::new(model, body, &retained)?, retained))
-    }
-
     /// Puts the reduction in the place of the body.
     fn put(
         &self,
@@ -218,167 +182,5 @@ impl Full {
         given.mass = MassKind::Consistent;
         given.reduced = Some(Arc::new(reduction));
         Ok(())
-    }
-
-    fn new(model: &Model, body: usize, retained: &[u32]) -> Result<Full, Error> {
-        let given = &model.bodies[body];
-        let refused = |why| Error::Refused {
-            body: given.spec.name.clone(),
-            why,
-        };
-        if given.rigid.is_some() {
-            return Err(refused("it is rigid"));
-        }
-        let own = ModelBody {
-            mass: given.mass,
-            ..ModelBody::new(given.spec.clone())
-        };
-        let system = System::whole(Model {
-            supports: model.supports.clone(),
-            ..Model::new(vec![own], model.mesh.clone(), model.scheme, 1.0)
-        })?;
-        if !system.bodies[0].is_linear() {
-            return Err(refused(
-                "it is at finite strain; a reduced body has the forces of small strain",
-            ));
-        }
-        let of_node = |&node: &u32| system.unknowns.of(system.number[node as usize]);
-        let border: Vec<usize> = retained.iter().flat_map(of_node).collect();
-        let mut fixed = system.fixed.clone();
-        border.iter().for_each(|&unknown| fixed[unknown] = false);
-        Ok(Full {
-            name: given.spec.name.clone(),
-            matrices: Matrices::new(&system),
-            system,
-            fixed,
-            border,
-        })
-    }
-
-    fn condensed(&self, keep: &Keep) -> Result<Condensed, Error> {
-        let pairs = self.modes(keep)?;
-        let total = self.system.body_mass(0);
-        match keep.massless {
-            false => self.craig_bampton(&pairs, total),
-            true => self.macneal(&pairs, total),
-        }
-    }
-
-    /// Modes with held retained nodes, or with free ones.
-    fn modes(&self, keep: &Keep) -> Result<Eigenpairs, Error> {
-        let pairs = lowest(
-            &Problem {
-                stiffness: &self.matrices.stiffness,
-                mass: &self.matrices.mass,
-                fixed: &self.held(!keep.massless),
-                groups: self.system.unknowns.node_of_each(),
-                constraints: &[],
-            },
-            keep.modes,
-        );
-        let pairs = pairs.map_err(|cause| Error::Eigenvalues {
-            bodies: vec![self.name.clone()],
-            cause,
-        })?;
-        if keep.modes > pairs.existing {
-            return Err(Error::Count {
-                body: self.name.clone(),
-                asked: keep.modes,
-                exist: pairs.existing,
-            });
-        }
-        self.straightened(pairs)
-    }
-
-    /// The pairs, those of rigid motions exactly rigid: their combination nearest to each, where all of these are modes.
-    fn straightened(&self, mut pairs: Eigenpairs) -> Result<Eigenpairs, Error> {
-        let mass = self.system.body_masses[0].iter();
-        let total = self.system.body_mass(0);
-        let centre = [0, 1, 2].map(|i| {
-            let moments = mass
-                .clone()
-                .map(|(node, m)| m * self.system.x[*node as usize][i]);
-            moments.sum::<f64>() / total
-        });
-        let turned = (0..3).map(|axis| self.rotation(axis, centre));
-        let motions = (0..3).map(|axis| self.translation(axis)).chain(turned);
-        let moves = |motion: &Vec<f64>| motion.iter().any(|x| *x != 0.0);
-        let motions: Vec<Vec<f64>> = motions.filter(moves).collect();
-        let n = motions.len();
-        if rigid_modes(&pairs) != n {
-            return Ok(pairs);
-        }
-        let factor = DenseCholesky::new(n, &projected(&self.matrices.mass, &motions));
-        let factor = factor.map_err(|cause| self.refused(cause))?;
-        let mut image = vec![0.0; self.matrices.mass.n];
-        for mode in &mut pairs.vectors[..n] {
-            self.matrices.mass.multiply(mode, &mut image);
-            let mut parts: Vec<f64> = motions.iter().map(|motion| dot(motion, &image)).collect();
-            factor.solve(&mut parts);
-            mode.fill(0.0);
-            for (part, motion) in parts.iter().zip(&motions) {
-                add(*part, motion, mode);
-            }
-        }
-        pairs.values[..n].fill(0.0);
-        Ok(pairs)
-    }
-
-    /// Unknowns that supports hold, and the retained ones.
-    pub(crate) fn held(&self, border: bool) -> Vec<bool> {
-        let mut held = self.fixed.clone();
-        self.border
-            .iter()
-            .for_each(|&unknown| held[unknown] |= border);
-        held
-    }
-
-    pub(crate) fn refused(&self, cause: carom_algebra::Error) -> Error {
-        Error::Static {
-            body: self.name.clone(),
-            cause,
-        }
-    }
-
-    /// 1 for translations along an axis.
-    pub(crate) fn translation(&self, axis: usize) -> Vec<f64> {
-        let moves = |i: usize| self.system.unknowns.kind(i) == Kind::Translation(axis);
-        let all = 0..self.system.unknowns();
-        all.map(|i| if moves(i) { 1.0 } else { 0.0 }).collect()
-    }
-
-    /// A motion without that of the unknowns that supports hold.
-    pub(crate) fn freed(&self, mut motion: Vec<f64>) -> Vec<f64> {
-        for (motion, _) in motion
-            .iter_mut()
-            .zip(&self.fixed)
-            .filter(|(_, fixed)| **fixed)
-        {
-            *motion = 0.0;
-        }
-        motion
-    }
-
-    /// The motion of a unit rotation about an axis through a place.
-    fn rotation(&self, axis: usize, about: [f64; 3]) -> Vec<f64> {
-        let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
-        let unknowns = &self.system.unknowns;
-        let of = |i: usize| {
-            let x = &self.system.x[unknowns.node(i) as usize];
-            match unknowns.kind(i) {
-                Kind::Translation(a) if a == j => about[k] - x[k],
-                Kind::Translation(a) if a == k => x[j] - about[j],
-                Kind::Rotation(a) if a == axis => 1.0,
-                _ => 0.0,
-            }
-        };
-        (0..self.system.unknowns()).map(of).collect()
-    }
-
-    /// Tᵀ M r.
-    pub(crate) fn inertia(&self, columns: &[Vec<f64>], motion: &[f64]) -> Vec<f64> {
-        let mut image = vec![0.0; motion.len()];
-        self.matrices.mass.multiply(motion, &mut image);
-        columns.iter().map(|column| dot(column, &image)).collect()
     }
 }

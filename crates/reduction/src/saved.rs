@@ -9,7 +9,7 @@ use carom_algebra::fingerprint::Fingerprint;
 
 use crate::condense::Condensed;
 use crate::error::Error;
-use crate::reduce::{Full, Keep};
+use crate::full::{Full, Keep};
 
 /// First word.
 const HEAD: &str = "carom-reduction";
