@@ -4,16 +4,7 @@ use carom_contact::Sliding;
 use carom_contact::law::Level;
 
 use super::Driver;
-use super::paired::Paired;
-
-/// How a contact is paired.
-#[derive(Clone, Copy)]
-pub(super) struct Manner {
-    /// The configuration in which it is.
-    pub(super) paired: Paired,
-    /// Derivative of that configuration by the unknown; zero where all of it is known before the step.
-    pub(super) turning: f64,
-}
+use super::paired::{Manner, Paired};
 
 impl Driver {
     /// The manners of the contacts, after the size of the step or its stage has changed.

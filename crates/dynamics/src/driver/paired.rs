@@ -43,6 +43,15 @@ impl Paired {
     }
 }
 
+/// How a contact is paired.
+#[derive(Clone, Copy)]
+pub(super) struct Manner {
+    /// The configuration in which it is.
+    pub(super) paired: Paired,
+    /// Derivative of that configuration by the unknown; zero where all of it is known before the step.
+    pub(super) turning: f64,
+}
+
 /// Whether laws in the rate hold for a velocity on which contact forces act through the mass too: the interface problem then
 /// sums the compliances of the step and of the mass.
 pub(super) fn sums_compliances(system: &System, map: &StepMap) -> bool {
