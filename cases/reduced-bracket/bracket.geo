@@ -1,4 +1,4 @@
-// An angle bracket: legs of 100 mm, 10 mm thick, 40 mm wide. gmsh -3 -format msh22 bracket.geo
+// An angle bracket: legs of 100 mm, 10 mm thick, 40 mm wide. gmsh -3 -format msh22 bracket.geo -o bracket.msh
 SetFactory("Built-in");
 a = 10; l = 100;
 Point(1) = {0, 0, 0}; Point(2) = {a, 0, 0}; Point(3) = {l, 0, 0};
