@@ -46,18 +46,6 @@ impl System {
         for &(dof, _) in self.link_rows.iter().flatten() {
             linked[self.part_of(dof as usize)] = true;
         }
-        let bodies = self
-            .bodies
-            .iter()
-            .zip(&self.part_of_body)
-            .zip(&self.zone_of_body);
-        for ((body, _), &zone) in bodies.filter(|((_, part), _)| linked[**part]) {
-            if !body.is_linear() && maps.all()[zone].force.x != 0.0 {
-                return Err(Error::LinkedNonlinear {
-                    body: body.name().to_string(),
-                });
-            }
-        }
         if !self.link_rows.is_empty() && self.nonlinear.preload.is_some() {
             return Err(Error::Nonlinear {
                 what: Refused::StaticStage,

@@ -176,14 +176,6 @@ pub enum Error {
         /// Why.
         cause: &'static str,
     },
-    /// A body at finite strain in implicit steps that links join in the step.
-    #[error(
-        "body '{body}': links join bodies at small strain, or in explicit steps, in one problem with the contacts"
-    )]
-    LinkedNonlinear {
-        /// Name of the body.
-        body: String,
-    },
     /// A contact that bodies of different schemes cannot have.
     #[error("contact '{contact}' in a model of the schemes {}: {cause}", schemes.join(" and "))]
     BetweenSchemes {

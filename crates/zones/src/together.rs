@@ -10,8 +10,8 @@ use crate::model::{ModelZone, Zoned};
 use carom_system::{self as system, Model, ModelLink, ModelScheme, ModelTarget, System};
 
 impl Zoned {
-    /// The zones as one system, which one driver takes through its steps; `None` where they step apart: with unequal steps, with links of bodies
-    /// at finite strain in implicit steps, or with schemes that do not go in one model.
+    /// The zones as one system, which one driver takes through its steps; `None` where they step apart: with unequal steps, with links behind a static
+    /// stage, or with schemes that do not go in one model.
     ///
     /// # Errors
     /// A model that cannot be built; zones that step apart with a contact between them, rigid bodies or discrete elements.
@@ -22,7 +22,7 @@ impl Zoned {
             Err(own) => Err(error.unwrap_or(own)),
         };
         let equal = |zone: &ModelZone| zone.substeps == 1 && zone.far.unwrap_or(1) == 1;
-        if !self.zones.iter().all(equal) || self.bends() {
+        if !self.zones.iter().all(equal) || self.has_stage() {
             return apart(None);
         }
         match System::new(self.separated()) {
@@ -34,18 +34,10 @@ impl Zoned {
         }
     }
 
-    /// Whether links join bodies whose matrix changes within steps, or a static stage comes before them.
-    fn bends(&self) -> bool {
-        let linked = |zone: &usize| self.links.iter().any(|link| link.zones.contains(zone));
-        let bends = |zone: &ModelZone| {
-            let mut bodies = zone.bodies.iter().map(|&body| &self.model.bodies[body]);
-            !zone.scheme.get().is_explicit()
-                && bodies.any(|body| body.spec.material.finite().is_some())
-        };
+    /// Whether a static stage comes before links, which join velocities.
+    fn has_stage(&self) -> bool {
         let follows = !self.model.nonlinear.motions.is_empty();
-        let staged = self.model.nonlinear.preload.is_some() || follows;
-        let mut zones = (0..self.zones.len()).filter(linked);
-        !self.links.is_empty() && (staged || zones.any(|zone| bends(&self.zones[zone])))
+        !self.links.is_empty() && (self.model.nonlinear.preload.is_some() || follows)
     }
 
     /// The model as one, in which no zones share nodes: each but the first has nodes of its own at the same places.

@@ -116,7 +116,7 @@ impl Builder<'_> {
                     "zones of equal steps and of one scheme",
                 ])
             }
-            Refusal::SchemesOfPart { body, .. } | Refusal::LinkedNonlinear { body } => {
+            Refusal::SchemesOfPart { body, .. } => {
                 Problem::new(format!("body.{body}"), error.to_string())
             }
             Refusal::Nonlinear { what, why } => self.refused_nonlinear(what, why),

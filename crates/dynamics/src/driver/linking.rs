@@ -8,6 +8,7 @@
 //! with r' the forces and the multipliers without contact. So contact and links are one problem, exact with its signs, and a row may
 //! end on the surface in contact.
 
+use carom_algebra::csr::Csr;
 use carom_algebra::dense::DenseCholesky;
 use carom_contact::Rows;
 
@@ -73,15 +74,27 @@ fn by_part(system: &System) -> Vec<Vec<(u32, LinkRow)>> {
     by_part
 }
 
-/// H from the matrices of the parts where there are many rows, from their answers where there are few.
+/// The matrices that the iterations have made.
+pub(super) struct Made<'a> {
+    /// Those of all iterated parts together; none without such parts.
+    pub(super) matrix: Option<&'a Csr>,
+    /// Which parts these are.
+    pub(super) iterated: &'a [bool],
+    /// Whether contact forces that turn couple parts in it.
+    pub(super) coupled: bool,
+    /// A number above which no matrices of others have versions.
+    pub(super) version: u64,
+}
+
+/// H from the matrices of the parts where there are many rows, from their answers where there are few or `matrix` is none.
 fn condensed(
     system: &System,
     factors: &[[f64; 2]],
     operators: &mut Operators,
-    matrix: impl Fn(usize) -> Matrix,
+    matrix: Option<&dyn Fn(usize) -> Matrix>,
 ) -> Result<Condensed, Error> {
     let count = system.link_rows.len();
-    if count > DENSE {
+    if let (true, Some(matrix)) = (count > DENSE, matrix) {
         let linked = by_part(system).into_iter().enumerate();
         let linked = linked.filter(|(_, rows)| !rows.is_empty());
         let answers = linked.map(|(part, rows)| Answer {
@@ -123,7 +136,7 @@ fn condensed(
 /// H of the mass alone, and M⁻¹ in `operators`.
 pub(super) fn of_mass(system: &System, operators: &mut Operators) -> Result<Condensed, Error> {
     let factors = vec![[1.0; 2]; system.parts.len()];
-    condensed(system, &factors, operators, |part| {
+    let matrix = |part: usize| {
         let span = &system.parts[part];
         match system.mass.couples(span) {
             false => Matrix::Diagonal(system.mass.lumped[span.clone()].to_vec()),
@@ -134,7 +147,8 @@ pub(super) fn of_mass(system: &System, operators: &mut Operators) -> Result<Cond
                 &|_| 0.0,
             )),
         }
-    })
+    };
+    condensed(system, &factors, operators, Some(&matrix))
 }
 
 /// Adds Cᵀ L to a system vector, held unknowns included.
@@ -171,10 +185,16 @@ impl Linking {
     /// Rows that say the same twice.
     pub(super) fn of_mass(system: &System, operators: &mut Operators) -> Result<Linking, Error> {
         let factors = vec![[1.0; 2]; system.parts.len()];
-        Ok(Linking::with(of_mass(system, operators)?, factors, system))
+        let condensed = of_mass(system, operators)?;
+        Ok(Linking::with(condensed, factors, system, 0))
     }
 
-    fn with(condensed: Condensed, factors: Vec<[f64; 2]>, system: &System) -> Linking {
+    fn with(
+        condensed: Condensed,
+        factors: Vec<[f64; 2]>,
+        system: &System,
+        versions: u64,
+    ) -> Linking {
         let n = system.unknowns();
         let points = system.points() * (1 + system.tangents());
         Linking {
@@ -183,7 +203,7 @@ impl Linking {
             points: (0..points).map(|_| None).collect(),
             matrix: Vec::new(),
             of: None,
-            versions: 0,
+            versions,
             half: vec![0.0; n],
             x: vec![0.0; n],
             force: vec![0.0; n],
@@ -191,17 +211,22 @@ impl Linking {
         }
     }
 
+    /// With the matrices of linear parts, and those that the iterations have made of the others.
+    ///
     /// # Errors
     /// Rows that say the same twice.
     pub(super) fn new(
         system: &System,
         (maps, between): (&Maps, bool),
-        operators: &mut Operators,
+        (operators, made): (&mut Operators, &Made),
     ) -> Result<Linking, Error> {
         let factors = factors(system, maps);
         let matrix = |part: usize| {
             let span = &system.parts[part];
             let map = maps.of(span.start);
+            if let (true, Some(all)) = (made.iterated[part], made.matrix) {
+                return Matrix::Sparse(all.restricted(std::slice::from_ref(span)));
+            }
             match part_matrix(system, span, map, between) {
                 Some(matrix) => Matrix::Sparse(matrix),
                 None => {
@@ -210,8 +235,14 @@ impl Linking {
                 }
             }
         };
+        let matrix: Option<&dyn Fn(usize) -> Matrix> = (!made.coupled).then_some(&matrix);
         let condensed = condensed(system, &factors, operators, matrix)?;
-        Ok(Linking::with(condensed, factors, system))
+        Ok(Linking::with(condensed, factors, system, made.version))
+    }
+
+    /// The last version of its compliances.
+    pub(super) fn version(&self) -> u64 {
+        self.versions
     }
 
     /// Moves the multipliers by `change` (added to it) so that rows hold which the forces `work`, begun in `half`, miss by themselves.

@@ -45,6 +45,7 @@ mod part_matrix;
 mod predictor;
 mod projection;
 pub(crate) mod record;
+mod renewal;
 mod residual;
 mod restoring;
 mod rigid;

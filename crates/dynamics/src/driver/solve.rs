@@ -83,7 +83,9 @@ impl Driver {
             self.carried.keep(&self.next.interface);
             self.solve_interface()?;
             // a motion that contacts hardly hold is far above the noise of the forces
-            if !jumps && (self.floats() || standing.imbalance > NOISY * standing.rounding) {
+            // what is mixed of a motion would be mixed of the multipliers too
+            let mixes = !jumps && !self.has_links();
+            if mixes && (self.floats() || standing.imbalance > NOISY * standing.rounding) {
                 self.mix();
             }
             if self.floats() && !jumps && self.restrain() {

@@ -2,13 +2,15 @@
 
 use carom_arlequin::{Row, trace};
 use carom_bodies::{BodySpec, Kinematics};
+use carom_contact::law::{Capture, Reading, Velocity};
+use carom_contact::{Law as ContactLaw, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, EnergyMomentum, Newmark, Theta};
 use carom_dynamics::{
-    Amplitude, Driver, Load, LoadKind, Model, ModelBody, ModelLink, Nonlinear, Scheme, Support,
-    System,
+    Amplitude, Driver, Load, LoadKind, Model, ModelBody, ModelContact, ModelLink, ModelTarget,
+    Nonlinear, Scheme, Support, System,
 };
 use carom_materials::{Elastic, J2Plasticity, Law, NeoHooke, StVenantKirchhoff};
-use carom_mesh::{ElementId, Mesh, Surface, generate};
+use carom_mesh::{ElementId, Group, Mesh, Surface, generate};
 use carom_zones::{LinkKind, ModelZone, Zoned, Zones, mortar_rows};
 
 const SOFT: Elastic = Elastic {
@@ -165,6 +167,88 @@ fn matching_zones_of_one_scheme_are_the_single_mesh() {
         }
         let passes = zones.all_passes() as f64 / zones.outer_step() as f64;
         assert!(passes < 8.0, "{}: {passes} passes", scheme.get().name());
+    }
+}
+
+/// The strip that strikes a rigid plane, one of its nodes on it tied to the other half, as one system of two zones and as a single mesh.
+/// Each step is solved to 1e-12 of the forces, and sixty of them enlarge that some hundred times.
+#[test]
+fn linked_implicit_zones_at_finite_strain_are_the_single_mesh_in_contact_too() {
+    for scheme in [HALF, TRAPEZOID, BETWEEN] {
+        let struck = |mut model: Model| {
+            // the half whose nodes on the border are tied
+            let (_, [left, _]) = strip();
+            let bottom = &model.mesh.groups["strip.bottom"];
+            let (x, nodes) = (&model.mesh.nodes, |facet: &ElementId| {
+                model.mesh.element_nodes(*facet)
+            });
+            let is_left = |facet: &ElementId| nodes(facet).iter().all(|n| x[*n as usize][0] < 1.01);
+            let elements = bottom.elements.iter().copied();
+            let group = Group {
+                dim: 1,
+                elements: elements.filter(is_left).collect(),
+            };
+            let secondary = Surface::new(&model.mesh, &group, &left).unwrap();
+            let target = ModelTarget::rigid(Plane {
+                point: [0.0; 3],
+                normal: [0.0, 1.0, 0.0],
+            });
+            let law = ContactLaw::Velocity(Velocity {
+                capture: Capture::Now,
+                reading: Reading::Closed,
+            });
+            model.contacts = vec![ModelContact {
+                sliding: Sliding::Finite,
+                ..ModelContact::new("floor", secondary, target, law)
+            }];
+            model
+        };
+        let zoned = halves([NEO_HOOKE; 2], [scheme; 2], 1);
+        let zoned = Zoned {
+            model: struck(zoned.model),
+            ..zoned
+        };
+        let system = zoned.together().unwrap().expect("one system");
+        let fall = |x: &[f64; 3]| {
+            let [vx, vy] = tumble(x);
+            [0.3 * vx, 0.3 * vy - 0.4]
+        };
+        let run = |system: std::sync::Arc<System>| {
+            let mut driver = Driver::new(system.clone()).unwrap();
+            let v = nodal(&system, fall);
+            driver.restart(&vec![0.0; v.len()], &v).unwrap();
+            let (mut forces, mut tied) = (Vec::new(), 0);
+            for _ in 0..60 {
+                driver.step().unwrap();
+                forces.push(driver.report().contacts[0].force);
+                // points in the order of their nodes, which is that of x
+                tied += usize::from(driver.state().interface.force.last() > Some(&0.0));
+            }
+            (driver, forces, tied)
+        };
+        let (together, forces, _) = run(system.clone());
+        let (mesh, [left, right]) = strip();
+        let cells = [left, right].concat();
+        let single = struck(model(mesh, vec![body("strip", cells, NEO_HOOKE)], scheme));
+        let single = System::new(single).unwrap();
+        let (one, expected, tied) = run(single.clone());
+        let name = scheme.get().name();
+        assert!(tied > 0, "{name}: the tied node is in contact");
+        let most = largest(&expected);
+        for (force, expected) in forces.iter().zip(&expected) {
+            assert!(
+                (force - expected).abs() < 1e-9 * most,
+                "{name}: {force} {expected}"
+            );
+        }
+        let u = &one.state().motion.u;
+        for (node, x) in system.x.iter().enumerate() {
+            let own = single.x.iter().position(|other| other == x).unwrap();
+            for k in 0..2 {
+                let [a, b] = [together.state().motion.u[2 * node + k], u[2 * own + k]];
+                assert!((a - b).abs() < 1e-10 * largest(u), "{name}, {x:?}: {a} {b}");
+            }
+        }
     }
 }
 

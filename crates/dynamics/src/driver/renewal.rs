@@ -1,0 +1,261 @@
+//! Matrices that the iterations make anew: pattern, assembly, factors, and what links change with them.
+
+use std::ops::Range;
+
+use carom_algebra::csr::Csr;
+use carom_algebra::pattern::Cliques;
+use carom_bodies::Placement;
+
+use super::effective::{At, Matrices, Turning};
+use super::linking::{Linking, Made};
+use super::loads::damping_rate;
+use crate::costs::Work;
+use crate::error::Error;
+use crate::operator::Operator;
+use crate::system::{System, push_cliques};
+
+impl Matrices {
+    /// Makes the matrices that are not those of linear parts, their factors, and what links change with them.
+    pub(super) fn renew(
+        &mut self,
+        system: &System,
+        at: &At,
+        turning: &Turning,
+        (loads, retired): (&mut Vec<f64>, &mut Work),
+    ) -> Result<(), Error> {
+        let first = self.first;
+        self.compliance.forget(|group| group >= first);
+        self.renew_pattern(system, turning, retired);
+        let Some(mut a) = self.matrix.take() else {
+            return Ok(());
+        };
+        a.clear();
+        let assembled = self.assemble(system, at, &mut a);
+        let forces = turning.forces.iter().copied().enumerate();
+        let forces = forces.filter(|(_, force)| *force != 0.0);
+        turning
+            .pairing
+            .add_curvatures(forces, -turning.factor, loads, &mut a);
+        for group in &mut self.operators.groups[first..] {
+            for i in group.parts.iter().cloned().flatten() {
+                self.diagonal[i] = a.get(i, i);
+            }
+        }
+        let factored = assembled.and_then(|()| self.factorise(system, at, &a, retired));
+        self.matrix = Some(a);
+        factored?;
+        self.renew_links(system, at)
+    }
+
+    /// Makes what the rows of links change anew with the factors.
+    fn renew_links(&mut self, system: &System, at: &At) -> Result<(), Error> {
+        if !self.links_iterate {
+            return Ok(());
+        }
+        let before = self.linking.as_ref().map(Linking::version);
+        let made = Made {
+            matrix: self.matrix.as_ref(),
+            iterated: &self.iterated,
+            coupled: self.coupled.iter().any(|rows| !rows.is_empty()),
+            version: before.unwrap_or(self.compliance.version),
+        };
+        let maps = (at.maps, at.between);
+        let linking = Linking::new(system, maps, (&mut self.operators, &made))?;
+        self.linking = Some(linking);
+        Ok(())
+    }
+
+    fn factorise(
+        &mut self,
+        system: &System,
+        at: &At,
+        a: &Csr,
+        retired: &mut Work,
+    ) -> Result<(), Error> {
+        let (floating, weight) = at.proximal;
+        for group in &mut self.operators.groups[self.first..] {
+            let fixed: Vec<bool> = group
+                .parts
+                .iter()
+                .cloned()
+                .flatten()
+                .map(|i| system.fixed[i])
+                .collect();
+            let mut free = a.restricted(&group.parts).with_identity(&fixed);
+            let mut begin = 0;
+            for part in &group.parts {
+                if floating.contains(part) {
+                    for i in (0..part.len()).filter(|&i| !fixed[begin + i]) {
+                        let own = a.get(part.start + i, part.start + i).abs();
+                        free.add(begin + i, begin + i, weight * own);
+                    }
+                }
+                begin += part.len();
+            }
+            let all = system.unknowns.node_of_each();
+            let unknowns = group.parts.iter().cloned().flatten();
+            let nodes: Vec<u32> = unknowns.map(|unknown| all[unknown]).collect();
+            let factored = match &mut group.operator {
+                Some(Operator::Factored(factor)) => factor.refactor(&free),
+                other => {
+                    let none = vec![false; free.n];
+                    Operator::factored(&free, &none, &nodes).map(|new| *other = Some(new))
+                }
+            };
+            if let Err(cause) = factored {
+                // the factor is of no use any more, but it was computed
+                if let Some(operator) = group.operator.take() {
+                    retire(&operator, retired);
+                }
+                let place = match &cause {
+                    carom_algebra::Error::NotPositiveDefinite { unknown, .. } => *unknown,
+                    _ => 0,
+                };
+                let unknown = group
+                    .parts
+                    .iter()
+                    .cloned()
+                    .flatten()
+                    .nth(place)
+                    .unwrap_or(0);
+                return Err(Error::Factor {
+                    matrix: "effective matrix",
+                    node: system.mesh_node[system.unknowns.node(unknown) as usize],
+                    cause,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Pattern of the bodies and of the points whose forces turn, and the groups of parts that these join; the factor of a group is dropped where
+    /// its pattern changes.
+    fn renew_pattern(&mut self, system: &System, turning: &Turning, retired: &mut Work) {
+        let part_of = |unknown: u32| system.part_of(unknown as usize);
+        let mut rows: Vec<(usize, Vec<u32>)> = Vec::new();
+        let mut joined: Vec<usize> = (0..self.iterated.len()).collect();
+        let loaded = turning.forces.iter().enumerate();
+        for (point, _) in loaded.filter(|(_, force)| **force != 0.0) {
+            turning.pairing.cliques(point, |unknowns| {
+                let parts = unknowns.iter().map(|&unknown| part_of(unknown));
+                let mut parts = parts.filter(|&part| self.iterated[part]);
+                let Some(first) = parts.next() else { return };
+                for part in parts {
+                    let (a, b) = (joined[first], joined[part]);
+                    let (low, high) = (a.min(b), a.max(b));
+                    joined
+                        .iter_mut()
+                        .filter(|j| **j == high)
+                        .for_each(|j| *j = low);
+                }
+                rows.push((first, unknowns.to_vec()));
+            });
+        }
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        let mut coupled: Vec<Vec<Vec<u32>>> = Vec::new();
+        for part in (0..self.iterated.len()).filter(|&part| self.iterated[part]) {
+            let mates = |group: &Vec<usize>| joined[group[0]] == joined[part];
+            match groups.iter().position(mates) {
+                Some(place) => groups[place].push(part),
+                None => {
+                    groups.push(vec![part]);
+                    coupled.push(Vec::new());
+                }
+            }
+        }
+        for (part, row) in rows {
+            let mates = |group: &Vec<usize>| joined[group[0]] == joined[part];
+            if let Some(place) = groups.iter().position(mates) {
+                coupled[place].push(row);
+            }
+        }
+        if self.matrix.is_some() && coupled == self.coupled {
+            return;
+        }
+        let ranges = |group: &[usize]| -> Vec<Range<usize>> {
+            group
+                .iter()
+                .map(|&part| system.parts[part].clone())
+                .collect()
+        };
+        let wanted: Vec<Vec<Range<usize>>> = groups.iter().map(|group| ranges(group)).collect();
+        let mut old = self.operators.regroup(self.first, groups);
+        for (k, group) in self.operators.groups[self.first..].iter_mut().enumerate() {
+            let same = |(place, of): (usize, &crate::operator::Group)| {
+                of.parts == wanted[k] && self.coupled[place] == coupled[k]
+            };
+            if let Some(place) = old.iter().enumerate().position(same) {
+                group.operator = old[place].operator.take();
+            }
+        }
+        for operator in old.iter().filter_map(|group| group.operator.as_ref()) {
+            retire(operator, retired);
+        }
+        self.coupled = coupled;
+        let mut cliques = Cliques::new();
+        let n = system.unknowns();
+        for (body, &part) in system.bodies.iter().zip(&system.part_of_body) {
+            if self.iterated[part] {
+                push_cliques(body, &system.unknowns, &(0..n), &mut cliques);
+            }
+        }
+        for row in self.coupled.iter().flatten() {
+            cliques.push(row);
+        }
+        self.matrix = Some(Csr::from_cliques(n, &cliques));
+    }
+
+    /// `inertia.x M + force.x K + damping` of the parts that are not linear, into a matrix of zeros.
+    fn assemble(&self, system: &System, at: &At, a: &mut Csr) -> Result<(), Error> {
+        for (k, body) in system.bodies.iter().enumerate() {
+            if !self.iterated[system.part_of_body[k]] {
+                continue;
+            }
+            let map = &at.maps.all()[system.zone_of_body[k]];
+            let rate = damping_rate(map).x;
+            let placement = Placement {
+                u: at.u,
+                v: at.v,
+                from: at.from,
+                frames: at.frames,
+                dt: match at.between {
+                    true => at.dt,
+                    false => map.instant(at.dt),
+                },
+                old: &at.history[system.nonlinear.histories[k].clone()],
+            };
+            body.add_tangent(&placement, [map.force.x, rate], a)?;
+            let damping = system.nonlinear.damping.get(k).copied().unwrap_or_default();
+            if damping.stiffness != 0.0 {
+                let now = Placement {
+                    from: None,
+                    ..placement
+                };
+                body.add_tangent(&now, [rate * damping.stiffness, 0.0], a)?;
+            }
+        }
+        for (part, _) in system
+            .parts
+            .iter()
+            .zip(&self.iterated)
+            .filter(|(_, is)| **is)
+        {
+            let inertia = at.maps.of(part.start).inertia.x;
+            if inertia != 0.0 {
+                system.mass.add_to(inertia, part, 0, a);
+            }
+            if let Some(mass) = &system.damping_mass {
+                mass.add_to(damping_rate(at.maps.of(part.start)).x, part, 0, a);
+            }
+        }
+        super::loads::add_tangent(system, (at.maps, at.start, at.dt), at.u, a);
+        Ok(())
+    }
+}
+
+/// Counts the work with a factor that is dropped.
+fn retire(operator: &Operator, retired: &mut Work) {
+    if let Some(stats) = operator.stats() {
+        retired.add_factor(stats);
+    }
+}
