@@ -287,7 +287,7 @@ impl Body {
             Body::Solid(solid) => solid.force(at, new, scratch, f),
             Body::Beam(beam) => Ok(beam.force(at, f)),
             Body::LargeBeam(beam) => Ok(beam.force(at, f)),
-            Body::Discrete(discrete) => Ok(discrete.add_spring_force(at, f)),
+            Body::Discrete(discrete) => Ok(discrete.force(at, f)),
             Body::Reduced(reduced) => Ok(reduced.force(at, f)),
             Body::Rigid(rigid) => {
                 rigid.add_force(at, f);

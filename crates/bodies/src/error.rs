@@ -23,7 +23,7 @@ pub enum Error {
         /// Name of the element kind found.
         found: &'static str,
     },
-    /// Moments of inertia of a point mass at a node without small rotations.
+    /// Moments of inertia of a point mass at a node without rotations.
     #[error(
         "point mass '{body}': its moments of inertia need a node with rotations: the node of a beam"
     )]

@@ -15,6 +15,7 @@ mod error;
 mod finite;
 mod force;
 mod gather;
+mod gyroscopic;
 mod kinematics;
 mod nodes;
 mod reduced;

@@ -14,6 +14,7 @@ use carom_algebra::tensor::{Mat3, Vec3};
 use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
+use crate::gyroscopic;
 use crate::solid::{BodySpec, Solid};
 use crate::{Error, Kinematics, Placement};
 
@@ -177,36 +178,18 @@ impl Rigid {
         }
     }
 
-    fn momentum(&self, spin: &Vec3) -> Vec3 {
-        Vec3::from(self.inertia.moments).component_mul(spin)
-    }
-
-    /// Angular velocity, in space; a rotation in the plane has no force of its own.
-    fn spin(&self, at: &Placement) -> Option<Vec3> {
-        let own = &at.v[self.first + self.dim..self.first + self.count];
-        (self.dim == 3).then(|| Vec3::new(own[0], own[1], own[2]))
-    }
-
     /// Adds W × J W.
     pub(crate) fn add_force(&self, at: &Placement, f: &mut [f64]) {
-        if let Some(spin) = self.spin(at) {
-            let moment = spin.cross(&self.momentum(&spin));
-            for (f, moment) in f[self.first + 3..].iter_mut().zip(moment.iter()) {
-                *f += moment;
-            }
+        if self.dim == 3 {
+            gyroscopic::add_moment(&self.inertia.moments, (at.v, self.first + 3), f);
         }
     }
 
-    /// Adds `by_v` times the symmetric part of the derivative Ŵ J - (J W)^ of [`Rigid::add_force`].
+    /// Adds `by_v` times the symmetric part of the derivative of [`Rigid::add_force`].
     pub(crate) fn add_tangent(&self, at: &Placement, by_v: f64, matrix: &mut Csr) {
-        let Some(spin) = self.spin(at) else { return };
-        let inertia = Mat3::from_diagonal(&Vec3::from(self.inertia.moments));
-        let slope = spin.cross_matrix() * inertia;
-        for i in 0..3 {
-            for j in 0..3 {
-                let mean = 0.5 * (slope[(i, j)] + slope[(j, i)]);
-                matrix.add(self.first + 3 + i, self.first + 3 + j, by_v * mean);
-            }
+        if self.dim == 3 {
+            let of = (at.v, self.first + 3);
+            gyroscopic::add_slope(&self.inertia.moments, of, by_v, matrix);
         }
     }
 }

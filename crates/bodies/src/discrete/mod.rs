@@ -19,6 +19,7 @@ use carom_mesh::{ElementId, Mesh};
 
 pub use self::curve::{Curve, CurveError};
 pub use self::fluid::FluidGap;
+use crate::gyroscopic;
 use crate::{Error, Placement, Stored};
 
 /// What is called for each row, of unknowns and coefficients.
@@ -102,7 +103,7 @@ fn rotations(
     }
     for &[node, _] in nodes {
         let own = unknowns.rotations_of(node);
-        if own.is_empty() || unknowns.frame(node).is_some() {
+        if own.is_empty() {
             return Err(Error::NoRotation {
                 body: body.to_owned(),
             });
@@ -131,6 +132,8 @@ pub struct Discrete {
     per: usize,
     /// Rotations of all point masses, and the moment of inertia of each, kg m².
     rotations: Vec<(usize, f64)>,
+    /// First rotations of point masses in space whose axes turn with their nodes.
+    spinning: Vec<usize>,
 }
 
 impl Discrete {
@@ -139,7 +142,7 @@ impl Discrete {
     ///
     /// # Errors
     /// No cell, cells that are neither all points nor all bars of two nodes, a mass between two nodes, moments of inertia at a
-    /// node without small rotations.
+    /// node without rotations.
     pub fn new(
         mesh: &Mesh,
         spec: DiscreteSpec,
@@ -174,8 +177,19 @@ impl Discrete {
                 Vec::new()
             }
         };
+        let turns = |node: &u32| unknowns.frame(*node).is_some() && mesh.dim == 3;
+        let spinning = match rotations.is_empty() {
+            true => Vec::new(),
+            false => {
+                let turning = nodes.iter().map(|[node, _]| *node).filter(turns);
+                turning
+                    .map(|node| unknowns.rotations_of(node).start)
+                    .collect()
+            }
+        };
         Ok(Discrete {
             rotations,
+            spinning,
             first: nodes.iter().map(first).collect(),
             nodes,
             name: spec.name,
@@ -203,7 +217,18 @@ impl Discrete {
 
     /// Whether forces are linear in displacement and velocity.
     pub(crate) fn is_linear(&self) -> bool {
-        self.link().is_none_or(|link| link.curve.is_line())
+        self.spinning.is_empty() && self.link().is_none_or(|link| link.curve.is_line())
+    }
+
+    /// Adds the forces of springs, and W × J W of point masses whose axes turn, and returns the energy; see
+    /// [`Body::force`](crate::Body::force).
+    pub(crate) fn force(&self, at: &Placement, f: &mut [f64]) -> Stored {
+        if let DiscreteKind::Mass(point) = &self.kind {
+            for &first in &self.spinning {
+                gyroscopic::add_moment(&point.inertia, (at.v, first), f);
+            }
+        }
+        self.add_spring_force(at, f)
     }
 
     /// Whether forces depend on the velocity.
@@ -355,6 +380,11 @@ impl Discrete {
 
     /// Adds `by_u` ∂f/∂u + `by_v` ∂f/∂v; see [`Body::add_tangent`](crate::Body::add_tangent).
     pub(crate) fn add_tangent(&self, at: &Placement, [by_u, by_v]: [f64; 2], matrix: &mut Csr) {
+        if let DiscreteKind::Mass(point) = &self.kind {
+            for &first in &self.spinning {
+                gyroscopic::add_slope(&point.inertia, (at.v, first), by_v, matrix);
+            }
+        }
         for element in 0..self.nodes.len() {
             for direction in 0..self.directions() {
                 let along = |x| self.elongation(element, direction, x);
