@@ -191,6 +191,11 @@ impl Body {
         }
     }
 
+    /// Whether it deforms, by small displacements: its internal forces then have no moment about the undeformed places of its nodes.
+    pub fn has_small_displacements(&self) -> bool {
+        self.is_linear() && self.as_discrete().is_none()
+    }
+
     /// Speed of its fastest waves, m/s: of compression, along a beam of extension. None without waves.
     pub fn wave_speed(&self) -> Option<f64> {
         match self {

@@ -24,8 +24,8 @@ impl Resultant {
     }
 
     /// Resultant of nodal forces, with moments about the origin of the nodes at the mean of these displacements from the
-    /// frames; in the reference configuration without any. Moments on finite rotations, about the axes of their frames, are
-    /// turned by the mean of the rotations.
+    /// frames; in the reference configuration without any, and in parts of small displacements ([`System::undeformed`]). Moments on
+    /// finite rotations, about the axes of their frames, are turned by the mean of the rotations.
     pub(crate) fn at(
         system: &System,
         (frames, displacements): (&[Rotation], &[&[f64]]),
@@ -35,14 +35,24 @@ impl Resultant {
         let (unknowns, share) = (&system.unknowns, 1.0 / displacements.len() as f64);
         // forces that a model does not have are an empty vector
         let nodes = if f.is_empty() { 0 } else { system.x.len() };
+        let mut part = 0;
         for node in 0..nodes {
             let mut x = system.x[node];
             let node = node as u32;
-            if unknowns.translations_of(node).is_empty() {
+            let translations = unknowns.translations_of(node);
+            if translations.is_empty() {
                 continue;
             }
+            // nodes follow each other in the order of the parts
+            while system.parts[part].end <= translations.start {
+                part += 1;
+            }
             let force = unknowns.vector(node, f);
-            for u in displacements {
+            let moved = match system.undeformed[part] {
+                true => &[],
+                false => displacements,
+            };
+            for u in moved {
                 let u = unknowns.vector(node, u);
                 for i in 0..3 {
                     x[i] += share * u[i];

@@ -188,6 +188,7 @@ impl System {
         // what a constraint holds is on one side
         let inner_terms = inner_terms.chain(constrained.map(Vec::len)).collect();
         let system = System {
+            undeformed: undeformed(&bodies, &part_of_body, parts.len()),
             part_of_body,
             origin,
             tolerance: 1e-12 * model.length(),
@@ -232,6 +233,21 @@ impl System {
         };
         Ok((system, model.bodies, model.contacts))
     }
+}
+
+/// See [`System::undeformed`].
+fn undeformed(bodies: &[Body], part_of_body: &[usize], parts: usize) -> Vec<bool> {
+    let of_part = |part: usize| {
+        let own = || {
+            bodies
+                .iter()
+                .zip(part_of_body)
+                .filter(move |(_, of)| **of == part)
+        };
+        own().any(|(body, _)| body.has_small_displacements())
+            && own().all(|(body, _)| body.has_small_displacements() || body.as_discrete().is_some())
+    };
+    (0..parts).map(of_part).collect()
 }
 
 /// System numbers of the mesh nodes, mesh nodes of the system numbers, and node ranges of the connected parts. `centres`: nodes of

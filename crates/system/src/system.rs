@@ -45,6 +45,9 @@ pub struct System {
     pub parts: Vec<Range<usize>>,
     /// The part of each body.
     pub part_of_body: Vec<usize>,
+    /// Whether moments of the forces on the nodes of each part are about their undeformed places: those of parts whose bodies all
+    /// have small displacements, point masses and springs aside. Their internal forces have no moment about these.
+    pub undeformed: Vec<bool>,
     /// Bodies.
     pub bodies: Vec<Body>,
     /// Whether there are springs: their forces may have a resultant.

@@ -20,6 +20,7 @@ pub(crate) use finding::{Evidence, Finding};
 const ALL: &[fn(&Evidence) -> Finding] = &[
     energy::residual,
     momentum::residual,
+    momentum::angular,
     momentum::exchange,
     momentum::resizing,
     energy::gain,

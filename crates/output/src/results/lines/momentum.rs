@@ -9,12 +9,17 @@ use crate::verdict::{Bounds, Line};
 /// the rounding of the solves, some 1e-16 a step, summed over up to a million steps.
 const RESIDUAL: f64 = 1e-9;
 
-/// Change of the momentum without an impulse from outside.
-pub(super) fn residual(evidence: &Evidence) -> Finding {
-    let tolerated = match evidence.momentum.size > 0.0 {
+/// What the iterations may leave, relative to the largest momentum.
+fn tolerated(evidence: &Evidence) -> f64 {
+    match evidence.momentum.size > 0.0 {
         true => evidence.last.ledger.tolerated.momentum / evidence.momentum.size,
         false => 0.0,
-    };
+    }
+}
+
+/// Change of the momentum without an impulse from outside.
+pub(super) fn residual(evidence: &Evidence) -> Finding {
+    let tolerated = tolerated(evidence);
     Finding::Line(Line::new(
         "momentum-residual",
         (
@@ -23,6 +28,28 @@ pub(super) fn residual(evidence: &Evidence) -> Finding {
                 tolerated,
             ),
             evidence.momentum.relative_residual,
+            Form::Power,
+        ),
+        Bounds::Bad((RESIDUAL + tolerated).min(MOST_TOLERATED)),
+        residual_remedy(tolerated),
+    ))
+}
+
+/// Change of the angular momentum without a moment from outside, where all bodies have small displacements: moments are then about
+/// undeformed places, and the balance is an identity. In large rotations few schemes conserve it.
+pub(super) fn angular(evidence: &Evidence) -> Finding {
+    let small = evidence.system.undeformed.iter().all(|small| *small);
+    let Some(angular) = evidence.momentum.angular.as_ref().filter(|_| small) else {
+        return Finding::Absent;
+    };
+    // its size is at least the momentum times the largest arm, the tolerated forces have this arm too
+    let tolerated = tolerated(evidence);
+    let quantity = "residual of the angular momentum relative to the largest";
+    Finding::Line(Line::new(
+        "angular-momentum-residual",
+        (
+            &of_tolerance(quantity, tolerated),
+            angular.relative_residual,
             Form::Power,
         ),
         Bounds::Bad((RESIDUAL + tolerated).min(MOST_TOLERATED)),
