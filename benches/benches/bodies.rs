@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 
 use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, BodySpec, Formulation, Kinematics, Placement, Scratch};
+use carom_elements::Kind;
 use carom_materials::{Elastic, J2Plasticity, Law, NeoHooke, StVenantKirchhoff};
-use carom_mesh::{Mesh, generate};
+use carom_mesh::{Mesh, generate, raise};
 use criterion::{Criterion, Throughput};
 
 /// Hexahedra per second that the kernel should reach on AVX-512.
@@ -53,12 +54,29 @@ fn main() {
             Kinematics::Axisymmetric,
         ),
         ("tet4", cube(18, true), Kinematics::Solid),
+        ("tet10", quadratic(&cube(18, true)), Kinematics::Solid),
+        ("wedge6", wedges(&cube(25, false)), Kinematics::Solid),
         ("hex8", cube(32, false), Kinematics::Solid),
     ] {
         let cells = mesh.groups["b"].elements.clone();
-        let spec = BodySpec::new(name, cells, kinematics, MATERIAL);
-        let rate = sweep(&mut criterion, &mesh, spec);
+        let spec = BodySpec::new(name, cells.clone(), kinematics, MATERIAL);
+        let rate = sweep(&mut criterion, &mesh, spec, false);
         rates.push((name.to_owned(), rate));
+        if let Kinematics::Bar { .. } = kinematics {
+            continue;
+        }
+        for between in [false, true] {
+            let way = if between {
+                ", between two displacements"
+            } else {
+                ""
+            };
+            let name = format!("{name} neo-Hooke{way}");
+            let law = Law::NeoHooke(NeoHooke { initial: MATERIAL });
+            let spec = BodySpec::new(&name, cells.clone(), kinematics, law);
+            let rate = sweep(&mut criterion, &mesh, spec, between);
+            rates.push((name, rate));
+        }
     }
     let plastic = J2Plasticity {
         initial: MATERIAL,
@@ -88,8 +106,13 @@ fn main() {
                 material,
             );
             spec.formulation = formulation;
-            let rate = sweep(&mut criterion, &mesh, spec);
-            rates.push((name, rate));
+            let rate = sweep(&mut criterion, &mesh, spec.clone(), false);
+            rates.push((name.clone(), rate));
+            if law != "J2" {
+                spec.name = format!("{name}, between two displacements");
+                let rate = sweep(&mut criterion, &mesh, spec.clone(), true);
+                rates.push((spec.name, rate));
+            }
         }
     }
     for (name, rate) in rates {
@@ -101,8 +124,33 @@ fn main() {
     criterion.final_summary();
 }
 
-/// Times one kind; returns its best rate in elements per second.
-fn sweep(criterion: &mut Criterion, mesh: &Mesh, spec: BodySpec) -> f64 {
+/// The mesh with quadratic elements.
+fn quadratic(mesh: &Mesh) -> Mesh {
+    raise(mesh, false).unwrap_or_else(|error| {
+        println!("{error}");
+        mesh.clone()
+    })
+}
+
+/// The hexahedra of a mesh, each cut into two wedges.
+fn wedges(mesh: &Mesh) -> Mesh {
+    let mut out = Mesh::new(3);
+    out.nodes.clone_from(&mesh.nodes);
+    let mut cells = Vec::new();
+    for &cell in &mesh.groups["b"].elements {
+        let n = mesh.element_nodes(cell);
+        for corners in [[0, 1, 2, 4, 5, 6], [0, 2, 3, 4, 6, 7]] {
+            cells.push(out.push(Kind::Wedge6, &corners.map(|a: usize| n[a])));
+        }
+    }
+    let mut group = mesh.groups["b"].clone();
+    group.elements = cells;
+    out.groups.insert("b".to_owned(), group);
+    out
+}
+
+/// Times one kind; returns its best rate in elements per second. `between`: of the forces between two displacements.
+fn sweep(criterion: &mut Criterion, mesh: &Mesh, spec: BodySpec, between: bool) -> f64 {
     let (name, count) = (spec.name.clone(), spec.cells.len() as u64);
     let number: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
     let unknowns = Unknowns::translations(mesh.dim, mesh.nodes.len());
@@ -114,7 +162,10 @@ fn sweep(criterion: &mut Criterion, mesh: &Mesh, spec: BodySpec) -> f64 {
         }
     };
     let n = mesh.dim * mesh.nodes.len();
-    let u: Vec<f64> = (0..n).map(|i| 1e-3 * (i as f64).sin()).collect();
+    let [u, from] = [0.0, 1.0].map(|phase| {
+        let wave = |i: usize| 1e-3 * (i as f64 + phase).sin();
+        (0..n).map(wave).collect::<Vec<f64>>()
+    });
     let (mut scratch, mut f) = (Scratch::default(), vec![0.0; n]);
     let mut old = vec![0.0; body.history_len()];
     body.start_history(&mut old);
@@ -129,7 +180,7 @@ fn sweep(criterion: &mut Criterion, mesh: &Mesh, spec: BodySpec) -> f64 {
                 u: &u,
                 v: &[],
                 frames: &[],
-                from: None,
+                from: between.then_some(&from[..]),
                 dt: 1e-6,
                 old: &old,
             };

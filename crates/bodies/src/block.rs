@@ -337,10 +337,13 @@ impl Sweep<'_> {
         };
         let points = &self.block.stiffness_points;
         match self.block.kind {
-            Kind::Tri3 => self.batches::<W, 3, 2>(&Elastic::<2, 1>::new(law, points), w),
-            Kind::Quad4 => self.batches::<W, 4, 2>(&Elastic::<2, 2>::new(law, points), w),
-            Kind::Tet4 => self.batches::<W, 4, 3>(&Elastic::<3, 1>::new(law, points), w),
-            Kind::Hex8 => self.batches::<W, 8, 3>(&Elastic::<3, 4>::new(law, points), w),
+            Kind::Tri3 => self.batches::<W, 3, 2>(&Elastic::<3, 2, 1>::new(law, points), w),
+            Kind::Tri6 => self.batches::<W, 6, 2>(&Elastic::<6, 2, 3>::new(law, points), w),
+            Kind::Quad4 => self.batches::<W, 4, 2>(&Elastic::<4, 2, 2>::new(law, points), w),
+            Kind::Tet4 => self.batches::<W, 4, 3>(&Elastic::<4, 3, 1>::new(law, points), w),
+            Kind::Tet10 => self.batches::<W, 10, 3>(&Elastic::<10, 3, 4>::new(law, points), w),
+            Kind::Wedge6 => self.batches::<W, 6, 3>(&Elastic::<6, 3, 3>::new(law, points), w),
+            Kind::Hex8 => self.batches::<W, 8, 3>(&Elastic::<8, 3, 4>::new(law, points), w),
             kind => by_nodes!(kind => self.singly(law)),
         }
     }
@@ -457,7 +460,10 @@ mod tests {
             (Kind::Bar2, Kinematics::Bar { area: 0.3 }),
             (Kind::Tri3, Kinematics::PlaneStress { thickness: 0.2 }),
             (Kind::Quad4, Kinematics::Axisymmetric),
+            (Kind::Tri6, Kinematics::Axisymmetric),
             (Kind::Tet4, Kinematics::Solid),
+            (Kind::Tet10, Kinematics::Solid),
+            (Kind::Wedge6, Kinematics::Solid),
             (Kind::Hex8, Kinematics::Solid),
         ] {
             let counts = [1, 7, 8, 9, 16, 17, 50].into_iter();

@@ -56,6 +56,26 @@ impl Chunk {
         }
     }
 
+    /// Writes another displacement of the same nodes.
+    #[inline(always)]
+    pub(crate) fn displacements<T: Number, const N: usize, const D: usize>(
+        &self,
+        batch: &[u32],
+        u: &[f64],
+        moved: &mut [[T; D]; N],
+    ) {
+        let count = batch.len() / N;
+        for k in 0..moved[0][0].lanes().len() {
+            let element = &batch[N * k.min(count - 1)..][..N];
+            for a in 0..N {
+                let u_a = &u[self.first[element[a] as usize] as usize..][..D];
+                for i in 0..D {
+                    moved[a][i].lanes_mut()[k] = u_a[i];
+                }
+            }
+        }
+    }
+
     /// δ of the elements from one of them on, at a point of the stiffness rule; without weights nothing changes.
     #[inline(always)]
     pub(crate) fn weigh<T: Number>(&self, first: usize, point: usize, out: &mut T) {

@@ -57,30 +57,47 @@ impl<const D: usize> Kernel<2, D> for Bar {
     }
 }
 
-/// Edges of the reference cell along each of its axes, E of them: ∂φ/∂ξ_c = Σ_e dN_b/dξ_c (φ_b - φ_a) over the edges
+/// Edges of the reference cell along each of its axes, E of them at most: ∂φ/∂ξ_c = Σ_e dN_b/dξ_c (φ_b - φ_a) over the edges
 /// e = (a, b) of axis c. Half the work of a sum over nodes.
+///
+/// In quadratic simplices an edge goes from the middle of a side to its end, or from the middle of one side to that of another.
 type Edges<const D: usize, const E: usize> = [[[usize; 2]; E]; D];
 
 const TRI3: Edges<2, 1> = [[[0, 1]], [[0, 2]]];
+const TRI6: Edges<2, 3> = [[[3, 0], [3, 1], [5, 4]], [[5, 0], [5, 2], [3, 4]]];
 const QUAD4: Edges<2, 2> = [[[0, 1], [3, 2]], [[0, 3], [1, 2]]];
 const TET4: Edges<3, 1> = [[[0, 1]], [[0, 2]], [[0, 3]]];
+const TET10: Edges<3, 4> = [
+    [[4, 0], [4, 1], [6, 5], [7, 8]],
+    [[6, 0], [6, 2], [4, 5], [7, 9]],
+    [[7, 0], [7, 3], [4, 8], [6, 9]],
+];
+/// The first two axes have two edges.
+const WEDGE6: Edges<3, 3> = [
+    [[0, 1], [3, 4], [0, 0]],
+    [[0, 2], [3, 5], [0, 0]],
+    [[0, 3], [1, 4], [2, 5]],
+];
 const HEX8: Edges<3, 4> = [
     [[0, 1], [3, 2], [4, 5], [7, 6]],
     [[0, 3], [1, 2], [4, 7], [5, 6]],
     [[0, 4], [1, 5], [2, 6], [3, 7]],
 ];
 
-/// The edges of the kind that has as many: known to the compiler, so that lanes of nodes stay in registers.
-const fn edges<const D: usize, const E: usize>() -> Edges<D, E> {
+/// The edges of the kind with N nodes in D dimensions: known to the compiler, so that lanes of nodes stay in registers.
+const fn edges<const N: usize, const D: usize, const E: usize>() -> Edges<D, E> {
     let mut out = [[[0; 2]; E]; D];
     let mut c = 0;
     while c < D {
         let mut e = 0;
         while e < E {
-            out[c][e] = match (D, E) {
-                (2, 1) => TRI3[c][e],
-                (2, 2) => QUAD4[c][e],
-                (3, 1) => TET4[c][e],
+            out[c][e] = match (N, D) {
+                (3, 2) => TRI3[c][e],
+                (4, 2) => QUAD4[c][e],
+                (6, 2) => TRI6[c][e],
+                (4, 3) => TET4[c][e],
+                (6, 3) => WEDGE6[c][e],
+                (10, 3) => TET10[c][e],
                 _ => HEX8[c][e],
             };
             e += 1;
@@ -90,9 +107,22 @@ const fn edges<const D: usize, const E: usize>() -> Edges<D, E> {
     out
 }
 
+/// Number of edges along each axis.
+const fn counts<const D: usize, const E: usize>(edges: &Edges<D, E>) -> [usize; D] {
+    let mut out = [0; D];
+    let mut c = 0;
+    while c < D {
+        while out[c] < E && edges[c][out[c]][0] != edges[c][out[c]][1] {
+            out[c] += 1;
+        }
+        c += 1;
+    }
+    out
+}
+
 /// An element kind whose gradients are sums over the edges of its cell.
 #[derive(Clone, Copy)]
-pub(crate) struct Cell<'a, const D: usize, const E: usize> {
+pub(crate) struct Cell<'a, const N: usize, const D: usize, const E: usize> {
     points: &'a Points,
     axisymmetric: bool,
     /// Thickness in m of a plane body; 1 otherwise.
@@ -142,9 +172,11 @@ pub(crate) struct Batch<'a, T, const N: usize, const D: usize, const E: usize> {
     pub(crate) du: OfEdges<T, D, E>,
 }
 
-impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
+impl<'a, const N: usize, const D: usize, const E: usize> Cell<'a, N, D, E> {
     /// Edges of the reference cell.
-    const EDGES: Edges<D, E> = edges();
+    const EDGES: Edges<D, E> = edges::<N, D, E>();
+    /// Number of them along each axis.
+    const COUNTS: [usize; D] = counts(&Self::EDGES);
 
     pub(crate) fn new(law: &Law, points: &'a Points) -> Self {
         Cell {
@@ -165,7 +197,7 @@ impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
     }
 
     #[inline(always)]
-    pub(crate) fn batch<'b, T: Number, const N: usize>(
+    pub(crate) fn batch<'b, T: Number>(
         &self,
         x: &'b [[T; D]; N],
         u: &'b [[T; D]; N],
@@ -180,11 +212,7 @@ impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
 
     /// Geometry at a point.
     #[inline(always)]
-    pub(crate) fn metric<T: Number, const N: usize>(
-        &self,
-        point: &Point,
-        of: &Batch<T, N, D, E>,
-    ) -> Metric<T, D> {
+    pub(crate) fn metric<T: Number>(&self, point: &Point, of: &Batch<T, N, D, E>) -> Metric<T, D> {
         let jacobian = self.gradient(point, &of.dx);
         let cofactor = cofactor(&jacobian);
         let det = product(&jacobian[0], &cofactor[0]);
@@ -204,13 +232,25 @@ impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
 
     /// Geometry and displacement gradient at a point, and u_r / r in axisymmetry.
     #[inline(always)]
-    pub(crate) fn at_point<T: Number, const N: usize>(
+    pub(crate) fn at_point<T: Number>(
         &self,
         point: &Point,
         of: &Batch<T, N, D, E>,
     ) -> (Metric<T, D>, [[T; D]; D], T) {
         let metric = self.metric(point, of);
-        let g = self.gradient(point, &of.du);
+        let (h, hoop) = self.slope((point, &metric), &of.du, of.u);
+        (metric, h, hoop)
+    }
+
+    /// Displacement gradient at a point, and u_r / r in axisymmetry.
+    #[inline(always)]
+    pub(crate) fn slope<T: Number>(
+        &self,
+        (point, metric): (&Point, &Metric<T, D>),
+        du: &OfEdges<T, D, E>,
+        u: &[[T; D]; N],
+    ) -> ([[T; D]; D], T) {
+        let g = self.gradient(point, du);
         let zero = metric.det.like(0.0);
         let inverse = metric.det.like(1.0) / metric.det;
         let mut h = [[zero; D]; D];
@@ -221,17 +261,17 @@ impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
         }
         let mut hoop = zero;
         if self.has_hoop() {
-            hoop = interpolate(point, of.u) / metric.radius;
+            hoop = interpolate(point, u) / metric.radius;
         }
-        (metric, h, hoop)
+        (h, hoop)
     }
 
     /// φ_b - φ_a over the edges.
     #[inline(always)]
-    fn differences<T: Number, const N: usize>(&self, nodes: &[[T; D]; N]) -> OfEdges<T, D, E> {
+    pub(crate) fn differences<T: Number>(&self, nodes: &[[T; D]; N]) -> OfEdges<T, D, E> {
         let mut differences = [[[nodes[0][0].like(0.0); D]; E]; D];
         for c in 0..D {
-            for e in 0..E {
+            for e in 0..Self::COUNTS[c] {
                 let [a, b] = Self::EDGES[c][e];
                 for i in 0..D {
                     differences[c][e][i] = nodes[b][i] - nodes[a][i];
@@ -246,7 +286,7 @@ impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
     fn gradient<T: Number>(&self, point: &Point, differences: &OfEdges<T, D, E>) -> [[T; D]; D] {
         let mut gradient = [[differences[0][0][0].like(0.0); D]; D];
         for c in 0..D {
-            for e in 0..E {
+            for e in 0..Self::COUNTS[c] {
                 let slope = point.dn[Self::EDGES[c][e][1]][c];
                 for i in 0..D {
                     gradient[i][c] = differences[c][e][i].scale_add(slope, gradient[i][c]);
@@ -273,7 +313,7 @@ impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
                 }
                 pull[i] = pull[i] * weight;
             }
-            for e in 0..E {
+            for e in 0..Self::COUNTS[c] {
                 let slope = point.dn[Self::EDGES[c][e][1]][c];
                 for i in 0..D {
                     edge_forces[c][e][i] = pull[i].scale_add(slope, edge_forces[c][e][i]);
@@ -284,7 +324,7 @@ impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
 
     /// Adds ∫ σ_θ N_a / r 2πr dA of one point: the radius drops out. `factor`: of the stress.
     #[inline(always)]
-    pub(crate) fn spread_hoop<T: Number, const N: usize>(
+    pub(crate) fn spread_hoop<T: Number>(
         &self,
         (point, at): (&Point, &Metric<T, D>),
         stress: T,
@@ -299,13 +339,13 @@ impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
 
     /// The transpose of [`Cell::differences`]: an edge pulls its two nodes with opposite forces.
     #[inline(always)]
-    pub(crate) fn add_differences<T: Number, const N: usize>(
+    pub(crate) fn add_differences<T: Number>(
         &self,
         edge_forces: &OfEdges<T, D, E>,
         f: &mut [[T; D]; N],
     ) {
         for c in 0..D {
-            for e in 0..E {
+            for e in 0..Self::COUNTS[c] {
                 let [a, b] = Self::EDGES[c][e];
                 for i in 0..D {
                     f[a][i] -= edge_forces[c][e][i];
@@ -317,12 +357,12 @@ impl<'a, const D: usize, const E: usize> Cell<'a, D, E> {
 }
 
 /// A plane, axisymmetric or solid element kind with the law of small strain.
-pub(crate) struct Elastic<'a, const D: usize, const E: usize> {
+pub(crate) struct Elastic<'a, const N: usize, const D: usize, const E: usize> {
     law: &'a Law,
-    cell: Cell<'a, D, E>,
+    cell: Cell<'a, N, D, E>,
 }
 
-impl<'a, const D: usize, const E: usize> Elastic<'a, D, E> {
+impl<'a, const N: usize, const D: usize, const E: usize> Elastic<'a, N, D, E> {
     pub(crate) fn new(law: &'a Law, points: &'a Points) -> Self {
         Elastic {
             law,
@@ -331,7 +371,7 @@ impl<'a, const D: usize, const E: usize> Elastic<'a, D, E> {
     }
 }
 
-impl<const N: usize, const D: usize, const E: usize> Kernel<N, D> for Elastic<'_, D, E> {
+impl<const N: usize, const D: usize, const E: usize> Kernel<N, D> for Elastic<'_, N, D, E> {
     #[inline(always)]
     fn force<const W: usize>(
         &self,

@@ -1,5 +1,5 @@
-//! Internal forces of one element at a time, of the kinds for which `force.rs` has no kernel: quadratic cells, wedges and
-//! pyramids. Their nodes are many, and so the loops over them long enough for the compiler.
+//! Internal forces of one element at a time, of the kinds for which `force.rs` has no kernel: pyramids, and quadratic cells
+//! other than simplices. Their nodes are many, and so the loops over them long enough for the compiler.
 //!
 //! Letters are those of the formulas: `H = ∂u/∂x`, `σ`, and f_a = ∫ σ dN_a/dx dV.
 

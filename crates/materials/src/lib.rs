@@ -27,6 +27,7 @@ macro_rules! materials {
     };
 }
 
+mod conserving;
 mod elastic;
 mod hyperelastic;
 mod j2_plasticity;
@@ -41,7 +42,7 @@ mod pointwise;
 mod range;
 mod spectral;
 mod st_venant_kirchhoff;
-mod tensor;
+pub mod tensor;
 
 pub use elastic::{Elastic, Plane};
 pub use j2_plasticity::J2Plasticity;

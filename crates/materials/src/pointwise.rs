@@ -28,6 +28,20 @@ pub trait Pointwise {
     /// Answer at F = I + `h` at the end of a step of `dt` (s) that began with the history `old`; writes the history there into
     /// `new`. All nine components of H, as in [`Material`](crate::Material).
     fn answer<T: Number>(&self, h: &Tensor<T>, dt: f64, old: &[T], new: &mut [T]) -> Answer<T>;
+
+    /// P_alg in the place of P, of a step from F_0 = I + `h[0]` to F_1 = I + `h[1]`, as [`Material::between`](crate::Material);
+    /// `stored` is ψ(F_1). None of a law without.
+    #[inline(always)]
+    fn between<T: Number>(&self, _h: [&Tensor<T>; 2]) -> Option<Answer<T>> {
+        None
+    }
+
+    /// S_alg in the place of P, of a step to the strain `e_1` that changes it by `d`, as
+    /// [`Material::between_strains`](crate::Material). None of a law without.
+    #[inline(always)]
+    fn between_strains<T: Number>(&self, _e_1: &Tensor<T>, _d: &Tensor<T>) -> Option<Answer<T>> {
+        None
+    }
 }
 
 /// σ = λ tr(ε) I + 2 μ ε of the small strain ε = sym H in the place of P.

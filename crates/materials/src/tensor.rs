@@ -58,31 +58,31 @@ fn column<T: Number>(a: &Tensor<T>, j: usize) -> [T; 3] {
 
 /// A B.
 #[inline(always)]
-pub(crate) fn product<T: Number>(a: &Tensor<T>, b: &Tensor<T>) -> Tensor<T> {
+pub fn product<T: Number>(a: &Tensor<T>, b: &Tensor<T>) -> Tensor<T> {
     entries!(|i: usize, j: usize| three(a[i], column(b, j)))
 }
 
 /// A Bᵀ.
 #[inline(always)]
-pub(crate) fn product_transposed<T: Number>(a: &Tensor<T>, b: &Tensor<T>) -> Tensor<T> {
+pub fn product_transposed<T: Number>(a: &Tensor<T>, b: &Tensor<T>) -> Tensor<T> {
     entries!(|i: usize, j: usize| three(a[i], b[j]))
 }
 
 /// Aᵀ B.
 #[inline(always)]
-pub(crate) fn transposed_product<T: Number>(a: &Tensor<T>, b: &Tensor<T>) -> Tensor<T> {
+pub fn transposed_product<T: Number>(a: &Tensor<T>, b: &Tensor<T>) -> Tensor<T> {
     entries!(|i: usize, j: usize| three(column(a, i), column(b, j)))
 }
 
 /// A B of symmetric tensors whose product is symmetric.
 #[inline(always)]
-pub(crate) fn symmetric_product<T: Number>(a: &Tensor<T>, b: &Tensor<T>) -> Tensor<T> {
+pub fn symmetric_product<T: Number>(a: &Tensor<T>, b: &Tensor<T>) -> Tensor<T> {
     symmetric_entries!(|i: usize, j: usize| three(a[i], column(b, j)))
 }
 
 /// Cofactors, det(A) A⁻ᵀ.
 #[inline(always)]
-pub(crate) fn cofactor<T: Number>(a: &Tensor<T>) -> Tensor<T> {
+pub fn cofactor<T: Number>(a: &Tensor<T>) -> Tensor<T> {
     entries!(|i: usize, j: usize| {
         let (p, q, r, s) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
         a[p][r] * a[q][s] - a[p][s] * a[q][r]
@@ -91,7 +91,7 @@ pub(crate) fn cofactor<T: Number>(a: &Tensor<T>) -> Tensor<T> {
 
 /// det(A).
 #[inline(always)]
-pub(crate) fn determinant<T: Number>(a: &Tensor<T>) -> T {
+pub fn determinant<T: Number>(a: &Tensor<T>) -> T {
     let minor = |j: usize, k: usize| a[1][j] * a[2][k] - a[1][k] * a[2][j];
     let last = a[0][2] * minor(0, 1);
     a[0][0].mul_add(minor(1, 2), a[0][1].mul_add(minor(2, 0), last))
@@ -99,31 +99,31 @@ pub(crate) fn determinant<T: Number>(a: &Tensor<T>) -> T {
 
 /// A_11 + A_22 + A_33.
 #[inline(always)]
-pub(crate) fn trace<T: Number>(a: &Tensor<T>) -> T {
+pub fn trace<T: Number>(a: &Tensor<T>) -> T {
     a[0][0] + a[1][1] + a[2][2]
 }
 
 /// A : B.
 #[inline(always)]
-pub(crate) fn double<T: Number>(a: &Tensor<T>, b: &Tensor<T>) -> T {
+pub fn double<T: Number>(a: &Tensor<T>, b: &Tensor<T>) -> T {
     three(a[0], b[0]) + three(a[1], b[1]) + three(a[2], b[2])
 }
 
 /// factor · A.
 #[inline(always)]
-pub(crate) fn scaled<T: Number>(a: &Tensor<T>, factor: T) -> Tensor<T> {
+pub fn scaled<T: Number>(a: &Tensor<T>, factor: T) -> Tensor<T> {
     entries!(|i: usize, j: usize| a[i][j] * factor)
 }
 
 /// A + factor · B.
 #[inline(always)]
-pub(crate) fn plus<T: Number>(a: &Tensor<T>, factor: T, b: &Tensor<T>) -> Tensor<T> {
+pub fn plus<T: Number>(a: &Tensor<T>, factor: T, b: &Tensor<T>) -> Tensor<T> {
     entries!(|i: usize, j: usize| b[i][j].mul_add(factor, a[i][j]))
 }
 
 /// A + factor · I.
 #[inline(always)]
-pub(crate) fn plus_unit<T: Number>(a: &Tensor<T>, factor: T) -> Tensor<T> {
+pub fn plus_unit<T: Number>(a: &Tensor<T>, factor: T) -> Tensor<T> {
     [
         [a[0][0] + factor, a[0][1], a[0][2]],
         [a[1][0], a[1][1] + factor, a[1][2]],
@@ -133,7 +133,7 @@ pub(crate) fn plus_unit<T: Number>(a: &Tensor<T>, factor: T) -> Tensor<T> {
 
 /// Green-Lagrange strain E = (H + Hᵀ + HᵀH)/2 of F = I + H: no digit is lost where F is near I.
 #[inline(always)]
-pub(crate) fn green_lagrange<T: Number>(h: &Tensor<T>) -> Tensor<T> {
+pub fn green_lagrange<T: Number>(h: &Tensor<T>) -> Tensor<T> {
     symmetric_entries!(|i: usize, j: usize| {
         let square = three(column(h, i), column(h, j));
         (h[i][j] + h[j][i] + square).scale(0.5)

@@ -23,7 +23,10 @@ pub(super) type Energies<T> = [T; 3];
 
 /// What the law sees and answers at the points of several elements.
 pub(super) struct AtLaw<T> {
+    /// H; with mean dilatation between two displacements the strain of F̄ at the end.
     pub(super) h: [Tensor<T>; POINTS],
+    /// Between two displacements: H at the start; with mean dilatation the change of that strain.
+    pub(super) from: [Tensor<T>; POINTS],
     pub(super) answers: [Answer<T>; POINTS],
     /// δ.
     pub(super) weights: [T; POINTS],
@@ -41,6 +44,7 @@ impl<T: Number> AtLaw<T> {
         };
         AtLaw {
             h: [[[zero; 3]; 3]; POINTS],
+            from: [[[zero; 3]; 3]; POINTS],
             answers: [answer; POINTS],
             weights: [zero.like(1.0); POINTS],
         }

@@ -1,7 +1,7 @@
 //! Forces at finite strain of several elements at a time, as many as a register has lanes: the inner loop of a nonlinear explicit run.
 //!
-//! The formulas are those of `element.rs`, `dilatation.rs` and `hourglass.rs`, which take one element after the other, give
-//! the tangents, and serve the steps between two displacements. Geometry is computed anew at each call, as at small strain.
+//! The formulas are those of `element.rs`, `dilatation.rs`, `between.rs` and `hourglass.rs`, which take one element after the other
+//! and give the tangents. Geometry is computed anew at each call, as at small strain.
 //!
 //! A batch of elements passes through three functions: geometry and displacement gradients of all points, the law at all points,
 //! forces. Each is compiled for each instruction set; with the law apart, kinds and laws add up and do not multiply.
@@ -14,6 +14,7 @@ use pulp::{NullaryFnOnce, Simd, WithSimd};
 
 use super::batch::{AtLaw, Bad, Energies, Together, Watch};
 use super::body::{Finite, Outcome};
+use super::element::Fault;
 use super::passes::{Elements, Forces, Gradients, Room};
 use super::{Formulation, Placement, Stored};
 use crate::block::{Block, Physics};
@@ -22,7 +23,8 @@ use crate::force::Cell;
 
 /// Whether there is a kernel for the kind.
 pub(super) fn takes(kind: Kind) -> bool {
-    matches!(kind, Kind::Tri3 | Kind::Quad4 | Kind::Tet4 | Kind::Hex8)
+    use Kind::{Hex8, Quad4, Tet4, Tet10, Tri3, Tri6, Wedge6};
+    matches!(kind, Tri3 | Tri6 | Quad4 | Tet4 | Tet10 | Wedge6 | Hex8)
 }
 
 /// Evaluates an expression with the law behind the choice, whatever its type.
@@ -70,19 +72,22 @@ impl Sweep<'_> {
     fn kinds<S: Simd>(self, zero: Packed<S>, simd: S) -> Outcome {
         match self.block.kind {
             Kind::Tri3 => self.batches::<S, 3, 2, 1>(zero, simd),
+            Kind::Tri6 => self.batches::<S, 6, 2, 3>(zero, simd),
             Kind::Quad4 => self.batches::<S, 4, 2, 2>(zero, simd),
             Kind::Tet4 => self.batches::<S, 4, 3, 1>(zero, simd),
+            Kind::Tet10 => self.batches::<S, 10, 3, 4>(zero, simd),
+            Kind::Wedge6 => self.batches::<S, 6, 3, 3>(zero, simd),
             _ => self.batches::<S, 8, 3, 4>(zero, simd),
         }
     }
 
-    /// How the points of an element with E edges along each axis act together.
-    fn together(&self, edges: usize) -> Together {
+    /// How the points of an element act together.
+    fn together(&self) -> Together {
         let shape = &self.finite.shape;
         match (shape.formulation, shape.hourglass(self.block)) {
             (_, Some(modulus)) => Together::OnePoint(modulus),
             // of a single point the mean is its own
-            (Formulation::BBar, _) if edges > 1 => Together::Dilated,
+            (Formulation::BBar, _) if shape.points(self.block) > 1 => Together::Dilated,
             _ => Together::Full,
         }
     }
@@ -100,9 +105,10 @@ impl Sweep<'_> {
         };
         let elements = Elements {
             cell: Cell::new(physics, &self.block.stiffness_points),
-            together: self.together(E),
+            together: self.together(),
             kind: self.block.kind,
             weighted: self.chunk.weights.is_some(),
+            between: self.at.from.is_some(),
         };
         let points = self.finite.shape.points(self.block);
         let mut room = Room::<_, N, D, E>::new(zero);
@@ -110,10 +116,25 @@ impl Sweep<'_> {
             let (first, count) = (place * S::F64_LANES, batch.len() / N);
             self.chunk
                 .lanes(batch, self.at.u, [&mut room.x, &mut room.u]);
+            if let Some(from) = self.at.from {
+                self.chunk.displacements(batch, from, &mut room.from);
+            }
             for (q, weight) in room.law.weights.iter_mut().enumerate() {
                 self.chunk.weigh(first, q, weight);
             }
             let mut found = simd.vectorize(Gradients(&elements, &mut room));
+            if elements.between && found.is_ok() {
+                let (at, strains) = (&mut room.law, elements.together == Together::Dilated);
+                let answered = by_law!(
+                    &self.finite.law,
+                    law => simd.vectorize(AskBetween { law, at, points, strains })
+                );
+                let Some(answered) = answered else {
+                    out.fault = Some((first, Fault::NoBetween));
+                    return out;
+                };
+                found = answered;
+            }
             let histories = Histories {
                 first,
                 count,
@@ -123,7 +144,7 @@ impl Sweep<'_> {
                 old: self.at.old,
                 new: &mut *self.new,
             };
-            if found.is_ok() {
+            if !elements.between && found.is_ok() {
                 let at = &mut room.law;
                 found = by_law!(
                     &self.finite.law,
@@ -171,6 +192,37 @@ struct Histories<'a> {
     dt: f64,
     old: &'a [f64],
     new: &'a mut [f64],
+}
+
+/// The law at all points of several elements, in a step between two displacements.
+struct AskBetween<'a, L, T> {
+    law: &'a L,
+    at: &'a mut AtLaw<T>,
+    /// Of an element.
+    points: usize,
+    /// Whether it sees strains.
+    strains: bool,
+}
+
+impl<L: Pointwise, T: Number> NullaryFnOnce for AskBetween<'_, L, T> {
+    /// None of a law without such a stress.
+    type Output = Option<Result<(), Bad<T>>>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let AskBetween { law, at, .. } = self;
+        let mut watch = Watch::new(at.h[0][0][0].like(0.0));
+        for point in 0..self.points {
+            let (from, h) = (&at.from[point], &at.h[point]);
+            let answer = match self.strains {
+                true => law.between_strains(h, from),
+                false => law.between([from, h]),
+            };
+            at.answers[point] = answer?;
+            watch.see(point, at.answers[point].positive);
+        }
+        Some(watch.end())
+    }
 }
 
 /// The law at all points of several elements.

@@ -27,10 +27,10 @@ struct Integrals<T, const N: usize, const D: usize> {
     weighted: T,
 }
 
-impl<const D: usize, const E: usize> Elements<'_, D, E> {
-    /// Mean gradients, and H by them from the displacements relative to the first node.
+impl<const N: usize, const D: usize, const E: usize> Elements<'_, N, D, E> {
+    /// Mean gradients, and H by them.
     #[inline(always)]
-    pub(super) fn mean_gradient<T: Number, const N: usize>(
+    pub(super) fn mean_gradient<T: Number>(
         &self,
         of: &Batch<T, N, D, E>,
         weights: &[T; POINTS],
@@ -46,26 +46,17 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
             false => self.summed(of, weights),
         };
         let inverse = zero.like(1.0) / volume;
-        let (mut h, mut hoop) = ([[zero; D]; D], zero);
         for a in 0..N {
             for j in 0..D {
                 gradients[a][j] = gradients[a][j] * inverse;
             }
         }
-        for a in 1..N {
-            for i in 0..D {
-                let moved = of.u[a][i] - of.u[0][i];
-                for j in 0..D {
-                    h[i][j] = moved.mul_add(gradients[a][j], h[i][j]);
-                }
-            }
-        }
         if self.cell.has_hoop() {
             for a in 0..N {
                 ring[a][0] = ring[a][0] * inverse;
-                hoop = ring[a][0].mul_add(of.u[a][0], hoop);
             }
         }
+        let (h, hoop) = self.by_mean((&gradients, &ring), of.u);
         Mean {
             gradients,
             ring,
@@ -75,9 +66,34 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
         }
     }
 
+    /// H and u_r/R by mean gradients, from the displacements relative to the first node.
+    #[inline(always)]
+    pub(super) fn by_mean<T: Number>(
+        &self,
+        (gradients, ring): (&[[T; D]; N], &[[T; D]; N]),
+        u: &[[T; D]; N],
+    ) -> ([[T; D]; D], T) {
+        let zero = u[0][0].like(0.0);
+        let (mut h, mut hoop) = ([[zero; D]; D], zero);
+        for a in 1..N {
+            for i in 0..D {
+                let moved = u[a][i] - u[0][i];
+                for j in 0..D {
+                    h[i][j] = moved.mul_add(gradients[a][j], h[i][j]);
+                }
+            }
+        }
+        if self.cell.has_hoop() {
+            for a in 0..N {
+                hoop = ring[a][0].mul_add(u[a][0], hoop);
+            }
+        }
+        (h, hoop)
+    }
+
     /// Sums over the points.
     #[inline(always)]
-    fn summed<T: Number, const N: usize>(
+    fn summed<T: Number>(
         &self,
         of: &Batch<T, N, D, E>,
         weights: &[T; POINTS],

@@ -16,6 +16,7 @@ mod kernel;
 mod linear;
 mod mean;
 mod passes;
+mod path;
 mod placement;
 mod pressure;
 mod solid;

@@ -7,15 +7,18 @@ use pulp::NullaryFnOnce;
 
 use super::batch::{AtLaw, Bad, Energies, POINTS, Together, Watch};
 use super::hourglass::{pattern, patterns};
+use super::path::Path;
 use crate::force::{self, Cell, Metric, OfEdges};
 
 /// What is the same for all batches of a chunk.
-pub(super) struct Elements<'a, const D: usize, const E: usize> {
-    pub(super) cell: Cell<'a, D, E>,
+pub(super) struct Elements<'a, const N: usize, const D: usize, const E: usize> {
+    pub(super) cell: Cell<'a, N, D, E>,
     pub(super) together: Together,
     pub(super) kind: Kind,
     /// Whether the internal work has weights.
     pub(super) weighted: bool,
+    /// Whether forces are those between two displacements.
+    pub(super) between: bool,
 }
 
 /// Several elements on their way through the functions.
@@ -23,16 +26,20 @@ pub(super) struct Room<T, const N: usize, const D: usize, const E: usize> {
     /// Places and displacements of the nodes, m.
     pub(super) x: [[T; D]; N],
     pub(super) u: [[T; D]; N],
+    /// Displacements at the start of a step, for forces between the two, m.
+    pub(super) from: [[T; D]; N],
     /// Forces on them, N.
     pub(super) f: [[T; D]; N],
     pub(super) law: AtLaw<T>,
-    metrics: [Metric<T, D>; POINTS],
+    pub(super) metrics: [Metric<T, D>; POINTS],
     /// With mean dilatation.
     stretches: [T; POINTS],
-    /// θ - 1, and with one point its ∫ δ dV.
-    mean: T,
+    /// With mean dilatation between two displacements.
+    pub(super) paths: [Path<T>; POINTS],
+    /// θ - 1, its mean over a step less 1, and with one point its ∫ δ dV.
+    pub(super) mean: T,
     /// V.
-    volume: T,
+    pub(super) volume: T,
     /// Mean gradients of one point, in 1/m, and those around the axis.
     gradients: [[T; D]; N],
     ring: [[T; D]; N],
@@ -45,10 +52,12 @@ impl<T: Number, const N: usize, const D: usize, const E: usize> Room<T, N, D, E>
         Room {
             x: [[zero; D]; N],
             u: [[zero; D]; N],
+            from: [[zero; D]; N],
             f: [[zero; D]; N],
             law: AtLaw::new(zero),
             metrics: [Metric::zero(zero); POINTS],
             stretches: [zero; POINTS],
+            paths: [Path::new(zero); POINTS],
             mean: zero,
             volume: zero,
             gradients: [[zero; D]; N],
@@ -59,13 +68,13 @@ impl<T: Number, const N: usize, const D: usize, const E: usize> Room<T, N, D, E>
 
 /// Displacement gradients at all points.
 pub(super) struct Gradients<'a, T, const N: usize, const D: usize, const E: usize>(
-    pub(super) &'a Elements<'a, D, E>,
+    pub(super) &'a Elements<'a, N, D, E>,
     pub(super) &'a mut Room<T, N, D, E>,
 );
 
 /// Forces and energies.
 pub(super) struct Forces<'a, T, const N: usize, const D: usize, const E: usize>(
-    pub(super) &'a Elements<'a, D, E>,
+    pub(super) &'a Elements<'a, N, D, E>,
     pub(super) &'a mut Room<T, N, D, E>,
 );
 
@@ -82,6 +91,10 @@ impl<T: Number, const N: usize, const D: usize, const E: usize> NullaryFnOnce
             let mean = elements.mean_gradient(&batch, &room.law.weights);
             (room.gradients, room.ring, room.mean) = (mean.gradients, mean.ring, mean.weighted);
             room.law.h[0] = elements.whole(&mean.h, mean.hoop);
+            if elements.between {
+                let (h, hoop) = elements.by_mean((&room.gradients, &room.ring), &room.from);
+                room.law.from[0] = elements.whole(&h, hoop);
+            }
             return Ok(());
         }
         for (q, point) in elements.cell.points().iter().enumerate() {
@@ -89,10 +102,19 @@ impl<T: Number, const N: usize, const D: usize, const E: usize> NullaryFnOnce
             room.metrics[q] = metric;
             room.law.h[q] = elements.whole(&h, hoop);
         }
-        if elements.together == Together::Dilated {
-            return elements.dilate(room);
+        if elements.between {
+            let before = elements.cell.differences(&room.from);
+            for (q, point) in elements.cell.points().iter().enumerate() {
+                let at = (point, &room.metrics[q]);
+                let (h, hoop) = elements.cell.slope(at, &before, &room.from);
+                room.law.from[q] = elements.whole(&h, hoop);
+            }
         }
-        Ok(())
+        match (elements.together, elements.between) {
+            (Together::Dilated, false) => elements.dilate(room),
+            (Together::Dilated, true) => elements.dilate_between(room),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -108,13 +130,14 @@ impl<T: Number, const N: usize, const D: usize, const E: usize> NullaryFnOnce
         room.f = [[zero; D]; N];
         match elements.together {
             Together::Full => elements.full(room),
+            Together::Dilated if elements.between => elements.dilated_between(room),
             Together::Dilated => elements.dilated(room),
             Together::OnePoint(modulus) => elements.one_point(modulus, room),
         }
     }
 }
 
-impl<const D: usize, const E: usize> Elements<'_, D, E> {
+impl<const N: usize, const D: usize, const E: usize> Elements<'_, N, D, E> {
     /// H with all its components.
     #[inline(always)]
     fn whole<T: Number>(&self, h: &[[T; D]; D], hoop: T) -> Tensor<T> {
@@ -132,7 +155,7 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
 
     /// Adds what a stress at a point makes of forces. `factor`: of dV.
     #[inline(always)]
-    fn spread<T: Number, const N: usize>(
+    pub(super) fn spread<T: Number>(
         &self,
         (q, metric): (usize, &Metric<T, D>),
         stress: &Tensor<T>,
@@ -151,7 +174,7 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
 
     /// Full integration.
     #[inline(always)]
-    fn full<T: Number, const N: usize>(&self, room: &mut Room<T, N, D, E>) -> Energies<T> {
+    fn full<T: Number>(&self, room: &mut Room<T, N, D, E>) -> Energies<T> {
         let zero = room.mean.like(0.0);
         let mut df = [[[zero; D]; E]; D];
         let mut energies = [zero; 3];
@@ -167,7 +190,7 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
 
     /// Replaces H by that of F̄ = s F, s = (θ/J)^(1/3).
     #[inline(always)]
-    fn dilate<T: Number, const N: usize>(&self, room: &mut Room<T, N, D, E>) -> Result<(), Bad<T>> {
+    fn dilate<T: Number>(&self, room: &mut Room<T, N, D, E>) -> Result<(), Bad<T>> {
         // V and θ V - V: the change of volume keeps its digits
         let (zero, one) = (room.mean.like(0.0), room.mean.like(1.0));
         let (mut volume, mut growth) = (zero, zero);
@@ -192,7 +215,7 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
 
     /// Mean dilatation.
     #[inline(always)]
-    fn dilated<T: Number, const N: usize>(&self, room: &mut Room<T, N, D, E>) -> Energies<T> {
+    fn dilated<T: Number>(&self, room: &mut Room<T, N, D, E>) -> Energies<T> {
         let (zero, one) = (room.mean.like(0.0), room.mean.like(1.0));
         let (mut df, mut dv) = ([[[zero; D]; E]; D], [[[zero; D]; E]; D]);
         let mut by_volume = [[zero; D]; N];
@@ -222,11 +245,7 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
 
     /// One point with mean gradients, and hourglass control.
     #[inline(always)]
-    fn one_point<T: Number, const N: usize>(
-        &self,
-        modulus: f64,
-        room: &mut Room<T, N, D, E>,
-    ) -> Energies<T> {
+    fn one_point<T: Number>(&self, modulus: f64, room: &mut Room<T, N, D, E>) -> Energies<T> {
         let (answer, weighted) = (room.law.answers[0], room.mean);
         let zero = weighted.like(0.0);
         let mut energies = [zero; 3];
@@ -262,7 +281,7 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
     /// pattern is γ_a = (h_a - Σ_j X_hj dN_a/dX_j)/N, X_hj = Σ_b h_b X_bj, so that its amplitude is (Σ h_a u_a - H X_h)/N.
     /// Returns the energies.
     #[inline(always)]
-    fn hourglass<T: Number, const N: usize>(
+    fn hourglass<T: Number>(
         &self,
         modulus: f64,
         room: &mut Room<T, N, D, E>,
@@ -276,26 +295,24 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
             }
         }
         let stiffness = (room.mean * square).scale(modulus);
-        let h = &room.law.h[0];
         let mut energy = zero;
         for axes in patterns(self.kind) {
-            let (mut x_h, mut u_h) = ([zero; D], [zero; D]);
             let mut signs = [0.0; N];
             for a in 0..N {
                 signs[a] = pattern(axes, &self.kind.table().reference[a]);
+            }
+            let x_h = along(&signs, &room.x);
+            let end = amplitudes(&room.law.h[0], &x_h, along(&signs, &room.u));
+            let mut middle = end;
+            if self.between {
+                let begin = amplitudes(&room.law.from[0], &x_h, along(&signs, &room.from));
                 for i in 0..D {
-                    x_h[i] = room.x[a][i].scale_add(signs[a], x_h[i]);
-                    u_h[i] = room.u[a][i].scale_add(signs[a], u_h[i]);
+                    middle[i] = (end[i] + begin[i]).scale(0.5);
                 }
             }
             for i in 0..D {
-                for j in 0..D {
-                    u_h[i] -= h[i][j] * x_h[j];
-                }
-                let amplitude = u_h[i].scale(1.0 / N as f64);
-                let force = stiffness * amplitude;
-                energy += (force * amplitude).scale(0.5);
-                let spread = force.scale(1.0 / N as f64);
+                energy += (stiffness * end[i] * end[i]).scale(0.5);
+                let spread = (stiffness * middle[i]).scale(1.0 / N as f64);
                 for a in 0..N {
                     room.f[a][i] = spread.scale_add(signs[a], room.f[a][i]);
                 }
@@ -306,6 +323,34 @@ impl<const D: usize, const E: usize> Elements<'_, D, E> {
         }
         energy
     }
+}
+
+/// Σ_a h_a φ_a of a pattern h.
+#[inline(always)]
+fn along<T: Number, const N: usize, const D: usize>(
+    signs: &[f64; N],
+    nodes: &[[T; D]; N],
+) -> [T; D] {
+    let mut sum = [nodes[0][0].like(0.0); D];
+    for a in 0..N {
+        for i in 0..D {
+            sum[i] = nodes[a][i].scale_add(signs[a], sum[i]);
+        }
+    }
+    sum
+}
+
+/// (u_h - H X_h)/N, N = 2^D.
+#[inline(always)]
+fn amplitudes<T: Number, const D: usize>(h: &Tensor<T>, x_h: &[T; D], u_h: [T; D]) -> [T; D] {
+    let mut amplitudes = u_h;
+    for i in 0..D {
+        for j in 0..D {
+            amplitudes[i] -= h[i][j] * x_h[j];
+        }
+        amplitudes[i] = amplitudes[i].scale(1.0 / (1 << D) as f64);
+    }
+    amplitudes
 }
 
 /// The components in space.
@@ -321,7 +366,7 @@ fn inner<T: Number, const D: usize>(stress: &Tensor<T>) -> [[T; D]; D] {
 }
 
 #[inline(always)]
-fn add<T: Number>(sum: &mut Energies<T>, answer: &Answer<T>, volume: T) {
+pub(super) fn add<T: Number>(sum: &mut Energies<T>, answer: &Answer<T>, volume: T) {
     sum[0] = volume.mul_add(answer.stored, sum[0]);
     sum[1] = volume.mul_add(answer.hardening, sum[1]);
     sum[2] = volume.mul_add(answer.dissipated, sum[2]);
@@ -329,7 +374,7 @@ fn add<T: Number>(sum: &mut Energies<T>, answer: &Answer<T>, volume: T) {
 
 /// det(I + H) - 1 = tr H + the sum of the principal minors of two rows + det H.
 #[inline(always)]
-fn determinant_less_1<T: Number>(h: &Tensor<T>) -> T {
+pub(super) fn determinant_less_1<T: Number>(h: &Tensor<T>) -> T {
     let minor = |i: usize, j: usize| h[i][i] * h[j][j] - h[i][j] * h[j][i];
     let upper = |j: usize, k: usize| h[1][j] * h[2][k] - h[1][k] * h[2][j];
     let det = h[0][0] * upper(1, 2) + h[0][1] * upper(2, 0) + h[0][2] * upper(0, 1);
@@ -338,7 +383,7 @@ fn determinant_less_1<T: Number>(h: &Tensor<T>) -> T {
 
 /// Replaces H by s H + (s - 1) I.
 #[inline(always)]
-fn stretch<T: Number>(h: &mut Tensor<T>, s: T, more: T) {
+pub(super) fn stretch<T: Number>(h: &mut Tensor<T>, s: T, more: T) {
     for i in 0..3 {
         for j in 0..3 {
             h[i][j] = h[i][j] * s;

@@ -124,7 +124,7 @@ impl Finite {
         new: &mut [f64],
         f: &mut [[f64; 3]],
     ) -> Outcome {
-        if at.from.is_none() && kernel::takes(block.kind) {
+        if kernel::takes(block.kind) {
             return Arch::new().dispatch(kernel::Sweep {
                 finite: self,
                 block,
