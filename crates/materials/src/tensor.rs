@@ -97,6 +97,15 @@ pub fn determinant<T: Number>(a: &Tensor<T>) -> T {
     a[0][0].mul_add(minor(1, 2), a[0][1].mul_add(minor(2, 0), last))
 }
 
+/// det(I + H) - 1 = tr H + the sum of the principal minors of two rows + det H.
+#[inline(always)]
+pub fn determinant_less_1<T: Number>(h: &Tensor<T>) -> T {
+    let minor = |i: usize, j: usize| h[i][i] * h[j][j] - h[i][j] * h[j][i];
+    let upper = |j: usize, k: usize| h[1][j] * h[2][k] - h[1][k] * h[2][j];
+    let det = h[0][0] * upper(1, 2) + h[0][1] * upper(2, 0) + h[0][2] * upper(0, 1);
+    (h[0][0] + h[1][1] + h[2][2]) + (minor(0, 1) + minor(1, 2) + minor(0, 2)) + det
+}
+
 /// A_11 + A_22 + A_33.
 #[inline(always)]
 pub fn trace<T: Number>(a: &Tensor<T>) -> T {

@@ -2,12 +2,12 @@
 
 use carom_algebra::number::Number;
 use carom_elements::Kind;
+use carom_materials::tensor::determinant_less_1;
 use carom_materials::{Answer, Tensor};
 use pulp::NullaryFnOnce;
 
-use super::batch::{AtLaw, Bad, Energies, POINTS, Together, Watch};
+use super::batch::{AtLaw, Bad, Energies, POINTS, Path, Together, Watch};
 use super::hourglass::{pattern, patterns};
-use super::path::Path;
 use crate::force::{self, Cell, Metric, OfEdges};
 
 /// What is the same for all batches of a chunk.
@@ -370,15 +370,6 @@ pub(super) fn add<T: Number>(sum: &mut Energies<T>, answer: &Answer<T>, volume: 
     sum[0] = volume.mul_add(answer.stored, sum[0]);
     sum[1] = volume.mul_add(answer.hardening, sum[1]);
     sum[2] = volume.mul_add(answer.dissipated, sum[2]);
-}
-
-/// det(I + H) - 1 = tr H + the sum of the principal minors of two rows + det H.
-#[inline(always)]
-pub(super) fn determinant_less_1<T: Number>(h: &Tensor<T>) -> T {
-    let minor = |i: usize, j: usize| h[i][i] * h[j][j] - h[i][j] * h[j][i];
-    let upper = |j: usize, k: usize| h[1][j] * h[2][k] - h[1][k] * h[2][j];
-    let det = h[0][0] * upper(1, 2) + h[0][1] * upper(2, 0) + h[0][2] * upper(0, 1);
-    (h[0][0] + h[1][1] + h[2][2]) + (minor(0, 1) + minor(1, 2) + minor(0, 2)) + det
 }
 
 /// Replaces H by s H + (s - 1) I.

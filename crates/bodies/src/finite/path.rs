@@ -1,76 +1,10 @@
 //! Mean dilatation between two displacements of several elements at a time. Formulas and letters are those of `between.rs`.
 
 use carom_algebra::number::Number;
-use carom_materials::Tensor;
-use carom_materials::tensor::{
-    cofactor, double, green_lagrange, plus, plus_unit, product, scaled, transposed_product,
-};
+use carom_materials::tensor::{double, green_lagrange, plus, product, scaled};
 
-use super::batch::{Bad, Energies, POINTS, Watch};
-use super::passes::{Elements, Room, add, determinant_less_1, stretch};
-
-/// How one point moves.
-#[derive(Clone, Copy)]
-pub(super) struct Path<T> {
-    f_m: Tensor<T>,
-    c_m: Tensor<T>,
-    /// N.
-    slope: Tensor<T>,
-    /// J - 1 at both ends.
-    grown: [T; 2],
-    /// ⟨J⟩.
-    jacobian: T,
-    /// ⟨s²⟩.
-    square: T,
-    /// R.
-    rate: T,
-}
-
-impl<T: Number> Path<T> {
-    /// Zeros like this one.
-    #[inline(always)]
-    pub(super) fn new(zero: T) -> Self {
-        let none = [[zero; 3]; 3];
-        Path {
-            f_m: none,
-            c_m: none,
-            slope: none,
-            grown: [zero; 2],
-            jacobian: zero,
-            square: zero,
-            rate: zero,
-        }
-    }
-
-    /// From F_0 = I + H_0 to F_1 = I + H_1, without what the other points decide; and D.
-    #[inline(always)]
-    fn between(h_0: &Tensor<T>, h_1: &Tensor<T>) -> (Self, Tensor<T>) {
-        let one = h_0[0][0].like(1.0);
-        let half = one.scale(0.5);
-        let f_m = plus_unit(&scaled(&plus(h_1, one, h_0), half), one);
-        let square = transposed_product(&f_m, &plus(h_1, -one, h_0));
-        let mut d = square;
-        for i in 0..3 {
-            for j in 0..3 {
-                d[i][j] = (square[i][j] + square[j][i]).scale(0.5);
-            }
-        }
-        // C = I + 2E
-        let c_m = plus_unit(&plus(&green_lagrange(h_0), one, &green_lagrange(h_1)), one);
-        let grown = [determinant_less_1(h_0), determinant_less_1(h_1)];
-        let jacobian = (grown[0] + grown[1]).scale(0.5) + one;
-        let cofactors = plus(&cofactor(&c_m), one.scale(1.0 / 3.0), &cofactor(&d));
-        let path = Path {
-            f_m,
-            c_m,
-            slope: scaled(&cofactors, one / jacobian),
-            grown,
-            jacobian,
-            ..Path::new(one.like(0.0))
-        };
-        (path, d)
-    }
-}
+use super::batch::{Bad, Energies, POINTS, Path, Watch};
+use super::passes::{Elements, Room, add, stretch};
 
 impl<const N: usize, const D: usize, const E: usize> Elements<'_, N, D, E> {
     /// Replaces H at both ends by the strain of F̄_1 and ΔĒ.
