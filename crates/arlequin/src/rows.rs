@@ -11,7 +11,7 @@ use crate::error::Error;
 pub struct Term {
     /// Node of the mesh.
     pub node: u32,
-    /// Component of the velocity there, below the dimension of the mesh.
+    /// Component of the velocity there: below the dimension of the mesh, or from there on a rotation.
     pub component: u32,
     /// Coefficient, in m^dim (dimensionless for a matching interface).
     pub coefficient: f64,
@@ -31,6 +31,20 @@ pub struct Row {
 }
 
 impl Row {
+    /// The same row of another component.
+    fn of(&self, component: u32) -> Row {
+        let side = |terms: &[Term]| {
+            let terms = terms.iter();
+            terms.map(|term| Term { component, ..*term }).collect()
+        };
+        Row {
+            node: self.node,
+            component,
+            inner: side(&self.inner),
+            outer: side(&self.outer),
+        }
+    }
+
     /// Σ terms · field, the field given by node and component.
     pub fn apply(terms: &[Term], field: impl Fn(u32, usize) -> f64) -> f64 {
         let value = |t: &Term| t.coefficient * field(t.node, t.component as usize);
@@ -81,6 +95,18 @@ impl Rows {
             .partition(|row| unwanted(row.node, row.component));
         self.rows = kept;
         gone.iter().map(unknown).collect()
+    }
+
+    /// The same rows with those of the rotations at the same nodes, which follow the `dim` translations: of two beams.
+    #[must_use]
+    pub fn with_rotations(mut self, dim: u32) -> Rows {
+        let axes = if dim == 2 { 2..3 } else { 3..6 };
+        let first = self.rows.iter().filter(|row| row.component == 0);
+        let turned = first.flat_map(|row| axes.clone().map(|axis| row.of(axis)));
+        let turned: Vec<Row> = turned.collect();
+        self.rows.extend(turned);
+        self.rows.sort_by_key(|row| (row.node, row.component));
+        self
     }
 
     /// Mediator unknowns that another overlap has too.

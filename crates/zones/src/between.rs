@@ -2,8 +2,11 @@
 //!
 //! A force that is the same in all steps of the outer one gives both sides the same impulse, DT P, whatever their numbers of
 //! steps. Points are paired where the captured configuration of the outer step has them, and law and force obey
-//! `ġ(P) = Σ_z N_z v_z(t + DT)`, with v_z what the steps of zone z make of P. A pass finds the rates of the present forces and
-//! solves `ġ + D ΔP` with its signs, D that of the linearised zones without their own contacts.
+//! `ġ(P) = Σ_z N_z v_z(t + DT)`, with v_z what the steps of zone z make of P. Of a point that carried a force in the step before,
+//! `ġ = Σ_z N_z Δu_z / DT`: a force that stands over the step then does no work on a contact that lasts. With the rate at the end, the
+//! velocities between would do work with it, and several inner steps make energy without bound. A pass finds the rates of the present
+//! forces and solves `ġ + D ΔP` with its signs, D that of the linearised zones without their own contacts; between a point that
+//! lasts and one that does not, the mean of both responses stands for D, which costs passes and changes no result.
 
 use std::sync::Arc;
 
@@ -19,7 +22,6 @@ use carom_dynamics::ContactReport;
 use carom_dynamics::Driver;
 use carom_dynamics::contact_report;
 use carom_dynamics::landing::{arrival, flies, lead};
-use carom_dynamics::linked::{Growth, Origin};
 use carom_dynamics::paired::{append, approaches, told};
 use carom_dynamics::records::{Records, Step};
 use carom_dynamics::state::{InterfaceState, empty_state};
@@ -55,18 +57,23 @@ pub(crate) struct Between {
     places: Vec<Places>,
     search: Vec<Search>,
     initial: Vec<Pairing>,
-    pairing: Pairing,
+    pub(crate) pairing: Pairing,
     /// Points that may carry a force in the step.
-    candidates: Vec<u32>,
+    pub(crate) candidates: Vec<u32>,
+    /// Whether they carried a force in the step before.
+    pub(crate) lasting: Vec<bool>,
     /// Their forces in this pass, N.
     forces: Vec<f64>,
     /// Rows of the candidates by zone.
-    rows: Vec<Vec<(u32, LinkRow)>>,
-    /// D over the candidates, the rows that it is of, and the sizes of the steps of the zones.
-    matrix: Vec<f64>,
-    of: Vec<(Vec<u32>, Vec<f64>)>,
-    sizes: Vec<f64>,
-    version: u64,
+    pub(crate) rows: Vec<Vec<(u32, LinkRow)>>,
+    /// Rates at the end of the step and over it that unit forces leave, the rows that they are of, and the sizes of the steps of the
+    /// zones; D of the candidates, and which of them lasted in it.
+    pub(crate) responses: [Vec<f64>; 2],
+    pub(crate) matrix: Vec<f64>,
+    pub(crate) matrix_of: Vec<bool>,
+    pub(crate) of: Vec<(Vec<u32>, Vec<f64>)>,
+    pub(crate) sizes: Vec<f64>,
+    pub(crate) version: u64,
     rates: Vec<f64>,
     interface: Interface,
     data: Vec<Candidate>,
@@ -82,6 +89,8 @@ pub(crate) struct Between {
     pub(crate) reports: Vec<ContactReport>,
     /// Works of the step, J.
     now: Vec<f64>,
+    /// Largest change of a force in the last pass, N.
+    change: f64,
 }
 
 impl Between {
@@ -123,9 +132,12 @@ impl Between {
             initial: vec![Pairing::default(); count],
             pairing: Pairing::default(),
             candidates: Vec::new(),
+            lasting: Vec::new(),
             forces: Vec::new(),
             rows: vec![Vec::new(); drivers.len()],
+            responses: Default::default(),
             matrix: Vec::new(),
+            matrix_of: Vec::new(),
             of: Vec::new(),
             sizes: Vec::new(),
             version: 0,
@@ -144,6 +156,7 @@ impl Between {
                 works: vec![0.0; count],
             },
             now: vec![0.0; count],
+            change: 0.0,
             system,
         }))
     }
@@ -200,6 +213,7 @@ impl Between {
         }
         let force = |&point: &u32| self.state.interface.force[point as usize];
         self.forces = self.candidates.iter().map(force).collect();
+        self.lasting = self.forces.iter().map(|force| *force != 0.0).collect();
         self.rows.iter_mut().for_each(Vec::clear);
         for (k, &point) in self.candidates.iter().enumerate() {
             let (dofs, coefficients) = self.pairing.rows.row(point as usize);
@@ -211,47 +225,6 @@ impl Between {
                 }
             }
         }
-    }
-
-    /// D of the candidates for an outer step of `dt` (s), where their rows or the sizes of steps have changed.
-    ///
-    /// # Errors
-    /// An effective matrix that is not positive definite.
-    pub(crate) fn respond(
-        &mut self,
-        drivers: &mut [Driver],
-        (substeps, dt): (&[u32], f64),
-        origins: &[Origin],
-    ) -> Result<(), Error> {
-        let row = |&point: &u32| {
-            let (dofs, coefficients) = self.pairing.rows.row(point as usize);
-            (dofs.to_vec(), coefficients.to_vec())
-        };
-        let of: Vec<_> = self.candidates.iter().map(row).collect();
-        let sizes = substeps.iter().map(|m| dt / f64::from(*m)).collect();
-        if of == self.of && sizes == self.sizes {
-            return Ok(());
-        }
-        let n = self.candidates.len();
-        self.matrix.clear();
-        self.matrix.resize(n * n, 0.0);
-        for (zone, driver) in drivers.iter_mut().enumerate() {
-            let rows = &self.rows[zone];
-            if rows.is_empty() {
-                continue;
-            }
-            let steps = (substeps[zone], Growth::Constant);
-            let own = driver.ramp((rows, steps), &origins[zone])?;
-            for (i, (row, _)) in rows.iter().enumerate() {
-                for (j, (column, _)) in rows.iter().enumerate() {
-                    let mean = 0.5 * (own[i * rows.len() + j] + own[j * rows.len() + i]);
-                    self.matrix[*row as usize * n + *column as usize] += mean;
-                }
-            }
-        }
-        (self.of, self.sizes) = (of, sizes);
-        self.version += 1;
-        Ok(())
     }
 
     /// Begins a pass.
@@ -279,10 +252,15 @@ impl Between {
         }
     }
 
-    /// Adds the rates that a zone ends the outer step with.
-    pub(crate) fn look(&mut self, zone: usize, v: &[f64]) {
+    /// Adds the rates of a step of a zone just completed: over the outer step of `dt` (s), or those at its end if it is the `last`.
+    pub(crate) fn look(&mut self, zone: usize, driver: &Driver, (last, dt): (bool, f64)) {
         for (row, terms) in &self.rows[zone] {
-            self.rates[*row as usize] += on(terms, v);
+            let row = *row as usize;
+            match self.lasting[row] {
+                true => self.rates[row] += driver.row_way(terms) / dt,
+                false if last => self.rates[row] += on(terms, &driver.ended().motion.v),
+                false => {}
+            }
         }
     }
 
@@ -310,7 +288,11 @@ impl Between {
                     area: carrier.area,
                     share: carrier.share,
                     gap,
-                    rate: rows.product(point, &self.start[1]),
+                    // what lasts has nothing to give back
+                    rate: match self.lasting[i] {
+                        true => 0.0,
+                        false => rows.product(point, &self.start[1]),
+                    },
                     start: 0.0,
                     gap_free: gap,
                     dt,
@@ -341,10 +323,22 @@ impl Between {
         let changes = self.forces.iter().zip(&self.interface.forces);
         let change = changes.fold(0.0_f64, |m, (old, new)| m.max((old - new).abs()));
         let held = change <= TOLERANCE * largest(&self.interface.forces);
+        self.change = change;
         if !held {
             self.forces.clone_from(&self.interface.forces);
         }
         Ok(held)
+    }
+
+    /// The error of forces that still change after all passes.
+    pub(crate) fn unsettled(&self, step: u64, passes: usize) -> Error {
+        let first = self.candidates.first().map_or(0, |point| *point as usize);
+        Error::Unsettled {
+            step,
+            contact: self.system.point(first).0.name.clone(),
+            change: self.change,
+            passes,
+        }
     }
 
     /// Makes the forces those of the state at `time`, the end of an outer step of `dt` (both s).

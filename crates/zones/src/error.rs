@@ -43,6 +43,20 @@ pub enum Error {
         /// Cause.
         cause: carom_nonsmooth::interface::Failure,
     },
+    /// Forces of contacts between zones that do not settle.
+    #[error(
+        "step {step}, contact '{contact}' between zones: its forces still change by {change} N after {passes} passes"
+    )]
+    Unsettled {
+        /// Number of the outer step.
+        step: u64,
+        /// Name of the first contact that may carry a force.
+        contact: String,
+        /// Largest change of a force, N.
+        change: f64,
+        /// Passes so far.
+        passes: usize,
+    },
     /// Numbers of inner steps that do not go together.
     #[error("zone '{zone}' takes {found} steps per outer step: {accepted}")]
     Substeps {

@@ -9,6 +9,7 @@
 //! for any pair of schemes with weights of the multipliers in time is this project's.
 
 mod between;
+mod compliance;
 mod control;
 mod discrete;
 mod error;

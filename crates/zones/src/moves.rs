@@ -24,6 +24,11 @@ impl Moves {
         self.used = 0;
     }
 
+    /// Whether this step has made none so far.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.used == 0
+    }
+
     /// Makes the next move of H⁻¹ r.
     pub(crate) fn next(&mut self, z: &mut [f64]) {
         z.iter_mut().for_each(|z| *z = -*z);

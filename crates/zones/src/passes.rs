@@ -10,6 +10,9 @@ use carom_system::LinkRow;
 /// Defect of a row at which it holds, as a part of the largest velocity.
 const TOLERANCE: f64 = 1e-12;
 
+/// Factor of the defect in a pass that gains.
+const GAIN: f64 = 0.5;
+
 /// Most passes over an outer step.
 pub(crate) const MOST_PASSES: usize = 30;
 
@@ -20,6 +23,8 @@ impl Zones {
         let speed = self.speed();
         let rows = self.defect.iter().zip(&self.norms);
         let worst = rows.fold(0.0, |worst: f64, (d, n)| worst.max(d.abs() / n));
+        let gains = self.moves.is_empty() || worst < GAIN * self.worst;
+        self.worst = worst;
         if worst <= TOLERANCE * speed {
             return Ok(true);
         }
@@ -27,21 +32,33 @@ impl Zones {
             return Ok(true);
         };
         factor.solve(&mut self.defect);
-        let [old, new] = &mut self.multipliers;
+        let [old, new] = &self.multipliers;
         let target = match which {
-            0 => &mut self.pointwise[1],
+            0 => &self.pointwise[1],
             _ => new,
         };
         // at rest all velocities are rounding; then the forces tell what is small
         let forces = largest(old).max(largest(target));
-        if largest(&self.defect) <= TOLERANCE * forces {
+        let change = largest(&self.defect);
+        if change <= TOLERANCE * forces || !gains && change <= self.rounding() {
             return Ok(true);
         }
         self.moves.next(&mut self.defect);
+        let target = match which {
+            0 => &mut self.pointwise[1],
+            _ => &mut self.multipliers[1],
+        };
         for (l, move_) in target.iter_mut().zip(&self.defect) {
             *l += move_;
         }
         Ok(false)
+    }
+
+    /// What rounding leaves in the forces of the zones, N. Passes end there once they gain no more: stiff elements turn the rounding
+    /// of displacements into velocities far above that of the velocities.
+    fn rounding(&self) -> f64 {
+        let zones = self.drivers.iter();
+        zones.map(Driver::rounding_of_forces).fold(0.0, f64::max)
     }
 
     /// Largest velocity of all zones, at the end of the step or at its start.
@@ -53,11 +70,10 @@ impl Zones {
     }
 
     pub(crate) fn parted(&self) -> Error {
-        let rows = self.defect.iter().zip(&self.norms);
         Error::Link {
             step: self.step + 1,
             passes: self.passes,
-            defect: rows.fold(0.0, |worst: f64, (d, n)| worst.max(d.abs() / n)),
+            defect: self.worst,
         }
     }
 }

@@ -50,7 +50,7 @@ impl Zones {
                 LinkKind::GravouilCombescure => 1,
                 LinkKind::PrakashHjelmstad => self.substeps[k],
             };
-            let own = driver.ramp((rows, (steps, Growth::Linear)), &self.origins[k])?;
+            let [own, _] = driver.ramp((rows, (steps, Growth::Linear)), &self.origins[k])?;
             for (i, (row, _)) in rows.iter().enumerate() {
                 for (j, (column, _)) in rows.iter().enumerate() {
                     let place = *row as usize * n + *column as usize;

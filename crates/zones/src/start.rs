@@ -91,6 +91,7 @@ impl Zones {
             passes: 0,
             all_passes: 0,
             defect: vec![0.0; count],
+            worst: 0.0,
             free: [vec![0.0; count], vec![0.0; count]],
             pointwise: [vec![0.0; count], vec![0.0; count]],
             moves: Moves::default(),

@@ -85,6 +85,7 @@ impl Zones {
             }
         }
         self.moves.clear();
+        let mut joined = false;
         for pass in 1..=MOST_PASSES {
             self.passes = pass;
             self.samples.clear();
@@ -102,11 +103,15 @@ impl Zones {
                 Some(between) => between.corrected((self.step, self.dt))?,
                 None => true,
             };
-            if self.corrected(1)? && pressed {
+            joined = self.corrected(1)?;
+            if joined && pressed {
                 return Ok(());
             }
         }
-        Err(self.parted())
+        match (&self.between, joined) {
+            (Some(between), true) => Err(between.unsettled(self.step + 1, self.passes)),
+            _ => Err(self.parted()),
+        }
     }
 
     /// Multipliers at the end of the step from those of the last three instants, by a parabola.
@@ -152,11 +157,14 @@ impl Zones {
             if let Some(between) = &self.between {
                 between.push(k, driver);
             }
-            if m == 1 {
-                driver.complete()?;
-            } else {
+            if m > 1 {
                 driver.prepare()?;
-                driver.complete()?;
+            }
+            driver.complete()?;
+            if let Some(between) = &mut self.between {
+                between.look(k, driver, (j + 1 == m, self.dt));
+            }
+            if m > 1 {
                 if j == 0 {
                     self.look_ahead(k);
                 }
@@ -170,9 +178,6 @@ impl Zones {
         };
         for (row, terms) in &self.rows[k] {
             self.defect[*row as usize] += on(terms, v);
-        }
-        if let Some(between) = &mut self.between {
-            between.look(k, v);
         }
         Ok(())
     }

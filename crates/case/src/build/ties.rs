@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use carom_arlequin::{Error, Row, Rows, Term, trace};
+use carom_arlequin::{Error, Rows, trace};
 use carom_bodies::Kinematics;
 use carom_dynamics::ModelBody;
 use carom_mesh::{Mesh, Surface};
@@ -55,32 +55,12 @@ impl<'a> Ties<'a> {
     /// The rows that tie two bodies at all nodes at the same place; of two beams the rotations too.
     pub(super) fn rows(&self, inner: usize, outer: usize) -> Result<Rows, Error> {
         let tolerance = COINCIDENT * self.mesh.size();
-        let mut rows = trace(self.mesh, &self.nodes[inner], &self.nodes[outer], tolerance)?;
+        let rows = trace(self.mesh, &self.nodes[inner], &self.nodes[outer], tolerance)?;
         let bends = |body: usize| matches!(self.bodies[body].spec.kinematics, Kinematics::Beam(_));
-        if bends(inner) && bends(outer) {
-            let dim = self.mesh.dim as u32;
-            let first = rows.rows.iter().filter(|row| row.component == 0);
-            let turned = |component: u32| {
-                move |row: &Row| {
-                    let side = |terms: &[Term]| {
-                        let terms = terms.iter().map(|term| Term { component, ..*term });
-                        terms.collect()
-                    };
-                    Row {
-                        component,
-                        inner: side(&row.inner),
-                        outer: side(&row.outer),
-                        ..*row
-                    }
-                }
-            };
-            let axes = if dim == 2 { 2..3 } else { 3..6 };
-            let turned = first.flat_map(|row| axes.clone().map(move |axis| turned(axis)(row)));
-            let turned: Vec<Row> = turned.collect();
-            rows.rows.extend(turned);
-            rows.rows.sort_by_key(|row| (row.node, row.component));
-        }
-        Ok(rows)
+        Ok(match bends(inner) && bends(outer) {
+            true => rows.with_rotations(self.mesh.dim as u32),
+            false => rows,
+        })
     }
 
     /// Drops rows between nodes that are tied already, and ties the others; returns those dropped.

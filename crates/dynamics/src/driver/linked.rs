@@ -151,8 +151,21 @@ impl Driver {
         &self.vectors.load
     }
 
-    /// Velocity that multipliers leave in the rows over some steps, without contact: the dense
-    /// matrix `C V`, row-major over the rows given, of the zone linearised at the origin.
+    /// Weights of the velocities at the start and at the end of a step in its way, s: of the schemes whose way is one of velocities.
+    pub fn way_weights(&self) -> [f64; 2] {
+        let map = self.linear_map();
+        let end = map.displacement.x / map.velocity.x;
+        [map.displacement.v - end * map.velocity.v, end]
+    }
+
+    /// Way of a row in the step just completed, m.
+    pub fn row_way(&self, terms: &LinkRow) -> f64 {
+        let [start, end] = self.way_weights();
+        start * on(terms, &self.state.motion.v) + end * on(terms, &self.next.motion.v)
+    }
+
+    /// Velocities that multipliers leave in the rows over some steps, without contact, and the ways of the rows: the dense
+    /// matrices `C V` and `C Σ U`, row-major over the rows given, of the zone linearised at the origin.
     ///
     /// # Errors
     /// An effective matrix that is not positive definite.
@@ -160,9 +173,9 @@ impl Driver {
         &mut self,
         (rows, steps): (&[(u32, LinkRow)], (u32, Growth)),
         origin: &Origin,
-    ) -> Result<Vec<f64>, Error> {
+    ) -> Result<[Vec<f64>; 2], Error> {
         let system = Arc::clone(&self.system);
-        let weights = self.link_weights();
+        let weights = [self.link_weights(), self.way_weights()];
         let map = self.linear_map();
         self.take_matrices()?;
         if system.bodies.iter().all(Body::is_linear)
@@ -274,15 +287,15 @@ struct Ramp<'a> {
 }
 
 impl Ramp<'_> {
-    /// See [`Driver::ramp`]; `weights`: of L at the start and the end of a step.
+    /// See [`Driver::ramp`]; weights of L and of velocities in the way, at the start and the end of a step.
     fn matrix(
         &mut self,
         rows: &[(u32, LinkRow)],
         (steps, growth): (u32, Growth),
-        weights: [f64; 2],
-    ) -> Vec<f64> {
+        [weights, of_way]: [[f64; 2]; 2],
+    ) -> [Vec<f64>; 2] {
         let n = rows.len();
-        let mut matrix = vec![0.0; n * n];
+        let [mut ends, mut ways] = [vec![0.0; n * n], vec![0.0; n * n]];
         let zeros = || vec![0.0; self.system.unknowns()];
         let mut motion = Motion {
             u: zeros(),
@@ -309,13 +322,17 @@ impl Ramp<'_> {
                     Growth::Constant => 1.0,
                 };
                 self.step(step == 0, &motion, (terms, force), &mut ended);
+                for (row, (_, terms)) in rows.iter().enumerate() {
+                    let [start, end] = [&motion.v, &ended.v].map(|v| on(terms, v));
+                    ways[row * n + column] += of_way[0] * start + of_way[1] * end;
+                }
                 std::mem::swap(&mut motion, &mut ended);
             }
             for (row, (_, terms)) in rows.iter().enumerate() {
-                matrix[row * n + column] = on(terms, &motion.v);
+                ends[row * n + column] = on(terms, &motion.v);
             }
         }
-        matrix
+        [ends, ways]
     }
 
     /// One step under the force of one row alone.

@@ -165,11 +165,22 @@ impl Driver {
     /// ε |u|, which changes the force of each unknown by about ε K_ii |u|, at random. Places count from
     /// [`System::origin`](crate::System).
     pub(super) fn rounding(&self) -> f64 {
+        self.rounding_with(1.0)
+    }
+
+    /// The same of forces alone, without gaps: those of linear bodies are of displacements, and places do not count.
+    pub fn rounding_of_forces(&self) -> f64 {
+        let linear = self.system.bodies.iter().all(Body::is_linear);
+        self.rounding_with(if linear { 0.0 } else { 1.0 })
+    }
+
+    /// `places`: factor of the distances from the origin.
+    fn rounding_with(&self, places: f64) -> f64 {
         let (system, u) = (&self.system, &self.state.motion.u);
         let sizes = (0..system.unknowns()).map(|unknown| match system.unknowns.kind(unknown) {
             Kind::Translation(axis) => {
                 let x = &system.x[system.unknowns.node(unknown) as usize];
-                (x[axis] - system.origin[axis]).abs() + u[unknown].abs()
+                places * (x[axis] - system.origin[axis]).abs() + u[unknown].abs()
             }
             Kind::Rotation(_) | Kind::Amplitude(_) => u[unknown].abs(),
         });

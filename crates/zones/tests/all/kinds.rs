@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use carom_algebra::rotation::Rotation;
-use carom_arlequin::{Row, Term, trace};
+use carom_arlequin::trace;
 use carom_bodies::{
     BeamSection, BeamTheory, BodySpec, Curve, DiscreteKind, DiscreteSpec, Inertia, Kinematics,
     Link, SectionShape,
@@ -61,19 +61,8 @@ fn beams(m: u32) -> Zoned {
     };
     let bodies = vec![body("a"), body("b")];
     let nodes = |group: &str| mesh.group_nodes(&mesh.groups[group]);
-    let mut rows = trace(&mesh, &nodes("a"), &nodes("b"), 1e-9).unwrap().rows;
-    let term = |node: u32| Term {
-        node,
-        component: 2,
-        coefficient: 1.0,
-    };
-    let (inner, outer) = (rows[0].inner[0].node, rows[0].outer[0].node);
-    rows.push(Row {
-        node: outer,
-        component: 2,
-        inner: vec![term(inner)],
-        outer: vec![term(outer)],
-    });
+    let rows = trace(&mesh, &nodes("a"), &nodes("b"), 1e-9).unwrap();
+    let rows = rows.with_rotations(2).rows;
     let end = Surface::new(&mesh, &mesh.groups["a.left"], &bodies[0].spec.cells).unwrap();
     let stop = Plane {
         point: [0.0, -1e-5, 0.0],

@@ -1,0 +1,75 @@
+//! D of contacts between zones: rates that unit forces, constant over an outer step, leave at its end and over it.
+
+use carom_dynamics::Driver;
+use carom_dynamics::linked::{Growth, Origin};
+
+use crate::between::Between;
+use crate::error::Error;
+
+impl Between {
+    /// D of the candidates for an outer step of `dt` (s), where their rows or the sizes of steps have changed.
+    ///
+    /// # Errors
+    /// An effective matrix that is not positive definite.
+    pub(crate) fn respond(
+        &mut self,
+        drivers: &mut [Driver],
+        (substeps, dt): (&[u32], f64),
+        origins: &[Origin],
+    ) -> Result<(), Error> {
+        let row = |&point: &u32| {
+            let (dofs, coefficients) = self.pairing.rows.row(point as usize);
+            (dofs.to_vec(), coefficients.to_vec())
+        };
+        let of: Vec<_> = self.candidates.iter().map(row).collect();
+        let sizes = substeps.iter().map(|m| dt / f64::from(*m)).collect();
+        if of != self.of || sizes != self.sizes {
+            let n = self.candidates.len();
+            let mut responses = [vec![0.0; n * n], vec![0.0; n * n]];
+            for (zone, driver) in drivers.iter_mut().enumerate() {
+                let rows = &self.rows[zone];
+                if rows.is_empty() {
+                    continue;
+                }
+                let steps = (substeps[zone], Growth::Constant);
+                let [ends, ways] = driver.ramp((rows, steps), &origins[zone])?;
+                for (own, (all, over)) in
+                    [ends, ways].iter().zip(responses.iter_mut().zip([1.0, dt]))
+                {
+                    for (i, (row, _)) in rows.iter().enumerate() {
+                        for (j, (column, _)) in rows.iter().enumerate() {
+                            let mean = 0.5 * (own[i * rows.len() + j] + own[j * rows.len() + i]);
+                            all[*row as usize * n + *column as usize] += mean / over;
+                        }
+                    }
+                }
+            }
+            (self.responses, self.of, self.sizes) = (responses, of, sizes);
+            self.matrix_of.clear();
+        }
+        self.combine();
+        Ok(())
+    }
+
+    /// D of the candidates from the responses at the end of the step and over it.
+    fn combine(&mut self) {
+        if self.matrix_of == self.lasting {
+            return;
+        }
+        let n = self.candidates.len();
+        let [ends, means] = &self.responses;
+        self.matrix.clear();
+        for i in 0..n {
+            for j in 0..n {
+                let [end, mean] = [ends[i * n + j], means[i * n + j]];
+                self.matrix.push(match (self.lasting[i], self.lasting[j]) {
+                    (true, true) => mean,
+                    (false, false) => end,
+                    _ => 0.5 * (end + mean),
+                });
+            }
+        }
+        self.matrix_of.clone_from(&self.lasting);
+        self.version += 1;
+    }
+}
