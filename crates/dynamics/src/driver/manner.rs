@@ -21,6 +21,7 @@ impl Driver {
         };
         let manners = (0..self.system.contacts.len()).map(manner).collect();
         self.manners = manners;
+        self.by_rate = self.slides_by_rate();
         self.turns = self.manners.iter().any(|manner| manner.turning != 0.0);
     }
 

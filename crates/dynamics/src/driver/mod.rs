@@ -100,6 +100,8 @@ pub struct Driver {
     manners: Vec<Manner>,
     /// Whether any contact is paired where the unknown leads.
     turns: bool,
+    /// Whether sliding is a velocity in steps of this size and stage.
+    by_rate: bool,
     /// The energy identity of the scheme; none of a static step, or where none is known.
     identity: Option<EnergyIdentity>,
     effective: Effective,

@@ -62,6 +62,7 @@ impl Driver {
             sized: None,
             manners: Vec::new(),
             turns: false,
+            by_rate: false,
             identity: None,
             effective: Effective::new(),
             direct: Direct::of(&system),

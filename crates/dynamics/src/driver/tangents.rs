@@ -50,7 +50,7 @@ impl Driver {
     }
 
     /// Whether sliding is a velocity at the end of the step, or the way in it.
-    fn slides_by_rate(&self) -> bool {
+    pub(super) fn slides_by_rate(&self) -> bool {
         let system = &*self.system;
         let of_rate = |k: usize| system.contacts[k].law.get().level() == Level::Rate;
         let mut rubbing = (0..system.contacts.len()).filter(|&k| system.friction[k] > 0.0);
@@ -60,7 +60,7 @@ impl Driver {
     /// The times, from that at which the places of a contact are taken, over which its sliding is looked at, s.
     pub(super) fn span(&self, contact: usize) -> [f64; 2] {
         let after = self.paired_after(contact);
-        match self.slides_by_rate() {
+        match self.by_rate {
             true => [self.dt - after; 2],
             false => [-after, self.dt - after],
         }
@@ -68,7 +68,7 @@ impl Driver {
 
     /// The row of a map whose product with T is the sliding quantity, and the time that turns a rate into it.
     pub(super) fn sliding(&self) -> (impl Fn(&StepMap) -> Row + Copy + use<>, f64) {
-        let by_rate = self.slides_by_rate();
+        let by_rate = self.by_rate;
         let row = move |map: &StepMap| match by_rate {
             true => map.rate,
             false => map.displacement.since(&Row::START),

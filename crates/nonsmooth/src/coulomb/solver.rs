@@ -12,14 +12,37 @@ const TOLERANCE: f64 = 1e-12;
 const PATIENCE: usize = 10;
 /// Newton passes of a round.
 const PASSES: usize = 200;
-/// Shift of the linear systems, and halvings of a pass whose whole length does not reduce the defects, in each round in
-/// turn. The large shift makes proximal steps: where D is singular or the contacts jam, it keeps forces that little
-/// decides from running away.
-const MEANS: [(f64, i32); 3] = [(newton::SHIFT, 0), (newton::SHIFT, 8), (1e-3, 8)];
+/// Shift of the linear systems, and how far a pass goes, in each round in turn. The large shift makes proximal steps: where D
+/// is singular or the contacts jam, it keeps forces that little decides from running away.
+const MEANS: [(f64, Length); 4] = [
+    (newton::SHIFT, Length::Whole),
+    (newton::SHIFT, Length::UpToChange),
+    (newton::SHIFT, Length::Halved),
+    (1e-3, Length::Halved),
+];
+/// Halvings of a pass whose whole length does not reduce the defects.
+const HALVINGS: i32 = 8;
+/// Share of a pass below which a change of status is one of the start, and by which a pass goes beyond a change.
+const BEYOND: f64 = 1e-9;
 /// Sweeps of the first round; each further round makes twice as many.
 const SWEEPS: usize = 16;
 /// Rounds of passes and sweeps.
 const ROUNDS: usize = 9;
+
+/// How far a pass goes along the change of the forces.
+#[derive(Clone, Copy, PartialEq)]
+enum Length {
+    /// All the way.
+    Whole,
+    /// Just beyond the first change of a status.
+    ///
+    /// Where rows of D are dependent and the equations of the present statuses contradict each other, as of two closed points
+    /// that stick to one rigid section and are to leave with different velocities, the change is long and along the forces that D
+    /// does not see. A solution is where one of the points begins to slip or opens; no defect falls on the way there.
+    UpToChange,
+    /// As far as the defects fall, within some halvings; all the way if they never do.
+    Halved,
+}
 
 /// Solver with its memory.
 #[derive(Default)]
@@ -85,9 +108,14 @@ impl Coulomb {
     }
 
     /// Newton passes while they bring the trial nearer; whether it is a solution then. `best` is the nearest trial.
-    /// `means`: shift and halvings.
-    fn newton(&mut self, problem: &Posed, means: (f64, i32)) -> bool {
-        let mut patience = PATIENCE;
+    /// `means`: shift of the systems, length of the passes.
+    fn newton(&mut self, problem: &Posed, means: (f64, Length)) -> bool {
+        let most = match means.1 {
+            // one point after the other may change
+            Length::UpToChange => PATIENCE + problem.len(),
+            Length::Whole | Length::Halved => PATIENCE,
+        };
+        let mut patience = most;
         for _ in 0..PASSES {
             if patience == 0 {
                 break;
@@ -102,7 +130,7 @@ impl Coulomb {
             self.advance(problem, means.1);
             if self.trial.merit < 0.999 * self.best.merit {
                 self.best.clone_from(&self.trial);
-                patience = PATIENCE;
+                patience = most;
             } else {
                 patience -= 1;
             }
@@ -110,25 +138,38 @@ impl Coulomb {
         false
     }
 
-    /// Goes along the change, all the way or, within some halvings, as far as the defects fall; all the way if they
-    /// never do.
-    fn advance(&mut self, problem: &Posed, halvings: i32) {
+    /// Goes along the change.
+    fn advance(&mut self, problem: &Posed, length: Length) {
         self.start.clone_from(&self.trial);
-        for halving in (0..=halvings).chain([0]) {
-            let share = 0.5_f64.powi(halving);
-            self.trial.clone_from(&self.start);
-            for (p, change) in self.trial.p.iter_mut().zip(&self.change) {
-                *p += share * change;
+        match length {
+            Length::Whole => self.go(problem, 1.0),
+            Length::UpToChange => {
+                let share = self.start.first_change(problem, &self.change, BEYOND);
+                self.go(problem, f64::min(1.0, (1.0 + BEYOND) * share));
             }
-            self.trial.measure(problem, &self.reversals);
-            if self.trial.merit < (1.0 - 0.01 * share) * self.start.merit {
-                break;
+            Length::Halved => {
+                for halving in (0..=HALVINGS).chain([0]) {
+                    let share = 0.5_f64.powi(halving);
+                    self.go(problem, share);
+                    if self.trial.merit < (1.0 - 0.01 * share) * self.start.merit {
+                        break;
+                    }
+                }
             }
         }
         let statuses = self.trial.statuses.iter().zip(&self.start.statuses);
         for ((now, before), reversals) in statuses.zip(&mut self.reversals) {
             *reversals += u32::from(now != before);
         }
+    }
+
+    /// The trial this share of the change away from the start.
+    fn go(&mut self, problem: &Posed, share: f64) {
+        self.trial.clone_from(&self.start);
+        for (p, change) in self.trial.p.iter_mut().zip(&self.change) {
+            *p += share * change;
+        }
+        self.trial.measure(problem, &self.reversals);
     }
 
     /// Takes the forces of the trial over, tension cut off where the law wants it.

@@ -5,8 +5,10 @@ use carom_laws::{Relation, Status};
 use super::Posed;
 use super::trial::Trial;
 
-/// Bisections of the slip: down to rounding.
-const BISECTIONS: usize = 60;
+/// Most steps towards the slip; some eight are usual.
+const STEPS: usize = 60;
+/// What is left of |t| - μ P, over its terms, where the slip is found.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Passes of the status of one candidate.
 const TURNS: u32 = 12;
 
@@ -88,29 +90,44 @@ fn closed(problem: &Posed, i: usize, relation: &Relation, others: &[f64; 3]) -> 
         }
         gauss(a, rhs)
     };
-    let beyond = |x: &[f64; 3]| x[1].hypot(x[2]) > point.mu * x[0];
+    let excess = |x: &[f64; 3]| x[1].hypot(x[2]) - point.mu * x[0];
     // the share of rounding keeps two equal rows apart
     let stuck = at(f64::EPSILON * scale);
-    if !beyond(&stuck) {
+    let most = excess(&stuck);
+    if most <= 0.0 {
         return stuck;
     }
     if frictionless[0] <= 0.0 {
         return frictionless;
     }
     // λ = scale (1 - x)/x, x from 0 (frictionless) to 1 (stick)
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        if beyond(&at(scale * (1.0 - middle) / middle)) {
-            high = middle;
+    let at = |x: f64| at(scale * (1.0 - x) / x);
+    let (mut low, mut high) = ((0.0, excess(&frictionless)), (1.0, most));
+    let mut slipping = frictionless;
+    for step in 0..STEPS {
+        // false position (Illinois), and bisection where that is outside or slow
+        let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        let inside = secant > low.0 && secant < high.0 && step % 4 != 3;
+        let x = if inside {
+            secant
         } else {
-            low = middle;
+            0.5 * (low.0 + high.0)
+        };
+        let trial = at(x);
+        let left = excess(&trial);
+        let solved = left.abs() <= ROUNDING * point.mu * trial[0].abs();
+        if left <= 0.0 || solved {
+            slipping = trial;
+        }
+        if solved || high.0 - low.0 <= f64::EPSILON * high.0 {
+            break;
+        }
+        match left > 0.0 {
+            true => (high, low.1) = ((x, left), 0.5 * low.1),
+            false => (low, high.1) = ((x, left), 0.5 * high.1),
         }
     }
-    match low > 0.0 {
-        true => at(scale * (1.0 - low) / low),
-        false => frictionless,
-    }
+    slipping
 }
 
 /// Replaces the equations of tangents that supports hold by those of no force there.

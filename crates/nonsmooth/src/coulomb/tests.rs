@@ -461,3 +461,71 @@ fn forces_within_the_tolerance_that_was_asked_for_are_taken_where_no_nearer_ones
     problem.tolerance = 1e-12;
     assert_eq!(problem.solve().unwrap_err().candidate, 1);
 }
+
+/// A disc of radius 1 and mass 1 in a corner: contacts at its sides, with the motions x and y of its centre and its turn. The
+/// four rows are dependent: n₁ + n₂ = t₁ + t₂.
+fn disc_in_a_corner(mu: f64, free: [f64; 3], offsets: [f64; 2]) -> FrictionProblem {
+    let rows = [
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, -1.0],
+        [0.0, 1.0, 0.0],
+        [1.0, 0.0, 1.0],
+    ];
+    let inverse_mass = [1.0, 1.0, 2.0];
+    let dot =
+        |a: &[f64; 3], b: &[f64; 3]| -> f64 { (0..3).map(|k| a[k] * inverse_mass[k] * b[k]).sum() };
+    let along = |row: &[f64; 3]| -> f64 { (0..3).map(|k| row[k] * free[k]).sum() };
+    let entries = rows
+        .iter()
+        .flat_map(|a| rows.iter().map(move |b| dot(a, b)));
+    let contact = |k: usize| {
+        let mut candidate = candidate(RIGID, along(&rows[2 * k]) + offsets[k]);
+        candidate.status = Status::Closed;
+        candidate
+    };
+    let sliding = |k: usize| Tangential {
+        mu,
+        free: [along(&rows[2 * k + 1]), 0.0],
+        slip: Slip::Stick,
+        force: [0.0; 2],
+    };
+    FrictionProblem {
+        step: 0,
+        names: Vec::new(),
+        candidates: (0..2).map(contact).collect(),
+        friction: (0..2).map(sliding).collect(),
+        tangents: 1,
+        compliance: entries.collect(),
+        factors: [1.0, 1.0, 1.0],
+        tolerance: 1e-12,
+    }
+}
+
+/// Both points stick without an offset. With one, as of points that rebound, the equations of both contradict each other by that
+/// offset, however small; a solution exists all the same, with one point at its bound. Sweeps move the forces that D does not see
+/// by the offset each time, and Newton passes by the offset over their shift.
+#[test]
+fn points_whose_stick_is_contradictory_are_solved_by_the_slip_of_one() {
+    let mut random = Random(11);
+    let (mut stuck, mut passes) = (0, 0);
+    for trial in 0..200 {
+        let push = [
+            random.between(-2.0, -0.5),
+            random.between(-2.0, -0.5),
+            random.between(-0.2, 0.2),
+        ];
+        let mu = random.between(0.2, 1.0);
+        let level = disc_in_a_corner(mu, push, [0.0; 2]).solve().unwrap();
+        let both = level.slips == [Slip::Stick; 2];
+        stuck += usize::from(both);
+        for offset in [1e-10, 1e-7, 1e-3] {
+            let problem = disc_in_a_corner(mu, push, [offset, 0.0]);
+            let solution = problem.solve().unwrap();
+            assert!(problem.defect(&solution) < 1e-11, "{trial} {offset}");
+            assert!(solution.slips != [Slip::Stick; 2], "{trial} {offset}");
+            passes += solution.passes;
+        }
+    }
+    assert!(stuck > 50, "{stuck}");
+    assert!(passes < 30 * 600, "{passes}");
+}

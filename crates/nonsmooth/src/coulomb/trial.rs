@@ -114,6 +114,59 @@ impl Trial {
         }
     }
 
+    /// The least share beyond `least` of a change of the forces at which a point closes, opens, begins to slip or to stick;
+    /// infinite without any.
+    ///
+    /// P - R and t - ρ q are linear in the share, so that the changes are roots of linear and quadratic equations.
+    pub(super) fn first_change(&self, problem: &Posed, change: &[f64], least: f64) -> f64 {
+        let mut first = f64::INFINITY;
+        let mut take = |share: f64| {
+            if share > least {
+                first = first.min(share);
+            }
+        };
+        for i in 0..problem.len() {
+            let (row, point) = (problem.normal(i), &problem.friction[i]);
+            let moved = |row: usize| -> f64 {
+                let terms = problem
+                    .d(row)
+                    .iter()
+                    .zip(change)
+                    .map(|(d, change)| d * change);
+                terms.sum()
+            };
+            let relation = problem.relation(i, self.statuses[i]);
+            let (factor, slope) = (problem.factor(i, &relation), problem.slope(i, &relation));
+            let along = (factor * moved(row) + relation.compliance * change[row]) / slope;
+            let pressed = self.p[row] - self.relation_defect(problem, i, &mut 0.0);
+            let pressing = change[row] - along;
+            take(-pressed / pressing);
+            if self.statuses[i] == Status::Open || point.mu == 0.0 {
+                continue;
+            }
+            let weight = problem.weight(i);
+            let (mut y, mut turn) = ([0.0; 2], [0.0; 2]);
+            for k in 0..problem.tangents {
+                let row = row + 1 + k;
+                let slid = point.free[k] + problem.s[2] * self.product[row];
+                y[k] = self.p[row] - weight * slid;
+                turn[k] = change[row] - weight * problem.s[2] * moved(row);
+            }
+            let mobile = problem.mobile(i);
+            let [y, turn] = [y, turn].map(|y| mobile.map(|row| row[0] * y[0] + row[1] * y[1]));
+            let (bound, growth) = (point.mu * pressed, point.mu * pressing);
+            let a = turn[0].powi(2) + turn[1].powi(2) - growth.powi(2);
+            let half = y[0] * turn[0] + y[1] * turn[1] - bound * growth;
+            let c = y[0].powi(2) + y[1].powi(2) - bound.powi(2);
+            let root = (half * half - a * c).sqrt();
+            // without cancellation; no root is not a number, which is not beyond anything
+            let larger = -half - root.copysign(half);
+            take(larger / a);
+            take(c / larger);
+        }
+        first
+    }
+
     /// Whether no defect is larger than the tolerance that was asked for, of the largest force. A candidate that hardly
     /// carries anything may be far from its laws in its own measure, and no step is the better for more.
     pub(super) fn is_near(&self, problem: &Posed) -> bool {
