@@ -196,7 +196,7 @@ pub(crate) const CHECK: Check = Check {
     name: "rod-in-grid",
     fact: "a rod knocks and rubs in 48 stops through a record: energy balances to 1e-9 of the input work, momentum to rounding",
     run: |size| {
-// step and record of the stops, and of the exact laws
+        // step and record of the stops, and of the exact laws
         let (compliant, exactly) = match size {
             Size::Quick => ([2e-4, 0.3], [2e-4, 0.2]),
             Size::Full => ([1e-4, 4.0], [1e-4, 0.4]),
