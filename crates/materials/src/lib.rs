@@ -23,14 +23,22 @@ macro_rules! materials {
             /// Linear viscoelasticity: a spring beside branches of spring and dashpot in shear. Moderate strains. The moduli are
             /// the instantaneous ones, before relaxation.
             Maxwell "maxwell",
+            /// Von Mises plasticity in logarithmic strain, with isotropic hardening by a table.
+            J2Table "j2-table",
+            /// Von Mises plasticity of Johnson and Cook: hardening by a power of the plastic strain, by its rate, and softening by the
+            /// heat of the flow.
+            JohnsonCook "johnson-cook",
         }
     };
 }
 
 mod conserving;
 mod elastic;
+mod flow;
 mod hyperelastic;
 mod j2_plasticity;
+mod j2_table;
+mod johnson_cook;
 mod lagrange;
 mod list;
 mod material;
@@ -46,6 +54,8 @@ pub mod tensor;
 
 pub use elastic::{Elastic, Plane};
 pub use j2_plasticity::J2Plasticity;
+pub use j2_table::{HardeningPoint, J2Table, MAX_HARDENING_POINTS};
+pub use johnson_cook::{JohnsonCook, Thermal};
 pub use list::Law;
 pub use material::{Conserving, Failure, Material, Response, Tangent, Want};
 pub use maxwell::{Branch, MAX_BRANCHES, Maxwell};

@@ -21,6 +21,7 @@ mod hairpin;
 mod hertz;
 mod kept;
 mod kind;
+mod plastic_wave;
 mod points;
 mod repeated;
 
@@ -116,6 +117,7 @@ mod stick_slip;
 mod supports;
 mod synthetic_record;
 mod taylor_bar;
+mod taylor_bar_steel;
 mod threads;
 mod threads_features;
 mod tori;
@@ -215,6 +217,7 @@ registry! {
     orbiting_mass
     order
     order_features
+    plastic_wave
     quadrature
     random_field
     reduced_bodies
@@ -242,6 +245,7 @@ registry! {
     supports
     synthetic_record
     taylor_bar
+    taylor_bar_steel
     threads
     threads_features
     tori

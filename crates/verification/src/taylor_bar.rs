@@ -44,11 +44,11 @@ const COPPER: J2Plasticity = J2Plasticity {
 const LENGTH: f64 = 32.4e-3;
 const RADIUS: f64 = 3.2e-3;
 const SPEED: f64 = 227.0;
-const END: f64 = 80e-6;
+pub(crate) const END: f64 = 80e-6;
 
 /// A bar that has hit the wall.
-struct Bar {
-    newton: Driver,
+pub(crate) struct Bar {
+    pub(crate) newton: Driver,
     /// Axis of the bar.
     axis: usize,
     top: Vec<u32>,
@@ -56,11 +56,17 @@ struct Bar {
 }
 
 impl Bar {
-    /// Axisymmetric, 5 by 50 equal quadrilaterals.
+    /// Axisymmetric, 5 by 50 equal quadrilaterals, of copper.
     fn plane(scheme: Scheme, dt: f64) -> Result<Bar, Error> {
+        Bar::axisymmetric((Law::J2Plasticity(COPPER), SPEED), scheme, dt)
+    }
+
+    /// The same of a law at a speed, m/s.
+    pub(crate) fn axisymmetric(thrown: (Law, f64), scheme: Scheme, dt: f64) -> Result<Bar, Error> {
         let mesh = generate::rectangle("bar", [0.0; 2], [RADIUS, LENGTH], [5, 50], false);
         let supports = vec![support(&mesh, "bar.left", [true, false, false])?];
-        Bar::new(mesh, ["bar.bottom", "bar.top"], supports, scheme, dt)
+        let sides = ["bar.bottom", "bar.top"];
+        Bar::new((mesh, sides, supports), thrown, scheme, dt)
     }
 
     /// A quarter in space, of 12 by 20 hexahedra.
@@ -72,19 +78,20 @@ impl Bar {
             support(&mesh, "bar.mirror-x", [true, false, false])?,
             support(&mesh, "bar.mirror-y", [false, true, false])?,
         ];
-        Bar::new(mesh, ["bar.foot", "bar.top"], supports, scheme, dt)
+        let sides = ["bar.foot", "bar.top"];
+        let thrown = (Law::J2Plasticity(COPPER), SPEED);
+        Bar::new((mesh, sides, supports), thrown, scheme, dt)
     }
 
     fn new(
-        mesh: Mesh,
-        [foot, top]: [&str; 2],
-        supports: Vec<Support>,
+        (mesh, [foot, top], supports): (Mesh, [&str; 2], Vec<Support>),
+        (law, speed): (Law, f64),
         scheme: Scheme,
         dt: f64,
     ) -> Result<Bar, Error> {
         let axis = mesh.dim - 1;
         let mut velocity = [0.0; 3];
-        velocity[axis] = -SPEED;
+        velocity[axis] = -speed;
         let body = ModelBody {
             velocity,
             ..ModelBody::new(BodySpec {
@@ -96,7 +103,7 @@ impl Bar {
                         2 => Kinematics::Axisymmetric,
                         _ => Kinematics::Solid,
                     },
-                    Law::J2Plasticity(COPPER),
+                    law,
                 )
             })
         };
@@ -116,7 +123,7 @@ impl Bar {
         })
     }
 
-    fn run(mut self, end: f64) -> Result<Bar, Error> {
+    pub(crate) fn run(mut self, end: f64) -> Result<Bar, Error> {
         while self.newton.state().time < end * (1.0 - 1e-9) {
             self.newton.step()?;
         }
@@ -142,14 +149,20 @@ impl Bar {
         places.fold(0.0, f64::max)
     }
 
-    fn radius(&self) -> f64 {
+    /// From the lowest node of the foot to the highest of the top, m: of a bar that may have left the wall.
+    pub(crate) fn height(&self) -> f64 {
+        let places = self.foot.iter().map(|&node| self.place(node)[self.axis]);
+        self.length() - places.fold(f64::INFINITY, f64::min)
+    }
+
+    pub(crate) fn radius(&self) -> f64 {
         let places = self.foot.iter().map(|&node| self.place(node));
         let radius = |x: [f64; 3]| x[0].hypot(if self.axis == 1 { 0.0 } else { x[1] });
         places.map(radius).fold(0.0, f64::max)
     }
 
     /// Plastic strain of the elements, and the volumes that they had at the start, m³.
-    fn strains(&self) -> Vec<(f64, f64)> {
+    pub(crate) fn strains(&self) -> Vec<(f64, f64)> {
         let (system, state) = (self.newton.system(), self.newton.state());
         let body = &system.bodies[0];
         let mut start = vec![0.0; body.history_len()];

@@ -3,7 +3,8 @@
 use carom_algebra::unknowns::Unknowns;
 use carom_elements::Kind;
 use carom_materials::{
-    Branch, Elastic, J2Plasticity, Law, Maxwell, MooneyRivlin, NeoHooke, StVenantKirchhoff,
+    Branch, Elastic, HardeningPoint, J2Plasticity, J2Table, JohnsonCook, Law, Maxwell,
+    MooneyRivlin, NeoHooke, StVenantKirchhoff, Thermal,
 };
 use pulp::{Arch, Scalar, Simd};
 
@@ -23,7 +24,7 @@ const INITIAL: Elastic = Elastic {
     poisson: 0.3,
 };
 
-fn laws() -> [Law; 5] {
+fn laws() -> [Law; 7] {
     let branch = |ratio, time| Some(Branch { ratio, time });
     [
         Law::StVenantKirchhoff(StVenantKirchhoff { initial: INITIAL }),
@@ -42,6 +43,27 @@ fn laws() -> [Law; 5] {
         Law::Maxwell(Maxwell {
             initial: INITIAL,
             branches: [branch(0.3, 0.4), branch(0.2, 3.0), None, None],
+        }),
+        Law::J2Table(J2Table {
+            initial: INITIAL,
+            hardening: std::array::from_fn(|k| {
+                let point = [[0.0, 0.05], [0.05, 0.07], [0.3, 0.1]].get(k);
+                point.map(|&[strain, stress]| HardeningPoint { strain, stress })
+            }),
+        }),
+        Law::JohnsonCook(JohnsonCook {
+            initial: INITIAL,
+            yield_stress: 0.05,
+            hardening: 0.1,
+            exponent: 0.6,
+            rate_factor: 0.1,
+            reference_rate: 0.02,
+            thermal: Some(Thermal {
+                exponent: 1.1,
+                melting_rise: 3.0,
+                specific_heat: 0.4,
+                converted: 0.9,
+            }),
         }),
     ]
 }

@@ -5,6 +5,7 @@
 
 mod battery;
 mod discrete_gradient;
+mod hardening;
 mod j2;
 mod maxwell;
 mod ranges;

@@ -1,8 +1,11 @@
 //! Parameters out of range are named with their value.
 
-use carom_materials::{Branch, Elastic, J2Plasticity, Law, Maxwell, MooneyRivlin, NeoHooke};
+use carom_materials::{
+    Branch, Elastic, HardeningPoint, J2Plasticity, J2Table, JohnsonCook, Law, Maxwell,
+    MooneyRivlin, NeoHooke,
+};
 
-use crate::support::{INITIAL, METAL, POLYMER, RUBBER, laws};
+use crate::support::{FAST_METAL, INITIAL, METAL, POLYMER, RUBBER, laws};
 
 #[test]
 fn the_laws_under_test_are_in_range() {
@@ -36,7 +39,30 @@ fn each_parameter_out_of_range_is_named() {
             ..POLYMER
         })
     };
+    let fast = |change: fn(&mut JohnsonCook)| {
+        let mut law = FAST_METAL;
+        change(&mut law);
+        Law::JohnsonCook(law)
+    };
+    let tabulated = |points: &[[f64; 2]]| {
+        let points = points.iter();
+        let points = points.map(|&[strain, stress]| HardeningPoint { strain, stress });
+        Law::J2Table(J2Table::new(INITIAL, &points.collect::<Vec<_>>()).unwrap())
+    };
     let cases = [
+        (fast(|m| m.exponent = 0.0), "exponent = 0 is"),
+        (fast(|m| m.rate_factor = -0.1), "rate-factor = -0.1 is"),
+        (fast(|m| m.reference_rate = 0.0), "reference-rate = 0 is"),
+        (
+            fast(|m| {
+                let thermal = m.thermal.as_mut().unwrap();
+                thermal.converted = 1.5;
+            }),
+            "thermal.converted = 1.5 is",
+        ),
+        (tabulated(&[[0.1, 1.0]]), "strain = 0.1 is"),
+        (tabulated(&[[0.0, 1.0], [0.0, 2.0]]), "strain = 0 is"),
+        (tabulated(&[[0.0, 1.0], [0.2, 0.9]]), "stress = 0.9 is"),
         (elastic(|e| e.density = 0.0), "density = 0 is"),
         (elastic(|e| e.young = -1.0), "young = -1 is"),
         (elastic(|e| e.poisson = 0.5), "poisson = 0.5 is"),

@@ -2,8 +2,8 @@
 
 use carom_algebra::tensor::Mat3;
 use carom_materials::{
-    Branch, Elastic, Failure, J2Plasticity, Law, Material, Maxwell, MooneyRivlin, NeoHooke,
-    Response, StVenantKirchhoff, Tangent, Want,
+    Branch, Elastic, Failure, HardeningPoint, J2Plasticity, J2Table, JohnsonCook, Law, Material,
+    Maxwell, MooneyRivlin, NeoHooke, Response, StVenantKirchhoff, Tangent, Thermal, Want,
 };
 use carom_testing::Random;
 
@@ -46,6 +46,29 @@ pub const POLYMER: Maxwell = Maxwell {
     ],
 };
 
+/// Metal whose table has METAL's slope, then half of it, then none.
+pub fn table() -> J2Table {
+    let points = [[0.0, 0.05], [0.1, 0.07], [0.4, 0.1]];
+    let points = points.map(|[strain, stress]| HardeningPoint { strain, stress });
+    J2Table::new(INITIAL, &points).unwrap()
+}
+
+/// Metal that hardens by strain and rate, and softens as it heats.
+pub const FAST_METAL: JohnsonCook = JohnsonCook {
+    initial: INITIAL,
+    yield_stress: 0.05,
+    hardening: 0.1,
+    exponent: 0.6,
+    rate_factor: 0.1,
+    reference_rate: 0.02,
+    thermal: Some(Thermal {
+        exponent: 1.1,
+        melting_rise: 3.0,
+        specific_heat: 0.1,
+        converted: 0.9,
+    }),
+};
+
 /// A law at finite strain with its name.
 pub fn laws() -> Vec<(&'static str, Law)> {
     let initial = INITIAL;
@@ -65,6 +88,8 @@ pub fn laws() -> Vec<(&'static str, Law)> {
             }),
         ),
         ("maxwell", Law::Maxwell(POLYMER)),
+        ("j2-table", Law::J2Table(table())),
+        ("johnson-cook", Law::JohnsonCook(FAST_METAL)),
     ]
 }
 
