@@ -14,6 +14,7 @@ mod obstacle;
 mod pairing;
 mod places;
 mod point;
+mod rest;
 mod rows;
 mod search;
 mod sight;
@@ -27,7 +28,7 @@ pub use obstacle::{
     Cylinder, Distance, Motion, Obstacle, Placed, Plane, Profile, RigidSurface, Shape, Side,
     Sphere, Translation, Turn,
 };
-pub use pairing::{Pairing, Tie};
+pub use pairing::{Near, Pairing, Tie};
 pub use places::{Balance, Frames, Places};
 pub use point::Point;
 pub use rows::Rows;

@@ -8,26 +8,55 @@ use crate::Places;
 /// `Nᵀ P`. A point that faces nothing has an infinite gap and an empty row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rows {
-    offsets: Vec<u32>,
+    /// Where the entries of each point begin and end.
+    spans: Vec<[u32; 2]>,
     dofs: Vec<u32>,
     coefficients: Vec<f64>,
     gaps: Vec<f64>,
     normals: Vec<[f64; 3]>,
     resultants: Vec<[f64; 3]>,
     rates: Vec<f64>,
+    /// The point that entries are added to.
+    at: usize,
 }
 
 impl Rows {
     /// Empties the pool and keeps its memory.
     pub fn clear(&mut self) {
-        self.offsets.clear();
-        self.offsets.push(0);
+        self.spans.clear();
         self.dofs.clear();
         self.coefficients.clear();
         self.gaps.clear();
         self.normals.clear();
         self.resultants.clear();
         self.rates.clear();
+        self.at = 0;
+    }
+
+    /// Makes these the rows of `points` points that face nothing.
+    pub fn open_all(&mut self, points: usize) {
+        self.clear();
+        self.spans.resize(points, [0; 2]);
+        self.gaps.resize(points, f64::INFINITY);
+        self.normals.resize(points, [0.0; 3]);
+        self.resultants.resize(points, [0.0; 3]);
+        self.rates.resize(points, 0.0);
+    }
+
+    /// Lets these points face nothing and drops the entries of all: the others must have none.
+    pub fn reopen(&mut self, points: impl IntoIterator<Item = u32>) {
+        self.dofs.clear();
+        self.coefficients.clear();
+        for point in points {
+            self.open(point as usize);
+        }
+    }
+
+    /// Lets a point, or the one after the last, face nothing.
+    pub(crate) fn open(&mut self, point: usize) {
+        self.begin(point, f64::INFINITY, [0.0; 3]);
+        // an empty row is one in any pool
+        self.spans[point] = [0; 2];
     }
 
     /// Number of points.
@@ -42,8 +71,8 @@ impl Rows {
 
     /// Unknowns and derivatives of the gap of a point by them (dimensionless).
     pub fn row(&self, point: usize) -> (&[u32], &[f64]) {
-        let range = self.offsets[point] as usize..self.offsets[point + 1] as usize;
-        (&self.dofs[range.clone()], &self.coefficients[range])
+        let [begin, end] = self.spans[point].map(|place| place as usize);
+        (&self.dofs[begin..end], &self.coefficients[begin..end])
     }
 
     /// Gap of a point in m, positive when open, infinite where it faces nothing.
@@ -88,14 +117,18 @@ impl Rows {
 
     /// Appends one point of another pool.
     pub fn push_from(&mut self, other: &Rows, point: usize) {
+        self.place_from(self.len(), other, point);
+    }
+
+    /// Makes a point, or the one after the last, that of another pool.
+    pub fn place_from(&mut self, at: usize, other: &Rows, point: usize) {
+        self.begin(at, other.gap(point), other.normal(point));
+        self.resultants[at] = other.resultant(point);
+        self.rates[at] = other.rate(point);
         let (dofs, coefficients) = other.row(point);
-        self.gaps.push(other.gap(point));
-        self.normals.push(other.normal(point));
-        self.resultants.push(other.resultant(point));
-        self.rates.push(other.rate(point));
         self.dofs.extend_from_slice(dofs);
         self.coefficients.extend_from_slice(coefficients);
-        self.offsets.push(self.dofs.len() as u32);
+        self.close();
     }
 
     /// Appends the points of another pool.
@@ -121,11 +154,23 @@ impl Rows {
 
     /// Begins a point of the given gap and normal, which is its resultant as well.
     pub(crate) fn push(&mut self, gap: f64, normal: [f64; 3]) {
-        self.gaps.push(gap);
-        self.normals.push(normal);
-        self.resultants.push(normal);
-        self.rates.push(0.0);
-        self.offsets.push(self.dofs.len() as u32);
+        self.begin(self.len(), gap, normal);
+    }
+
+    /// Begins a point, or the one after the last, of the given gap and normal, which is its resultant as well.
+    pub(crate) fn begin(&mut self, point: usize, gap: f64, normal: [f64; 3]) {
+        if point == self.len() {
+            self.spans.push([0; 2]);
+            self.gaps.push(gap);
+            self.normals.push(normal);
+            self.resultants.push(normal);
+            self.rates.push(0.0);
+        }
+        self.spans[point] = [self.dofs.len() as u32; 2];
+        self.gaps[point] = gap;
+        (self.normals[point], self.resultants[point]) = (normal, normal);
+        self.rates[point] = 0.0;
+        self.at = point;
     }
 
     /// Adds an offset in m to the gap of a point.
@@ -133,21 +178,22 @@ impl Rows {
         self.gaps[point] += offset;
     }
 
-    /// Gives the point pushed last another resultant.
+    /// Gives a point another gap, m.
+    pub(crate) fn set_gap(&mut self, point: usize, gap: f64) {
+        self.gaps[point] = gap;
+    }
+
+    /// Gives the point begun last another resultant.
     pub(crate) fn set_resultant(&mut self, resultant: [f64; 3]) {
-        if let Some(last) = self.resultants.last_mut() {
-            *last = resultant;
-        }
+        self.resultants[self.at] = resultant;
     }
 
-    /// Gives the point pushed last the rate of its gap by the obstacle's motion, m/s.
+    /// Gives the point begun last the rate of its gap by the obstacle's motion, m/s.
     pub(crate) fn set_rate(&mut self, rate: f64) {
-        if let Some(last) = self.rates.last_mut() {
-            *last = rate;
-        }
+        self.rates[self.at] = rate;
     }
 
-    /// Adds to the row of the point pushed last the motion of a node along `direction`.
+    /// Adds to the row of the point begun last the motion of a node along `direction`.
     pub(crate) fn add_node(&mut self, places: &Places, node: u32, direction: &[f64; 3]) {
         // nodes that one node carries share its unknowns
         let carried = places.unknowns.carrier(node).is_some();
@@ -157,7 +203,7 @@ impl Rows {
         self.close();
     }
 
-    /// Adds to the row of the point pushed last what a moment on a node does, of a unit force in m.
+    /// Adds to the row of the point begun last what a moment on a node does, of a unit force in m.
     pub(crate) fn add_moment(&mut self, places: &Places, node: u32, moment: &[f64; 3]) {
         let carried = places.unknowns.carrier(node).is_some();
         places.each_moment(node, moment, |unknown, n| {
@@ -171,7 +217,7 @@ impl Rows {
         if n == 0.0 {
             return;
         }
-        let begin = self.offsets[self.offsets.len() - 2] as usize;
+        let begin = self.spans[self.at][0] as usize;
         let mut own = self.dofs[begin..].iter().take_while(|_| repeats);
         match own.position(|dof| *dof == unknown) {
             Some(place) => self.coefficients[begin + place] += n,
@@ -183,8 +229,6 @@ impl Rows {
     }
 
     fn close(&mut self) {
-        if let Some(end) = self.offsets.last_mut() {
-            *end = self.dofs.len() as u32;
-        }
+        self.spans[self.at][1] = self.dofs.len() as u32;
     }
 }

@@ -11,6 +11,7 @@
 use carom_elements::Kind;
 use carom_mesh::{Bounds, BoxTree, Face, Projection, project};
 
+use crate::rest::Rest;
 use crate::sight::View;
 use crate::{Places, Sight};
 
@@ -26,6 +27,9 @@ const LOOSE: f64 = 2.0;
 /// Returns of a point, within one step, to a face that it has left in it, after which it stays with that face.
 const RETURNS: u32 = 2;
 
+/// Longest rest of a point that sees its own surface, over the limit: about as much as its normals allow.
+const LONGEST: f64 = 0.1;
+
 /// Gap beyond which a point between two faces is left alone, over the diagonal of the face.
 const NEAR: f64 = 0.1;
 
@@ -39,6 +43,8 @@ pub struct Search {
     taken: Vec<[f64; 3]>,
     /// The most that a place on a face can have moved since, m.
     moved: f64,
+    /// Translation of all since then that `moved` leaves out, m.
+    shift: [f64; 3],
     /// Half the mean diagonal of the boxes, m.
     skin: f64,
     /// Renewals since the boxes were taken.
@@ -54,6 +60,11 @@ pub struct Search {
     /// For each query its way over the faces in the step; empty where none is looked at.
     ways: Vec<Way>,
     watches: bool,
+    /// When points that are far are looked at again.
+    pub(crate) rest: Rest,
+    pub(crate) due: Vec<u32>,
+    /// Bound of the motion, and drift, when the boxes were taken while points rested, m; none if they were not.
+    rested: Option<(f64, [f64; 3])>,
 }
 
 /// The way of a point over the faces in the iterations of a step.
@@ -99,11 +110,63 @@ impl Search {
         if let Some(sight) = sight {
             self.normals.extend(sight.normals(places));
         }
+        self.rested = None;
+        self.shift = [0.0; 3];
         self.moved = self.motion(places, faces);
         if self.tree.is_some() && self.moved <= 0.5 * self.skin {
             self.age = self.age.saturating_add(1);
             return;
         }
+        self.take_boxes(places, faces);
+    }
+
+    /// Brings the search to a configuration whose motion since another one is bounded by the difference of what points at rest have
+    /// `travelled`, over the drift.
+    pub(crate) fn renew_near(
+        &mut self,
+        places: &Places,
+        faces: &[Face],
+        (travelled, shift): (f64, [f64; 3]),
+    ) {
+        self.watches = false;
+        self.ways.clear();
+        if let Some((before, from)) = self.rested
+            && self.boxes.len() == faces.len()
+            && travelled >= before
+            && travelled - before <= 0.5 * self.skin
+        {
+            self.moved = travelled - before;
+            self.shift = [0, 1, 2].map(|i| shift[i] - from[i]);
+            self.age = self.age.saturating_add(1);
+            return;
+        }
+        self.shift = [0.0; 3];
+        self.rested = Some((travelled, shift));
+        self.take_boxes(places, faces);
+    }
+
+    /// Counts projections from here on.
+    pub(crate) fn begin_count(&mut self) {
+        self.projections = 0;
+    }
+
+    /// The next query is that of this number.
+    pub(crate) fn seat(&mut self, query: usize) {
+        self.next = query;
+    }
+
+    /// Takes the normals that a view asks for.
+    pub(crate) fn see(&mut self, view: View, places: &Places) {
+        view.see(places, &mut self.normals);
+    }
+
+    /// Takes all normals.
+    pub(crate) fn see_all(&mut self, sight: &Sight, places: &Places) {
+        self.normals.clear();
+        self.normals.extend(sight.normals(places));
+    }
+
+    fn take_boxes(&mut self, places: &Places, faces: &[Face]) {
         self.moved = 0.0;
         self.age = 0;
         for kept in &mut self.kept {
@@ -244,16 +307,21 @@ impl Search {
         let slot = self.next;
         self.next += 1;
         if self.kept.len() <= slot {
-            self.kept.push(Kept::default());
+            self.kept.resize_with(slot + 1, Kept::default);
         }
+        // where the place was when the boxes were taken, but for what `moved` bounds
+        let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
         let mut kept = std::mem::take(&mut self.kept[slot]);
         let mut count = 0;
         let foot = |item: u32| foot_on(places, faces, item, x).0;
         let measure = |item: u32| {
+            let face = &faces[item as usize];
+            if view.is_some_and(|view| view.is_blind((item, face), places, &self.normals)) {
+                return f64::INFINITY;
+            }
             count += 1;
             let foot = foot(item);
             let seen = view.is_none_or(|view| {
-                let face = &faces[item as usize];
                 view.shows(item, &foot, &self.normals) && faces_point(&foot, face)
             });
             if seen { foot.distance } else { f64::INFINITY }
@@ -263,7 +331,7 @@ impl Search {
             let query = Query {
                 tree,
                 moved: self.moved,
-                x,
+                x: &there,
                 within,
             };
             query.closest(&mut kept, faces.len(), measure)
@@ -275,8 +343,8 @@ impl Search {
         {
             let distance = found.map_or(within, |(_, distance)| distance);
             let reach = distance + self.moved + self.skin;
-            tree.near(x, reach, &mut self.near);
-            kept.list(x, reach, &self.near, &self.boxes);
+            tree.near(&there, reach, &mut self.near);
+            kept.list(&there, reach, &self.near, &self.boxes);
         }
         kept.face = found.map(|(item, _)| item);
         self.kept[slot] = kept;
@@ -293,8 +361,33 @@ impl Search {
         measure: impl FnMut(u32) -> f64,
     ) -> Option<u32> {
         let tree = self.tree.as_ref()?;
-        let found = tree.closest(x, f64::INFINITY, self.moved + beside, measure);
+        let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
+        let found = tree.closest(&there, f64::INFINITY, self.moved + beside, measure);
         found.map(|(item, _)| item)
+    }
+
+    /// The most that nodes may move, m, before a face that is beyond the `limit` (m) of a place, or out of its view, may come into
+    /// view within the limit; at most a part of the limit.
+    pub(crate) fn rest_of(
+        &self,
+        (places, faces): (&Places, &[Face]),
+        view: View,
+        x: &[f64; 3],
+        limit: f64,
+    ) -> f64 {
+        let Some(tree) = &self.tree else {
+            return f64::INFINITY;
+        };
+        let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
+        let measure = |item: u32| {
+            let (foot, face) = foot_on(places, faces, item, x);
+            let far = 0.5 * (foot.distance - limit);
+            far.max(view.hidden((item, face), &foot, places, &self.normals))
+        };
+        // a distance is at most the limit and twice its measure
+        let most = LONGEST * limit;
+        let found = tree.closest(&there, most, self.moved + limit + most, measure);
+        found.map_or(most, |(_, rest)| rest.max(0.0))
     }
 
     /// Whether a face is in a view.
@@ -313,9 +406,14 @@ impl Search {
         let Some(tree) = &self.tree else {
             return;
         };
-        tree.overlapping(&bounds.widened(self.moved), found);
+        let back = |x: [f64; 3]| [0, 1, 2].map(|i| x[i] - self.shift[i]);
+        let there = Bounds {
+            min: back(bounds.min),
+            max: back(bounds.max),
+        };
+        tree.overlapping(&there.widened(self.moved), found);
         // widened, the box may meet faces that it does not meet where they are now
-        if self.moved > 0.0 {
+        if self.moved > 0.0 || self.shift != [0.0; 3] {
             found.retain(|&item| hull(places, &faces[item as usize]).overlaps(bounds));
         }
     }
@@ -447,7 +545,7 @@ pub(crate) fn faces_point(foot: &Projection, face: &Face) -> bool {
 }
 
 /// The most that Σ |N_a| is on a face: places between its nodes move by that times the motion of the nodes at most.
-fn spread(kind: Kind) -> f64 {
+pub(crate) fn spread(kind: Kind) -> f64 {
     match kind {
         Kind::Point1 | Kind::Bar2 | Kind::Tri3 | Kind::Quad4 => 1.0,
         // eight nodes, at the centre: four times 1/4 and four times 1/2; other kinds have less

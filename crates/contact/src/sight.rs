@@ -17,6 +17,8 @@ use carom_mesh::{Bounds, BoxTree, Face, Projection};
 
 use crate::{Frames, Places, Point};
 
+mod turned;
+
 /// Cosine of the angle between the normals of a point and of a face up to which the face is in view.
 const OPPOSED: f64 = -0.5;
 
@@ -218,6 +220,62 @@ impl View<'_> {
                 .is_err()
     }
 
+    /// Takes the normals of the faces around the viewer among those of all.
+    pub(crate) fn see(&self, places: &Places, normals: &mut Vec<[f64; 3]>) {
+        normals.resize(self.sight.faces.len(), [0.0; 3]);
+        for &k in self.sight.around.of(self.point) {
+            normals[k as usize] = normal(&self.sight.faces[k as usize], places);
+        }
+    }
+
+    /// The most that nodes may move, m, before a face that is out of view may come into it; zero of one that may be in view.
+    /// Normals as in [`View::shows`].
+    pub(crate) fn hidden(
+        &self,
+        (item, face): (u32, &Face),
+        foot: &Projection,
+        places: &Places,
+        normals: &[[f64; 3]],
+    ) -> f64 {
+        if self
+            .sight
+            .beside
+            .of(self.point)
+            .binary_search(&item)
+            .is_ok()
+        {
+            return f64::INFINITY;
+        }
+        let around = self.sight.around.of(self.point).iter();
+        let around = around.map(|&k| (&self.sight.faces[k as usize], &normals[k as usize]));
+        turned::until_opposed((face, foot), around, (OPPOSED, places)).max(turned::until_behind(
+            (face, foot),
+            self.sight.depth[self.point],
+            places,
+        ))
+    }
+
+    /// Whether a face is out of view wherever the foot on it is: beside the viewer, or with normals that make less than 90° with
+    /// those of all faces around it. Normals as in [`View::shows`].
+    pub(crate) fn is_blind(
+        &self,
+        (item, face): (u32, &Face),
+        places: &Places,
+        normals: &[[f64; 3]],
+    ) -> bool {
+        if self
+            .sight
+            .beside
+            .of(self.point)
+            .binary_search(&item)
+            .is_ok()
+        {
+            return true;
+        }
+        let around = self.sight.around.of(self.point).iter();
+        turned::turns_away(face, around.map(|&k| &normals[k as usize]), places)
+    }
+
     fn opposes(&self, foot: &Projection, normals: &[[f64; 3]]) -> bool {
         let opposed = |&k: &u32| {
             let n = &normals[k as usize];
@@ -227,12 +285,12 @@ impl View<'_> {
     }
 }
 
-fn bounds(face: &Face, x: &[[f64; 3]]) -> Bounds {
+pub(crate) fn bounds(face: &Face, x: &[[f64; 3]]) -> Bounds {
     let places: Vec<[f64; 3]> = face.corners().iter().map(|&n| x[n as usize]).collect();
     Bounds::of_face(face.kind, &places)
 }
 
-fn diagonal(bounds: &Bounds) -> f64 {
+pub(crate) fn diagonal(bounds: &Bounds) -> f64 {
     let squares = (0..3).map(|i| (bounds.max[i] - bounds.min[i]).powi(2));
     squares.sum::<f64>().sqrt()
 }

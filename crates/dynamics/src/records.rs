@@ -254,8 +254,10 @@ impl Records {
         record.defect.add(report.persistency_defect);
         record.rubbed.add(report.friction_loss);
         record.status_changes += report.status_changes as u64;
-        let points = system.first_point[contact]..system.first_point[contact + 1];
-        record.count_closings(system, contact, step, &mut self.opened[points]);
+        if report.status_changes > 0 {
+            let opened = &mut self.opened[system.points_of(contact)];
+            record.count_closings(system, contact, step, opened);
+        }
         record.mixed = record.mixed.max(report.mixed as u64);
         if report.gap.is_finite() {
             record.penetration = record.penetration.max(-report.gap);

@@ -107,6 +107,43 @@ impl InterfaceState {
         self.crush.clone_from(&before.crush);
     }
 
+    /// Becomes a copy at some points, and already is one at the others, but for the time without force.
+    pub(crate) fn follow_at(
+        &mut self,
+        before: &InterfaceState,
+        points: impl Iterator<Item = usize>,
+    ) {
+        self.friction.resize(before.friction.len(), [0.0; 2]);
+        for point in points {
+            self.force[point] = before.force[point];
+            if let Some(friction) = self.friction.get_mut(point) {
+                *friction = before.friction[point];
+            }
+            self.carried[point] = before.carried[point];
+            self.gap[point] = before.gap[point];
+            self.rate[point] = before.rate[point];
+            self.opening[point] = before.opening[point];
+            self.status[point] = before.status[point];
+            self.watched[point] = before.watched[point];
+            self.crush[point] = before.crush[point];
+        }
+    }
+
+    /// Whether a point carries a force.
+    pub(crate) fn carries(&self, point: usize) -> bool {
+        let rubs = |friction: &[f64; 2]| *friction != [0.0; 2];
+        self.force[point] != 0.0 || self.friction.get(point).is_some_and(rubs)
+    }
+
+    /// Takes the force of a point.
+    pub(crate) fn release(&mut self, point: usize) {
+        self.force[point] = 0.0;
+        if let Some(friction) = self.friction.get_mut(point) {
+            *friction = [0.0; 2];
+        }
+        self.status[point] = Status::Open;
+    }
+
     /// Counts the time without force after a step of `dt` (s), from that of the state before.
     pub fn count_flights(&mut self, before: &[f64], dt: f64) {
         let points = self.flight.iter_mut().zip(&self.force).zip(before);

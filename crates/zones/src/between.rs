@@ -380,7 +380,7 @@ impl Between {
         for contact in 0..system.contacts.len() {
             let now = &self.state.interface;
             let rows = &self.pairing.rows;
-            let report = contact_report(&system, contact, rows, before, now, dt);
+            let report = contact_report(system.points_of(contact), rows, [before, now], dt);
             let step = Step {
                 span: [end - dt, end],
                 dt,
@@ -412,7 +412,8 @@ impl Between {
         }
         for contact in 0..self.contacts.len() {
             let (rows, now) = (&self.pairing.rows, &self.state.interface);
-            self.reports[contact] = contact_report(&self.system, contact, rows, now, now, 0.0);
+            self.reports[contact] =
+                contact_report(self.system.points_of(contact), rows, [now; 2], 0.0);
         }
     }
 

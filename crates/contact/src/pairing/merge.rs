@@ -70,20 +70,20 @@ impl Merge {
         &mut self.blocks[*place as usize].1
     }
 
-    /// Appends gap and rows of the sum; its normal is the mean one, and the directions of the tangents are square to it.
-    pub fn push(&self, places: &Places, rows: &mut Rows, tangents: &mut [Rows; 2]) {
+    /// Makes a point of the rows, or the one after the last, that of the sum; its normal is the mean one, and the directions of the tangents are square to it.
+    pub fn place(&self, places: &Places, at: usize, rows: &mut Rows, tangents: &mut [Rows; 2]) {
         let dim = places.dim();
         let length = self.normal.norm();
         let normal: [f64; 3] = match length > 0.0 {
             true => (self.normal / length).into(),
             false => [0.0; 3],
         };
-        rows.push(self.gap, normal);
+        rows.begin(at, self.gap, normal);
         rows.set_resultant(self.resultants[0].into());
         rows.set_rate(self.rates[0]);
         let frame = tangent_vectors(&normal, dim);
         for (k, rows) in tangents[..dim - 1].iter_mut().enumerate() {
-            rows.push(0.0, frame[k]);
+            rows.begin(at, 0.0, frame[k]);
             rows.set_resultant(self.resultants[k + 1].into());
             rows.set_rate(self.rates[k + 1]);
         }

@@ -10,6 +10,7 @@ mod curvature;
 mod foothold;
 mod merge;
 mod mortar;
+mod near;
 mod overlap;
 mod pair;
 mod round;
@@ -21,6 +22,7 @@ use carom_algebra::csr::Csr;
 
 use self::block::Block;
 use self::merge::Merge;
+pub use self::near::Near;
 use self::share::{Quadrature, Share};
 use self::stencil::Stencil;
 pub use self::tie::Tie;
@@ -39,7 +41,7 @@ pub struct Pairing {
     /// moment.
     pub rows: Rows,
     /// Rows T of the two tangents at a point: `T v` is the velocity in m/s at which the secondary slides over the primary
-    /// along [`Rows::normal`] of that row; the gaps of these pools are zero. Unit vectors, square to each other and to the
+    /// along [`Rows::normal`] of that row; the gaps of these pools mean nothing. Unit vectors, square to each other and to the
     /// contact normal, that vary smoothly with it. [`Rows::rate`] of these rows is what the motion of an
     /// obstacle adds. A force along T has no resultant, but a moment where the gap is not closed. The second
     /// is empty in the plane, both are on a line.
@@ -54,8 +56,10 @@ pub struct Pairing {
     stencils: Vec<Stencil>,
     /// Stencils of all points and their weights, point after point.
     terms: Vec<(u32, f64)>,
-    /// Where the terms of a point end.
-    ends: Vec<u32>,
+    /// Where the terms of each point begin and end.
+    spans: Vec<[u32; 2]>,
+    /// Points that face something, ascending, where only those within a reach do ([`Contact::pair_near`](crate::Contact::pair_near)).
+    near: Vec<u32>,
     dim: usize,
     work: Work,
 }
@@ -77,7 +81,8 @@ impl Pairing {
         self.areas.clear();
         self.stencils.clear();
         self.terms.clear();
-        self.ends.clear();
+        self.spans.clear();
+        self.near.clear();
     }
 
     /// Appends the points of `initial`, paired once at zero displacement, with gaps moved by N u: rows and tangents are those
@@ -90,8 +95,7 @@ impl Pairing {
         }
         self.areas.extend_from_slice(&initial.areas);
         let points = initial.len();
-        self.ends
-            .extend(std::iter::repeat_n(self.terms.len() as u32, points));
+        self.spans.extend(std::iter::repeat_n([0; 2], points));
     }
 
     /// Number of points.
@@ -168,57 +172,63 @@ impl Pairing {
     }
 
     fn terms(&self, point: usize) -> &[(u32, f64)] {
-        let begin = match point {
-            0 => 0,
-            _ => self.ends[point - 1] as usize,
-        };
-        &self.terms[begin..self.ends[point] as usize]
+        let [begin, end] = self.spans[point].map(|place| place as usize);
+        &self.terms[begin..end]
     }
 
-    /// Appends a point that stands for `area` and is what one stencil is; without one it faces nothing.
-    fn push(&mut self, places: &Places, area: f64, stencil: Option<Stencil>) {
-        self.areas.push(area);
+    /// Makes a point, or the one after the last, what one stencil is, standing for `area`; without one it faces nothing.
+    fn place(&mut self, places: &Places, (at, area): (usize, f64), stencil: Option<Stencil>) {
+        let begin = self.begin(at, area);
         match stencil {
             Some(stencil) => {
-                stencil.push(places, &mut self.rows, &mut self.tangents);
+                stencil.place(places, at, &mut self.rows, &mut self.tangents);
                 self.terms.push((self.stencils.len() as u32, 1.0));
                 self.stencils.push(stencil);
             }
-            None => self.push_open(),
+            None => self.open(at),
         }
-        self.ends.push(self.terms.len() as u32);
+        self.spans[at] = [begin, self.terms.len() as u32];
     }
 
-    /// Appends a point that is the mean of stencils with the given weights, and stands for their sum. Where that is not
-    /// above `least` the point faces nothing, and stands for `area`.
-    fn push_sum(
+    /// Makes a point, or the one after the last, the mean of stencils with the given weights, standing for their sum. Where that is
+    /// not above `least` the point faces nothing, and stands for `area`.
+    fn place_sum(
         &mut self,
         places: &Places,
-        (area, least): (f64, f64),
+        (at, area, least): (usize, f64, f64),
         shares: &[Share],
         merge: &mut Merge,
     ) {
         let total: f64 = shares.iter().map(|share| share.weight).sum();
+        let begin = self.begin(at, if total > least { total } else { area });
         if total > least {
-            self.areas.push(total);
             merge.clear();
             for share in shares {
                 let weight = share.weight / total;
                 merge.add(&self.stencils[share.stencil as usize], weight, self.dim);
                 self.terms.push((share.stencil, weight));
             }
-            merge.push(places, &mut self.rows, &mut self.tangents);
+            merge.place(places, at, &mut self.rows, &mut self.tangents);
         } else {
-            self.areas.push(area);
-            self.push_open();
+            self.open(at);
         }
-        self.ends.push(self.terms.len() as u32);
+        self.spans[at] = [begin, self.terms.len() as u32];
     }
 
-    fn push_open(&mut self) {
-        self.rows.push(f64::INFINITY, [0.0; 3]);
+    fn begin(&mut self, at: usize, area: f64) -> u32 {
+        if at == self.areas.len() {
+            self.areas.push(area);
+            self.spans.push([0; 2]);
+        }
+        self.areas[at] = area;
+        self.terms.len() as u32
+    }
+
+    /// Lets a point, or the one after the last, face nothing.
+    fn open(&mut self, at: usize) {
+        self.rows.open(at);
         for tangent in &mut self.tangents[..self.dim - 1] {
-            tangent.push(0.0, [0.0; 3]);
+            tangent.open(at);
         }
     }
 }

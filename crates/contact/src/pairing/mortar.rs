@@ -37,14 +37,13 @@ const LEAST: f64 = 1e-6;
 const FAR: f64 = 4.0;
 
 impl Mortar {
-    /// Appends the multipliers of the contact as points.
+    /// Pairs the multipliers of the contact as points; the first of them is that of the number `first` in the pairing.
     pub(super) fn pair(
         &self,
-        contact: &Contact,
-        basis: Basis,
+        (contact, basis): (&Contact, Basis),
         places: &Places,
         search: &mut Search,
-        pairing: &mut Pairing,
+        (first, pairing): (usize, &mut Pairing),
     ) {
         let mut work = std::mem::take(&mut pairing.work);
         work.shares.clear();
@@ -73,7 +72,8 @@ impl Mortar {
             let own = shares.partition_point(|share| share.point as usize <= number);
             let (these, rest) = shares.split_at(own);
             let least = LEAST * point.area;
-            pairing.push_sum(places, (point.area, least), these, &mut work.merge);
+            let point = (first + number, point.area, least);
+            pairing.place_sum(places, point, these, &mut work.merge);
             shares = rest;
         }
         pairing.work = work;

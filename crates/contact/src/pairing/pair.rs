@@ -56,21 +56,27 @@ impl Contact {
         pairing.dim = places.dim();
         self.renew(places, search);
         let first = pairing.len();
-        self.pair_points(places, search, pairing);
+        self.pair_points(places, search, (first, pairing));
         for k in 0..self.points.len() {
             pairing.rows.shift(first + k, self.offset(k));
         }
     }
 
-    fn pair_points(&self, places: &Places, search: &mut Search, pairing: &mut Pairing) {
+    /// Pairs all points; the first of them is that of the number `first` in the pairing.
+    pub(super) fn pair_points(
+        &self,
+        places: &Places,
+        search: &mut Search,
+        (first, pairing): (usize, &mut Pairing),
+    ) {
         if let (Integration::Mortar { basis }, Some(mortar)) = (self.integration, &self.mortar)
             && !mortar.is_ends()
         {
-            return mortar.pair(self, basis, places, search, pairing);
+            return mortar.pair((self, basis), places, search, (first, pairing));
         }
         for (k, point) in self.points.iter().enumerate() {
             let stencil = Stencil::new(self, places, search, (point, self.view(k), pairing.span));
-            pairing.push(places, point.area, stencil);
+            pairing.place(places, (first + k, point.area), stencil);
         }
     }
 }

@@ -127,15 +127,15 @@ impl Stencil {
         self
     }
 
-    /// Appends gap and rows.
-    pub fn push(&self, places: &Places, rows: &mut Rows, tangents: &mut [Rows; 2]) {
+    /// Makes a point of the rows, or the one after the last, that of the stencil.
+    pub fn place(&self, places: &Places, at: usize, rows: &mut Rows, tangents: &mut [Rows; 2]) {
         let dim = places.dim();
-        rows.push(self.gap, self.normal);
+        rows.begin(at, self.gap, self.normal);
         rows.set_resultant(self.resultant().into());
         rows.set_rate(self.rate(&self.normal));
         let frame = tangent_vectors(&self.normal, dim);
         for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
-            rows.push(0.0, *t);
+            rows.begin(at, 0.0, *t);
             rows.set_rate(self.slide(t));
         }
         let turning = self.turning();

@@ -129,7 +129,9 @@ impl Driver {
     pub(super) fn end_interface(&mut self) {
         let system = Arc::clone(&self.system);
         let interface = &mut self.next.interface;
-        interface.carried.clone_from(&interface.force);
+        for point in self.active.within(0..system.points()) {
+            interface.carried[point] = interface.force[point];
+        }
         interface.count_flights(&self.state.interface.flight, self.dt);
         let has_rate = self.maps.all().iter().any(|map| map.rate != Row::default());
         for (k, contact) in system.contacts.iter().enumerate() {
@@ -137,7 +139,7 @@ impl Driver {
             let start_in_way = self.map_of(k).start_in_way();
             let ahead = |map: &StepMap| map.displacement.since(&paired.row(map));
             let of_rate = self.law(contact).get().level() == Level::Rate;
-            for point in system.first_point[k]..system.first_point[k + 1] {
+            for point in self.active.within(system.points_of(k)) {
                 let motion = &self.state.motion;
                 let xc = [&self.vectors.x[..], &self.vectors.push];
                 let rows = &self.pairing.rows;
@@ -166,8 +168,8 @@ impl Driver {
     /// Renews the memory of the laws at the points that carry a force at the end of the step.
     pub(super) fn crush(&mut self) {
         let (old, new) = (&self.state.interface, &mut self.next.interface);
-        new.crush.clone_from(&old.crush);
-        for point in 0..new.crush.len() {
+        for point in self.active.within(0..self.system.points()) {
+            new.crush[point] = old.crush[point];
             if new.status[point] != carom_contact::law::Status::Open {
                 let law = &self.system.point(point).0.law;
                 new.crush[point] = law.crushed(old.crush[point], new.gap[point]);

@@ -87,7 +87,8 @@ impl Driver {
     /// close at the x of the iteration or at twice the rate at the start, and the rest is looked at after the solve.
     pub(super) fn choose_candidates(&mut self) {
         self.candidates.clear();
-        for point in 0..self.system.points() {
+        let active = std::mem::take(&mut self.active);
+        for point in active.within(0..self.system.points()) {
             let chosen = match self.told(point) {
                 Some(told) => told,
                 None => self.next.interface.status[point] != Status::Open || self.approaches(point),
@@ -97,6 +98,7 @@ impl Driver {
                 self.candidates.push(point as u32);
             }
         }
+        self.active = active;
     }
 
     fn approaches(&self, point: usize) -> bool {
@@ -197,18 +199,20 @@ impl Driver {
 
     /// No contact force at all.
     pub(super) fn release(&mut self) {
-        let interface = &mut self.next.interface;
-        interface.force.fill(0.0);
-        interface.friction.fill([0.0; 2]);
-        interface.status.fill(Status::Open);
-        self.slips.fill(Slip::Open);
+        for point in self.active.within(0..self.system.points()) {
+            self.next.interface.release(point);
+            if let Some(slip) = self.slips.get_mut(point) {
+                *slip = Slip::Open;
+            }
+        }
         self.take_weak();
     }
 
     /// Adds the points that were no candidates and whose law asks for a force; whether there are any.
     fn add_missed(&mut self) -> bool {
         let before = self.candidates.len();
-        for point in 0..self.system.points() {
+        let active = std::mem::take(&mut self.active);
+        for point in active.within(0..self.system.points()) {
             let known = self.candidates[..before].binary_search(&(point as u32));
             if known.is_ok() || self.told(point).is_some() {
                 continue;
@@ -223,6 +227,7 @@ impl Driver {
                 self.next.interface.watched[point] = true;
             }
         }
+        self.active = active;
         self.candidates.sort_unstable();
         self.candidates.len() > before
     }

@@ -49,7 +49,7 @@ impl Driver {
                 self.pairing.rows.add_force(point, force, forces);
             }
             let force = |point: usize| self.state.interface.force[point];
-            let begun = total(&system, number, &self.pairing.rows, force);
+            let begun = total(system.points_of(number), &self.pairing.rows, force);
             self.state.records.contacts[number].begin(begun);
         }
     }

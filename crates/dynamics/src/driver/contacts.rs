@@ -274,7 +274,8 @@ impl Driver {
     pub(super) fn spread(&mut self) {
         let f = &mut self.vectors.contact;
         f.fill(0.0);
-        for (point, &force) in self.next.interface.force.iter().enumerate() {
+        for point in self.active.within(0..self.system.points()) {
+            let force = self.next.interface.force[point];
             if force != 0.0 {
                 self.pairing.rows.add_force(point, force, f);
             }

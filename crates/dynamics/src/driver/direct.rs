@@ -7,7 +7,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_contact::Search;
 use rayon::prelude::*;
 
 use super::Driver;
@@ -46,6 +45,7 @@ impl Driver {
         if let Some(direct) = &mut self.direct {
             (direct.clean, direct.finite) = (false, false);
         }
+        self.active.leave();
     }
 
     /// Takes the attempt.
@@ -73,7 +73,7 @@ impl Driver {
         self.place_end();
         self.forces_of_end()?;
         let loads = self.loads_of_end(direct.loaded);
-        let before_it = carries(&self.state.interface);
+        let before_it = self.follow_interface();
         let touched = [before_it, self.touch(&mut direct.apart, loads)?];
         self.count_contact(begin, before);
         let begin = Instant::now();
@@ -140,17 +140,13 @@ impl Driver {
 
     /// Forces of the contacts; whether there are any.
     fn touch(&mut self, apart: &mut Apart, loads: Loads) -> Result<bool, Error> {
-        self.next.interface.follow(&self.state.interface);
-        self.guess_slips();
-        self.take_weak();
         self.vectors.jumps = false;
         if self.system.contacts.is_empty() {
             self.candidates.clear();
             return Ok(false);
         }
         self.vectors.ahead.clear();
-        self.search.iter_mut().for_each(Search::begin_step);
-        self.pair(true);
+        self.pair_near();
         self.choose_candidates();
         if self.candidates.is_empty() {
             self.release();
@@ -178,7 +174,9 @@ impl Driver {
         self.spread();
         let forces = &self.vectors.contact;
         self.next.motion.contact_force.copy_from_slice(forces);
-        Ok(carries(&self.next.interface))
+        let interface = &self.next.interface;
+        let mut points = self.active.within(0..system.points());
+        Ok(points.any(|point| interface.carries(point)))
     }
 
     /// Accelerations and velocities of the end, and the sums of the step.
@@ -308,12 +306,6 @@ enum Loads {
     Dead([f64; 2]),
     /// Those in the vector of loads.
     Varying,
-}
-
-/// Whether any point carries a force.
-fn carries(interface: &crate::state::InterfaceState) -> bool {
-    interface.force.iter().any(|force| *force != 0.0)
-        || interface.friction.iter().any(|force| *force != [0.0; 2])
 }
 
 /// Largest norm of the forces that balance, and of the momentum over the step, N.

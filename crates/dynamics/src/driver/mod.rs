@@ -12,6 +12,7 @@
 //! What the driver holds besides the state is a function of the system and the state, or scratch: a run goes on from a saved state
 //! with the same bits.
 
+mod active;
 mod ahead;
 mod apart;
 mod approach;
@@ -39,6 +40,7 @@ mod loads;
 mod manner;
 mod matrices;
 mod mixing;
+mod near;
 mod obstacles;
 pub mod paired;
 mod part_matrix;
@@ -74,6 +76,7 @@ use crate::state::State;
 use crate::step_map::StepMap;
 use crate::system::{Maps, System};
 use crate::watch::Watch;
+use active::Active;
 use carried::Carried;
 use effective::Effective;
 use floating::Floating;
@@ -125,6 +128,7 @@ pub struct Driver {
     initial: Vec<Pairing>,
     search: Vec<Search>,
     watch: Watch,
+    active: Active,
     /// Points that may carry a force, ascending.
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,

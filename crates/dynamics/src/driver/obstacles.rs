@@ -16,7 +16,7 @@ impl Driver {
         };
         let mut pushed = Pushed::default();
         let tangents = &self.pairing.tangents[..system.tangents()];
-        for point in system.first_point[contact]..system.first_point[contact + 1] {
+        for point in self.active.within(system.points_of(contact)) {
             let normal = (&self.pairing.rows, self.next.interface.force[point]);
             let friction = self.next.interface.friction.get(point);
             let friction = friction.copied().unwrap_or_default();

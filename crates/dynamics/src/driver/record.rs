@@ -37,7 +37,8 @@ impl Driver {
             let impulse = self.contact_impulse(k);
             let rows = &self.pairing.rows;
             let (old, new) = (&self.state.interface, &self.next.interface);
-            let mut report = contact_report(&system, k, rows, old, new, self.dt);
+            let points = || self.active.within(system.points_of(k));
+            let mut report = contact_report(points(), rows, [old, new], self.dt);
             report.mixed = self.weak.mixed(k, &new.force[system.points_of(k)]);
             self.report_friction(k, &mut report);
             report.friction_loss = -self.friction_work_of(k, [impulse.old, impulse.new]);
@@ -49,7 +50,7 @@ impl Driver {
                 let changed = old.carried[point] - old.force[point];
                 projected.impulse(point) + dt * impulse.old * changed
             };
-            report.impulsive = system.points_of(k).map(carried_on).sum();
+            report.impulsive = points().map(carried_on).sum();
             let span = [self.state.time, self.next.time];
             let State {
                 motion,
@@ -64,11 +65,14 @@ impl Driver {
                 impulse,
                 forces: [&old.force, &interface.force],
                 report: &report,
-                work: work + system.points_of(k).map(|p| projected.work(p)).sum::<f64>(),
-                crushed: crush_energy(&system, k, interface),
+                work: work + points().map(|p| projected.work(p)).sum::<f64>(),
+                crushed: match points().all(|p| interface.crush[p] == old.crush[p]) {
+                    true => records.contacts[k].energy_crushed,
+                    false => crush_energy(&system, k, interface),
+                },
                 jump: [
-                    total(&system, k, rows, |point| projected.impulse(point)),
-                    total(&system, k, rows, changed),
+                    total(points(), rows, |point| projected.impulse(point)),
+                    total(points(), rows, changed),
                 ],
             };
             let velocities = [&self.state.motion.v[..], &motion.v];
@@ -100,7 +104,8 @@ impl Driver {
             };
             force * (place(new) - place(old) + self.dt * rows.rate(point))
         };
-        self.system.points_of(contact).map(of_point).sum()
+        let points = self.system.points_of(contact);
+        self.active.within(points).map(of_point).sum()
     }
 
     fn weights_of_work(&self, contact: usize) -> super::identity::WorkWeights {
@@ -140,7 +145,8 @@ impl Driver {
         if state.step == 0 {
             for (k, report) in self.report.contacts.iter_mut().enumerate() {
                 let (rows, interface) = (&self.pairing.rows, &state.interface);
-                *report = contact_report(&self.system, k, rows, interface, interface, 0.0);
+                let points = self.system.points_of(k);
+                *report = contact_report(points, rows, [interface; 2], 0.0);
             }
         }
     }
@@ -155,15 +161,14 @@ fn crush_energy(system: &System, contact: usize, interface: &InterfaceState) -> 
     contact.points.iter().enumerate().map(of_point).sum()
 }
 
-/// Sum of a normal force or impulse over the points of a contact, and its resultant on the secondary body.
+/// Sum of a normal force or impulse over points of a contact, and its resultant on the secondary body.
 pub(crate) fn total(
-    system: &System,
-    contact: usize,
+    points: impl Iterator<Item = usize>,
     rows: &Rows,
     of_point: impl Fn(usize) -> f64,
 ) -> (f64, [f64; 3]) {
     let (mut sum, mut resultant) = (0.0, [0.0; 3]);
-    for point in system.points_of(contact) {
+    for point in points {
         let value = of_point(point);
         if value == 0.0 {
             continue;
@@ -176,20 +181,18 @@ pub(crate) fn total(
     (sum, resultant)
 }
 
-/// What a contact did in a step of `dt` (s).
+/// What a contact did in a step of `dt` (s): its points, those left out being open before and after it.
 pub fn contact_report(
-    system: &System,
-    contact: usize,
+    points: impl Iterator<Item = usize>,
     rows: &Rows,
-    old: &InterfaceState,
-    new: &InterfaceState,
+    [old, new]: [&InterfaceState; 2],
     dt: f64,
 ) -> ContactReport {
     let mut report = ContactReport {
         gap: f64::INFINITY,
         ..ContactReport::default()
     };
-    for point in system.points_of(contact) {
+    for point in points {
         let force = new.force[point];
         report.force += force;
         for (sum, n) in report.resultant.iter_mut().zip(rows.resultant(point)) {

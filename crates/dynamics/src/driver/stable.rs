@@ -89,6 +89,7 @@ impl Driver {
         self.next.motion.compose(&self.system.unknowns);
         std::mem::swap(&mut self.state.shapes, &mut self.next.shapes);
         std::mem::swap(&mut self.state, &mut self.next);
+        self.active.accept();
     }
 }
 

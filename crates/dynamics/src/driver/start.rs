@@ -5,6 +5,7 @@ use std::sync::Arc;
 use carom_bodies::{Scratch, Stored};
 use carom_contact::{Contact, Pairing, Search};
 
+use super::active::Active;
 use super::carried::Carried;
 use super::effective::Effective;
 use super::floating::Floating;
@@ -82,6 +83,7 @@ impl Driver {
             initial: vec![Pairing::default(); system.contacts.len()],
             search: system.contacts.iter().map(|_| Search::default()).collect(),
             watch: Watch::new(&system),
+            active: Active::of(&system),
             candidates: Vec::new(),
             candidate_data: Vec::new(),
             free_gaps: Vec::new(),

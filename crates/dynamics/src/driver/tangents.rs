@@ -11,6 +11,14 @@ use crate::coulomb::Slip;
 use crate::report::ContactReport;
 use crate::step_map::{Row, StepMap};
 
+/// Points that carried friction are first thought to stick.
+pub(super) fn first_thought(friction: &[f64; 2]) -> Slip {
+    match friction == &[0.0; 2] {
+        true => Slip::Open,
+        false => Slip::Stick,
+    }
+}
+
 impl Driver {
     /// Whether a candidate has friction.
     pub(super) fn rubs(&self) -> bool {
@@ -27,11 +35,7 @@ impl Driver {
         }
         let friction = &mut self.next.interface.friction;
         friction.resize(points, [0.0; 2]);
-        self.slips
-            .extend(friction.iter().map(|t| match t == &[0.0; 2] {
-                true => Slip::Open,
-                false => Slip::Stick,
-            }));
+        self.slips.extend(friction.iter().map(first_thought));
     }
 
     /// Rows of all points, each with those of its tangents after it.
@@ -91,7 +95,10 @@ impl Driver {
 
     /// Adds Tᵀ t to the nodal contact forces.
     pub(super) fn spread_friction(&mut self) {
-        for (point, t) in self.next.interface.friction.iter().enumerate() {
+        for point in self.active.within(0..self.system.points()) {
+            let Some(t) = self.next.interface.friction.get(point) else {
+                return;
+            };
             for (rows, &t) in self.pairing.tangents.iter().zip(t) {
                 if t != 0.0 {
                     rows.add_force(point, t, &mut self.vectors.contact);
@@ -151,9 +158,8 @@ impl Driver {
     /// The same of one contact, with its weights.
     pub(super) fn friction_work_of(&self, contact: usize, weights: [f64; 2]) -> f64 {
         let (old, new) = (&self.state.interface, &self.next.interface);
-        let points = self.system.first_point[contact]..self.system.first_point[contact + 1];
         let mut work = 0.0;
-        for point in points {
+        for point in self.active.within(self.system.points_of(contact)) {
             let Some(t) = new.friction.get(point) else {
                 break;
             };
@@ -170,9 +176,8 @@ impl Driver {
 
     /// Writes the friction of a contact into its report, and adds it to the resultant.
     pub(super) fn report_friction(&self, contact: usize, report: &mut ContactReport) {
-        let points = self.system.first_point[contact]..self.system.first_point[contact + 1];
         let mut sum = [0.0; 3];
-        for point in points {
+        for point in self.active.within(self.system.points_of(contact)) {
             let Some(t) = self.next.interface.friction.get(point) else {
                 return;
             };

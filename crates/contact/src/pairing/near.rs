@@ -1,0 +1,362 @@
+//! The points of a contact that are within a reach of what they face; the others cost nothing while they are far.
+
+use std::f64::consts::SQRT_2;
+
+use carom_mesh::Face;
+
+use super::Pairing;
+use super::stencil::Stencil;
+use crate::rest::Rest;
+use crate::search::{faces_point, foot_on, spread};
+use crate::{Contact, Integration, Places, Point, Search, Sliding, Target};
+
+/// What a pairing of the near points of a contact is given.
+pub struct Near<'a> {
+    /// Number of the contact's first point in the pairing.
+    pub first: usize,
+    /// Largest gap that is looked at, m.
+    pub reach: f64,
+    /// Whether a point, by its number in the contact, was inside at the last step: it may then be so at any depth.
+    pub inside: &'a dyn Fn(usize) -> bool,
+    /// Points of a contact of small sliding where all nodes are at their reference places.
+    pub initial: &'a Pairing,
+}
+
+impl Pairing {
+    /// Makes these the points of contacts that face nothing.
+    pub fn open_all(&mut self, contacts: &[Contact], dim: usize) {
+        self.clear();
+        self.dim = dim;
+        let points = contacts.iter().flat_map(|contact| &contact.points);
+        self.areas.extend(points.map(|point| point.area));
+        self.spans.resize(self.areas.len(), [0; 2]);
+        self.rows.open_all(self.areas.len());
+        for rows in &mut self.tangents[..dim - 1] {
+            rows.open_all(self.areas.len());
+        }
+    }
+
+    /// Lets the near points face nothing, before the contacts are paired anew.
+    pub fn reopen(&mut self) {
+        self.rows.reopen(self.near.iter().copied());
+        for rows in &mut self.tangents[..self.dim - 1] {
+            rows.reopen(self.near.iter().copied());
+        }
+        for &point in &self.near {
+            self.spans[point as usize] = [0; 2];
+        }
+        self.terms.clear();
+        self.stencils.clear();
+        self.near.clear();
+    }
+
+    /// Points that face something within reach, ascending.
+    pub fn near(&self) -> &[u32] {
+        &self.near
+    }
+
+    /// Keeps a point that was paired if its gap is within reach.
+    fn keep(&mut self, at: usize, area: f64, reach: f64) {
+        if self.rows.gap(at) <= reach {
+            self.near.push(at as u32);
+        } else if self.rows.gap(at) < f64::INFINITY {
+            self.areas[at] = area;
+            self.spans[at] = [0; 2];
+            self.open(at);
+        }
+    }
+}
+
+impl Contact {
+    /// Mean diagonal of the faces of both sides, m; infinite where they have none. `x`: reference coordinates by system number, m.
+    pub fn mean_diagonal(&self, secondary: &[Face], x: &[[f64; 3]]) -> f64 {
+        let target = match &self.target {
+            Target::Surface(faces) => &faces[..],
+            Target::Rigid(_) => &[],
+        };
+        let faces = secondary.iter().chain(target);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for face in faces.filter(|face| face.kind.table().dim > 0) {
+            sum += crate::sight::diagonal(&crate::sight::bounds(face, x));
+            count += 1.0;
+        }
+        if count > 0.0 {
+            sum / count
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Pairs the points whose gap is within reach, in a pairing that has all points of its contacts and in which those of this
+    /// one face nothing ([`Pairing::reopen`]). Gap, rows and tangents of a near point are those of [`Contact::pair_fully`], or
+    /// with small sliding those of [`Pairing::append_moved`]; all others face nothing, also points that are deeper than the reach
+    /// without having been inside.
+    ///
+    /// What `search` holds from before does not matter to the result.
+    pub fn pair_near(
+        &self,
+        places: &Places,
+        search: &mut Search,
+        near: &Near,
+        pairing: &mut Pairing,
+    ) {
+        let mut rest = std::mem::take(&mut search.rest);
+        let mut due = std::mem::take(&mut search.due);
+        let small = self.sliding == Sliding::Small;
+        let mortar = matches!((self.integration, &self.mortar), (Integration::Mortar { .. }, Some(mortar)) if !mortar.is_ends());
+        // with small sliding all depends on the initial pairing; mortar points rest together
+        let units = if mortar && !small {
+            1
+        } else {
+            self.points.len()
+        };
+        search.begin_count();
+        self.travel(&mut rest, units, places);
+        rest.due(&mut due);
+        if !due.is_empty() {
+            if let (Target::Surface(faces), false) = (&self.target, small) {
+                search.renew_near(places, faces, rest.travelled());
+            }
+            match (small, mortar) {
+                (true, _) => self.move_near(
+                    (places.u, near),
+                    &due,
+                    |point, c| rest.lay(point, c),
+                    pairing,
+                ),
+                (false, true) => {
+                    let clearance = self.pair_mortar_near(places, search, near, pairing);
+                    rest.lay(0, clearance);
+                }
+                (false, false) => {
+                    for &point in &due {
+                        let clearance = self.look(places, search, (near, point as usize), pairing);
+                        rest.lay(point, clearance);
+                    }
+                }
+            }
+            rest.close(&due);
+        }
+        (search.rest, search.due) = (rest, due);
+    }
+
+    /// Bounds the motion since the last pairing.
+    fn travel(&self, rest: &mut Rest, units: usize, places: &Places) {
+        let obstacle = match &self.target {
+            Target::Rigid(obstacle) => Some(obstacle),
+            Target::Surface(_) => None,
+        };
+        let displacement = obstacle.map(|obstacle| obstacle.displacement(places.time));
+        if rest.is_for(units) {
+            rest.travel(places, displacement);
+        } else {
+            let (nodes, spread) = self.nodes();
+            *rest = Rest::begin(units, nodes, spread, places, displacement);
+        }
+        // no bound is known of what turns
+        if obstacle.is_some_and(|obstacle| obstacle.motion.turn.is_some()) {
+            rest.wake_all();
+        }
+    }
+
+    /// Nodes of both sides, each once, ascending, and the most that Σ |N_a| is on their faces.
+    fn nodes(&self) -> (Vec<u32>, f64) {
+        let own = self.points.iter().flat_map(|point| point.carriers());
+        let mut nodes: Vec<u32> = own.map(|(node, _)| node).collect();
+        let secondary = self.mortar.iter().flat_map(|mortar| &mortar.faces);
+        let target = match &self.target {
+            Target::Surface(faces) => &faces[..],
+            Target::Rigid(_) => &[],
+        };
+        let straight = |point: &Point| point.carriers().count() <= 4;
+        let mut most: f64 = if self.points.iter().all(straight) {
+            1.0
+        } else {
+            3.0
+        };
+        for face in secondary.chain(target) {
+            nodes.extend(face.corners());
+            most = most.max(spread(face.kind));
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        (nodes, most)
+    }
+
+    /// Distance from which on nothing is looked at, m: a foot may lie as far sideways as along the normal.
+    fn limit(&self, point: usize, reach: f64) -> f64 {
+        let beside = self.points[point].radius - self.offset(point);
+        SQRT_2 * (reach + beside.max(0.0))
+    }
+
+    /// Looks at a point; how far the motion may bring it before it is looked at again, m.
+    fn look(
+        &self,
+        places: &Places,
+        search: &mut Search,
+        (near, k): (&Near, usize),
+        pairing: &mut Pairing,
+    ) -> f64 {
+        let point = &self.points[k];
+        let at = near.first + k;
+        let (stencil, clearance) = match &self.target {
+            Target::Rigid(obstacle) => {
+                let x = point.place(places);
+                let gap = obstacle.at(places.time).distance(&x).gap + self.offset(k) - point.radius;
+                let clearance = if gap == f64::INFINITY {
+                    0.0
+                } else {
+                    gap - near.reach
+                };
+                if gap <= near.reach {
+                    let of = (point, None, pairing.span);
+                    (Stencil::new(self, places, search, of), clearance)
+                } else {
+                    (None, clearance)
+                }
+            }
+            Target::Surface(_) if point.crosses() => {
+                let of = (point, None, pairing.span);
+                (Stencil::new(self, places, search, of), 0.0)
+            }
+            Target::Surface(faces) => self.look_at((places, faces), search, (near, k)),
+        };
+        if stencil.is_some() {
+            pairing.place(places, (at, point.area), stencil);
+            pairing.rows.shift(at, self.offset(k));
+            pairing.keep(at, point.area, near.reach);
+        }
+        clearance
+    }
+
+    /// What a point faces on a surface, and how far both sides may come before it is looked at again, m.
+    fn look_at(
+        &self,
+        (places, faces): (&Places, &[Face]),
+        search: &mut Search,
+        (near, k): (&Near, usize),
+    ) -> (Option<Stencil>, f64) {
+        let (point, view) = (&self.points[k], self.view(k));
+        let (x, limit) = (point.place(places), self.limit(k, near.reach));
+        let inside = (near.inside)(k);
+        search.seat(k);
+        if let Some(view) = view {
+            search.see(view, places);
+        }
+        let within = match view.is_some() && !inside {
+            true => limit,
+            false => f64::INFINITY,
+        };
+        let found = search.closest((places, faces), view, &x, within);
+        if inside
+            || found
+                .as_ref()
+                .is_some_and(|(foot, _)| foot.distance <= limit)
+        {
+            let facing = found.filter(|(foot, face)| faces_point(foot, face));
+            let stencil =
+                facing.map(|(foot, face)| Stencil::on_face(places, point, &x, &foot, face));
+            return (stencil, 0.0);
+        }
+        match view {
+            Some(view) => (None, search.rest_of((places, faces), view, &x, limit)),
+            // both sides move
+            None => (
+                None,
+                found.map_or(f64::INFINITY, |(foot, _)| 0.5 * (foot.distance - limit)),
+            ),
+        }
+    }
+
+    /// The points of a contact of small sliding, whose gaps are linear in the displacement.
+    fn move_near(
+        &self,
+        (u, near): (&[f64], &Near),
+        due: &[u32],
+        mut lay: impl FnMut(u32, f64),
+        pairing: &mut Pairing,
+    ) {
+        let moves = self.moves();
+        for &point in due {
+            let (k, at) = (point as usize, near.first + point as usize);
+            let rows = &near.initial.rows;
+            let gap = rows.gap(k) + rows.product(k, u);
+            // a row sums up to nothing against a surface: what all nodes share does not move the gap
+            let norm: f64 = rows.row(k).1.iter().map(|c| c.abs()).sum();
+            let clearance = match moves {
+                true => 0.0,
+                false if gap == f64::INFINITY => f64::INFINITY,
+                false => (gap - near.reach) / norm.max(1.0),
+            };
+            lay(point, clearance);
+            if gap <= near.reach {
+                pairing.rows.place_from(at, rows, k);
+                pairing.rows.set_gap(at, gap);
+                let tangents = pairing.tangents.iter_mut().zip(&near.initial.tangents);
+                for (rows, initial) in tangents.take(pairing.dim - 1) {
+                    rows.place_from(at, initial, k);
+                }
+                pairing.near.push(at as u32);
+            }
+        }
+    }
+
+    /// The multipliers of a mortar contact; how far both sides may come before they are looked at again, m.
+    fn pair_mortar_near(
+        &self,
+        places: &Places,
+        search: &mut Search,
+        near: &Near,
+        pairing: &mut Pairing,
+    ) -> f64 {
+        let kept = pairing.near.len();
+        search.seat(0);
+        if let Some(sight) = &self.sight {
+            search.see_all(sight, places);
+        }
+        self.pair_points(places, search, (near.first, pairing));
+        for (k, point) in self.points.iter().enumerate() {
+            let at = near.first + k;
+            pairing.rows.shift(at, self.offset(k));
+            pairing.keep(at, point.area, near.reach);
+        }
+        match pairing.near.len() > kept || self.sight.is_some() {
+            true => 0.0,
+            false => self.mortar_clearance(places, search, near.reach),
+        }
+    }
+
+    fn mortar_clearance(&self, places: &Places, search: &mut Search, reach: f64) -> f64 {
+        let faces = self.mortar.iter().flat_map(|mortar| &mortar.faces);
+        let mut least = f64::INFINITY;
+        for face in faces {
+            let x = places.of_face(face);
+            let x = &x[..face.corners().len()];
+            let middle = [0, 1, 2].map(|i| x.iter().map(|x| x[i]).sum::<f64>() / x.len() as f64);
+            let square = |x: &[f64; 3]| (0..3).map(|i| (x[i] - middle[i]).powi(2)).sum::<f64>();
+            let bounds = carom_mesh::Bounds::of_face(face.kind, x);
+            let radius = [bounds.min, bounds.max]
+                .iter()
+                .map(square)
+                .fold(0.0, f64::max)
+                .sqrt();
+            let distance = match &self.target {
+                Target::Surface(faces) => {
+                    let measure = |item| foot_on(places, faces, item, &middle).0.distance;
+                    let item = search.nearest(&middle, 0.0, measure);
+                    item.map_or(f64::INFINITY, measure)
+                }
+                Target::Rigid(obstacle) => {
+                    let gap = obstacle.at(places.time).distance(&middle).gap;
+                    if gap == f64::INFINITY { 0.0 } else { gap }
+                }
+            };
+            least = least.min(distance - radius);
+        }
+        let offset = self
+            .offsets
+            .iter()
+            .fold(0.0_f64, |least, offset| least.min(*offset));
+        0.5 * (least - SQRT_2 * (reach - offset))
+    }
+}

@@ -1,0 +1,148 @@
+//! When a point that is far from what it faces has to be looked at again.
+//!
+//! What was found at a look holds until the motion since then can have brought something within reach. That motion is
+//! bounded for all points at once: by the largest motion of a node in each pairing, added up. A translation that all
+//! nodes share (the *drift*) is no such motion. None of this changes results: a point that rests would have been found far.
+
+use crate::Places;
+
+/// Points whose instants are looked at together.
+const BLOCK: usize = 64;
+
+/// Part of a distance that counts as rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// When the points of a contact are to be looked at.
+#[derive(Debug, Default)]
+pub(crate) struct Rest {
+    /// Nodes of both sides, each once, ascending.
+    nodes: Vec<u32>,
+    /// Their places at the last pairing, m.
+    places: Vec<[f64; 3]>,
+    /// Motion that all nodes are thought to share from one pairing to the next, m.
+    drift: [f64; 3],
+    /// Displacement of the translating target at the last pairing, m.
+    target: [f64; 3],
+    /// Sum of the drifts, m.
+    shift: [f64; 3],
+    /// Sum of the bounds, m.
+    travelled: f64,
+    /// Most that Σ |N_a| is on a face.
+    spread: f64,
+    /// `travelled` from which on a point is to be looked at.
+    wakes: Vec<f64>,
+    /// The least of each block.
+    least: Vec<f64>,
+}
+
+impl Rest {
+    /// Whether this is for so many points.
+    pub(crate) fn is_for(&self, points: usize) -> bool {
+        self.wakes.len() == points && !self.nodes.is_empty()
+    }
+
+    /// Begins with the nodes of both sides, each once. `spread`: the most that Σ |N_a| is on their faces; `target`: displacement of an
+    /// obstacle, m.
+    pub(crate) fn begin(
+        points: usize,
+        nodes: Vec<u32>,
+        spread: f64,
+        places: &Places,
+        target: Option<[f64; 3]>,
+    ) -> Rest {
+        Rest {
+            places: nodes.iter().map(|&node| places.of(node)).collect(),
+            nodes,
+            spread,
+            target: target.unwrap_or_default(),
+            wakes: vec![f64::NEG_INFINITY; points],
+            least: vec![f64::NEG_INFINITY; points.div_ceil(BLOCK)],
+            ..Rest::default()
+        }
+    }
+
+    /// Takes the places of a pairing: bounds the motion since the last one. `target`: displacement of an obstacle now, m.
+    pub(crate) fn travel(&mut self, places: &Places, target: Option<[f64; 3]>) {
+        if let Some(now) = target {
+            self.drift = [0, 1, 2].map(|i| now[i] - self.target[i]);
+            self.target = now;
+        }
+        let (drift, mut largest, mut sum) = (self.drift, 0.0_f64, [0.0; 3]);
+        for (&node, before) in self.nodes.iter().zip(&mut self.places) {
+            let x = places.of(node);
+            let mut square = 0.0;
+            for i in 0..3 {
+                let way = x[i] - before[i];
+                sum[i] += way;
+                square += (way - drift[i]).powi(2);
+            }
+            largest = largest.max(square);
+            *before = x;
+        }
+        self.travelled += self.spread * largest.sqrt();
+        for i in 0..3 {
+            self.shift[i] += drift[i];
+        }
+        if target.is_none() {
+            self.drift = sum.map(|sum| sum / self.nodes.len() as f64);
+        }
+        if !self.travelled.is_finite() {
+            self.travelled = 0.0;
+            self.wake_all();
+        }
+    }
+
+    /// Lets all points be looked at.
+    pub(crate) fn wake_all(&mut self) {
+        self.wakes.fill(f64::NEG_INFINITY);
+        self.least.fill(f64::NEG_INFINITY);
+    }
+
+    /// Bound of the motion so far, and the drift so far, m.
+    pub(crate) fn travelled(&self) -> (f64, [f64; 3]) {
+        (self.travelled, self.shift)
+    }
+
+    /// The points to be looked at, ascending, into `due`, which is cleared first.
+    pub(crate) fn due(&self, due: &mut Vec<u32>) {
+        due.clear();
+        for (block, _) in self
+            .least
+            .iter()
+            .enumerate()
+            .filter(|(_, least)| **least <= self.travelled)
+        {
+            let first = block * BLOCK;
+            let wakes = &self.wakes[first..self.wakes.len().min(first + BLOCK)];
+            let awake = wakes.iter().zip(first as u32..);
+            due.extend(
+                awake
+                    .filter(|(wake, _)| **wake <= self.travelled)
+                    .map(|(_, point)| point),
+            );
+        }
+    }
+
+    /// Lets a point rest until the bound of the motion of both sides has grown by `clearance` (m).
+    pub(crate) fn lay(&mut self, point: u32, clearance: f64) {
+        let slack = ROUNDING * self.travelled;
+        self.wakes[point as usize] = self.travelled + (1.0 - ROUNDING) * clearance.max(0.0) - slack;
+    }
+
+    /// Takes note of the instants of the points that were looked at.
+    pub(crate) fn close(&mut self, due: &[u32]) {
+        let mut last = usize::MAX;
+        for &point in due {
+            let block = point as usize / BLOCK;
+            if block == last {
+                continue;
+            }
+            last = block;
+            let first = block * BLOCK;
+            let wakes = &self.wakes[first..self.wakes.len().min(first + BLOCK)];
+            self.least[block] = wakes
+                .iter()
+                .fold(f64::INFINITY, |least, wake| least.min(*wake));
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! Points within reach have the bits of a pairing of all points, whatever the search remembers; the others face nothing.
+
+use carom_algebra::unknowns::Unknowns;
+use carom_contact::law::Displacement;
+use carom_contact::{
+    Basis, Contact, Frames, Integration, Law, Mortar, Near, Pairing, Places, Point, Search, Shape,
+    Sight, Sliding, Sphere, Target,
+};
+use carom_elements::Kind;
+use carom_mesh::{ElementId, Face, face_nodes};
+use carom_testing::Random;
+
+const STEPS: usize = 120;
+/// Reach, in edges.
+const REACH: f64 = 0.7;
+
+/// Sheets of squares of one edge length, each `n` by `n`: places and faces, which look up or down.
+#[derive(Default)]
+struct Scene {
+    x: Vec<[f64; 3]>,
+    faces: Vec<Face>,
+    /// First node of each sheet.
+    sheets: Vec<usize>,
+}
+
+impl Scene {
+    fn add(&mut self, n: u32, corner: [f64; 3], up: bool) {
+        let first = self.x.len() as u32;
+        self.sheets.push(first as usize);
+        for i in 0..(n + 1) * (n + 1) {
+            let at = [f64::from(i % (n + 1)), f64::from(i / (n + 1)), 0.0];
+            self.x.push([0, 1, 2].map(|k| at[k] + corner[k]));
+        }
+        for i in 0..n * n {
+            let a = first + i % n + (n + 1) * (i / n);
+            let nodes = match up {
+                true => [a, a + 1, a + n + 2, a + n + 1],
+                false => [a, a + n + 1, a + n + 2, a + 1],
+            };
+            self.faces.push(Face {
+                kind: Kind::Quad4,
+                nodes: face_nodes(&nodes),
+                parent: ElementId { block: 0, index: i },
+                axis: [0.0; 3],
+                radius: None,
+            });
+        }
+    }
+
+    /// The faces of a sheet.
+    fn of(&self, sheet: usize) -> Vec<Face> {
+        let end = self.sheets.get(sheet + 1).copied().unwrap_or(self.x.len());
+        let own = self.sheets[sheet] as u32..end as u32;
+        let faces = self
+            .faces
+            .iter()
+            .filter(|face| own.contains(&face.nodes[0]));
+        faces.copied().collect()
+    }
+}
+
+fn contact(target: Target, points: Vec<Point>) -> Contact {
+    Contact {
+        name: "near".into(),
+        law: Law::Displacement(Displacement::default()),
+        sliding: Sliding::Finite,
+        integration: Integration::Node,
+        points,
+        mortar: None,
+        target,
+        sight: None,
+        offsets: Vec::new(),
+    }
+}
+
+/// Displacements of a step: sheets from the second on come down and go up again, sway and tilt, and all nodes tremble.
+fn displacement(scene: &Scene, first: usize, step: usize, random: &mut Random, u: &mut [f64]) {
+    let phase = 6.3 * step as f64 / STEPS as f64;
+    for (node, x) in scene.x.iter().enumerate() {
+        let above = node >= first;
+        let tilt = 0.3 * phase.sin();
+        for i in 0..3 {
+            let smooth = match (above, i) {
+                (false, _) => 0.0,
+                (true, 0) => 0.9 * phase.sin(),
+                (true, 1) => 0.4 * (2.0 * phase).sin(),
+                (true, _) => -1.6 * (1.0 - phase.cos()) + tilt * (x[0] - 2.5),
+            };
+            let tremble = 2e-3 * random.between(-1.0, 1.0);
+            // all drift along, faster than they move against each other
+            u[3 * node + i] = smooth + tremble + 0.05 * step as f64;
+        }
+    }
+}
+
+struct Seen {
+    near: usize,
+    far: usize,
+    /// Projections of both ways.
+    projections: [usize; 2],
+}
+
+/// Pairs near points and all points side by side.
+fn compare(scene: &Scene, contact: &Contact, first: usize, forgets: bool) -> Seen {
+    let unknowns = Unknowns::translations(3, scene.x.len());
+    let mut u = vec![0.0; 3 * scene.x.len()];
+    let (mut search, mut whole) = (Search::default(), Search::default());
+    let (mut near, mut all, mut initial) =
+        (Pairing::default(), Pairing::default(), Pairing::default());
+    let contacts = [contact.clone()];
+    near.open_all(&contacts, 3);
+    let mut random = Random(11);
+    let mut gaps = vec![1.0; contact.points.len()];
+    let mut seen = Seen {
+        near: 0,
+        far: 0,
+        projections: [0; 2],
+    };
+    for step in 0..STEPS {
+        displacement(scene, first, step, &mut random, &mut u);
+        let places = Places {
+            unknowns: &unknowns,
+            time: 1e-3 * step as f64,
+            x: &scene.x,
+            u: &u,
+            frames: Frames::default(),
+        };
+        if forgets && step % 10 == 0 {
+            search = Search::default();
+        }
+        all.clear();
+        let small = contact.sliding == Sliding::Small;
+        if small && initial.is_empty() {
+            initial.clear();
+            let still = vec![0.0; u.len()];
+            let reference = Places {
+                u: &still,
+                ..places
+            };
+            contact.pair_fully(&reference, &mut whole, &mut initial);
+        }
+        match small {
+            true => all.append_moved(&initial, &u),
+            false => contact.pair_fully(&places, &mut whole, &mut all),
+        }
+        near.reopen();
+        let given = Near {
+            first: 0,
+            reach: REACH,
+            inside: &|point| gaps[point] < 0.0,
+            initial: &initial,
+        };
+        contact.pair_near(&places, &mut search, &given, &mut near);
+        seen.projections[0] += search.projections();
+        seen.projections[1] += whole.projections();
+        assert!(near.near().is_sorted());
+        for point in 0..contact.points.len() {
+            let [found, wanted] = [&near, &all].map(|pairing| pairing.rows.gap(point));
+            let at = format!("step {step}, point {point}: {found} for {wanted}");
+            assert_eq!(
+                found <= REACH,
+                near.near().contains(&(point as u32)),
+                "{at}"
+            );
+            gaps[point] = found;
+            if wanted > REACH {
+                seen.far += 1;
+                assert_eq!(found, f64::INFINITY, "{at}");
+                assert_eq!(near.rows.row(point), (&[][..], &[][..]), "{at}");
+                continue;
+            }
+            seen.near += 1;
+            assert_eq!(found, wanted, "{at}");
+            assert_eq!(near.areas[point], all.areas[point], "{at}");
+            let pools = [
+                (&near.rows, &all.rows),
+                (&near.tangents[0], &all.tangents[0]),
+            ];
+            for (near, all) in pools
+                .into_iter()
+                .chain([(&near.tangents[1], &all.tangents[1])])
+            {
+                assert_eq!(near.row(point), all.row(point), "{at}");
+                assert_eq!(near.normal(point), all.normal(point), "{at}");
+                assert_eq!(near.resultant(point), all.resultant(point), "{at}");
+                assert_eq!(near.rate(point), all.rate(point), "{at}");
+            }
+        }
+    }
+    seen
+}
+
+fn check(scene: &Scene, contact: &Contact, first: usize) -> Seen {
+    let seen = compare(scene, contact, first, false);
+    assert!(
+        seen.near > 300 && seen.far > 300,
+        "{} {}",
+        seen.near,
+        seen.far
+    );
+    compare(scene, contact, first, true);
+    seen
+}
+
+fn two_sheets() -> Scene {
+    let mut scene = Scene::default();
+    scene.add(6, [0.0; 3], true);
+    scene.add(5, [0.4, 0.3, 3.0], false);
+    scene
+}
+
+fn nodes_of(scene: &Scene, sheet: usize) -> Vec<Point> {
+    let end = scene
+        .sheets
+        .get(sheet + 1)
+        .copied()
+        .unwrap_or(scene.x.len());
+    let nodes = scene.sheets[sheet] as u32..end as u32;
+    nodes.map(|node| Point::at_node(node, 1.0, 1.0)).collect()
+}
+
+#[test]
+fn nodes_on_faces() {
+    let scene = two_sheets();
+    let contact = contact(Target::Surface(scene.of(0)), nodes_of(&scene, 1));
+    let seen = check(&scene, &contact, scene.sheets[1]);
+    assert!(
+        seen.projections[0] < seen.projections[1],
+        "{:?}",
+        seen.projections
+    );
+}
+
+#[test]
+fn nodes_on_faces_of_small_sliding() {
+    let scene = two_sheets();
+    let contact = Contact {
+        sliding: Sliding::Small,
+        ..contact(Target::Surface(scene.of(0)), nodes_of(&scene, 1))
+    };
+    check(&scene, &contact, scene.sheets[1]);
+}
+
+#[test]
+fn multipliers_on_faces() {
+    let scene = two_sheets();
+    let (mortar, points) = Mortar::new(scene.of(1), &scene.x, |_| 1.0);
+    let contact = Contact {
+        integration: Integration::Mortar { basis: Basis::Dual },
+        mortar: Some(mortar),
+        ..contact(Target::Surface(scene.of(0)), points)
+    };
+    check(&scene, &contact, scene.sheets[1]);
+}
+
+#[test]
+fn nodes_on_a_sphere() {
+    let scene = two_sheets();
+    let sphere = Sphere {
+        centre: [2.5, 2.5, -3.0],
+        radius: 3.0,
+        side: carom_contact::Side::Outside,
+    };
+    let mut target = carom_contact::Obstacle::from(sphere);
+    target.motion = carom_contact::Motion {
+        translation: Some(carom_contact::Translation::Velocity([50.0; 3])),
+        turn: None,
+    };
+    assert!(matches!(target.shape, Shape::Sphere(_)));
+    let contact = contact(Target::Rigid(target), nodes_of(&scene, 1));
+    check(&scene, &contact, scene.sheets[1]);
+}
+
+/// Two plates whose thickness is less than the reach, each with both its sides.
+#[test]
+fn a_surface_on_itself() {
+    let mut scene = Scene::default();
+    scene.add(6, [0.0, 0.0, -0.5], false);
+    scene.add(6, [0.0; 3], true);
+    scene.add(5, [0.4, 0.3, 3.0], false);
+    scene.add(5, [0.4, 0.3, 3.5], true);
+    let points = (0..4)
+        .flat_map(|sheet| nodes_of(&scene, sheet))
+        .collect::<Vec<_>>();
+    let sight = Sight::new((&points, &scene.faces), &scene.faces, &scene.x, None);
+    let contact = Contact {
+        sight: Some(sight),
+        ..contact(Target::Surface(scene.faces.clone()), points)
+    };
+    let seen = check(&scene, &contact, scene.sheets[2]);
+    assert!(
+        seen.projections[0] < seen.projections[1],
+        "{:?}",
+        seen.projections
+    );
+}
+
+/// The bound of the motion is that against the drift.
+#[test]
+fn sheets_that_fly_together_are_looked_at_once() {
+    let scene = two_sheets();
+    let contact = contact(Target::Surface(scene.of(0)), nodes_of(&scene, 1));
+    let unknowns = Unknowns::translations(3, scene.x.len());
+    let (mut search, mut near) = (Search::default(), Pairing::default());
+    near.open_all(std::slice::from_ref(&contact), 3);
+    for step in 0..20 {
+        let u = vec![f64::from(step); 3 * scene.x.len()];
+        let places = Places {
+            unknowns: &unknowns,
+            time: 0.0,
+            x: &scene.x,
+            u: &u,
+            frames: Frames::default(),
+        };
+        near.reopen();
+        let given = Near {
+            first: 0,
+            reach: REACH,
+            inside: &|_| false,
+            initial: &Pairing::default(),
+        };
+        contact.pair_near(&places, &mut search, &given, &mut near);
+        // the drift is that of the step before: in the second step nothing is known of it, in the third all are looked at again
+        assert_eq!(search.projections() > 0, step < 2, "{step}");
+    }
+}

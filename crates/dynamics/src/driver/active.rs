@@ -1,0 +1,96 @@
+//! The points that an attempt looks at: in explicit steps those that are near what they face, or were so in the step before.
+
+use std::ops::Range;
+
+use crate::system::System;
+
+/// The points of an attempt.
+#[derive(Default)]
+pub(super) struct Active {
+    /// Whether they are all.
+    all: bool,
+    /// Otherwise these, ascending.
+    points: Vec<u32>,
+    /// Near points of the step before.
+    before: Vec<u32>,
+    /// Gap up to which points of each contact are near, m.
+    pub(super) reaches: Vec<f64>,
+    /// Whether the last attempt was of this kind, and whether the state is its end.
+    offered: bool,
+    goes_on: bool,
+    /// Whether the attempt under way begins such steps.
+    begins: bool,
+}
+
+impl Active {
+    pub(super) fn of(system: &System) -> Active {
+        let contacts = system.contacts.iter().zip(&system.secondary_faces);
+        Active {
+            all: true,
+            points: Vec::new(),
+            before: Vec::new(),
+            reaches: contacts
+                .map(|(contact, faces)| contact.mean_diagonal(faces, &system.x))
+                .collect(),
+            offered: false,
+            goes_on: false,
+            begins: true,
+        }
+    }
+
+    /// Whether nothing is known of the step before.
+    pub(super) fn begins(&self) -> bool {
+        self.begins
+    }
+
+    /// Those of a range, ascending.
+    pub(super) fn within(&self, range: Range<usize>) -> impl Iterator<Item = usize> + '_ {
+        let place = |end: usize| self.points.partition_point(|&point| (point as usize) < end);
+        let (all, list) = match self.all {
+            true => (range, &[][..]),
+            false => (0..0, &self.points[place(range.start)..place(range.end)]),
+        };
+        all.chain(list.iter().map(|&point| point as usize))
+    }
+
+    /// Lets an attempt look at all points.
+    pub(super) fn leave(&mut self) {
+        (self.all, self.offered, self.goes_on) = (true, false, false);
+    }
+
+    /// Tells that the attempt has become the state.
+    pub(super) fn accept(&mut self) {
+        self.goes_on = std::mem::take(&mut self.offered);
+    }
+
+    /// Begins an attempt that looks at near points; whether the state is the end of such a step, whose points these still are.
+    pub(super) fn begin(&mut self) -> bool {
+        self.offered = true;
+        self.begins = !std::mem::take(&mut self.goes_on);
+        self.all |= self.begins;
+        !self.begins
+    }
+
+    /// Takes note of the near points of the step before.
+    pub(super) fn keep(&mut self, near: &[u32]) {
+        self.before.clear();
+        self.before.extend_from_slice(near);
+    }
+
+    /// Makes these the points near now and in the step before.
+    pub(super) fn take(&mut self, near: &[u32]) {
+        self.all = false;
+        self.points.clear();
+        let (mut old, mut new) = (self.before.iter().peekable(), near.iter().peekable());
+        loop {
+            let least = match (old.peek(), new.peek()) {
+                (Some(a), Some(b)) => **a.min(b),
+                (Some(one), None) | (None, Some(one)) => **one,
+                (None, None) => return,
+            };
+            self.points.push(least);
+            old.next_if(|point| **point == least);
+            new.next_if(|point| **point == least);
+        }
+    }
+}

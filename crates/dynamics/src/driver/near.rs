@@ -1,0 +1,116 @@
+//! The contacts of an explicit step: points that are far from what they face cost nothing.
+//!
+//! A point is near if its gap is within the mean diagonal of the faces of its contact, more than two sides come closer by in
+//! two steps. Others face nothing in such a step. Vectors over all points change at points alone that are near, or were so in the step
+//! before.
+
+use std::sync::Arc;
+
+use carom_contact::{Near, Pairing, Places, Sliding};
+
+use super::Driver;
+use super::tangents::first_thought;
+
+impl Driver {
+    /// Takes the contact of the state before into that of the end; whether any point carries a force there.
+    pub(super) fn follow_interface(&mut self) -> bool {
+        let points = 0..self.system.points();
+        let (before, next) = (&self.state.interface, &mut self.next.interface);
+        if !self.active.begin() {
+            next.follow(before);
+            self.guess_slips();
+        } else {
+            next.follow_at(before, self.active.within(points.clone()));
+            if self.system.tangents() > 0 {
+                for point in self.active.within(points.clone()) {
+                    self.slips[point] = first_thought(&next.friction[point]);
+                }
+            }
+        }
+        self.take_weak();
+        let before = &self.state.interface;
+        let carries = |point: usize| before.carries(point);
+        self.active.within(points).any(carries)
+    }
+
+    /// Pairs the near points, in the configurations that are known.
+    pub(super) fn pair_near(&mut self) {
+        let system = Arc::clone(&self.system);
+        let width = 1 + system.tangents();
+        let mut pairing = std::mem::take(&mut self.pairing);
+        let begins = self.active.begins();
+        if begins {
+            pairing.open_all(&system.contacts, system.dim);
+            self.stacked.open_all(width * system.points());
+        } else {
+            self.active.keep(pairing.near());
+            let near = pairing.near().iter().flat_map(|&point| rows(point, width));
+            self.stacked.reopen(near);
+            pairing.reopen();
+        }
+        for number in 0..system.contacts.len() {
+            pairing.span = self.span(number);
+            self.pair_near_of(number, &mut pairing);
+        }
+        if !begins {
+            self.active.take(pairing.near());
+        }
+        if width > 1 {
+            for &point in pairing.near() {
+                let first = point as usize * width;
+                self.stacked
+                    .place_from(first, &pairing.rows, point as usize);
+                for (k, tangent) in pairing.tangents[..width - 1].iter().enumerate() {
+                    self.stacked
+                        .place_from(first + 1 + k, tangent, point as usize);
+                }
+            }
+        }
+        self.pairing = pairing;
+    }
+
+    fn pair_near_of(&mut self, number: usize, pairing: &mut Pairing) {
+        let system = Arc::clone(&self.system);
+        let (contact, first) = (&system.contacts[number], system.first_point[number]);
+        let time = self.state.time + self.paired_after(number);
+        let (row, map) = (
+            self.paired_at(number).row(self.maps.first()),
+            self.maps.first(),
+        );
+        if row != map.displacement {
+            let xc = [&self.vectors.x[..], &self.vectors.push];
+            let place = &mut self.vectors.place;
+            self.maps.whole(|_| row, &self.state.motion, xc, place);
+        }
+        let u = match row == map.displacement {
+            true => &self.next.motion.u,
+            false => &self.vectors.place,
+        };
+        let places = system.places(time, u, &self.state.motion.frames);
+        let (search, initial) = (&mut self.search[number], &mut self.initial[number]);
+        if contact.sliding == Sliding::Small && (initial.is_empty() || contact.moves()) {
+            initial.clear();
+            initial.span = pairing.span;
+            self.vectors.work.fill(0.0);
+            let reference = Places {
+                u: &self.vectors.work,
+                ..places
+            };
+            contact.pair_fully(&reference, search, initial);
+        }
+        let gaps = &self.state.interface.gap;
+        let near = Near {
+            first,
+            reach: self.active.reaches[number],
+            inside: &|point| gaps[first + point] < 0.0,
+            initial,
+        };
+        contact.pair_near(&places, search, &near, pairing);
+    }
+}
+
+/// Numbers of the rows of a point among those of all with their tangents.
+fn rows(point: u32, width: usize) -> impl Iterator<Item = u32> {
+    let width = width as u32;
+    point * width..(point + 1) * width
+}
