@@ -1,5 +1,8 @@
 //! The condensed compliance (Delassus operator) D = N A⁻¹ Nᵀ of the contact points within reach.
 //!
+//! Points that share neither a factor nor an unknown of a diagonal matrix do not act on each other: D is kept by groups of points that
+//! do.
+//!
 //! A column is computed when its point first comes within reach and kept as long as its row of N keeps its bits. An
 //! entry is a function of two columns only, taken in the order of the points, so that it does not depend on when a
 //! point was met first.
@@ -7,6 +10,7 @@
 use carom_algebra::solver::SparseRow;
 use carom_contact::Rows;
 
+use crate::groups::Groups;
 use crate::operator::{Column, Operators};
 
 /// The response of one contact point, in the groups of parts that it touches.
@@ -18,6 +22,59 @@ struct Kept {
     lacks: bool,
 }
 
+/// D over the rows of each group of candidates.
+#[derive(Default)]
+struct Blocks {
+    /// Rows, group after group.
+    rows: Vec<u32>,
+    /// Where the rows of groups begin, and one end more; where their entries do.
+    starts: Vec<[usize; 2]>,
+    /// Row, its group, and its place there, by row.
+    places: Vec<(u32, u32, u32)>,
+    /// D, row-major, group after group; x per N.
+    entries: Vec<f64>,
+}
+
+impl Blocks {
+    /// Begins a group of these rows.
+    fn begin(&mut self, rows: impl Iterator<Item = u32>) {
+        let first = self.rows.len();
+        self.rows.extend(rows);
+        let group = self.starts.len() as u32;
+        let places = self.rows[first..].iter().enumerate();
+        self.places
+            .extend(places.map(|(k, &row)| (row, group, k as u32)));
+        self.starts.push([first, self.entries.len()]);
+    }
+
+    /// The rows of a group.
+    fn rows(&self, group: usize) -> &[u32] {
+        let next = self.starts.get(group + 1);
+        let end = next.map_or(self.rows.len(), |next| next[0]);
+        &self.rows[self.starts[group][0]..end]
+    }
+
+    /// D over the rows of a group.
+    fn entries(&self, group: usize) -> &[f64] {
+        let next = self.starts.get(group + 1);
+        let end = next.map_or(self.entries.len(), |next| next[1]);
+        &self.entries[self.starts[group][1]..end]
+    }
+
+    /// Group and place of a row.
+    fn place(&self, row: u32) -> Option<(u32, u32)> {
+        let found = self.places.binary_search_by_key(&row, |place| place.0);
+        found.ok().map(|k| (self.places[k].1, self.places[k].2))
+    }
+
+    fn clear(&mut self) {
+        self.rows.clear();
+        self.starts.clear();
+        self.places.clear();
+        self.entries.clear();
+    }
+}
+
 /// Columns of the points met so far, and D over the current candidates.
 #[derive(Default)]
 pub(crate) struct Compliance {
@@ -27,11 +84,13 @@ pub(crate) struct Compliance {
     rigid: Vec<bool>,
     /// Part by which the own response of a point of a rigid body grows.
     softening: f64,
-    /// Candidates of the current matrix, ascending.
-    pub(crate) candidates: Vec<u32>,
-    /// D over the candidates, row-major; x per N.
-    pub(crate) matrix: Vec<f64>,
-    /// Counts the changes of `matrix`.
+    /// Candidates, ascending.
+    candidates: Vec<u32>,
+    /// Whether they are one group, whatever they share.
+    together: bool,
+    groups: Groups,
+    blocks: Blocks,
+    /// Counts the changes of D.
     pub(crate) version: u64,
     /// Columns computed so far.
     pub(crate) columns_computed: usize,
@@ -57,51 +116,85 @@ impl Compliance {
             kept.lacks |= kept.columns.len() < before;
         }
         self.candidates.clear();
-        self.matrix.clear();
+        self.blocks.clear();
         self.version += 1;
     }
 
-    /// Brings the columns and D up to date for these candidates (ascending). `fixed`: held unknowns, which no force
-    /// moves.
+    /// Brings the columns and D up to date for these candidates (ascending), with `width` rows each. `together`: whether they are one group, whatever they share;
+    /// `fixed`: held unknowns, which no force moves.
     pub(crate) fn update(
         &mut self,
-        candidates: &[u32],
+        (candidates, width, together): (&[u32], u32, bool),
         rows: &Rows,
         fixed: &[bool],
         operators: &mut Operators,
     ) {
-        let stale: Vec<u32> = candidates
-            .iter()
-            .copied()
-            .filter(|&point| !self.is_current(point, rows))
-            .collect();
-        if stale.is_empty() && self.candidates == candidates {
+        let of_point = |&point: &u32| point * width..(point + 1) * width;
+        let stale = candidates.iter().flat_map(of_point);
+        let stale: Vec<u32> = stale.filter(|&row| !self.is_current(row, rows)).collect();
+        let same = self.candidates == candidates && self.together == together;
+        if stale.is_empty() && same && self.blocks.rows.len() == candidates.len() * width as usize {
             return;
         }
         self.compute(&stale, rows, fixed, operators);
-        let n = candidates.len();
-        let before = std::mem::take(&mut self.candidates);
-        let matrix = std::mem::take(&mut self.matrix);
+        self.candidates.clear();
+        self.candidates.extend_from_slice(candidates);
+        self.together = together;
+        match together {
+            true => self.groups.join_all(candidates.len()),
+            false => {
+                let keys = |point: u32| {
+                    let numbers = point * width..(point + 1) * width;
+                    let dofs = numbers.flat_map(|number| rows.row(number as usize).0);
+                    let dofs = dofs.map(|&dof| dof as usize).filter(|&dof| !fixed[dof]);
+                    dofs.map(|dof| operators.key(dof))
+                };
+                self.groups.split(candidates, keys, operators.keys());
+            }
+        }
+        let before = std::mem::take(&mut self.blocks);
+        let mut blocks = Blocks::default();
+        for range in self.groups.ranges() {
+            let points = self.groups.order()[range].iter();
+            blocks.begin(points.flat_map(|&place| of_point(&candidates[place as usize])));
+            self.fill(&mut blocks, (&before, &stale), operators);
+        }
+        blocks.places.sort_unstable_by_key(|place| place.0);
+        self.blocks = blocks;
+        self.version += 1;
+    }
+
+    /// D over the last group. `before`: the blocks before; `stale`: rows whose entries have changed.
+    fn fill(&self, blocks: &mut Blocks, (before, stale): (&Blocks, &[u32]), operators: &Operators) {
+        let own = blocks.rows(blocks.starts.len() - 1).to_vec();
+        let n = own.len();
+        let is_stale = |row: &u32| stale.binary_search(row).is_ok();
         // places of the entries that still stand in the old matrix
-        let place = |point: u32| match stale.binary_search(&point) {
-            Ok(_) => None,
-            Err(_) => before.binary_search(&point).ok(),
+        let place = |row: &u32| match is_stale(row) {
+            true => None,
+            false => before.place(*row),
         };
-        let places: Vec<Option<usize>> = candidates.iter().map(|&point| place(point)).collect();
-        let fresh = self.fresh(&stale, operators);
-        let mut next = vec![0.0; n * n];
+        let places: Vec<Option<(u32, u32)>> = own.iter().map(place).collect();
+        let renewed: Vec<u32> = own.iter().copied().filter(is_stale).collect();
+        let fresh = self.fresh(&renewed, operators);
+        let first = blocks.entries.len();
+        blocks.entries.resize(first + n * n, 0.0);
+        let next = &mut blocks.entries[first..];
         for row in 0..n {
             for column in 0..=row {
-                let new = |point: u32| stale.binary_search(&point);
+                let new = |row: u32| renewed.binary_search(&row);
                 let entry = match (places[row], places[column]) {
-                    (Some(i), Some(j)) => matrix[i * before.len() + j],
-                    _ => match (new(candidates[row]), new(candidates[column])) {
-                        (Ok(i), Ok(j)) => fresh[i * stale.len() + j],
-                        _ => self.entry(candidates[column], candidates[row], operators),
+                    (Some((group, i)), Some((other, j))) if group == other => {
+                        let width = before.rows(group as usize).len();
+                        before.entries(group as usize)[i as usize * width + j as usize]
+                    }
+                    _ => match (new(own[row]), new(own[column])) {
+                        (Ok(i), Ok(j)) => fresh[i * renewed.len() + j],
+                        _ => self.entry(own[column], own[row], operators),
                     },
                 };
                 let softened = row == column && places[row].is_none();
-                let entry = match softened && self.is_rigid(candidates[row]) {
+                let entry = match softened && self.is_rigid(own[row]) {
                     true => entry * (1.0 + self.softening),
                     false => entry,
                 };
@@ -109,9 +202,26 @@ impl Compliance {
                 next[column * n + row] = entry;
             }
         }
-        self.matrix = next;
-        self.candidates = candidates.to_vec();
-        self.version += 1;
+    }
+
+    /// Places of the candidates, group after group.
+    pub(crate) fn groups(&self) -> &Groups {
+        &self.groups
+    }
+
+    /// D over the rows of a group, row-major.
+    pub(crate) fn block(&self, group: usize) -> &[f64] {
+        self.blocks.entries(group)
+    }
+
+    /// The rows, where they are one group.
+    pub(crate) fn rows(&self) -> &[u32] {
+        &self.blocks.rows
+    }
+
+    /// D, where all rows are one group.
+    pub(crate) fn matrix(&self) -> &[f64] {
+        &self.blocks.entries
     }
 
     /// Whether the point is one of a rigid body.
@@ -198,7 +308,11 @@ impl Compliance {
     /// once.
     fn fresh(&self, points: &[u32], operators: &Operators) -> Vec<f64> {
         let mut matrix = vec![0.0; points.len().pow(2)];
-        for number in 0..operators.groups.len() {
+        let columns = points.iter().flat_map(|&point| self.columns(point));
+        let mut numbers: Vec<usize> = columns.map(|(group, _)| *group).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        for number in numbers {
             let of_group = |&point: &u32| self.columns(point).iter().find(|(g, _)| *g == number);
             let (places, columns): (Vec<usize>, Vec<&Column>) = points
                 .iter()
@@ -242,7 +356,7 @@ impl Compliance {
             Column::Diagonal(row) => 12 * row.dofs.len(),
             Column::Factored(response) => response.bytes(),
         });
-        bytes.sum::<usize>() + 8 * self.matrix.len()
+        bytes.sum::<usize>() + 8 * self.blocks.entries.len()
     }
 }
 

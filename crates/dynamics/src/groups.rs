@@ -1,17 +1,18 @@
-//! Contact points that act on each other only through the unknowns that they share, as those of a diagonal matrix do: which of them
+//! Contact points that act on each other only through what they share, an unknown of a diagonal matrix or a factor: which of them
 //! belong together.
 
 use std::ops::Range;
 
 use carom_contact::Rows;
+use carom_nonsmooth::{Compliance, Lumped};
 
 /// Nobody.
 const NONE: u32 = u32::MAX;
 
-/// Groups of candidates that share no unknown.
+/// Groups of candidates that share nothing.
 #[derive(Default)]
 pub(crate) struct Groups {
-    /// The first candidate that has an unknown, by unknown; nobody outside of [`Groups::split`].
+    /// The first candidate that has a key, by key; nobody outside of [`Groups::split`].
     owner: Vec<u32>,
     /// A candidate of the same group that comes before, or itself, by candidate.
     before: Vec<u32>,
@@ -22,28 +23,27 @@ pub(crate) struct Groups {
 }
 
 impl Groups {
-    /// Splits candidates. `unknowns`: of the rows of one; `fixed`: held unknowns, through which nothing acts.
-    pub(crate) fn split<'a, I: Iterator<Item = &'a u32>>(
+    /// Splits candidates into those that share a key. `keys`: of one, below `count`.
+    pub(crate) fn split<I: Iterator<Item = usize>>(
         &mut self,
         candidates: &[u32],
-        unknowns: impl Fn(u32) -> I,
-        fixed: &[bool],
+        keys: impl Fn(u32) -> I,
+        count: usize,
     ) {
-        self.owner.resize(fixed.len(), NONE);
+        self.owner.resize(count, NONE);
         self.before.clear();
         self.before.extend(0..candidates.len() as u32);
         for (k, &candidate) in candidates.iter().enumerate() {
-            for &dof in unknowns(candidate) {
-                match self.owner[dof as usize] {
-                    _ if fixed[dof as usize] => {}
-                    NONE => self.owner[dof as usize] = k as u32,
+            for key in keys(candidate) {
+                match self.owner[key] {
+                    NONE => self.owner[key] = k as u32,
                     other => self.join(k as u32, other),
                 }
             }
         }
         for &candidate in candidates {
-            for &dof in unknowns(candidate) {
-                self.owner[dof as usize] = NONE;
+            for key in keys(candidate) {
+                self.owner[key] = NONE;
             }
         }
         for k in 0..candidates.len() as u32 {
@@ -63,6 +63,17 @@ impl Groups {
         self.starts.push(candidates.len() as u32);
     }
 
+    /// Takes all candidates as one group.
+    pub(crate) fn join_all(&mut self, candidates: usize) {
+        self.order.clear();
+        self.order.extend(0..candidates as u32);
+        self.starts.clear();
+        if candidates > 0 {
+            self.starts.push(0);
+        }
+        self.starts.push(candidates as u32);
+    }
+
     fn first(&mut self, mut k: u32) -> u32 {
         while self.before[k as usize] != k {
             let one = self.before[k as usize];
@@ -78,6 +89,11 @@ impl Groups {
         self.before[high as usize] = low;
     }
 
+    /// Whether there are several.
+    pub(crate) fn several(&self) -> bool {
+        self.starts.len() > 2
+    }
+
     /// Places of the candidates, group after group.
     pub(crate) fn order(&self) -> &[u32] {
         &self.order
@@ -88,15 +104,65 @@ impl Groups {
         let ends = self.starts.windows(2);
         ends.map(|ends| ends[0] as usize..ends[1] as usize)
     }
+}
 
-    /// Candidates of the largest.
-    pub(crate) fn largest(&self) -> usize {
-        self.ranges().map(|range| range.len()).max().unwrap_or(0)
+/// Rows up to which D of a group is a dense matrix.
+const DENSE: usize = 72;
+
+/// D = N M⁻¹ Nᵀ over the rows of one group, M diagonal.
+#[derive(Default)]
+pub(crate) struct OfGroup {
+    /// All entries, of few rows.
+    matrix: Vec<f64>,
+    /// The rows over √m, of many.
+    lumped: Lumped,
+    /// Number of an unknown in these, by unknown of the system; nobody outside of [`OfGroup::over`].
+    local: Vec<u32>,
+    /// Bytes of the largest so far.
+    pub(crate) bytes: usize,
+}
+
+impl OfGroup {
+    /// D over some rows, `width` for each candidate. `mass`: of each unknown; `fixed`: held unknowns.
+    pub(crate) fn over(
+        &mut self,
+        of: impl Iterator<Item = u32> + Clone,
+        width: usize,
+        rows: &Rows,
+        (mass, fixed): (&[f64], &[bool]),
+    ) -> Compliance<'_> {
+        if of.clone().count() <= DENSE {
+            entries(of, rows, (mass, fixed), &mut self.matrix);
+            self.bytes = self.bytes.max(8 * self.matrix.len());
+            return Compliance::Dense(&self.matrix);
+        }
+        self.local.resize(fixed.len(), NONE);
+        self.lumped.clear(width);
+        let mut count = 0;
+        for number in of.clone() {
+            let (dofs, coefficients) = rows.row(number as usize);
+            let local = &mut self.local;
+            let free = dofs.iter().zip(coefficients);
+            let free = free.filter(|(dof, _)| !fixed[**dof as usize]);
+            self.lumped.push(free.map(|(&dof, n)| {
+                let dof = dof as usize;
+                if local[dof] == NONE {
+                    (local[dof], count) = (count, count + 1);
+                }
+                (local[dof], n / mass[dof].sqrt())
+            }));
+        }
+        for &dof in of.flat_map(|number| rows.row(number as usize).0) {
+            self.local[dof as usize] = NONE;
+        }
+        self.lumped.finish();
+        self.bytes = self.bytes.max(self.lumped.bytes());
+        Compliance::Lumped(&self.lumped)
     }
 }
 
-/// D = N M⁻¹ Nᵀ over some rows, row-major.
-pub(crate) fn compliance(
+/// All entries of D, row-major.
+fn entries(
     of: impl Iterator<Item = u32> + Clone,
     rows: &Rows,
     (mass, fixed): (&[f64], &[bool]),
@@ -132,7 +198,8 @@ mod tests {
         let mut fixed = vec![false; 8];
         let mut groups = Groups::default();
         let split = |groups: &mut Groups, fixed: &[bool]| -> Vec<Vec<u32>> {
-            groups.split(&[0, 1, 2, 3, 4, 5], |k| pairs[k as usize].iter(), fixed);
+            let keys = |k: u32| pairs[k as usize].into_iter().filter(|&key| !fixed[key]);
+            groups.split(&[0, 1, 2, 3, 4, 5], keys, 8);
             let ranges = groups.ranges();
             ranges.map(|range| groups.order()[range].to_vec()).collect()
         };
@@ -140,6 +207,5 @@ mod tests {
         fixed[5] = true;
         let parts = [vec![0, 2, 4], vec![1], vec![3, 5]];
         assert_eq!(split(&mut groups, &fixed), parts);
-        assert_eq!(groups.largest(), 3);
     }
 }

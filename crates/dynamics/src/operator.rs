@@ -287,6 +287,25 @@ impl Operators {
         (group, offset + unknown - self.parts[part].start)
     }
 
+    /// What the rows with this unknown share with others through the matrices: the unknown itself where its matrix is diagonal, else
+    /// its factor. Below [`Operators::keys`].
+    pub(crate) fn key(&self, unknown: usize) -> usize {
+        let (group, _) = self.home(unknown);
+        match self.operator(group) {
+            Operator::Diagonal(_) => unknown,
+            Operator::Factored(_) => self.unknowns() + group,
+        }
+    }
+
+    /// Number of such keys.
+    pub(crate) fn keys(&self) -> usize {
+        self.unknowns() + self.groups.len()
+    }
+
+    fn unknowns(&self) -> usize {
+        self.parts.last().map_or(0, |part| part.end)
+    }
+
     /// The operator of a group.
     pub(crate) fn operator(&self, group: usize) -> &Operator {
         match &self.groups[group].operator {

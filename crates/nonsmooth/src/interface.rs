@@ -6,9 +6,14 @@
 //! solution until none changes (semi-smooth Newton, primal-dual active set). Where blocks of changes do not reduce the
 //! number of points that disagree, one point at a time changes, the last first: for laws without corner this ends on
 //! every positive definite D (Murty; Júdice and Pires 1994, block principal pivoting).
+//!
+//! The equations are solved by a dense factor, or, where D is the product of sparse rows, by conjugate gradients.
 
 use carom_algebra::dense::DenseCholesky;
 use carom_laws::{End, Law, Local, Relation, Status};
+
+use crate::Compliance;
+use iterated::Iterated;
 use serde::{Deserialize, Serialize};
 use thiserror::Error as ThisError;
 
@@ -99,7 +104,8 @@ impl InterfaceProblem {
     /// A singular problem, or statuses that do not settle.
     pub fn solve(&self) -> Result<InterfaceSolution, Failure> {
         let mut interface = Interface::default();
-        interface.solve(&self.candidates, (&self.compliance, 1), self.factors)?;
+        let compliance = Compliance::Dense(&self.compliance);
+        interface.solve(&self.candidates, (compliance, 1), self.factors)?;
         Ok(InterfaceSolution {
             forces: interface.forces,
             statuses: interface.statuses,
@@ -132,6 +138,7 @@ pub struct Interface {
     pub circled: Option<usize>,
     factor: Option<DenseCholesky>,
     factor_of: (u64, Vec<(u32, Status)>),
+    iterated: Iterated,
     /// Room for its matrix.
     matrix: Vec<f64>,
     /// Compliances of their own of the closed points, x per N: at hand, and those of the factor.
@@ -149,12 +156,12 @@ pub struct Interface {
 impl Interface {
     /// Solves for the forces and statuses.
     ///
-    /// `compliance`: D over the candidates, row-major, and its version; `s`: [s_g, s_v], the factors of x in the gap and
+    /// `compliance`: D over the candidates, and its version; `s`: [s_g, s_v], the factors of x in the gap and
     /// in the rate.
     pub fn solve(
         &mut self,
         candidates: &[Candidate],
-        compliance: (&[f64], u64),
+        compliance: (Compliance, u64),
         s: [f64; 2],
     ) -> Result<(), Failure> {
         let n = candidates.len();
@@ -225,7 +232,7 @@ impl Interface {
     fn equalities(
         &mut self,
         candidates: &[Candidate],
-        (d, version): (&[f64], u64),
+        (d, version): (Compliance, u64),
         s: [f64; 2],
     ) -> Result<(), Failure> {
         let n = candidates.len();
@@ -274,7 +281,7 @@ impl Interface {
         at_hand.clear();
         at_hand.extend(self.coupled.iter().map(|&(i, status)| own(i, status)));
         let stands = self.factor_of.0 == version && self.factor_of.1 == self.coupled;
-        if !stands || at_hand != of_factor {
+        if let (Compliance::Dense(d), true) = (d, !stands || at_hand != of_factor) {
             of_factor.clone_from(at_hand);
             let shared = |i: u32| candidates[i as usize].faces_itself;
             self.factor_of.1.clear();
@@ -283,16 +290,27 @@ impl Interface {
             self.factor_of.0 = version;
             self.factor_of.1.clone_from(&self.coupled);
         }
-        let factor = match &self.factor {
-            Some(factor) if !self.coupled.is_empty() => factor,
-            _ => return Ok(()),
-        };
+        if self.coupled.is_empty() {
+            return Ok(());
+        }
         self.rhs.clear();
         self.rhs.extend(self.coupled.iter().map(|&(i, status)| {
             let relation = relation(i, status);
             -free(i, &relation) / scale(i, &relation) - self.product[i as usize]
         }));
-        factor.solve(&mut self.rhs);
+        match (d, &self.factor) {
+            (Compliance::Lumped(d), _) => {
+                let own = &self.own[0];
+                self.iterated
+                    .solve(d, (&self.coupled, own), &mut self.rhs)
+                    .map_err(|cause| Failure::Singular {
+                        points: self.coupled.len(),
+                        cause,
+                    })?;
+            }
+            (Compliance::Dense(_), Some(factor)) => factor.solve(&mut self.rhs),
+            (Compliance::Dense(_), None) => {}
+        }
         for (&(i, _), &force) in self.coupled.iter().zip(&self.rhs) {
             self.forces[i as usize] = force;
         }
@@ -300,19 +318,25 @@ impl Interface {
         Ok(())
     }
 
-    fn multiply(&mut self, d: &[f64]) {
+    /// D P.
+    fn multiply(&mut self, d: Compliance) {
         let n = self.forces.len();
-        for (i, product) in self.product.iter_mut().enumerate() {
-            *product = self
-                .closed
-                .iter()
-                .map(|&(j, _)| d[i * n + j as usize] * self.forces[j as usize])
-                .sum();
+        match d {
+            Compliance::Dense(d) => {
+                for (i, product) in self.product.iter_mut().enumerate() {
+                    *product = self
+                        .closed
+                        .iter()
+                        .map(|&(j, _)| d[i * n + j as usize] * self.forces[j as usize])
+                        .sum();
+                }
+            }
+            Compliance::Lumped(d) => self.iterated.multiply(d, &self.forces, &mut self.product),
         }
     }
 
     /// Candidates whose law asks for another status.
-    fn disagreements(&mut self, candidates: &[Candidate], d: &[f64], s: [f64; 2]) {
+    fn disagreements(&mut self, candidates: &[Candidate], d: Compliance, s: [f64; 2]) {
         self.changes.clear();
         for (i, candidate) in candidates.iter().enumerate() {
             if is_stuck(candidate, i, d, candidates.len()) {
@@ -336,7 +360,7 @@ impl Interface {
     fn clip(
         &mut self,
         candidates: &[Candidate],
-        compliance: (&[f64], u64),
+        compliance: (Compliance, u64),
         s: [f64; 2],
     ) -> Result<(), Failure> {
         let mut cut: Vec<(usize, Status)> = Vec::new();
@@ -418,23 +442,30 @@ fn factor(
 }
 
 /// Whether no force moves a point, all of its nodes being held, and its law does not say the force either: it carries none.
-fn is_stuck(candidate: &Candidate, i: usize, d: &[f64], n: usize) -> bool {
+fn is_stuck(candidate: &Candidate, i: usize, d: Compliance, n: usize) -> bool {
     let relation = candidate
         .law
         .get()
         .relation(Status::Closed, &candidate.local);
-    d[i * n + i] == 0.0 && relation.compliance == 0.0
+    diagonal(d, i, n) == 0.0 && relation.compliance == 0.0
+}
+
+fn diagonal(d: Compliance, i: usize, n: usize) -> f64 {
+    match d {
+        Compliance::Dense(d) => d[i * n + i],
+        Compliance::Lumped(d) => d.block(i, 0, 0),
+    }
 }
 
 fn end(
     candidate: &Candidate,
     i: usize,
-    d: &[f64],
+    d: Compliance,
     s: [f64; 2],
     forces: &[f64],
     product: &[f64],
 ) -> End {
-    let own = d[i * forces.len() + i] * forces[i];
+    let own = diagonal(d, i, forces.len()) * forces[i];
     let s = candidate.factors(s);
     // In a closed point of an exact law the gap or the rate is zero by construction, and its sign but rounding: the
     // laws look at the force there.
@@ -446,5 +477,6 @@ fn end(
     }
 }
 
+mod iterated;
 #[cfg(test)]
 mod tests;

@@ -13,6 +13,7 @@ use std::sync::Arc;
 use carom_algebra::rotation::Rotation;
 use carom_contact::law::{Local, Status};
 use carom_contact::{Pairing, Search};
+use carom_nonsmooth::Compliance;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -308,9 +309,11 @@ impl Between {
                 instant: [1.0; 2],
             });
         }
-        let solved = self
-            .interface
-            .solve(&self.data, (&self.matrix, self.version), [0.0, 1.0]);
+        let solved = self.interface.solve(
+            &self.data,
+            (Compliance::Dense(&self.matrix), self.version),
+            [0.0, 1.0],
+        );
         if let Err(failure) = solved {
             let contact = system.point(self.candidates[0] as usize).0.name.clone();
             return Err(Error::Between {

@@ -1,5 +1,5 @@
-//! The contact problem of a diagonal matrix: groups of points that share no unknown are solved apart, in their order. No matrix is
-//! larger than a group.
+//! The contact problem of a diagonal matrix: groups of points that share no unknown are solved apart, in their order. Of a large
+//! group the compliance is the product of its sparse rows, and nothing is dense.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -10,25 +10,23 @@ use super::Driver;
 use super::leapfrog::Apart;
 use crate::coulomb::{Posed, Tangential};
 use crate::error::Error;
-use crate::groups::compliance;
+use crate::groups::OfGroup;
 
-/// Points of the largest group that is solved apart: of larger ones the columns are kept from step to step.
-const LARGEST: usize = 24;
+/// Rows of the largest group whose problem is kept where it is not solved.
+const KEPT: usize = 1000;
 
 impl Driver {
-    /// Whether all candidates are in small groups, which are then in `apart`.
-    pub(super) fn is_apart(&self, apart: &mut Apart) -> bool {
-        if !self.weak.none() {
-            return false;
-        }
+    /// Splits the candidates into groups.
+    fn split(&self, apart: &mut Apart) {
         let (rows, width) = self.rows_of_points();
+        let fixed = &self.system.fixed;
         let unknowns = |point: u32| {
             let numbers = point * width..(point + 1) * width;
-            numbers.flat_map(|number| rows.row(number as usize).0)
+            let dofs = numbers.flat_map(|number| rows.row(number as usize).0);
+            let dofs = dofs.map(|&dof| dof as usize);
+            dofs.filter(|&dof| !fixed[dof])
         };
-        let fixed = &self.system.fixed;
-        apart.groups.split(&self.candidates, unknowns, fixed);
-        apart.groups.largest() <= LARGEST
+        apart.groups.split(&self.candidates, unknowns, fixed.len());
     }
 
     /// The rows of all points, with those of tangents, and how many each has.
@@ -48,6 +46,7 @@ impl Driver {
         apart: &mut Apart,
         free: impl Fn(usize) -> f64,
     ) -> Result<(), Error> {
+        self.split(apart);
         apart.points.clear();
         let points = apart.groups.order().iter();
         apart
@@ -60,12 +59,12 @@ impl Driver {
         let mut passes = 0;
         for group in apart.groups.ranges() {
             apart.version += 1;
-            let problem = (&mut apart.matrix, apart.version);
+            let d = &mut apart.of_group;
             match friction[..].get(group.clone()) {
                 Some(own) if own.iter().any(|own| own.mu > 0.0) => {
-                    self.solve_rubbing(group.clone(), own, problem.0)
+                    self.solve_rubbing(group.clone(), own, d)
                 }
-                _ => self.solve_normal(group.clone(), problem),
+                _ => self.solve_normal(group.clone(), (d, apart.version)),
             }?;
             passes = passes.max(self.interface.passes);
         }
@@ -104,18 +103,23 @@ impl Driver {
     fn solve_normal(
         &mut self,
         group: Range<usize>,
-        (matrix, version): (&mut Vec<f64>, u64),
+        (d, version): (&mut OfGroup, u64),
     ) -> Result<(), Error> {
         let (system, map) = (Arc::clone(&self.system), self.maps.first());
         let factors = [map.gap.x, map.rate.x];
         let (rows, width) = self.rows_of_points();
         let normals = self.candidates[group.clone()].iter();
         let normals = normals.map(|point| point * width);
-        compliance(normals, rows, (&system.mass.lumped, &system.fixed), matrix);
+        let mass = (&system.mass.lumped[..], &system.fixed[..]);
+        let compliance = d.over(normals, 1, rows, mass);
         let candidates = &self.candidate_data[group.clone()];
-        if let Err(failure) = self.interface.solve(candidates, (matrix, version), factors) {
-            self.keep_group(group);
-            return Err(self.keep_problem(failure, matrix.clone(), factors));
+        let problem = (compliance, version);
+        if let Err(failure) = self.interface.solve(candidates, problem, factors) {
+            self.keep_places(&group.map(|place| place as u32).collect::<Vec<_>>());
+            return Err(match compliance.entries(KEPT) {
+                Some(entries) => self.keep_problem(failure, entries, factors),
+                None => self.interface_error(failure, &self.candidates),
+            });
         }
         let interface = &mut self.next.interface;
         for (k, &point) in self.candidates[group].iter().enumerate() {
@@ -131,25 +135,28 @@ impl Driver {
         &mut self,
         group: Range<usize>,
         friction: &[Tangential],
-        matrix: &mut Vec<f64>,
+        d: &mut OfGroup,
     ) -> Result<(), Error> {
         let (system, map) = (Arc::clone(&self.system), self.maps.first());
         let factors = [map.gap.x, map.rate.x, self.sliding().0(map).x];
         let (rows, width) = self.rows_of_points();
         let numbers = self.candidates[group.clone()].iter();
         let numbers = numbers.flat_map(|point| point * width..(point + 1) * width);
-        compliance(numbers, rows, (&system.mass.lumped, &system.fixed), matrix);
+        let mass = (&system.mass.lumped[..], &system.fixed[..]);
+        let compliance = d.over(numbers, width as usize, rows, mass);
         let posed = Posed {
             candidates: &self.candidate_data[group.clone()],
             friction,
             tangents: system.tangents(),
-            d: matrix,
+            d: compliance,
             s: factors,
             tolerance: system.nonlinear.iteration.tolerance,
         };
         if let Err(failure) = self.coulomb.solve(&posed) {
-            self.keep_group(group);
-            self.keep_failed(friction.to_vec(), matrix.clone(), factors);
+            self.keep_places(&group.map(|place| place as u32).collect::<Vec<_>>());
+            if let Some(entries) = compliance.entries(KEPT) {
+                self.keep_failed(friction.to_vec(), entries, factors);
+            }
             return Err(self.friction_error(failure));
         }
         let interface = &mut self.next.interface;
@@ -161,11 +168,5 @@ impl Driver {
             self.slips[at] = self.coulomb.slips[k];
         }
         Ok(())
-    }
-
-    /// Makes the candidates those of one group, to be told of.
-    fn keep_group(&mut self, group: Range<usize>) {
-        self.candidates = self.candidates[group.clone()].to_vec();
-        self.candidate_data = self.candidate_data[group].to_vec();
     }
 }

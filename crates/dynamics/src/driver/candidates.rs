@@ -4,12 +4,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use carom_contact::law::Status;
+use carom_nonsmooth::Compliance;
 
 use super::Driver;
 use super::paired::{approaches, sums_compliances};
 use crate::coulomb::Slip;
 use crate::error::Error;
-use crate::interface::{Failure, InterfaceProblem};
+use crate::interface::{Candidate, Failure, Interface, InterfaceProblem};
 
 /// Additions of missed candidates within one iteration.
 const ADDITIONS: usize = 10;
@@ -121,21 +122,28 @@ impl Driver {
         if self.rubs() {
             return self.solve_with_friction();
         }
-        let system = Arc::clone(&self.system);
+        let (system, together) = (Arc::clone(&self.system), self.is_one_group());
         let Some((operators, compliance)) = self.effective.both() else {
             return Ok(());
         };
         let rows = &self.pairing.rows;
-        compliance.update(&self.candidates, rows, &system.fixed, operators);
+        let points = (&self.candidates[..], 1, together);
+        compliance.update(points, rows, &system.fixed, operators);
+        let several = compliance.groups().several();
         self.describe_candidates(None);
         let factor = self.maps.contact();
+        if several {
+            let map = self.maps.first();
+            self.solve_groups([map.gap.x * factor, map.rate.x * factor])?;
+            return self.take_forces(factor);
+        }
         let Some((operators, compliance, mut linking)) = self.effective.all() else {
             return Ok(());
         };
         let rows = &self.pairing.rows;
         let (matrix, version) = match &mut linking {
             Some(linking) => linking.compliance(&system, (&mut *operators, compliance), rows),
-            None => (&compliance.matrix[..], compliance.version),
+            None => (compliance.matrix(), compliance.version),
         };
         let impulsive = match &mut self.impulses {
             Some(stage) if sums_compliances(&system, self.maps.first()) => {
@@ -155,15 +163,25 @@ impl Driver {
                 ],
             ),
         };
-        let condensed = (matrix, &compliance.candidates[..], version);
+        let condensed = (matrix, compliance.rows(), version);
         let matrix = self
             .with_weak
             .of(&self.weak, &system, (condensed, rows), factors);
-        let solved = self.interface.solve(&self.candidate_data, matrix, factors);
+        let problem = (Compliance::Dense(matrix.0), matrix.1);
+        let solved = self.interface.solve(&self.candidate_data, problem, factors);
         if let Err(failure) = solved {
             let compliance = matrix.0.to_vec();
             return Err(self.keep_problem(failure, compliance, factors));
         }
+        self.take_forces(factor)
+    }
+
+    /// Writes the forces and statuses found, and adds the forces, times `factor`, to the begun solve.
+    fn take_forces(&mut self, factor: f64) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        let Some((operators, compliance, linking)) = self.effective.all() else {
+            return Ok(());
+        };
         let interface = &mut self.next.interface;
         interface.force.fill(0.0);
         interface.status.fill(Status::Open);
@@ -185,6 +203,62 @@ impl Driver {
         self.warn_of_circles();
         self.take_weak();
         Ok(())
+    }
+
+    /// Whether all candidates are one problem, whatever they share: where links, weak forms or the mass couple them besides.
+    pub(super) fn is_one_group(&self) -> bool {
+        let sums = self.impulses.is_some() && sums_compliances(&self.system, self.maps.first());
+        sums || self.has_links() || !self.weak.none()
+    }
+
+    /// Forces and statuses of candidates in several groups, each solved by itself.
+    fn solve_groups(&mut self, factors: [f64; 2]) -> Result<(), Error> {
+        let Some((_, compliance)) = self.effective.both() else {
+            return Ok(());
+        };
+        let n = self.candidates.len();
+        let all = &mut self.interface;
+        all.forces.clear();
+        all.forces.resize(n, 0.0);
+        all.statuses.clear();
+        all.statuses.resize(n, Status::Open);
+        (all.passes, all.circled) = (0, None);
+        let mut failed = None;
+        for (group, range) in compliance.groups().ranges().enumerate() {
+            let places = &compliance.groups().order()[range];
+            if self.interfaces.len() == group {
+                self.interfaces.push(Interface::default());
+            }
+            let (solver, all) = (&mut self.interfaces[group], &mut self.interface);
+            let of_place = |&place: &u32| self.candidate_data[place as usize];
+            let own: Vec<Candidate> = places.iter().map(of_place).collect();
+            let block = compliance.block(group);
+            let problem = (Compliance::Dense(block), compliance.version);
+            if let Err(failure) = solver.solve(&own, problem, factors) {
+                failed = Some((failure, block.to_vec(), places.to_vec()));
+                break;
+            }
+            for (k, &place) in places.iter().enumerate() {
+                all.forces[place as usize] = solver.forces[k];
+                all.statuses[place as usize] = solver.statuses[k];
+            }
+            all.passes = all.passes.max(solver.passes);
+            let circled = solver.circled.map(|k| places[k] as usize);
+            all.circled = all.circled.or(circled);
+        }
+        if let Some((failure, block, places)) = failed {
+            self.keep_places(&places);
+            return Err(self.keep_problem(failure, block, factors));
+        }
+        Ok(())
+    }
+
+    /// Makes the candidates those at some places, to be told of.
+    pub(super) fn keep_places(&mut self, places: &[u32]) {
+        let (points, data) = (&self.candidates, &self.candidate_data);
+        let points = places.iter().map(|&place| points[place as usize]).collect();
+        let data = places.iter().map(|&place| data[place as usize]).collect();
+        (self.candidates, self.candidate_data) = (points, data);
     }
 
     pub(super) fn warn_of_circles(&self) {

@@ -161,7 +161,7 @@ impl Driver {
             Loads::Dead([_, factor]) => factor * system.load[i] - internal[i],
             Loads::Varying => load[i] - internal[i],
         };
-        let solved = match self.is_apart(apart) {
+        let solved = match self.weak.none() {
             true => self.solve_apart(apart, |i| left(i) / system.mass.lumped[i]),
             false => {
                 let residual = self.vectors.residual.iter_mut().enumerate();

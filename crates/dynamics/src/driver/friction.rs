@@ -4,11 +4,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use carom_contact::law::Status;
+use carom_nonsmooth::Compliance;
 
 use super::Driver;
 use super::paired::sums_compliances;
 use crate::coulomb::{FrictionFailure, FrictionProblem, Posed, Slip, Tangential};
 use crate::error::Error;
+use crate::interface::Candidate;
 use crate::step_map::{Row, StepMap};
 
 impl Driver {
@@ -44,8 +46,7 @@ impl Driver {
         let system = Arc::clone(&self.system);
         let tangents = system.tangents();
         let width = 1 + tangents as u32;
-        let rows = |&point: &u32| point * width..(point + 1) * width;
-        let stacked: Vec<u32> = self.candidates.iter().flat_map(rows).collect();
+        let together = self.is_one_group();
         let factor = self.maps.contact();
         let first = self.maps.first();
         let s = [first.gap.x, first.rate.x, self.sliding().0(first).x].map(|s| s * factor);
@@ -53,9 +54,17 @@ impl Driver {
             return Ok(());
         };
         let begin = Instant::now();
-        compliance.update(&stacked, &self.stacked, &system.fixed, operators);
+        let points = (&self.candidates[..], width, together);
+        compliance.update(points, &self.stacked, &system.fixed, operators);
+        let several = compliance.groups().several();
         self.describe_candidates(Some(tangents as u32));
         let friction = self.tangential(|number| self.free_along(number, &self.stacked));
+        if several {
+            let solved = self.solve_groups_with_friction(&friction, s);
+            self.phases.friction += begin.elapsed();
+            solved?;
+            return self.take_forces_with_friction(factor);
+        }
         let Some((operators, compliance, mut linking)) = self.effective.all() else {
             return Ok(());
         };
@@ -63,13 +72,13 @@ impl Driver {
             Some(linking) => {
                 linking.compliance(&system, (&mut *operators, compliance), &self.stacked)
             }
-            None => (&compliance.matrix[..], compliance.version),
+            None => (compliance.matrix(), compliance.version),
         };
         let impulsive = match &mut self.impulses {
             Some(stage) if sums_compliances(&system, self.maps.first()) => {
                 let rate = self.maps.first().rate;
                 let own = (rate.x * factor, matrix);
-                stage.sum(&system, &self.stacked, &stacked, own, rate.c)
+                stage.sum(&system, &self.stacked, compliance.rows(), own, rate.c)
             }
             _ => None,
         };
@@ -81,17 +90,28 @@ impl Driver {
             candidates: &self.candidate_data,
             friction: &friction,
             tangents,
-            d: matrix,
+            d: Compliance::Dense(matrix),
             s,
             tolerance: system.nonlinear.iteration.tolerance,
         };
         let solved = self.coulomb.solve(&posed);
         self.phases.friction += begin.elapsed();
         if let Err(failure) = solved {
-            let compliance = posed.d.to_vec();
+            let compliance = matrix.to_vec();
             self.keep_failed(friction, compliance, s);
             return Err(self.friction_error(failure));
         }
+        self.take_forces_with_friction(factor)
+    }
+
+    /// Writes the forces and statuses found, and adds the forces, times `factor`, to the begun solve.
+    fn take_forces_with_friction(&mut self, factor: f64) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        let width = 1 + system.tangents() as u32;
+        let rows = |&point: &u32| point * width..(point + 1) * width;
+        let Some((operators, compliance, linking)) = self.effective.all() else {
+            return Ok(());
+        };
         let interface = &mut self.next.interface;
         interface.force.fill(0.0);
         interface.friction.fill([0.0; 2]);
@@ -121,6 +141,57 @@ impl Driver {
             linking.answer(&system, operators, forces, (&mut self.vectors.half, pushed));
         }
         self.part_links();
+        Ok(())
+    }
+
+    /// Forces and statuses of candidates in several groups, each solved by itself.
+    fn solve_groups_with_friction(
+        &mut self,
+        friction: &[Tangential],
+        s: [f64; 3],
+    ) -> Result<(), Error> {
+        let Some((_, compliance)) = self.effective.both() else {
+            return Ok(());
+        };
+        let n = self.candidates.len();
+        let (mut forces, mut tangential) = (vec![0.0; n], vec![[0.0; 2]; n]);
+        let (mut statuses, mut slips) = (vec![Status::Open; n], vec![Slip::Open; n]);
+        let mut failed = None;
+        for (group, range) in compliance.groups().ranges().enumerate() {
+            let places = &compliance.groups().order()[range];
+            let of_place = |&place: &u32| self.candidate_data[place as usize];
+            let candidates: Vec<Candidate> = places.iter().map(of_place).collect();
+            let of_place = |&place: &u32| friction[place as usize];
+            let own: Vec<Tangential> = places.iter().map(of_place).collect();
+            let block = compliance.block(group);
+            let posed = Posed {
+                candidates: &candidates,
+                friction: &own,
+                tangents: self.system.tangents(),
+                d: Compliance::Dense(block),
+                s,
+                tolerance: self.system.nonlinear.iteration.tolerance,
+            };
+            if let Err(failure) = self.coulomb.solve(&posed) {
+                failed = Some((failure, block.to_vec(), places.to_vec(), own));
+                break;
+            }
+            for (k, &place) in places.iter().enumerate() {
+                let at = place as usize;
+                forces[at] = self.coulomb.forces[k];
+                tangential[at] = self.coulomb.tangential[k];
+                statuses[at] = self.coulomb.statuses[k];
+                slips[at] = self.coulomb.slips[k];
+            }
+        }
+        if let Some((failure, block, places, own)) = failed {
+            self.keep_places(&places);
+            self.keep_failed(own, block, s);
+            return Err(self.friction_error(failure));
+        }
+        let all = &mut self.coulomb;
+        (all.forces, all.tangential) = (forces, tangential);
+        (all.statuses, all.slips) = (statuses, slips);
         Ok(())
     }
 

@@ -46,10 +46,10 @@ impl OfMass {
     /// D over some points (ascending) and its version.
     fn matrix(&mut self, system: &System, rows: &Rows, points: &[u32]) -> (&[f64], u64) {
         let (operators, compliance) = (&mut self.operators, &mut self.compliance);
-        compliance.update(points, rows, &system.fixed, operators);
+        compliance.update((points, 1, true), rows, &system.fixed, operators);
         match &mut self.linking {
             Some(linking) => linking.compliance(system, (operators, compliance), rows),
-            None => (&compliance.matrix, compliance.version),
+            None => (compliance.matrix(), compliance.version),
         }
     }
 }
@@ -175,8 +175,9 @@ impl Impulses {
                 instant: [1.0; 2],
             });
         }
+        let problem = (carom_nonsmooth::Compliance::Dense(d), compliance.1);
         self.interface
-            .solve(&self.candidates, compliance, [1.0, 0.0])?;
+            .solve(&self.candidates, problem, [1.0, 0.0])?;
         self.added.clear();
         self.active.clear();
         for (k, present) in present.iter().enumerate() {

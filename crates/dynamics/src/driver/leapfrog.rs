@@ -2,7 +2,7 @@
 
 use carom_algebra::unknowns::Kind;
 
-use crate::groups::Groups;
+use crate::groups::{Groups, OfGroup};
 use crate::scheme::EnergyIdentity;
 use crate::step_map::{Impulse, Row, StepMap};
 use crate::system::System;
@@ -31,8 +31,8 @@ pub(super) struct Apart {
     pub(super) points: Vec<u32>,
     /// Acceleration without contact forces of their unknowns, m/s²; other entries have no meaning.
     pub(super) free: Vec<f64>,
-    /// D of one group, and a number that no other matrix has.
-    pub(super) matrix: Vec<f64>,
+    /// D of one group, and a number that no other has.
+    pub(super) of_group: OfGroup,
     pub(super) version: u64,
 }
 
@@ -42,7 +42,7 @@ impl Default for Apart {
             groups: Groups::default(),
             points: Vec::new(),
             free: Vec::new(),
-            matrix: Vec::new(),
+            of_group: OfGroup::default(),
             // those of kept columns count from zero
             version: 1 << 63,
         }

@@ -275,7 +275,7 @@ impl Linking {
         (operators, compliance): (&mut Operators, &Compliance),
         rows: &Rows,
     ) -> (&[f64], u64) {
-        let points = &compliance.candidates;
+        let points = compliance.rows();
         let mut fresh = self.of != Some(compliance.version);
         for &point in points {
             fresh |= self.meet(point, system, (&mut *operators, compliance), rows);
@@ -285,7 +285,7 @@ impl Linking {
             self.versions += 1;
             let n = points.len();
             self.matrix.clear();
-            self.matrix.extend_from_slice(&compliance.matrix);
+            self.matrix.extend_from_slice(compliance.matrix());
             for (i, &one) in points.iter().enumerate() {
                 for (j, &other) in points[..=i].iter().enumerate() {
                     let (Some(one), Some(other)) =

@@ -123,6 +123,8 @@ pub struct Driver {
     predictor: Predictor,
     restoring: Restoring,
     interface: Interface,
+    /// Those of groups of candidates that do not act on each other, where there are several.
+    interfaces: Vec<Interface>,
     pairing: Pairing,
     /// Contacts with small sliding where all nodes are at their reference places; empty until they are paired.
     initial: Vec<Pairing>,
@@ -194,7 +196,11 @@ impl Driver {
         Costs {
             factors: self.effective.stats().cloned().collect(),
             work: self.effective.work(),
-            compliance_bytes: self.effective.compliance_bytes(),
+            compliance_bytes: self.effective.compliance_bytes()
+                + self
+                    .direct
+                    .as_ref()
+                    .map_or(0, |direct| direct.apart.of_group.bytes),
             force_sweeps: self.force_sweeps,
             element_updates: (self.force_sweeps * elements) as u64,
             phases: self.phases,

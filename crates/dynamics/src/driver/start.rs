@@ -79,6 +79,7 @@ impl Driver {
             predictor: Predictor::default(),
             restoring: Restoring::default(),
             interface: Interface::default(),
+            interfaces: Vec::new(),
             pairing: Pairing::default(),
             initial: vec![Pairing::default(); system.contacts.len()],
             search: system.contacts.iter().map(|_| Search::default()).collect(),

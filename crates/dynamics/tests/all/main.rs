@@ -14,6 +14,7 @@ mod friction;
 mod impacts;
 mod initial;
 mod interface;
+mod many_points;
 mod material_work;
 mod momentum;
 mod mortar;

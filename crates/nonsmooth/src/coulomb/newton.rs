@@ -13,7 +13,7 @@ pub(super) const SHIFT: f64 = 1e-11;
 /// Refinements of the solution of the linear system.
 const REFINEMENTS: usize = 6;
 
-/// The change of the forces that solves the linearised equations of the trial.
+/// The change of the forces that solves the linearised equations of the trial. `d`: all entries of D, row-major.
 ///
 /// Points that are open lose their forces at once. In a point that slips, with Π = I - e eᵀ and c = b/|t - ρ q|,
 /// ```text
@@ -21,7 +21,7 @@ const REFINEMENTS: usize = 6;
 /// ```
 /// with M the projector on the tangents that no support holds, where b = μ (P - R) is replaced by the μ P to which it is equal once R = 0.
 pub(super) fn step(
-    problem: &Posed,
+    (problem, d): (&Posed, &[f64]),
     trial: &Trial,
     shift: f64,
     dp: &mut [f64],
@@ -38,7 +38,7 @@ pub(super) fn step(
     let (mut matrix, mut rhs) = (vec![0.0; m * m], vec![0.0; m]);
     let mut line = vec![0.0; problem.rows()];
     for (k, &row) in rows.iter().enumerate() {
-        rhs[k] = -equation(problem, trial, row, &mut line);
+        rhs[k] = -equation((problem, d), trial, row, &mut line);
         for (column, dp) in dp.iter().enumerate().filter(|(_, dp)| **dp != 0.0) {
             rhs[k] -= line[column] * dp;
         }
@@ -70,18 +70,19 @@ fn active(problem: &Posed, trial: &Trial) -> Vec<usize> {
 }
 
 /// One linearised equation: its defect, and in `line` its derivative with respect to all forces.
-fn equation(problem: &Posed, trial: &Trial, row: usize, line: &mut [f64]) -> f64 {
+fn equation((problem, d): (&Posed, &[f64]), trial: &Trial, row: usize, line: &mut [f64]) -> f64 {
+    let d = |row: usize| &d[row * problem.rows()..(row + 1) * problem.rows()];
     let (i, k) = (row / (1 + problem.tangents), row % (1 + problem.tangents));
     if k == 0 {
         let relation = problem.relation(i, trial.statuses[i]);
         let slope = problem.slope(i, &relation);
         let factor = problem.factor(i, &relation) / slope;
-        set(line, factor, problem.d(row));
+        set(line, factor, d(row));
         line[row] += relation.compliance / slope;
         return trial.defects[row];
     }
     let factor = problem.weight(i) * problem.s[2];
-    let (normal, mobile) = (problem.normal(i), problem.mobile(i));
+    let (normal, mobile) = (problem.normal(i), trial.mobile[i]);
     let (e, mu) = (trial.directions[i], problem.friction[i].mu);
     let sticks = trial.slips[i] == Slip::Stick;
     line.fill(0.0);
@@ -93,7 +94,7 @@ fn equation(problem: &Posed, trial: &Trial, row: usize, line: &mut [f64]) -> f64
             false => trial.curvatures[i] * (mobile[k - 1][l - 1] - e[k - 1] * along),
         };
         if projection != 0.0 {
-            for (line, d) in line.iter_mut().zip(problem.d(normal + l)) {
+            for (line, d) in line.iter_mut().zip(d(normal + l)) {
                 *line += projection * factor * d;
             }
         }

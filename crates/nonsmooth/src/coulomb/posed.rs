@@ -3,6 +3,7 @@
 use carom_laws::{End, Relation, Status};
 
 use super::Tangential;
+use crate::Compliance;
 use crate::interface::Candidate;
 
 /// Mobility over that of the whole candidate up to which a direction counts as held, and the square of the part of the
@@ -19,8 +20,8 @@ pub struct Posed<'a> {
     pub friction: &'a [Tangential],
     /// Tangents of a candidate: 1 in the plane, 2 in space.
     pub tangents: usize,
-    /// D over all rows, row-major, symmetric.
-    pub d: &'a [f64],
+    /// D over all rows.
+    pub d: Compliance<'a>,
     /// [s_g, s_v, s_t], the factors of D p in the gap, in the rate, and in the sliding quantity.
     pub s: [f64; 3],
     /// Defect over the largest force with which forces are taken where no nearer ones are found.
@@ -43,10 +44,12 @@ impl<'a> Posed<'a> {
         i * (1 + self.tangents)
     }
 
-    /// One row of D.
-    pub(super) fn d(&self, row: usize) -> &'a [f64] {
-        let n = self.rows();
-        &self.d[row * n..(row + 1) * n]
+    /// Entry of D over the rows of candidate `i`, 0 its normal.
+    pub(super) fn entry(&self, i: usize, k: usize, l: usize) -> f64 {
+        match self.d {
+            Compliance::Dense(d) => d[(self.normal(i) + k) * self.rows() + self.normal(i) + l],
+            Compliance::Lumped(d) => d.block(i, k, l),
+        }
     }
 
     /// The relation of a candidate; of an open one, that of its closure.
@@ -81,17 +84,13 @@ impl<'a> Posed<'a> {
     /// Derivative of a relation with respect to the force of its own candidate: it turns what the relation says into
     /// newtons.
     pub(super) fn slope(&self, i: usize, relation: &Relation) -> f64 {
-        let row = self.normal(i);
-        let slope = self.factor(i, relation) * self.d(row)[row] + relation.compliance;
+        let slope = self.factor(i, relation) * self.entry(i, 0, 0) + relation.compliance;
         if slope > 0.0 { slope } else { 1.0 }
     }
 
     /// Force per sliding, N over the unit of q, that makes both comparable in candidate `i`.
     pub(super) fn weight(&self, i: usize) -> f64 {
-        let row = self.normal(i);
-        let own: f64 = (row + 1..=row + self.tangents)
-            .map(|row| self.d(row)[row])
-            .sum();
+        let own: f64 = (1..=self.tangents).map(|k| self.entry(i, k, k)).sum();
         let slope = self.s[2] * own / self.tangents as f64;
         if slope > 0.0 { 1.0 / slope } else { 1.0 }
     }
@@ -104,22 +103,21 @@ impl<'a> Posed<'a> {
     /// `S = D_tt - f D_tn D_nt / (f D_nn + compliance)`, held are eigenvectors of S of (nearly) no mobility along which
     /// there is no sliding either: a surface whose motion is prescribed slides, and has friction.
     pub(super) fn mobile(&self, i: usize) -> [[f64; 2]; 2] {
-        let row = self.normal(i);
         let relation = self.relation(i, Status::Closed);
         let back = self.factor(i, &relation) / self.slope(i, &relation);
         let pressed = self.s[2] * self.free(i, &relation) / self.slope(i, &relation);
         let (mut s, mut sliding, mut size, mut trace) = ([[0.0; 2]; 2], [0.0; 2], 0.0, 0.0);
         for k in 0..self.tangents {
-            let d = self.d(row + 1 + k);
+            let across = self.entry(i, k + 1, 0);
             for l in 0..self.tangents {
-                s[k][l] = d[row + 1 + l] - back * d[row] * self.d(row)[row + 1 + l];
+                s[k][l] = self.entry(i, k + 1, l + 1) - back * across * self.entry(i, 0, l + 1);
             }
             let free = self.friction[i].free[k];
-            sliding[k] = free - pressed * d[row];
-            size += free.powi(2) + (pressed * d[row]).powi(2);
-            trace += d[row + 1 + k];
+            sliding[k] = free - pressed * across;
+            size += free.powi(2) + (pressed * across).powi(2);
+            trace += self.entry(i, k + 1, k + 1);
         }
-        let least = HELD * (trace + self.d(row)[row]);
+        let least = HELD * (trace + self.entry(i, 0, 0));
         let slides = |along: f64| along.powi(2) > HELD * size;
         let mut mobile = [[1.0, 0.0], [0.0, 1.0]];
         if least == 0.0 {
@@ -151,11 +149,11 @@ impl<'a> Posed<'a> {
         }
     }
 
-    /// (D p)_row of the forces of candidate `i` alone.
-    pub(super) fn own(&self, i: usize, row: usize, p: &[f64]) -> f64 {
+    /// (D p)_k of the forces of candidate `i` alone, k one of its rows, 0 its normal.
+    pub(super) fn own(&self, i: usize, k: usize, p: &[f64]) -> f64 {
         let first = self.normal(i);
-        (first..=first + self.tangents)
-            .map(|column| self.d(row)[column] * p[column])
+        (0..=self.tangents)
+            .map(|l| self.entry(i, k, l) * p[first + l])
             .sum()
     }
 }

@@ -4,6 +4,7 @@ use carom_laws::Status;
 use serde::{Deserialize, Serialize};
 
 use super::{Coulomb, FrictionFailure, Posed, Slip, Tangential};
+use crate::Compliance;
 use crate::interface::Candidate;
 
 /// A problem with friction by itself: what a failed step leaves on disk, to be looked at and solved again.
@@ -67,7 +68,7 @@ impl FrictionProblem {
             candidates: &self.candidates,
             friction: &self.friction,
             tangents: self.tangents,
-            d: &self.compliance,
+            d: Compliance::Dense(&self.compliance),
             s: self.factors,
             tolerance: self.tolerance,
         }

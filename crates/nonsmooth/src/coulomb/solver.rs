@@ -4,6 +4,7 @@ use carom_laws::Status;
 
 use super::trial::Trial;
 use super::{FrictionFailure, Posed, Slip, newton, sweep};
+use crate::{Compliance, Lumped};
 
 /// Largest defect of a solution, relative to the terms that should balance in its candidate. Passes go on to it where they
 /// can; where they bring nothing more, [`Posed::tolerance`] decides.
@@ -28,6 +29,10 @@ const BEYOND: f64 = 1e-9;
 const SWEEPS: usize = 16;
 /// Rounds of passes and sweeps.
 const ROUNDS: usize = 9;
+/// Sweeps alone, where D is the product of sparse rows. With masses that are alike some twenty are usual.
+const ALONE: usize = 20_000;
+/// Change of the forces in a sweep, over the largest, from which on defects are looked at.
+const SETTLED: f64 = 1e-12;
 
 /// How far a pass goes along the change of the forces.
 #[derive(Clone, Copy, PartialEq)]
@@ -64,6 +69,8 @@ pub struct Coulomb {
     start: Trial,
     change: Vec<f64>,
     reversals: Vec<u32>,
+    /// Bᵀ p.
+    motion: Vec<f64>,
 }
 
 impl Coulomb {
@@ -77,8 +84,12 @@ impl Coulomb {
         self.trial.start(problem);
         self.best = self.trial.clone();
         self.best.merit = f64::INFINITY;
+        let d = match problem.d {
+            Compliance::Dense(d) => d,
+            Compliance::Lumped(d) => return self.relax((problem, d)),
+        };
         for round in 0..ROUNDS {
-            if self.newton(problem, MEANS[round % MEANS.len()]) {
+            if self.newton((problem, d), MEANS[round % MEANS.len()]) {
                 self.finish(problem);
                 return Ok(());
             }
@@ -88,7 +99,7 @@ impl Coulomb {
                 return Ok(());
             }
             for _ in 0..SWEEPS << round {
-                sweep::sweep(problem, &mut self.trial);
+                sweep::sweep((problem, d), &mut self.trial);
             }
             self.sweeps += SWEEPS << round;
             self.trial.measure(problem, &self.reversals);
@@ -98,18 +109,55 @@ impl Coulomb {
             self.finish(problem);
             return Ok(());
         }
+        Err(self.failure())
+    }
+
+    /// Sweeps alone: of points of a lumped mass few are needed, and each costs no more than one product with D.
+    fn relax(&mut self, (problem, d): (&Posed, &Lumped)) -> Result<(), FrictionFailure> {
+        d.gather(&self.trial.p, &mut self.motion);
+        let mut patience = PATIENCE;
+        for _ in 0..ALONE {
+            self.sweeps += 1;
+            let room = (&mut self.trial, &mut self.motion);
+            if sweep::sweep_lumped((problem, d), room.0, room.1) > SETTLED {
+                continue;
+            }
+            self.trial.measure(problem, &self.reversals);
+            if self.trial.worst.0 <= TOLERANCE {
+                self.finish(problem);
+                return Ok(());
+            }
+            if self.trial.merit < self.best.merit {
+                self.best.clone_from(&self.trial);
+                patience = PATIENCE;
+            } else if patience > 0 {
+                patience -= 1;
+            } else {
+                break;
+            }
+        }
+        self.trial.measure(problem, &self.reversals);
+        self.best.clone_from(&self.trial);
+        if self.trial.is_near(problem) {
+            self.finish(problem);
+            return Ok(());
+        }
+        Err(self.failure())
+    }
+
+    fn failure(&self) -> FrictionFailure {
         let (defect, candidate) = self.best.worst;
-        Err(FrictionFailure {
+        FrictionFailure {
             candidate,
             defect,
             passes: self.passes,
             sweeps: self.sweeps,
-        })
+        }
     }
 
     /// Newton passes while they bring the trial nearer; whether it is a solution then. `best` is the nearest trial.
     /// `means`: shift of the systems, length of the passes.
-    fn newton(&mut self, problem: &Posed, means: (f64, Length)) -> bool {
+    fn newton(&mut self, (problem, d): (&Posed, &[f64]), means: (f64, Length)) -> bool {
         let most = match means.1 {
             // one point after the other may change
             Length::UpToChange => PATIENCE + problem.len(),
@@ -124,10 +172,10 @@ impl Coulomb {
                 return true;
             }
             self.passes += 1;
-            if newton::step(problem, &self.trial, means.0, &mut self.change).is_err() {
+            if newton::step((problem, d), &self.trial, means.0, &mut self.change).is_err() {
                 return false;
             }
-            self.advance(problem, means.1);
+            self.advance((problem, d), means.1);
             if self.trial.merit < 0.999 * self.best.merit {
                 self.best.clone_from(&self.trial);
                 patience = most;
@@ -139,12 +187,12 @@ impl Coulomb {
     }
 
     /// Goes along the change.
-    fn advance(&mut self, problem: &Posed, length: Length) {
+    fn advance(&mut self, (problem, d): (&Posed, &[f64]), length: Length) {
         self.start.clone_from(&self.trial);
         match length {
             Length::Whole => self.go(problem, 1.0),
             Length::UpToChange => {
-                let share = self.start.first_change(problem, &self.change, BEYOND);
+                let share = self.start.first_change(problem, (d, &self.change), BEYOND);
                 self.go(problem, f64::min(1.0, (1.0 + BEYOND) * share));
             }
             Length::Halved => {

@@ -4,6 +4,7 @@ use carom_laws::{Relation, Status};
 
 use super::Posed;
 use super::trial::Trial;
+use crate::Lumped;
 
 /// Most steps towards the slip; some eight are usual.
 const STEPS: usize = 60;
@@ -12,21 +13,27 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Passes of the status of one candidate.
 const TURNS: u32 = 12;
 
-/// One sweep over all candidates; forces and D p of the trial change, its defects do not.
-pub(super) fn sweep(problem: &Posed, trial: &mut Trial) {
+/// One sweep over all candidates; forces and D p of the trial change, its defects do not. `d`: all entries of D, row-major.
+pub(super) fn sweep((problem, d): (&Posed, &[f64]), trial: &mut Trial) {
     for i in 0..problem.len() {
         let (row, width) = (problem.normal(i), 1 + problem.tangents);
         let mut others = [0.0; 3];
         for (k, others) in others.iter_mut().enumerate().take(width) {
-            *others = trial.product[row + k] - problem.own(i, row + k, &trial.p);
+            *others = trial.product[row + k] - problem.own(i, k, &trial.p);
         }
-        let forces = solve(problem, i, &mut trial.statuses[i], &others);
+        let forces = solve(
+            (problem, &trial.mobile[i]),
+            i,
+            &mut trial.statuses[i],
+            &others,
+        );
         for k in 0..width {
             let change = forces[k] - trial.p[row + k];
             if change != 0.0 {
                 trial.p[row + k] = forces[k];
                 // D is symmetric: its row is its column
-                for (product, d) in trial.product.iter_mut().zip(problem.d(row + k)) {
+                let d = &d[(row + k) * problem.rows()..(row + k + 1) * problem.rows()];
+                for (product, d) in trial.product.iter_mut().zip(d) {
                     *product += change * d;
                 }
             }
@@ -34,19 +41,56 @@ pub(super) fn sweep(problem: &Posed, trial: &mut Trial) {
     }
 }
 
+/// The same where D is the product of sparse rows, `motion` being Bᵀ p; the largest change over the largest force.
+pub(super) fn sweep_lumped(
+    (problem, d): (&Posed, &Lumped),
+    trial: &mut Trial,
+    motion: &mut [f64],
+) -> f64 {
+    let (mut change, mut largest) = (0.0_f64, 0.0_f64);
+    for i in 0..problem.len() {
+        let (row, width) = (problem.normal(i), 1 + problem.tangents);
+        let mut others = [0.0; 3];
+        for (k, others) in others.iter_mut().enumerate().take(width) {
+            *others = d.along(row + k, motion) - problem.own(i, k, &trial.p);
+        }
+        let forces = solve(
+            (problem, &trial.mobile[i]),
+            i,
+            &mut trial.statuses[i],
+            &others,
+        );
+        for k in 0..width {
+            let moved = forces[k] - trial.p[row + k];
+            if moved != 0.0 {
+                trial.p[row + k] = forces[k];
+                d.add(row + k, moved, motion);
+                change = change.max(moved.abs());
+            }
+            largest = largest.max(forces[k].abs());
+        }
+    }
+    if change == 0.0 { 0.0 } else { change / largest }
+}
+
 /// The forces [P, t] of one candidate, with `others` = D p of all other candidates in its rows.
-fn solve(problem: &Posed, i: usize, status: &mut Status, others: &[f64; 3]) -> [f64; 3] {
-    let (row, candidate) = (problem.normal(i), &problem.candidates[i]);
+fn solve(
+    (problem, mobile): (&Posed, &[[f64; 2]; 2]),
+    i: usize,
+    status: &mut Status,
+    others: &[f64; 3],
+) -> [f64; 3] {
+    let candidate = &problem.candidates[i];
     let law = candidate.law.get();
     let mut forces = [0.0; 3];
     for turn in 0..TURNS {
         forces = match *status {
             Status::Open => [0.0; 3],
-            status => closed(problem, i, &problem.relation(i, status), others),
+            status => closed((problem, mobile), i, &problem.relation(i, status), others),
         };
         let product = others[0]
             + (0..=problem.tangents)
-                .map(|k| problem.d(row)[row + k] * forces[k])
+                .map(|k| problem.entry(i, 0, k) * forces[k])
                 .sum::<f64>();
         let end = problem.end(i, forces[0], product, others[0]);
         let asked = law.status(*status, &end, &candidate.local, turn);
@@ -60,8 +104,13 @@ fn solve(problem: &Posed, i: usize, status: &mut Status, others: &[f64; 3]) -> [
 
 /// The forces of a closed candidate: those that stick, if the bound lets them, else those of the slip q = -λ t with the
 /// λ > 0 at which |t| = μ P. The equations are linear for a given λ; λ = 0 sticks, λ → ∞ is frictionless.
-fn closed(problem: &Posed, i: usize, relation: &Relation, others: &[f64; 3]) -> [f64; 3] {
-    let (row, point) = (problem.normal(i), &problem.friction[i]);
+fn closed(
+    (problem, mobile): (&Posed, &[[f64; 2]; 2]),
+    i: usize,
+    relation: &Relation,
+    others: &[f64; 3],
+) -> [f64; 3] {
+    let point = &problem.friction[i];
     let factor = problem.factor(i, relation);
     let scale = 1.0 / problem.weight(i);
     let mut a = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -69,7 +118,7 @@ fn closed(problem: &Posed, i: usize, relation: &Relation, others: &[f64; 3]) -> 
     for k in 0..=problem.tangents {
         let s = if k == 0 { factor } else { problem.s[2] };
         for l in 0..=problem.tangents {
-            a[k][l] = s * problem.d(row + k)[row + l];
+            a[k][l] = s * problem.entry(i, k, l);
         }
         rhs[k] = -s * others[k]
             - match k {
@@ -77,7 +126,7 @@ fn closed(problem: &Posed, i: usize, relation: &Relation, others: &[f64; 3]) -> 
                 _ => point.free[k - 1],
             };
     }
-    hold(&problem.mobile(i), scale, (&mut a, &mut rhs));
+    hold(mobile, scale, (&mut a, &mut rhs));
     a[0][0] += relation.compliance;
     let frictionless = [rhs[0] / problem.slope(i, relation), 0.0, 0.0];
     if point.mu == 0.0 {

@@ -2,6 +2,7 @@ use carom_laws::{Adhesion, Damped, Displacement, Law, Local, Status};
 use carom_testing::Random;
 
 use super::*;
+use crate::Compliance;
 use crate::interface::{Candidate, Interface};
 
 fn candidate(law: Law, gap_free: f64) -> Candidate {
@@ -168,7 +169,11 @@ fn without_friction_the_forces_are_those_of_the_interface_problem() {
             .collect();
         let mut interface = Interface::default();
         interface
-            .solve(&problem.candidates, (&normal, 0), [0.5, 1.0])
+            .solve(
+                &problem.candidates,
+                (Compliance::Dense(&normal), 0),
+                [0.5, 1.0],
+            )
             .unwrap();
         assert_eq!(solution.statuses, interface.statuses);
         let size = interface.forces.iter().fold(1.0, |m: f64, p| m.max(*p));

@@ -3,6 +3,7 @@
 use carom_laws::Status;
 
 use super::{Posed, Slip};
+use crate::Compliance;
 
 /// Forces, the statuses that they ask for, and the defects of the equations of these statuses, N.
 ///
@@ -21,6 +22,12 @@ pub(super) struct Trial {
     pub(super) p: Vec<f64>,
     /// D p.
     pub(super) product: Vec<f64>,
+    /// Of each candidate, [`Posed::mobile`].
+    pub(super) mobile: Vec<[[f64; 2]; 2]>,
+    /// Σ |D_ij p_j|, or a bound of it.
+    sizes: Vec<f64>,
+    /// Scratch.
+    motion: Vec<f64>,
     /// Normal statuses.
     pub(super) statuses: Vec<Status>,
     /// Tangential statuses.
@@ -45,6 +52,8 @@ impl Trial {
             values.clear();
             values.resize(rows, 0.0);
         }
+        self.mobile.clear();
+        self.mobile.extend((0..n).map(|i| problem.mobile(i)));
         self.statuses.clear();
         // a corner is found anew in each step, from a closed point that opens
         let last = problem.candidates.iter().map(|c| match c.status {
@@ -70,7 +79,7 @@ impl Trial {
             }
             let row = problem.normal(i);
             self.defects[row] = self.relation_defect(problem, i, &mut 0.0);
-            let (weight, mobile) = (problem.weight(i), problem.mobile(i));
+            let (weight, mobile) = (problem.weight(i), self.mobile[i]);
             for k in 0..problem.tangents {
                 let slid = mobile[k][0] * point.free[0] + mobile[k][1] * point.free[1];
                 self.defects[row + 1 + k] = weight * slid;
@@ -83,19 +92,12 @@ impl Trial {
     pub(super) fn measure(&mut self, problem: &Posed, reversals: &[u32]) {
         self.worst = (0.0, 0);
         self.merit = 0.0;
+        self.multiply(problem);
         for i in 0..problem.len() {
             let mut sizes = [0.0; 3];
             let row = problem.normal(i);
-            for (k, size) in sizes.iter_mut().enumerate().take(1 + problem.tangents) {
-                let terms = problem.d(row + k).iter().zip(&self.p).map(|(d, p)| d * p);
-                let (mut sum, mut absolute) = (0.0, 0.0);
-                for term in terms {
-                    sum += term;
-                    absolute += f64::abs(term);
-                }
-                self.product[row + k] = sum;
-                *size = absolute;
-            }
+            let width = 1 + problem.tangents;
+            sizes[..width].copy_from_slice(&self.sizes[row..row + width]);
             let pressed = self.measure_normal(problem, i, reversals[i], &mut sizes[0]);
             self.measure_tangential(problem, i, pressed, &mut sizes[1..]);
             let size: f64 = sizes.iter().sum();
@@ -118,7 +120,12 @@ impl Trial {
     /// infinite without any.
     ///
     /// P - R and t - ρ q are linear in the share, so that the changes are roots of linear and quadratic equations.
-    pub(super) fn first_change(&self, problem: &Posed, change: &[f64], least: f64) -> f64 {
+    pub(super) fn first_change(
+        &self,
+        problem: &Posed,
+        (d, change): (&[f64], &[f64]),
+        least: f64,
+    ) -> f64 {
         let mut first = f64::INFINITY;
         let mut take = |share: f64| {
             if share > least {
@@ -128,12 +135,8 @@ impl Trial {
         for i in 0..problem.len() {
             let (row, point) = (problem.normal(i), &problem.friction[i]);
             let moved = |row: usize| -> f64 {
-                let terms = problem
-                    .d(row)
-                    .iter()
-                    .zip(change)
-                    .map(|(d, change)| d * change);
-                terms.sum()
+                let d = &d[row * change.len()..(row + 1) * change.len()];
+                d.iter().zip(change).map(|(d, change)| d * change).sum()
             };
             let relation = problem.relation(i, self.statuses[i]);
             let (factor, slope) = (problem.factor(i, &relation), problem.slope(i, &relation));
@@ -152,7 +155,7 @@ impl Trial {
                 y[k] = self.p[row] - weight * slid;
                 turn[k] = change[row] - weight * problem.s[2] * moved(row);
             }
-            let mobile = problem.mobile(i);
+            let mobile = self.mobile[i];
             let [y, turn] = [y, turn].map(|y| mobile.map(|row| row[0] * y[0] + row[1] * y[1]));
             let (bound, growth) = (point.mu * pressed, point.mu * pressing);
             let a = turn[0].powi(2) + turn[1].powi(2) - growth.powi(2);
@@ -167,6 +170,30 @@ impl Trial {
         first
     }
 
+    /// D p, and the sizes of its terms.
+    fn multiply(&mut self, problem: &Posed) {
+        match problem.d {
+            Compliance::Dense(d) => {
+                self.sizes.resize(problem.rows(), 0.0);
+                for (row, d) in d.chunks_exact(problem.rows()).enumerate() {
+                    let (mut sum, mut absolute) = (0.0, 0.0);
+                    for term in d.iter().zip(&self.p).map(|(d, p)| d * p) {
+                        sum += term;
+                        absolute += f64::abs(term);
+                    }
+                    (self.product[row], self.sizes[row]) = (sum, absolute);
+                }
+            }
+            Compliance::Lumped(d) => {
+                d.sizes(&self.p, &mut self.motion, &mut self.sizes);
+                d.gather(&self.p, &mut self.motion);
+                for (row, product) in self.product.iter_mut().enumerate() {
+                    *product = d.along(row, &self.motion);
+                }
+            }
+        }
+    }
+
     /// Whether no defect is larger than the tolerance that was asked for, of the largest force. A candidate that hardly
     /// carries anything may be far from its laws in its own measure, and no step is the better for more.
     pub(super) fn is_near(&self, problem: &Posed) -> bool {
@@ -179,11 +206,11 @@ impl Trial {
         let row = problem.normal(i);
         let candidate = &problem.candidates[i];
         let (force, product) = (self.p[row], self.product[row]);
-        let others = product - problem.own(i, row, &self.p);
+        let others = product - problem.own(i, 0, &self.p);
         // The signs are those of P - R, whichever status the point has: of the force where R = 0, of the gap or rate
         // where P = 0.
         let end = match self.statuses[i] {
-            Status::Open => problem.end(i, 0.0, product - problem.d(row)[row] * force, others),
+            Status::Open => problem.end(i, 0.0, product - problem.entry(i, 0, 0) * force, others),
             _ => {
                 let pressed = force - self.relation_defect(problem, i, &mut 0.0);
                 problem.end(i, pressed, product, others)
@@ -220,7 +247,7 @@ impl Trial {
             y[k] = t[k] - weight * (point.free[k] + problem.s[2] * self.product[row + k]);
             sizes[k] = t[k].abs() + weight * (point.free[k].abs() + problem.s[2] * sizes[k]);
         }
-        let y = problem.mobile(i).map(|row| row[0] * y[0] + row[1] * y[1]);
+        let y = self.mobile[i].map(|row| row[0] * y[0] + row[1] * y[1]);
         let (bound, size) = (point.mu * pressed.max(0.0), y[0].hypot(y[1]));
         self.curvatures[i] = 0.0;
         self.slips[i] = if self.statuses[i] == Status::Open {

@@ -2,6 +2,7 @@ use carom_laws::{Adhesion, Damped, Displacement};
 use carom_testing::Random;
 
 use super::*;
+use crate::Compliance;
 
 fn candidate(law: Law, gap_free: f64) -> Candidate {
     Candidate {
@@ -43,7 +44,9 @@ fn random_complementarity_problems_are_solved() {
             .map(|&q| candidate(Law::Displacement(Displacement::default()), q))
             .collect();
         let mut interface = Interface::default();
-        interface.solve(&candidates, (&d, 0), [1.0, 0.0]).unwrap();
+        interface
+            .solve(&candidates, (Compliance::Dense(&d), 0), [1.0, 0.0])
+            .unwrap();
         for i in 0..n {
             let gap = q[i]
                 + (0..n)
@@ -77,7 +80,9 @@ fn points_of_a_surface_that_faces_itself_share_their_force_where_they_say_the_sa
             ..candidate(law, gap)
         });
         let mut interface = Interface::default();
-        interface.solve(&candidates, (&d, 1), [1.0, 0.0]).unwrap();
+        interface
+            .solve(&candidates, (Compliance::Dense(&d), 1), [1.0, 0.0])
+            .unwrap();
         for (i, gap) in gaps.iter().enumerate() {
             let force = interface.forces[i];
             let end = gap
@@ -108,7 +113,9 @@ fn a_point_that_nothing_moves_carries_no_force_unless_its_law_says_it() {
             status: Status::Closed,
             ..candidate(law, gap)
         });
-        interface.solve(&candidates, (&d, 1), [1.0, 0.0]).unwrap();
+        interface
+            .solve(&candidates, (Compliance::Dense(&d), 1), [1.0, 0.0])
+            .unwrap();
         interface.forces.clone()
     };
     assert_eq!(solved(&mut interface, exact), [0.0, 1.0]);
@@ -137,7 +144,7 @@ fn a_force_that_the_step_cannot_change_is_told_by_its_law() {
     let mut interface = Interface::default();
     let d = [1.0, 0.25, 0.25, 1.0];
     interface
-        .solve(&[first, second], (&d, 1), [0.0, 1.0])
+        .solve(&[first, second], (Compliance::Dense(&d), 1), [0.0, 1.0])
         .unwrap();
     let [p, q] = interface.forces[..] else {
         panic!()
@@ -161,7 +168,9 @@ fn a_damper_that_is_cut_off_does_not_pull_its_neighbour() {
     });
     let (d, s) = ([1.0, 0.5, 0.5, 1.0], [0.01, 1.0]);
     let mut interface = Interface::default();
-    interface.solve(&candidates, (&d, 1), s).unwrap();
+    interface
+        .solve(&candidates, (Compliance::Dense(&d), 1), s)
+        .unwrap();
     let [p, q] = interface.forces[..] else {
         panic!()
     };
@@ -190,7 +199,9 @@ fn damped_point_obeys_its_law_or_its_corner() {
         rate_free: -4.0,
         ..candidate(law(2.0, 3.0), -10.0)
     };
-    interface.solve(&[soft], (&[1.0], 0), [0.5, 1.0]).unwrap();
+    interface
+        .solve(&[soft], (Compliance::Dense(&[1.0]), 0), [0.5, 1.0])
+        .unwrap();
     let p = interface.forces[0];
     assert!((p + 2.0 * (-10.0 + 0.5 * p) + 3.0 * (-4.0 + p)).abs() < 1e-12);
     assert_eq!(interface.statuses, [Status::Closed]);
@@ -199,7 +210,9 @@ fn damped_point_obeys_its_law_or_its_corner() {
         rate_free: -4.0,
         ..candidate(law(2.0, 300.0), -0.1)
     };
-    interface.solve(&[strong], (&[1.0], 1), [0.5, 1.0]).unwrap();
+    interface
+        .solve(&[strong], (Compliance::Dense(&[1.0]), 1), [0.5, 1.0])
+        .unwrap();
     assert_eq!(interface.statuses, [Status::Corner]);
     assert!((interface.forces[0] - 0.2).abs() < 1e-12);
 }

@@ -3,4 +3,5 @@
 // Helpers of tests panic as the tests themselves do.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+mod lumped;
 mod weak_form;
