@@ -170,7 +170,7 @@ impl Hardening for J2Table {
         for piece in self.pieces() {
             let gained = plastic - q.like(piece.strain);
             let gained = gained.most(zero).least(q.like(piece.end - piece.strain));
-            over = over - gained.scale(piece.slope);
+            over -= gained.scale(piece.slope);
         }
         let mut over = over.most(zero);
         let (mut slip, mut slope) = (zero, zero);

@@ -8,6 +8,10 @@ use crate::{Elastic, Material, OutOfRange, Parameters, Plane};
 macro_rules! declare {
     ([] $($(#[$doc:meta])* $law:ident $key:literal,)*) => {
         /// A material, as chosen in the case file.
+        #[expect(
+            clippy::large_enum_variant,
+            reason = "a plain value, one to a body: a table of hardening is an array"
+        )]
         #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
         pub enum Law {
             $($(#[$doc])* #[serde(rename = $key)] $law(crate::$law),)*
