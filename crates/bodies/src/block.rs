@@ -122,6 +122,7 @@ impl Block {
                         .collect(),
                     nodes,
                     weights,
+                    viscosity: Vec::new(),
                 }
             });
         let chunks = chunks.collect();
@@ -317,7 +318,7 @@ impl WithSimd for Sweep<'_> {
 impl Sweep<'_> {
     #[inline(always)]
     fn run<const W: usize>(self) -> f64 {
-        match &self.chunk.weights {
+        match self.chunk.weights_of_work() {
             None => self.kinds::<W>(Unweighted),
             Some(weights) => self.kinds::<W>(weights.at_points()),
         }

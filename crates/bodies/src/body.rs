@@ -14,7 +14,7 @@ use crate::reduced::Reduced;
 use crate::rigid::Rigid;
 use crate::scratch::Scratch;
 use crate::solid::{BodySpec, Solid};
-use crate::{Error, Kinematics, Placement, Stored};
+use crate::{Error, FrequencyBound, Kinematics, Placement, Stored};
 
 /// A body: mass, forces f(u, v), their derivatives, energies.
 #[derive(Debug)]
@@ -440,13 +440,16 @@ impl Body {
     ///
     /// # Errors
     /// As [`Body::force`].
-    pub fn frequency_bound_at(&self, at: &Placement) -> Result<f64, Error> {
+    pub fn frequency_bound_at(&self, at: &Placement) -> Result<FrequencyBound, Error> {
         match self {
             Body::Solid(solid) => solid.frequency_bound_at(at),
-            Body::Beam(beam) => Ok(beam.frequency_bound()),
-            Body::LargeBeam(beam) => Ok(beam.small().frequency_bound()),
-            Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => Ok(0.0),
+            _ => Ok(FrequencyBound::of(self.frequency_bound())),
         }
+    }
+
+    /// Mass that mass scaling has added, kg.
+    pub fn added_mass(&self) -> f64 {
+        self.as_solid().map_or(0.0, Solid::added_mass)
     }
 
     /// Visits the rows n of springs and of foundations, as unknowns and coefficients of the elongation: motions that they hold.

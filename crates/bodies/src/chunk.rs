@@ -16,6 +16,8 @@ pub(crate) struct Chunk {
     /// Nodes of each element, as places in `nodes`.
     pub(crate) connectivity: Vec<u32>,
     pub(crate) weights: Option<ChunkWeights>,
+    /// Of each element the coefficients of its bulk viscosity; empty without.
+    pub(crate) viscosity: Vec<[f64; 2]>,
 }
 
 impl Chunk {
@@ -24,9 +26,16 @@ impl Chunk {
         self.connectivity.len() / nodes
     }
 
+    /// Weights, where any δ is not 1.
+    #[inline(always)]
+    pub(crate) fn weights_of_work(&self) -> Option<&ChunkWeights> {
+        let weights = self.weights.as_ref();
+        weights.filter(|weights| !weights.is_inertia_alone)
+    }
+
     /// δ of an element at a point of the stiffness rule.
     pub(crate) fn weight(&self, element: usize, point: usize) -> f64 {
-        match &self.weights {
+        match self.weights_of_work() {
             Some(weights) => weights.stiffness_at(element, point),
             None => 1.0,
         }
@@ -79,7 +88,7 @@ impl Chunk {
     /// δ of the elements from one of them on, at a point of the stiffness rule; without weights nothing changes.
     #[inline(always)]
     pub(crate) fn weigh<T: Number>(&self, first: usize, point: usize, out: &mut T) {
-        if let Some(weights) = &self.weights {
+        if let Some(weights) = self.weights_of_work() {
             weights.batch(first, point, out);
         }
     }

@@ -1,6 +1,5 @@
 //! Solids and bars: elements of a mesh with one kinematics and one material.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 
 use carom_algebra::csr::Csr;
@@ -14,14 +13,14 @@ use crate::Error;
 use crate::bar::Bar;
 use crate::block::{Block, Physics, Visit};
 use crate::continuum;
-use crate::finite::{Finite, Formulation, Shape};
+use crate::finite::{BulkViscosity, Finite, Formulation, Shape};
 use crate::gather::Gather;
 use crate::nodes::Nodes;
 use crate::release::Release;
+use crate::scaling::MassScaling;
 use crate::scratch::Scratch;
-use crate::together::Together;
 use crate::weights::CellWeights;
-use crate::{Kinematics, size, stability};
+use crate::{Kinematics, size};
 
 /// What a solid or a bar is made of.
 #[derive(Clone, Debug)]
@@ -38,6 +37,10 @@ pub struct BodySpec {
     pub formulation: Formulation,
     /// Weights of inertia and internal work; none for a body that is alone in its volume.
     pub weights: Option<CellWeights>,
+    /// Bulk viscosity; needs a law at finite strain.
+    pub viscosity: Option<BulkViscosity>,
+    /// Mass scaling.
+    pub scaling: Option<MassScaling>,
     /// Hinges of beams.
     pub releases: Vec<Release>,
 }
@@ -57,6 +60,8 @@ impl BodySpec {
             material: material.into(),
             formulation: Formulation::Full,
             weights: None,
+            viscosity: None,
+            scaling: None,
             releases: Vec::new(),
         }
     }
@@ -69,11 +74,14 @@ pub struct Solid {
     kinematics: Kinematics,
     material: Law,
     cells: Vec<ElementId>,
-    blocks: Vec<Block>,
+    pub(crate) blocks: Vec<Block>,
     /// Law and formulation at finite strain; none at small strain.
     pub(crate) finite: Option<Finite>,
     dim: usize,
     smallest: f64,
+    pub(crate) viscosity: Option<BulkViscosity>,
+    /// Mass beyond that of the material, kg.
+    added_mass: f64,
     /// How the forces of chunks are added.
     pub(crate) gather: Gather,
 }
@@ -109,53 +117,62 @@ impl Solid {
             }),
             kinematics => Physics::Continuum(continuum::Law::new(kinematics, elastic, mesh.dim)),
         };
-        let mut cells = Vec::with_capacity(spec.cells.len());
-        let mut blocks = Vec::new();
         let shape = Shape {
             kinematics: spec.kinematics,
             formulation: spec.formulation,
             shear_modulus: elastic.shear_modulus(),
         };
-        for kind in Kind::ALL {
-            let of_kind: Vec<ElementId> = spec
-                .cells
-                .iter()
-                .copied()
-                .filter(|&cell| mesh.kind(cell) == kind)
-                .collect();
-            let nodes = of_kind.iter().flat_map(|&cell| mesh.element_nodes(cell));
-            let elements: Vec<u32> = nodes.map(|&node| number[node as usize]).collect();
-            if !elements.is_empty() {
-                let of_kind = |all: &CellWeights| all.of_kind(mesh, &spec.cells, kind);
-                let weights = spec.weights.as_ref().map(of_kind);
-                let nodes = Nodes {
-                    elements: &elements,
-                    x: &x,
-                    unknowns,
-                };
-                blocks.push(Block::new(kind, physics, &nodes, weights.as_ref()));
-            }
-            cells.extend(of_kind);
-        }
-        let body = Solid {
-            name: spec.name,
+        let is_viscous = spec.viscosity.is_some();
+        let finite = |law: Law| Finite::new(law, shape, is_viscous);
+        let parts = Parts {
+            mesh,
+            spec: &spec,
+            physics,
+            number,
+            x: &x,
+            unknowns,
+        };
+        let (cells, blocks) = parts.blocks(None);
+        let sizes = cells.iter().map(|&cell| size::smallest(mesh, cell));
+        let mut body = Solid {
+            name: spec.name.clone(),
             kinematics: spec.kinematics,
             material: spec.material,
-            smallest: cells
-                .iter()
-                .map(|&cell| size::smallest(mesh, cell))
-                .fold(f64::INFINITY, f64::min),
+            smallest: sizes.fold(f64::INFINITY, f64::min),
+            viscosity: spec.viscosity,
+            added_mass: 0.0,
             gather: Gather::new(mesh.dim, &blocks),
             cells,
             blocks,
-            finite: (spec.material.finite().is_some()).then(|| Finite::new(spec.material, shape)),
+            finite: (spec.material.finite().is_some()).then(|| finite(spec.material)),
             dim: mesh.dim,
         };
+        body.set_viscosity(mesh, None);
+        if let Some(scaling) = &spec.scaling {
+            let (factors, before) = (body.mass_factors(scaling), body.mass());
+            (body.cells, body.blocks) = parts.blocks(Some(&factors));
+            body.set_viscosity(mesh, Some(&factors));
+            body.added_mass = body.mass() - before;
+        }
         if spec.weights.is_some() {
             body.check_mass(mesh)?;
             body.check_stiffness()?;
         }
         Ok(body)
+    }
+
+    /// Mass, kg, that of mass scaling included.
+    fn mass(&self) -> f64 {
+        let mut mass = 0.0;
+        self.each_matrix(false, &mut |element| {
+            mass += element.lumped.iter().sum::<f64>()
+        });
+        mass
+    }
+
+    /// Mass that mass scaling has added, kg.
+    pub fn added_mass(&self) -> f64 {
+        self.added_mass
     }
 
     fn check_mass(&self, mesh: &Mesh) -> Result<(), Error> {
@@ -330,64 +347,6 @@ impl Solid {
         finite.plastic_strains(&self.blocks, history)
     }
 
-    /// Upper bound of the angular frequencies (rad/s) with lumped mass: the largest eigenvalue of M_e⁻¹ K_e over parts of
-    /// the body that add up to it bounds that of the body (Irons). An explicit step is stable below 2/ω.
-    ///
-    /// The parts are the elements, and if that is less, one part of all elements in which weights vary and of four layers
-    /// around them, with a bound of its own (Collatz, Wielandt: B = M⁻¹ |K| has no negative entry, so that its spectral
-    /// radius, not below λ, is at most max_i (B x)_i / x_i for any x > 0). With linear weights on straight bars the step
-    /// keeps 0.983, where the elements alone give 0.943. Elements whose weights are all zero do not count; a node with
-    /// stiffness and no mass in its part makes the bound infinite. At finite strain it is that of the undeformed body, fully
-    /// integrated, which no other formulation exceeds on rectangular elements as long as the hourglass factor is not above 1:
-    /// hourglass modes have at most 4 μ κ/(ρ h²), h the least edge, and full integration at least 4 (λ + 2μ)/(ρ h²).
-    pub fn frequency_bound(&self) -> f64 {
-        let varying: Vec<bool> = self.blocks.iter().flat_map(Block::varying).collect();
-        let (mut place, mut even, mut uneven) = (0, 0.0, 0.0);
-        let dim = self.dim;
-        let mut scaled = Vec::new();
-        self.each_matrix(true, &mut |element| {
-            stability::scale(dim, element.stiffness, element.lumped, &mut scaled);
-            let value = stability::largest_eigenvalue(&mut scaled);
-            let largest = if varying[place] {
-                &mut uneven
-            } else {
-                &mut even
-            };
-            *largest = f64::max(*largest, value);
-            place += 1;
-        });
-        if uneven > even {
-            uneven = uneven.min(self.together(varying));
-        }
-        f64::max(even, uneven).sqrt()
-    }
-
-    /// Bound of the eigenvalue of the elements marked and their neighbours, taken out of the body.
-    fn together(&self, mut marked: Vec<bool>) -> f64 {
-        // by then a motion at the ends of the weights has died away
-        const LAYERS: usize = 4;
-        let mut elements = Vec::new();
-        self.each_element(&mut |nodes| elements.push(nodes.to_vec()));
-        for _ in 0..LAYERS {
-            let touched = elements.iter().zip(&marked).filter(|(_, marked)| **marked);
-            let nodes: BTreeSet<u32> = touched.flat_map(|(nodes, _)| nodes).copied().collect();
-            for (element, marked) in elements.iter().zip(&mut marked) {
-                *marked |= element.iter().any(|node| nodes.contains(node));
-            }
-        }
-        let mut kept = marked.iter();
-        elements.retain(|_| kept.next() == Some(&true));
-        let mut together = Together::new(self.dim, &elements);
-        let mut place = 0;
-        self.each_matrix(true, &mut |element| {
-            if marked[place] {
-                together.add(element.nodes, element.stiffness, element.lumped);
-            }
-            place += 1;
-        });
-        together.largest_eigenvalue()
-    }
-
     pub(crate) fn each_matrix(&self, stiffness: bool, visit: &mut Visit) {
         for block in &self.blocks {
             block.matrices(self.dim, stiffness, visit);
@@ -465,4 +424,46 @@ fn check_formulation(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// What the blocks of a body are built of.
+struct Parts<'a> {
+    mesh: &'a Mesh,
+    spec: &'a BodySpec,
+    physics: Physics,
+    number: &'a [u32],
+    x: &'a [[f64; 3]],
+    unknowns: &'a Unknowns,
+}
+
+impl Parts<'_> {
+    /// The cells by kind, and their blocks. `factors`: of their masses.
+    fn blocks(&self, factors: Option<&[f64]>) -> (Vec<ElementId>, Vec<Block>) {
+        let (mesh, spec) = (self.mesh, self.spec);
+        let (mut cells, mut blocks) = (Vec::with_capacity(spec.cells.len()), Vec::new());
+        for kind in Kind::ALL {
+            let all = spec.cells.iter().copied();
+            let of_kind: Vec<ElementId> = all.filter(|&cell| mesh.kind(cell) == kind).collect();
+            let nodes = of_kind.iter().flat_map(|&cell| mesh.element_nodes(cell));
+            let elements: Vec<u32> = nodes.map(|&node| self.number[node as usize]).collect();
+            if !elements.is_empty() {
+                let of_all = |all: &CellWeights| all.of_kind(mesh, &spec.cells, kind);
+                let mut weights = spec.weights.as_ref().map(of_all);
+                if let Some(factors) = factors {
+                    let own = &factors[cells.len()..][..of_kind.len()];
+                    let count = elements.len();
+                    let weights = weights.get_or_insert_with(|| CellWeights::ones(count));
+                    weights.scale_inertia(own, kind.table().nodes);
+                }
+                let nodes = Nodes {
+                    elements: &elements,
+                    x: self.x,
+                    unknowns: self.unknowns,
+                };
+                blocks.push(Block::new(kind, self.physics, &nodes, weights.as_ref()));
+            }
+            cells.extend(of_kind);
+        }
+        (cells, blocks)
+    }
 }

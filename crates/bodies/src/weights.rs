@@ -47,6 +47,21 @@ impl CellWeights {
         Ok(())
     }
 
+    /// Weights of 1 at so many nodes of cells.
+    pub(crate) fn ones(count: usize) -> CellWeights {
+        CellWeights {
+            inertia: vec![1.0; count],
+            stiffness: vec![1.0; count],
+        }
+    }
+
+    /// Multiplies α of each cell, of so many nodes, by its factor.
+    pub(crate) fn scale_inertia(&mut self, factors: &[f64], nodes: usize) {
+        for (inertia, factor) in self.inertia.chunks_exact_mut(nodes).zip(factors) {
+            inertia.iter_mut().for_each(|weight| *weight *= factor);
+        }
+    }
+
     /// The values of the cells of one kind.
     pub(crate) fn of_kind(&self, mesh: &Mesh, cells: &[ElementId], kind: Kind) -> CellWeights {
         let (mut inertia, mut stiffness) = (Vec::new(), Vec::new());
@@ -73,6 +88,8 @@ pub(crate) struct ChunkWeights {
     stiffness: Vec<f64>,
     /// Values per point: the elements, and what fills the last batch, so that batches are read as they lie.
     stride: usize,
+    /// Whether all δ are 1.
+    pub(crate) is_inertia_alone: bool,
 }
 
 impl ChunkWeights {
@@ -92,6 +109,7 @@ impl ChunkWeights {
         }
         ChunkWeights {
             inertia: inertia.to_vec(),
+            is_inertia_alone: stiffness.iter().all(|weight| *weight == 1.0),
             stiffness: at_points,
             stride,
         }

@@ -52,10 +52,14 @@ pub fn facts(built: &Built) -> Vec<Fact> {
             continue;
         };
         let (speed, size) = (body.wave_speed(), extent(system, k));
+        let added = match body.added_mass() {
+            0.0 => String::new(),
+            added => format!(" ({added:.6} kg of them by mass scaling)"),
+        };
         facts.push(fact(
             format!("body {}", body.name()),
             format!(
-                "{}, {:.6} kg, waves at {speed:.5} m/s, {:.4e} s to cross its {size:.4} m, smallest element {:.4e} m",
+                "{}, {:.6} kg{added}, waves at {speed:.5} m/s, {:.4e} s to cross its {size:.4} m, smallest element {:.4e} m",
                 body.kinematics().name(),
                 system.body_mass(k),
                 size / speed,

@@ -57,7 +57,8 @@ pub enum Error {
     },
     /// A displacement, velocity or force is infinite or not a number.
     #[error(
-        "step {step}, t = {time:e} s: the {quantity} is not finite; the step is too large for the scheme, or the model is not supported"
+        "step {step}, t = {time:e} s: the {quantity} is not finite at node {node} of the mesh, in body '{body}', cell {} of block {}; the step is too large for the scheme, or the model is not supported",
+        cell.index, cell.block
     )]
     NotFinite {
         /// Number of the step.
@@ -66,6 +67,12 @@ pub enum Error {
         time: f64,
         /// What is not finite.
         quantity: &'static str,
+        /// The first node of the mesh where it is not.
+        node: u32,
+        /// Its body.
+        body: Box<str>,
+        /// The first cell of the body at the node.
+        cell: carom_mesh::ElementId,
     },
     /// Energy grows with the smallest step too.
     #[error(
@@ -82,7 +89,7 @@ pub enum Error {
     },
     /// Elements have shortened so far that no part of an explicit step is stable.
     #[error(
-        "step {step}, t = {time:e} s: elements have shortened, so that the critical step is now {critical:e} s, below the smallest part of a step, {dt:.4e} s"
+        "step {step}, t = {time:e} s: elements have shortened or bulk viscosity acts, so that the critical step, that of {place}, is now {critical:e} s,          below the smallest part of a step, {dt:.4e} s"
     )]
     Shortened {
         /// Number of the step.
@@ -93,6 +100,8 @@ pub enum Error {
         dt: f64,
         /// The critical step 2/ω, s.
         critical: f64,
+        /// The element that bounds it, in words.
+        place: Box<str>,
     },
     /// A secondary surface without area.
     #[error("contact '{contact}': the matrix of the multiplier on the secondary surface: {cause}")]

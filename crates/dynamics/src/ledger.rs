@@ -41,8 +41,12 @@ pub struct Balance {
     pub dissipation_damping: f64,
     /// Dissipation of friction.
     pub dissipation_friction: f64,
+    /// Dissipation of bulk viscosity.
+    pub dissipation_viscosity: f64,
     /// Energy that hardening stores.
     pub hardening: f64,
+    /// What of the strain energy resists the hourglass modes of elements with one point.
+    pub hourglass: f64,
     /// What the terms leave over: change of the three energies - works + dissipation.
     pub energy_residual: f64,
     /// Momentum, N s and N m s.
@@ -76,7 +80,9 @@ impl Balance {
             dissipation_material: self.dissipation_material + other.dissipation_material,
             dissipation_damping: self.dissipation_damping + other.dissipation_damping,
             dissipation_friction: self.dissipation_friction + other.dissipation_friction,
+            dissipation_viscosity: self.dissipation_viscosity + other.dissipation_viscosity,
             hardening: self.hardening + other.hardening,
+            hourglass: self.hourglass + other.hourglass,
             energy_residual: self.energy_residual + other.energy_residual,
             momentum: sum(&self.momentum, &other.momentum),
             impulse_loads: sum(&self.impulse_loads, &other.impulse_loads),
@@ -85,6 +91,11 @@ impl Balance {
             impulse_supports: sum(&self.impulse_supports, &other.impulse_supports),
             momentum_residual: sum(&self.momentum_residual, &other.momentum_residual),
         }
+    }
+
+    /// Energy that the materials took, J: strain energy, hardening, what they and bulk viscosity dissipated.
+    pub fn internal(&self) -> f64 {
+        self.strain + self.hardening + self.dissipation_material + self.dissipation_viscosity
     }
 
     /// Kinetic and strain energy, J.
@@ -135,6 +146,10 @@ pub struct Ledger {
     pub largest_contact_work: f64,
     /// Largest kinetic and strain energy so far beyond the energy that the scheme balances, J.
     pub largest_excess: f64,
+    /// Largest energy of hourglass modes so far, J.
+    pub largest_hourglass: f64,
+    /// Largest energy that the materials took so far, J ([`Balance::internal`]).
+    pub largest_internal: f64,
     /// Whether the steps are those of a static stage, whose works are sums over the steps.
     pub is_static: bool,
     /// What the iterations may have left unbalanced so far.
@@ -152,8 +167,9 @@ pub struct Ledger {
     /// What the scheme's own energy has lost by new sizes of the step, J.
     resized: Sum,
     /// Works and dissipations of [`Beyond`], in its order.
-    beyond: [Sum; 5],
+    beyond: [Sum; 6],
     hardening: f64,
+    hourglass: f64,
     impulses: [[Sum; 6]; 5],
     forces: Forces,
 }
@@ -171,8 +187,12 @@ pub(crate) struct Beyond {
     pub(crate) dissipation_damping: f64,
     /// Dissipation of friction.
     pub(crate) dissipation_friction: f64,
+    /// Dissipation of bulk viscosity.
+    pub(crate) dissipation_viscosity: f64,
     /// Energy that hardening stores at the end of the step.
     pub(crate) hardening: f64,
+    /// Energy of hourglass modes at the end of the step.
+    pub(crate) hourglass: f64,
     /// What the iterations of the step may leave unbalanced.
     pub(crate) tolerated: Tolerated,
 }
@@ -292,11 +312,12 @@ impl Ledger {
             beyond.dissipation_damping,
             beyond.dissipation_friction,
             beyond.work_obstacles,
+            beyond.dissipation_viscosity,
         ];
         for (sum, term) in self.beyond.iter_mut().zip(terms) {
             sum.add(term);
         }
-        self.hardening = beyond.hardening;
+        (self.hardening, self.hourglass) = (beyond.hardening, beyond.hourglass);
         self.tolerated.energy += beyond.tolerated.energy;
         self.tolerated.momentum += beyond.tolerated.momentum;
     }
@@ -395,6 +416,8 @@ impl Ledger {
     /// The largest terms so far.
     fn follow(&mut self) {
         self.largest_energy = self.largest_energy.max(self.balance.energy());
+        self.largest_hourglass = self.largest_hourglass.max(self.balance.hourglass);
+        self.largest_internal = self.largest_internal.max(self.balance.internal());
         let gain = self.balance.balanced() - self.initial.balanced() - self.balance.work_given();
         self.largest_gain = self.largest_gain.max(gain);
         self.largest_made = self.largest_made.max(-self.balance.dissipation_scheme);
@@ -450,10 +473,14 @@ impl Ledger {
             dissipation_damping,
             dissipation_friction,
             work_obstacles,
+            dissipation_viscosity,
         ] = self.beyond.map(|sum| sum.get());
         let works = work_loads + work_contact + work_links + work_supports + work_obstacles;
-        let dissipations =
-            dissipation_scheme + dissipation_material + dissipation_damping + dissipation_friction;
+        let dissipations = dissipation_scheme
+            + dissipation_material
+            + dissipation_damping
+            + dissipation_friction
+            + dissipation_viscosity;
         let [impulse_loads, impulse_contact] = [impulse(0), impulse(1)];
         let impulse_supports = impulse(2).combine(1.0, &impulse(3), 1.0);
         let impulse_links = impulse(4);
@@ -476,7 +503,9 @@ impl Ledger {
             dissipation_material,
             dissipation_damping,
             dissipation_friction,
+            dissipation_viscosity,
             hardening: self.hardening,
+            hourglass: self.hourglass,
             energy_residual: change - works + dissipations,
             momentum: energies.momentum,
             impulse_loads,

@@ -9,6 +9,8 @@ pub struct Shapes {
     pub(crate) u: Vec<f64>,
     /// Of each body whose elements change; none of others.
     pub(crate) bodies: Vec<Option<Shape>>,
+    /// What a compression of rate 1/s adds at most to 2 over the critical step found at that look, by bulk viscosity.
+    pub(crate) by_compression: f64,
     /// Bound of the change of any length in an element since that look, relative.
     pub(crate) changed: f64,
 }

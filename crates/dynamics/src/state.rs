@@ -52,19 +52,6 @@ pub struct Links {
     pub works: Vec<[f64; 2]>,
 }
 
-/// # Errors
-/// A vector of the motion at the end of a step, at this time (s), with an entry that is no number.
-pub(crate) fn check_finite(motion: &Motion, step: u64, time: f64) -> Result<(), Error> {
-    match motion.not_finite() {
-        None => Ok(()),
-        Some(quantity) => Err(Error::NotFinite {
-            step,
-            time,
-            quantity,
-        }),
-    }
-}
-
 /// Arrays over all contact points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct InterfaceState {

@@ -77,6 +77,9 @@ pub struct Model {
     pub contact_points: usize,
     /// Mass matrix: `lumped` or `consistent`, by body.
     pub mass: BTreeMap<String, String>,
+    /// Mass that mass scaling has added, kg, by body, where there is some.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub added_mass: BTreeMap<String, f64>,
 }
 
 /// Steps in time.
@@ -269,8 +272,8 @@ pub struct Energy {
     /// Works over the run, positive when the bodies gain: of `loads` and `contact`, in zones of `links`, and where there is
     /// some of `supports` and `obstacles` that move.
     pub works: BTreeMap<String, f64>,
-    /// Energy lost over the run, positive when lost: by the `scheme`, and where there is some in `materials`, by `damping` and
-    /// by `friction`.
+    /// Energy lost over the run, positive when lost: by the `scheme`, and where there is some in `materials`, by `damping`, by
+    /// `friction` and by bulk `viscosity`.
     pub dissipations: BTreeMap<String, f64>,
     /// Energy stored over the run beside strain energy, positive when stored, where there is some: in `hardening`, and by the
     /// `scheme` in a term of its own.
@@ -284,6 +287,9 @@ pub struct Energy {
     /// Largest kinetic and strain energy of the run, in a static stage the largest work of the loads if that is more.
     #[serde(default)]
     pub largest: f64,
+    /// Largest energy of hourglass modes, a part of the strain energy, where there is some.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_hourglass: Option<f64>,
     /// `largest_residual` over `largest`; what the check bounds: how far the equations are solved.
     #[serde(with = "float")]
     pub relative_residual: f64,

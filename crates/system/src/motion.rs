@@ -40,8 +40,8 @@ impl<'a> From<&'a Motion> for Known<'a> {
 }
 
 impl Motion {
-    /// What of displacement, velocity and contact force has an entry that is no number, if anything has.
-    pub fn not_finite(&self) -> Option<&'static str> {
+    /// What of displacement, velocity and contact force has an entry that is no number, if anything has, and the first such entry.
+    pub fn not_finite(&self) -> Option<(&'static str, usize)> {
         let vectors = [
             ("displacement", &self.u),
             ("velocity", &self.v),
@@ -50,7 +50,15 @@ impl Motion {
         let mut bad = vectors
             .into_iter()
             .filter(|(_, vector)| !vector.iter().sum::<f64>().is_finite());
-        bad.next().map(|(quantity, _)| quantity)
+        let (quantity, vector) = bad.next()?;
+        // where only the sum is not finite, the largest entry
+        let larger = |best: usize, i: usize| match vector[i].abs() > vector[best].abs() {
+            true => i,
+            false => best,
+        };
+        let single = vector.iter().position(|x| !x.is_finite());
+        let unknown = single.unwrap_or_else(|| (0..vector.len()).fold(0, larger));
+        Some((quantity, unknown))
     }
 
     /// Turns the frames by the increments of the step, R₊ = R cay(θ), which are then zero.

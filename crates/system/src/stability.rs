@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_bodies::Placement;
+use carom_bodies::{FrequencyBound, Placement};
 use carom_contact::law::{Local, Status};
 use carom_contact::{Contact, Rows, Search};
 
@@ -28,12 +28,16 @@ impl System {
         self.critical_with(bounds.fold(0.0, f64::max))
     }
 
-    /// Critical step about a motion, s, with the tangents there; a body at small strain has always the same.
+    /// Critical step about a motion, s, with the tangents there; a body at small strain has always the same. And the bound of the
+    /// elements.
     ///
     /// # Errors
     /// An element without tangent.
-    pub fn critical_step_at(&self, motion: &Motion) -> Result<f64, carom_bodies::Error> {
-        let mut bodies: f64 = 0.0;
+    pub fn critical_step_at(
+        &self,
+        motion: &Motion,
+    ) -> Result<(f64, FrequencyBound), carom_bodies::Error> {
+        let mut bound = FrequencyBound::default();
         let all = self.bodies.iter().zip(&self.nonlinear.histories);
         let all = all.zip(&self.zone_of_body);
         for ((body, history), _) in all.filter(|(_, zone)| self.is_explicit(**zone)) {
@@ -45,9 +49,9 @@ impl System {
                 dt: self.dt,
                 old: &motion.history[history.clone()],
             };
-            bodies = bodies.max(body.frequency_bound_at(&at)?);
+            bound = bound.most(&body.frequency_bound_at(&at)?);
         }
-        Ok(self.critical_with(bodies))
+        Ok((self.critical_with(bound.frequency), bound))
     }
 
     /// Whether the elements of a zone bound the step: those of all where no scheme is explicit.

@@ -110,6 +110,7 @@ mod sdnl111;
 mod sdnl111_bars;
 mod self_contact;
 mod shapes;
+mod shock_front;
 mod sliding_block;
 mod sliding_work;
 mod spinning_bar;
@@ -238,6 +239,7 @@ registry! {
     sdnl111_bars
     self_contact
     shapes
+    shock_front
     sliding_block
     sliding_work
     spinning_bar

@@ -21,8 +21,8 @@ pub(super) enum Together {
     OnePoint(f64),
 }
 
-/// Energies per element.
-pub(super) type Energies<T> = [T; 3];
+/// Energies per element: strain, hardening, dissipated, hourglass, viscous.
+pub(super) type Energies<T> = [T; 5];
 
 /// What the law sees and answers at the points of several elements.
 pub(super) struct AtLaw<T> {
@@ -31,6 +31,8 @@ pub(super) struct AtLaw<T> {
     /// Between two displacements: H at the start; with mean dilatation the change of that strain.
     pub(super) from: [Tensor<T>; POINTS],
     pub(super) answers: [Answer<T>; POINTS],
+    /// Of the bulk viscosity.
+    pub(super) viscous: Viscous<T>,
     /// δ.
     pub(super) weights: [T; POINTS],
 }
@@ -49,6 +51,7 @@ impl<T: Number> AtLaw<T> {
             h: [[[zero; 3]; 3]; POINTS],
             from: [[[zero; 3]; 3]; POINTS],
             answers: [answer; POINTS],
+            viscous: Viscous::new(zero),
             weights: [zero.like(1.0); POINTS],
         }
     }
@@ -174,5 +177,24 @@ impl<T: Number> Path<T> {
             ..Path::new(one.like(0.0))
         };
         (path, d)
+    }
+}
+
+/// What bulk viscosity does at the points of several elements.
+pub(super) struct Viscous<T> {
+    /// Works, J/m³.
+    pub(super) works: [T; POINTS],
+    /// Fastest compression, 1/s.
+    pub(super) compression: T,
+}
+
+impl<T: Number> Viscous<T> {
+    /// Nothing yet.
+    #[inline(always)]
+    pub(super) fn new(zero: T) -> Self {
+        Viscous {
+            works: [zero; POINTS],
+            compression: zero,
+        }
     }
 }

@@ -10,8 +10,9 @@ use super::placement::Stored;
 #[derive(Debug)]
 pub(crate) struct Finite {
     pub(super) law: Law,
-    /// Numbers that the law keeps of a point.
+    /// Numbers that are kept of a point: those of the law, and with bulk viscosity ln J.
     pub(super) kept: usize,
+    pub(super) kept_by_law: usize,
     pub(super) shape: Shape,
 }
 
@@ -27,8 +28,13 @@ pub(crate) struct Outcome {
 pub(super) type Failed = (usize, Fault);
 
 impl Finite {
-    pub(crate) fn new(law: Law, shape: Shape) -> Finite {
-        let kept = law.finite().map_or(0, Material::history_len);
-        Finite { law, kept, shape }
+    pub(crate) fn new(law: Law, shape: Shape, is_viscous: bool) -> Finite {
+        let kept_by_law = law.finite().map_or(0, Material::history_len);
+        Finite {
+            law,
+            kept: kept_by_law + usize::from(is_viscous),
+            kept_by_law,
+            shape,
+        }
     }
 }

@@ -74,6 +74,8 @@ pub(super) struct Element {
     weighted: [f64; MAX_POINTS],
     pub(super) dilatation: bool,
     pub(super) hourglass: Option<Hourglass>,
+    /// Coefficients of the bulk viscosity.
+    pub(super) viscosity: Option<[f64; 2]>,
 }
 
 impl Element {
@@ -90,6 +92,7 @@ impl Element {
             weighted: [0.0; MAX_POINTS],
             dilatation: false,
             hourglass: None,
+            viscosity: None,
         }
     }
 
@@ -101,6 +104,7 @@ impl Element {
         self.axisymmetric = shape.kinematics == Kinematics::Axisymmetric;
         self.nodes = nodes;
         self.dilatation = shape.formulation == Formulation::BBar;
+        self.viscosity = chunk.viscosity.get(place).copied();
         let mut x = [[0.0; 3]; MAX_NODES];
         for ((x, first), &node) in x.iter_mut().zip(&mut self.first).zip(element) {
             *x = chunk.x[node as usize];

@@ -21,6 +21,7 @@ use super::between::cofactor;
 use super::cell::{Element, MAX_UNKNOWNS};
 use super::element::{Fault, Local, tangent};
 use super::gradient::symmetric;
+use super::viscosity::Damped;
 
 /// Volume change of an element.
 pub(super) struct Dilatation {
@@ -45,6 +46,7 @@ struct Point {
     pressure: f64,
     /// At F̄.
     response: Response,
+    damped: Damped<f64>,
 }
 
 impl Element {
@@ -77,7 +79,7 @@ impl Element {
         let f = self.gradient(point).deformation(at.u);
         let determinant = f.determinant();
         let s = (dilatation.ratio / determinant).cbrt();
-        let response = at.update(self.points, point, &(f * s), new, want)?;
+        let (response, damped) = at.update(self.points, point, &(f * s), new, want)?;
         Ok(Point {
             g: cofactor(&f) / determinant,
             s,
@@ -86,6 +88,7 @@ impl Element {
             pressure: s * response.stress.dot(&f) / 3.0,
             f,
             response,
+            damped,
         })
     }
 
@@ -100,7 +103,7 @@ impl Element {
         let mut volume = [0.0; MAX_UNKNOWNS];
         for place in 0..self.points {
             let point = self.dilated_point(place, &dilatation, at, new, Want::Stress)?;
-            stored.add(point.weighted, &point.response);
+            stored.add(point.weighted, (&point.response, &point.damped));
             mean += point.weighted * point.pressure;
             let deviator = point.response.stress * point.s - point.g * point.pressure;
             let gradient = self.gradient(place);

@@ -6,6 +6,7 @@ use carom_materials::{Failure, Material, Response, Tangent, Want};
 use super::Stored;
 use super::cell::Element;
 use super::gradient::{Gradient, mirror, symmetric};
+use super::viscosity::{Damped, add_pressure, damp};
 
 /// Where one element is.
 pub(super) struct Local<'a> {
@@ -18,6 +19,8 @@ pub(super) struct Local<'a> {
     pub(super) dt: f64,
     /// History of its points at the start of the step.
     pub(super) old: &'a [f64],
+    /// Coefficients of the bulk viscosity.
+    pub(super) viscosity: Option<[f64; 2]>,
 }
 
 /// Why an element gave no force.
@@ -30,10 +33,12 @@ pub(super) enum Fault {
 }
 
 impl Stored {
-    pub(super) fn add(&mut self, volume: f64, response: &Response) {
+    pub(super) fn add(&mut self, volume: f64, (response, damped): (&Response, &Damped<f64>)) {
         self.strain += volume * response.stored;
         self.hardening += volume * response.hardening;
         self.dissipated += volume * response.dissipated;
+        self.viscous += volume * damped.work;
+        self.compression = self.compression.max(damped.compression);
     }
 }
 
@@ -61,14 +66,15 @@ impl Element {
         }
         let mut stored = Stored::default();
         for point in 0..self.points {
-            let response = self.response(point, at, new, Want::Stress)?;
+            let (response, damped) = self.response(point, at, new, Want::Stress)?;
             let volume = self.weighted(point);
-            stored.add(volume, &response);
+            stored.add(volume, (&response, &damped));
             let gradient = self.gradient(point);
             gradient.add_transposed(volume, &response.stress, f);
         }
         if let Some(hourglass) = &self.hourglass {
-            stored.strain += hourglass.force(self.dim, at.u, at.from, f);
+            stored.hourglass = hourglass.force(self.dim, at.u, at.from, f);
+            stored.strain += stored.hourglass;
         }
         Ok(stored)
     }
@@ -88,7 +94,7 @@ impl Element {
             }
         } else {
             for point in 0..self.points {
-                let response = self.response(point, at, new, Want::Tangent)?;
+                let (response, _) = self.response(point, at, new, Want::Tangent)?;
                 let a = symmetric(self.weighted(point), tangent(&response));
                 self.gradient(point).add_product(&a, matrix);
             }
@@ -108,7 +114,7 @@ impl Element {
         at: &Local,
         new: &mut [f64],
         want: Want,
-    ) -> Result<Response, Fault> {
+    ) -> Result<(Response, Damped<f64>), Fault> {
         let gradient = self.gradient(point);
         let f = gradient.deformation(at.u);
         let failed = |failure| Fault::Law { point, failure };
@@ -117,7 +123,8 @@ impl Element {
         };
         let between = at.law.between(&gradient.deformation(from), &f, want);
         new.copy_from_slice(at.old);
-        between.ok_or(Fault::NoBetween)?.map_err(failed)
+        let response = between.ok_or(Fault::NoBetween)?.map_err(failed)?;
+        Ok((response, Damped::default()))
     }
 
     /// Cauchy stress σ = P F^T / det F and det F times dV at a point, by the F that its law sees.
@@ -133,7 +140,7 @@ impl Element {
             if let Some(theta) = theta {
                 f *= (theta / f.determinant()).cbrt();
             }
-            let response = at.update(self.points, point, &f, new, Want::Stress)?;
+            let (response, _) = at.update(self.points, point, &f, new, Want::Stress)?;
             stress += response.stress * f.transpose() * (current / f.determinant());
             volume += current;
         }
@@ -142,7 +149,7 @@ impl Element {
 }
 
 impl Local<'_> {
-    /// The law at a point with this F, one of `points` in the element.
+    /// The law and the bulk viscosity at a point with this F, one of `points` in the element.
     pub(super) fn update(
         &self,
         points: usize,
@@ -150,12 +157,24 @@ impl Local<'_> {
         f: &Mat3,
         new: &mut [f64],
         want: Want,
-    ) -> Result<Response, Fault> {
+    ) -> Result<(Response, Damped<f64>), Fault> {
         let length = new.len() / points;
         let range = point * length..(point + 1) * length;
-        let history = (&self.old[range.clone()], &mut new[range]);
-        let updated = self.law.update(f, self.dt, history, want);
-        updated.map_err(|failure| Fault::Law { point, failure })
+        let of_law = length - usize::from(self.viscosity.is_some());
+        let (old, before) = self.old[range.clone()].split_at(of_law);
+        let (new, after) = new[range].split_at_mut(of_law);
+        let updated = self.law.update(f, self.dt, (old, new), want);
+        let mut response = updated.map_err(|failure| Fault::Law { point, failure })?;
+        let mut damped = Damped::default();
+        if let (Some(coefficients), [before], [after]) = (self.viscosity, before, after) {
+            let h = [0, 1, 2].map(|i| [0, 1, 2].map(|j| f[(i, j)] - f64::from(u8::from(i == j))));
+            damped = damp(&h, coefficients, (*before, self.dt));
+            let mut stress = [[0.0; 3]; 3];
+            add_pressure(&mut stress, &h, damped.pressure);
+            response.stress += Mat3::from_fn(|i, j| stress[i][j]);
+            *after = damped.logarithm;
+        }
+        Ok((response, damped))
     }
 }
 

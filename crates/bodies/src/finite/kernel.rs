@@ -16,6 +16,7 @@ use super::batch::{AtLaw, Bad, Energies, Together, Watch};
 use super::body::{Finite, Outcome};
 use super::element::Fault;
 use super::passes::{Elements, Forces, Gradients, Room};
+use super::viscosity::{add_pressure, damp};
 use super::{Formulation, Placement, Stored};
 use crate::block::{Block, Physics};
 use crate::chunk::Chunk;
@@ -107,7 +108,7 @@ impl Sweep<'_> {
             cell: Cell::new(physics, &self.block.stiffness_points),
             together: self.together(),
             kind: self.block.kind,
-            weighted: self.chunk.weights.is_some(),
+            weighted: self.chunk.weights_of_work().is_some(),
             between: self.at.from.is_some(),
         };
         let points = self.finite.shape.points(self.block);
@@ -135,11 +136,12 @@ impl Sweep<'_> {
                 };
                 found = answered;
             }
-            let histories = Histories {
+            let mut histories = Histories {
                 first,
                 count,
                 points,
                 kept: self.finite.kept,
+                of_law: self.finite.kept_by_law,
                 dt: self.at.dt,
                 old: self.at.old,
                 new: &mut *self.new,
@@ -148,8 +150,16 @@ impl Sweep<'_> {
                 let at = &mut room.law;
                 found = by_law!(
                     &self.finite.law,
-                    law => simd.vectorize(AskLaw(law, at, histories))
+                    law => simd.vectorize(AskLaw(law, at, &mut histories))
                 );
+            }
+            if let (Ok(()), false) = (&found, self.chunk.viscosity.is_empty()) {
+                let coefficients = &self.chunk.viscosity[first..first + count];
+                simd.vectorize(Damp(&mut room.law, &mut histories, coefficients));
+                out.stored.compression = out
+                    .stored
+                    .compression
+                    .max(room.law.viscous.compression.largest());
             }
             if let Err(bad) = found {
                 out.fault = bad.fault(first, count);
@@ -177,6 +187,8 @@ impl Stored {
             self.strain += energies[0].lanes()[k];
             self.hardening += energies[1].lanes()[k];
             self.dissipated += energies[2].lanes()[k];
+            self.hourglass += energies[3].lanes()[k];
+            self.viscous += energies[4].lanes()[k];
         }
     }
 }
@@ -187,8 +199,9 @@ struct Histories<'a> {
     count: usize,
     /// Of an element.
     points: usize,
-    /// Numbers that the law keeps of a point.
+    /// Numbers that are kept of a point, and those of them that the law keeps.
     kept: usize,
+    of_law: usize,
     dt: f64,
     old: &'a [f64],
     new: &'a mut [f64],
@@ -226,48 +239,91 @@ impl<L: Pointwise, T: Number> NullaryFnOnce for AskBetween<'_, L, T> {
 }
 
 /// The law at all points of several elements.
-struct AskLaw<'a, L, T>(&'a L, &'a mut AtLaw<T>, Histories<'a>);
+struct AskLaw<'a, 'b, L, T>(&'a L, &'a mut AtLaw<T>, &'a mut Histories<'b>);
 
-impl<L: Pointwise, T: Number> NullaryFnOnce for AskLaw<'_, L, T> {
+impl<L: Pointwise, T: Number> NullaryFnOnce for AskLaw<'_, '_, L, T> {
     type Output = Result<(), Bad<T>>;
 
     #[inline(always)]
     fn call(self) -> Result<(), Bad<T>> {
         let AskLaw(law, at, histories) = self;
-        let Histories {
-            first,
-            count,
-            points,
-            kept,
-            dt,
-            old: all_old,
-            new: all_new,
-        } = histories;
         let zero = at.h[0][0][0].like(0.0);
         let (mut old, mut new) = ([zero; MAX_KEPT], [zero; MAX_KEPT]);
+        let kept = histories.of_law;
         let (old, new) = (&mut old[..kept], &mut new[..kept]);
         let mut watch = Watch::new(zero);
-        for point in 0..points {
-            let place = |k: usize| ((first + k) * points + point) * kept;
-            if kept > 0 {
-                for k in 0..zero.lanes().len() {
-                    let own = &all_old[place(k.min(count - 1))..];
-                    for (old, own) in old.iter_mut().zip(own) {
-                        old.lanes_mut()[k] = *own;
-                    }
-                }
-            }
-            at.answers[point] = law.answer(&at.h[point], dt, old, new);
+        for point in 0..histories.points {
+            histories.read(point, 0, old);
+            at.answers[point] = law.answer(&at.h[point], histories.dt, old, new);
             watch.see(point, at.answers[point].positive);
-            if kept > 0 {
-                for k in 0..count {
-                    let own = &mut all_new[place(k)..];
-                    for (new, own) in new.iter().zip(own) {
-                        *own = new.lanes()[k];
-                    }
-                }
-            }
+            histories.write(point, 0, new);
         }
         watch.end()
+    }
+}
+
+impl Histories<'_> {
+    /// Place of the history of an element at a point.
+    #[inline(always)]
+    fn place(&self, element: usize, point: usize) -> usize {
+        ((self.first + element) * self.points + point) * self.kept
+    }
+
+    /// Numbers at a point at the start of the step, from one of them on; a short batch repeats its last element.
+    #[inline(always)]
+    fn read<T: Number>(&self, point: usize, from: usize, out: &mut [T]) {
+        let Some(lanes) = out.first().map(|out| out.lanes().len()) else {
+            return;
+        };
+        for k in 0..lanes {
+            let own = &self.old[self.place(k.min(self.count - 1), point) + from..];
+            for (out, own) in out.iter_mut().zip(own) {
+                out.lanes_mut()[k] = *own;
+            }
+        }
+    }
+
+    /// Writes numbers at a point at the end of the step, from one of them on.
+    #[inline(always)]
+    fn write<T: Number>(&mut self, point: usize, from: usize, values: &[T]) {
+        if values.is_empty() {
+            return;
+        }
+        for k in 0..self.count {
+            let place = self.place(k, point) + from;
+            for (new, own) in values.iter().zip(&mut self.new[place..]) {
+                *own = new.lanes()[k];
+            }
+        }
+    }
+}
+
+/// Adds the bulk viscosity to what the law answered at all points of several elements, which have these coefficients.
+struct Damp<'a, 'b, T>(&'a mut AtLaw<T>, &'a mut Histories<'b>, &'a [[f64; 2]]);
+
+impl<T: Number> NullaryFnOnce for Damp<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Damp(at, histories, of_elements) = self;
+        let zero = at.h[0][0][0].like(0.0);
+        let mut coefficients = [zero; 2];
+        for k in 0..zero.lanes().len() {
+            let own = &of_elements[k.min(of_elements.len() - 1)];
+            coefficients[0].lanes_mut()[k] = own[0];
+            coefficients[1].lanes_mut()[k] = own[1];
+        }
+        at.viscous.compression = zero;
+        for point in 0..histories.points {
+            let mut before = [zero];
+            histories.read(point, histories.of_law, &mut before);
+            let damped = damp(&at.h[point], coefficients, (before[0], histories.dt));
+            let stress = &mut at.answers[point].stress;
+            add_pressure(stress, &at.h[point], damped.pressure);
+            at.viscous.works[point] = damped.work;
+            at.viscous.compression = at.viscous.compression.most(damped.compression);
+            histories.write(point, histories.of_law, &[damped.logarithm]);
+        }
     }
 }

@@ -21,12 +21,15 @@ mod placement;
 mod pressure;
 mod solid;
 mod sweep;
+mod viscosity;
 
 pub(crate) use body::{Finite, Outcome};
 pub(crate) use cell::Shape;
 pub use formulation::Formulation;
 pub use placement::{Placement, Stored};
 pub use pressure::FollowerPressure;
+pub use solid::FrequencyBound;
+pub use viscosity::BulkViscosity;
 
 #[cfg(test)]
 mod tests;

@@ -177,11 +177,12 @@ impl<const N: usize, const D: usize, const E: usize> Elements<'_, N, D, E> {
     fn full<T: Number>(&self, room: &mut Room<T, N, D, E>) -> Energies<T> {
         let zero = room.mean.like(0.0);
         let mut df = [[[zero; D]; E]; D];
-        let mut energies = [zero; 3];
+        let mut energies = [zero; 5];
         for q in 0..self.cell.points().len() {
             let (metric, answer) = (&room.metrics[q], &room.law.answers[q]);
             let weight = room.law.weights[q];
-            add(&mut energies, answer, metric.volume() * weight);
+            let (energy, volume) = ((answer, room.law.viscous.works[q]), metric.volume());
+            add(&mut energies, energy, volume * weight);
             self.spread((q, metric), &answer.stress, weight, (&mut df, &mut room.f));
         }
         self.cell.add_differences(&df, &mut room.f);
@@ -219,13 +220,13 @@ impl<const N: usize, const D: usize, const E: usize> Elements<'_, N, D, E> {
         let (zero, one) = (room.mean.like(0.0), room.mean.like(1.0));
         let (mut df, mut dv) = ([[[zero; D]; E]; D], [[[zero; D]; E]; D]);
         let mut by_volume = [[zero; D]; N];
-        let (mut energies, mut mean) = ([zero; 3], zero);
+        let (mut energies, mut mean) = ([zero; 5], zero);
         let theta = room.mean + one;
         for q in 0..self.cell.points().len() {
             let (metric, answer) = (&room.metrics[q], &room.law.answers[q]);
             let (weight, s) = (room.law.weights[q], room.stretches[q]);
             let weighted = metric.volume() * weight;
-            add(&mut energies, answer, weighted);
+            add(&mut energies, (answer, room.law.viscous.works[q]), weighted);
             let (deviator, slope, pressure) = split(&answer.stress, &room.law.h[q], s, theta);
             mean = weighted.mul_add(pressure, mean);
             self.spread((q, metric), &deviator, weight, (&mut df, &mut room.f));
@@ -248,15 +249,20 @@ impl<const N: usize, const D: usize, const E: usize> Elements<'_, N, D, E> {
     fn one_point<T: Number>(&self, modulus: f64, room: &mut Room<T, N, D, E>) -> Energies<T> {
         let (answer, weighted) = (room.law.answers[0], room.mean);
         let zero = weighted.like(0.0);
-        let mut energies = [zero; 3];
-        add(&mut energies, &answer, weighted);
+        let mut energies = [zero; 5];
+        add(
+            &mut energies,
+            (&answer, room.law.viscous.works[0]),
+            weighted,
+        );
         let mut pull = inner(&answer.stress);
         for i in 0..D {
             for j in 0..D {
                 pull[i][j] = pull[i][j] * weighted;
             }
         }
-        energies[0] += self.hourglass(modulus, room, &mut pull);
+        energies[3] = self.hourglass(modulus, room, &mut pull);
+        energies[0] += energies[3];
         // the first node bears what the others give, so that the sum is nothing
         for a in 1..N {
             for i in 0..D {
@@ -366,10 +372,11 @@ fn inner<T: Number, const D: usize>(stress: &Tensor<T>) -> [[T; D]; D] {
 }
 
 #[inline(always)]
-pub(super) fn add<T: Number>(sum: &mut Energies<T>, answer: &Answer<T>, volume: T) {
+pub(super) fn add<T: Number>(sum: &mut Energies<T>, (answer, viscous): (&Answer<T>, T), volume: T) {
     sum[0] = volume.mul_add(answer.stored, sum[0]);
     sum[1] = volume.mul_add(answer.hardening, sum[1]);
     sum[2] = volume.mul_add(answer.dissipated, sum[2]);
+    sum[4] = volume.mul_add(viscous, sum[4]);
 }
 
 /// Replaces H by s H + (s - 1) I.

@@ -64,13 +64,13 @@ impl<const N: usize, const D: usize, const E: usize> Elements<'_, N, D, E> {
         let zero = room.mean.like(0.0);
         let (mut df, mut dv) = ([[[zero; D]; E]; D], [[[zero; D]; E]; D]);
         let mut by_volume = [[zero; D]; N];
-        let (mut energies, mut whole) = ([zero; 3], zero);
+        let (mut energies, mut whole) = ([zero; 5], zero);
         let (theta, share) = (room.mean + zero.like(1.0), zero.like(1.0) / room.volume);
         for q in 0..self.cell.points().len() {
             let (metric, answer) = (&room.metrics[q], &room.law.answers[q]);
             let (weight, path) = (room.law.weights[q], &room.paths[q]);
             let weighted = metric.volume() * weight;
-            add(&mut energies, answer, weighted);
+            add(&mut energies, (answer, room.law.viscous.works[q]), weighted);
             let pressure = (path.rate * double(&answer.stress, &path.c_m)).scale(0.5);
             whole = (weighted * path.jacobian).mul_add(pressure, whole);
             let own = scaled(&answer.stress, path.square);

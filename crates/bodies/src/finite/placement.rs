@@ -30,13 +30,22 @@ pub struct Stored {
     pub hardening: f64,
     /// Dissipated since the old history.
     pub dissipated: f64,
+    /// What of `strain` resists the hourglass modes of elements with one point.
+    pub hourglass: f64,
+    /// Dissipated by bulk viscosity since the old history.
+    pub viscous: f64,
+    /// Fastest compression of a point with bulk viscosity since the old history: minus the rate of ln J, 1/s.
+    pub compression: f64,
 }
 
 impl Stored {
     /// Adds the energies of a part.
-    pub(super) fn include(&mut self, part: &Stored) {
+    pub fn include(&mut self, part: &Stored) {
         self.strain += part.strain;
         self.hardening += part.hardening;
         self.dissipated += part.dissipated;
+        self.hourglass += part.hourglass;
+        self.viscous += part.viscous;
+        self.compression = self.compression.max(part.compression);
     }
 }

@@ -1,6 +1,7 @@
 //! What an iterated step asks of a solid.
 
 use carom_algebra::csr::Csr;
+use carom_mesh::ElementId;
 
 use super::body::{Failed, Finite};
 use super::element::Fault;
@@ -9,6 +10,38 @@ use crate::error::Error;
 use crate::scratch::Scratch;
 use crate::solid::Solid;
 use crate::stability;
+
+/// Bound of 2 over the stable step of an explicit scheme.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrequencyBound {
+    /// The bound, rad/s.
+    pub frequency: f64,
+    /// What a compression of rate 1/s adds to it at most by quadratic bulk viscosity, rad: ω² ρ l² b₂²/κ.
+    pub by_compression: f64,
+    /// The element with this bound, where it is known.
+    pub cell: Option<ElementId>,
+}
+
+impl FrequencyBound {
+    /// Without quadratic bulk viscosity.
+    pub(crate) fn of(frequency: f64) -> FrequencyBound {
+        FrequencyBound {
+            frequency,
+            by_compression: 0.0,
+            cell: None,
+        }
+    }
+
+    /// Of two bodies together.
+    pub fn most(&self, other: &FrequencyBound) -> FrequencyBound {
+        let faster = other.frequency > self.frequency;
+        FrequencyBound {
+            frequency: self.frequency.max(other.frequency),
+            cell: if faster { other.cell } else { self.cell },
+            by_compression: self.by_compression.max(other.by_compression),
+        }
+    }
+}
 
 impl Solid {
     /// Whether forces are linear in the displacement: small strain.
@@ -90,25 +123,36 @@ impl Solid {
     ///
     /// # Errors
     /// As [`Solid::force`].
-    pub fn frequency_bound_at(&self, at: &Placement) -> Result<f64, Error> {
+    pub fn frequency_bound_at(&self, at: &Placement) -> Result<FrequencyBound, Error> {
         let Some(finite) = &self.finite else {
-            return Ok(self.frequency_bound());
+            return Ok(FrequencyBound::of(self.frequency_bound()));
         };
         let mut masses = Vec::new();
         self.each_matrix(false, &mut |element| masses.extend(element.lumped));
-        let (mut largest, mut scaled, mut first): (f64, _, _) = (0.0, Vec::new(), 0);
+        let (mut bound, mut scaled) = (FrequencyBound::default(), Vec::new());
+        let (mut first, mut element) = (0, 0);
+        let modulus = self.bulk_modulus();
         let visited = finite.each_tangent(self.blocks(), at, &mut |of_nodes, dim, k| {
             let masses = &masses[first..first + of_nodes.len()];
             first += of_nodes.len();
             stability::scale(dim, k, masses, &mut scaled);
             let norm = scaled.iter().map(|b| b * b).sum::<f64>().sqrt();
+            let viscous = self.coefficients(element);
             // no eigenvalue is beyond the norm
-            if norm > largest {
-                largest = largest.max(stability::largest_magnitude(&mut scaled));
+            if viscous.is_some() || norm > bound.frequency * bound.frequency {
+                let square = stability::largest_magnitude(&mut scaled);
+                let frequency = self.damped_frequency(element, square);
+                if frequency > bound.frequency {
+                    bound.frequency = frequency;
+                    bound.cell = Some(self.cells()[element]);
+                }
+                let quadratic = viscous.map_or(0.0, |[_, quadratic]| quadratic);
+                bound.by_compression = bound.by_compression.max(quadratic / modulus * square);
             }
+            element += 1;
         });
         visited.map_err(|failed| self.failed(failed))?;
-        Ok(largest.sqrt())
+        Ok(bound)
     }
 
     fn failed(&self, (place, fault): Failed) -> Error {

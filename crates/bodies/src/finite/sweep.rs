@@ -43,7 +43,9 @@ impl Finite {
             return;
         };
         for point in out.chunks_exact_mut(self.kept) {
-            law.start(point);
+            let (of_law, rest) = point.split_at_mut(self.kept_by_law);
+            law.start(of_law);
+            rest.fill(0.0);
         }
     }
 
@@ -191,6 +193,7 @@ impl Finite {
             from: from.as_ref().map(|from| &from[..n]),
             dt: at.dt,
             old: &at.old[kept],
+            viscosity: element.viscosity,
         })
     }
 
@@ -282,7 +285,7 @@ impl Finite {
 
     /// Mean equivalent plastic strain of each element, by volume; none of a law without.
     pub(crate) fn plastic_strains(&self, blocks: &[Block], history: &[f64]) -> Option<Vec<f64>> {
-        self.law.plastic_strain(history)?;
+        self.law.plastic_strain(history.get(..self.kept_by_law)?)?;
         let (mut out, mut points) = (Vec::new(), history.chunks_exact(self.kept));
         let mut room = Element::room();
         for block in blocks {
@@ -291,6 +294,7 @@ impl Finite {
                 let (mut volume, mut sum) = (0.0, 0.0);
                 for (point, kept) in points.by_ref().take(room.points).enumerate() {
                     volume += room.volume(point);
+                    let kept = &kept[..self.kept_by_law];
                     sum += room.volume(point) * self.law.plastic_strain(kept)?;
                 }
                 out.push(sum / volume);

@@ -166,9 +166,15 @@ fn compare(finite: &Finite, (block, u): &(Block, Vec<f64>), between: bool, name:
             (a.strain, b.strain),
             (a.hardening, b.hardening),
             (a.dissipated, b.dissipated),
+            (a.hourglass, b.hourglass),
+            (a.viscous, b.viscous),
+            (a.compression, b.compression),
         ] {
             assert!(near(a, b, right.outcome.stored.strain), "{name}: {a} {b}");
         }
+        assert!(a.viscous >= 0.0);
+        let is_viscous = finite.kept > finite.kept_by_law;
+        assert_eq!(a.viscous > 0.0, is_viscous, "{name}");
     }
 }
 
@@ -195,6 +201,9 @@ fn kernels_give_what_one_element_after_the_other_gives() {
         for formulation in formulations.into_iter().take(own) {
             for (count, weighted) in [(1, false), (8, true), (19, false), (19, true)] {
                 let sample = block(kind, kinematics, count, weighted);
+                let mut damped = block(kind, kinematics, count, weighted);
+                let coefficients = (0..count).map(|k| [0.1 + 0.01 * k as f64, 0.05]);
+                damped.0.chunks[0].viscosity = coefficients.collect();
                 for law in laws() {
                     let shape = Shape {
                         kinematics,
@@ -205,8 +214,10 @@ fn kernels_give_what_one_element_after_the_other_gives() {
                         "{kind:?} {kinematics:?} {formulation:?} {} {count}",
                         law.key()
                     );
-                    let finite = Finite::new(law, shape);
+                    let finite = Finite::new(law, shape, false);
                     compare(&finite, &sample, false, &name);
+                    let viscous = Finite::new(law, shape, true);
+                    compare(&viscous, &damped, false, &format!("{name} viscous"));
                     if !law.dissipates() {
                         compare(&finite, &sample, true, &format!("{name} between"));
                     }
@@ -230,7 +241,7 @@ fn an_element_inside_out_is_named() {
             for node in 80..88 {
                 u[3 * node] = -2.5 * block.chunks[0].x[node][0];
             }
-            let finite = Finite::new(law, shape);
+            let finite = Finite::new(law, shape, false);
             for way in [0, 1, 2] {
                 for between in [false, true] {
                     let fault = swept(&finite, &block, &u, way, between).outcome.fault;

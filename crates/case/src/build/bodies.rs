@@ -67,6 +67,8 @@ impl Builder<'_> {
                 material,
                 formulation: formulation(body.formulation),
                 weights: None,
+                viscosity: body.bulk_viscosity.map(Into::into),
+                scaling: body.mass_scaling.map(Into::into),
                 releases: Vec::new(),
             };
             let spec = self.hinged(mesh, (&path, body), spec);

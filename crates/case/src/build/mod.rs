@@ -9,6 +9,7 @@ mod constraints;
 mod contacts;
 mod course;
 mod discrete;
+mod explicit;
 mod fluids;
 mod held;
 mod laws;
@@ -156,6 +157,7 @@ impl Builder<'_> {
         contacts.extend(self.stops(&mesh, &bodies, &discrete));
         self.nonlinear_in_zones();
         self.stresses_between(&bodies);
+        self.explicit_alone(&bodies);
         self.contacts_outside(&mesh, &contacts, &joints);
         self.zones_of_contacts(&contacts, &cells);
         let points = discrete.iter().map(|some| some.spec.cells.clone());

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
 use super::beam::BeamSection;
+use super::explicit::{BulkViscosity, MassScaling};
 use super::joint::Hinge;
 use carom_quantities::{
     Angle, AngularVelocity, Area, Coordinate, Delay, Length, MomentOfInertia, Rate, Vector,
@@ -35,6 +36,10 @@ pub struct Body {
     pub rigid: Option<Rigid>,
     /// Reduces the body to the nodes on which something acts and to modes, for a material at small strain. Default: not reduced.
     pub reduction: Option<Reduction>,
+    /// Bulk viscosity. Default: none.
+    pub bulk_viscosity: Option<BulkViscosity>,
+    /// Mass scaling, for explicit schemes. Default: none.
+    pub mass_scaling: Option<MassScaling>,
     /// Initial state. After a static stage the velocity applies at the end of that stage. Default: at rest, undeformed.
     pub initial: Option<Initial>,
 }

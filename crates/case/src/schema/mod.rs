@@ -9,6 +9,7 @@ mod beam;
 mod body;
 mod contact;
 mod discrete;
+mod explicit;
 mod joint;
 mod load;
 mod material;
@@ -46,6 +47,7 @@ pub use contact::{
     Penetration, Sliding,
 };
 pub use discrete::{Dashpot, DashpotPoint, Ends, PointMass, Spring, SpringPoint, Stop};
+pub use explicit::{BulkViscosity, MassScaling};
 pub use joint::{
     AddedMass, Channel, Constraint, ConstraintTerm, FluidGap, Foundation, Hinge, RigidLink,
 };

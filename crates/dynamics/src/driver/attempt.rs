@@ -5,7 +5,6 @@ use std::time::Instant;
 use super::Driver;
 use crate::costs::Phases;
 use crate::error::Error;
-use crate::state::check_finite;
 
 impl Driver {
     /// Computes the next state from the state, a step of `dt` further, of an explicit scheme before one of the size `next`
@@ -20,7 +19,7 @@ impl Driver {
         if self.is_known_finite() {
             return Ok(());
         }
-        check_finite(&self.next.motion, self.state.step + 1, self.state.time)
+        self.check_finite()
     }
 
     pub(super) fn take_stages(&mut self) -> Result<(), Error> {

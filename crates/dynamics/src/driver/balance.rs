@@ -332,7 +332,8 @@ impl Driver {
         };
         let scheme = work_contact - touch + inertia - gained - own_energy + internal
             - stored
-            - self.stored.dissipated;
+            - self.stored.dissipated
+            - self.stored.viscous;
         let nodes = system.x.len() as f64;
         let travel = (0..new.u.len()).map(|i| (new.u[i] - old.u[i]).powi(2));
         let tolerated = Tolerated {
@@ -385,7 +386,9 @@ impl Driver {
             dissipation_material: self.stored.dissipated,
             dissipation_damping: damping,
             dissipation_friction: -friction,
+            dissipation_viscosity: self.stored.viscous,
             hardening: self.stored.hardening,
+            hourglass: self.stored.hourglass,
         });
         let squares = Squares {
             stage: scheme,

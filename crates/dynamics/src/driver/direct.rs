@@ -256,14 +256,16 @@ impl Driver {
         let mut impulses = [&map.impulse, &map.contact_impulse];
         if system.is_nonlinear() {
             impulses = [&one, &one];
-            squares.stage = inertia - gained + internal - kept - stored.dissipated;
+            squares.stage = inertia - gained + internal - kept - stored.dissipated - stored.viscous;
             self.left_over = self.system.nonlinear.iteration.tolerance * scale(sums, self.dt);
             let nodes = system.x.len() as f64;
             ledger.go_beyond(&Beyond {
                 work_obstacles: obstacles,
                 dissipation_material: stored.dissipated,
                 dissipation_friction: -friction,
+                dissipation_viscosity: stored.viscous,
                 hardening: stored.hardening,
+                hourglass: stored.hourglass,
                 tolerated: Tolerated {
                     energy: self.left_over * sums.way.sqrt(),
                     momentum: self.left_over * nodes.sqrt() * self.dt,

@@ -46,9 +46,7 @@ pub(super) fn add_up(
             old: &of.history[range.clone()],
         };
         let stored = body.force(&at, &mut history[range], &mut scratch[k], internal)?;
-        sum.strain += stored.strain;
-        sum.hardening += stored.hardening;
-        sum.dissipated += stored.dissipated;
+        sum.include(&stored);
     }
     Ok(sum)
 }

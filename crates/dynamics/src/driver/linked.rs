@@ -18,7 +18,7 @@ use super::paired::approaches;
 use crate::error::Error;
 use crate::operator::{Operators, factored, single};
 use crate::scheme::{Scheme, Theta};
-use crate::state::{State, check_finite};
+use crate::state::State;
 use crate::step_map::StepMap;
 use crate::system::{LinkRow, Motion, System, on, push_cliques};
 
@@ -74,7 +74,7 @@ impl Driver {
         self.direct = None;
         if self.prepared {
             self.take_stages()?;
-            check_finite(&self.next.motion, self.state.step + 1, self.state.time)?;
+            self.check_finite()?;
         } else {
             self.attempt(self.dt, self.ahead)?;
         }
@@ -88,6 +88,7 @@ impl Driver {
         self.next.time = control.instant(*step, *time, self.dt);
         self.next.control = *control;
         self.next.control.pace = self.pace.fresh;
+        self.next.control.compression = self.stored.compression;
         Ok(())
     }
 

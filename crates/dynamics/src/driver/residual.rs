@@ -202,9 +202,7 @@ impl Driver {
             false => best,
         };
         let worst = (0..system.unknowns()).fold(0, larger);
-        let node = system.unknowns.node(worst) as usize;
-        let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(n, _)| *n as usize == node);
-        let body = system.body_masses.iter().position(owns).unwrap_or(0);
+        let (node, body, cell) = self.place_of(worst);
         let contact = match self.worst_point() {
             Some((point, defect)) if defect > 1.0 => {
                 format!("; its law is missed most by {}", self.name(point))
@@ -218,12 +216,40 @@ impl Driver {
             time: self.state.time,
             dt: self.dt,
             passes,
-            node: system.mesh_node[node],
-            body: system.bodies[body].name().into(),
-            cell: first_cell(&system.bodies[body], node as u32),
+            node,
+            body,
+            cell,
             contact: contact.into(),
             history: history.collect::<Vec<_>>().join(", ").into(),
         }
+    }
+
+    /// Node of the mesh of an unknown, its body, and the first cell of the body at the node.
+    fn place_of(&self, unknown: usize) -> (u32, Box<str>, ElementId) {
+        let system = &*self.system;
+        let node = system.unknowns.node(unknown);
+        let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(n, _)| *n == node);
+        let body = system.body_masses.iter().position(owns).unwrap_or(0);
+        let body = &system.bodies[body];
+        let cell = first_cell(body, node);
+        (system.mesh_node[node as usize], body.name().into(), cell)
+    }
+
+    /// # Errors
+    /// A vector of the motion at the end of the attempt with an entry that is no number.
+    pub(super) fn check_finite(&self) -> Result<(), Error> {
+        let Some((quantity, unknown)) = self.next.motion.not_finite() else {
+            return Ok(());
+        };
+        let (node, body, cell) = self.place_of(unknown);
+        Err(Error::NotFinite {
+            step: self.state.step + 1,
+            time: self.state.time,
+            quantity,
+            node,
+            body,
+            cell,
+        })
     }
 }
 

@@ -49,8 +49,9 @@ impl Driver {
             shapes.changed = largest_change(system, &shapes.u, &motion.u);
         }
         if !known || shapes.changed > WORTH * CHANGE {
-            let critical = system.critical_step_at(motion)?;
+            let (critical, bound) = system.critical_step_at(motion)?;
             self.state.control.stable = PART * critical;
+            shapes.by_compression = bound.by_compression;
             shapes.u.clone_from(&motion.u);
             shapes.changed = 0.0;
         }
@@ -72,16 +73,46 @@ impl Driver {
     /// # Errors
     /// A critical step below the smallest part.
     pub(super) fn stable_level(&self, dt: f64) -> Result<u32, Error> {
-        let stable = self.state.control.stable;
+        let stable = self.stable_step();
         let halvings = self.system.nonlinear.iteration.halvings;
         let mut levels = 0..=halvings;
         let level = levels.find(|&level| dt <= stable * (1u64 << level) as f64);
-        level.ok_or_else(|| Error::Shortened {
-            step: self.state.step + 1,
-            time: self.state.time,
-            dt: dt / (1u64 << halvings) as f64,
-            critical: stable / PART,
-        })
+        level.ok_or_else(|| self.shortened(dt / (1u64 << halvings) as f64))
+    }
+
+    /// That the smallest part of a step, `dt` (s), is beyond what an element has for critical step.
+    fn shortened(&self, dt: f64) -> Error {
+        let (system, state) = (&*self.system, &self.state);
+        let bound = system.critical_step_at(&state.motion);
+        let cell = bound.ok().and_then(|(_, bound)| bound.cell);
+        let owns = |body: &&Body| cell.is_some_and(|cell| body.cells().contains(&cell));
+        let body = system.bodies.iter().find(owns);
+        Error::Shortened {
+            step: state.step + 1,
+            time: state.time,
+            dt,
+            critical: self.stable_step() / PART,
+            place: match (body, cell) {
+                (Some(body), Some(cell)) => format!(
+                    "cell {} of block {} in body '{}'",
+                    cell.index,
+                    cell.block,
+                    body.name()
+                )
+                .into(),
+                _ => "an element".into(),
+            },
+        }
+    }
+
+    /// Part of the critical step that a step may have, s, with the bulk viscosity of the fastest compression in the last step.
+    fn stable_step(&self) -> f64 {
+        let control = &self.state.control;
+        let more = self.state.shapes.by_compression * control.compression;
+        match more > 0.0 {
+            true => 1.0 / (1.0 / control.stable + 0.5 * more / PART),
+            false => control.stable,
+        }
     }
 
     /// Makes the attempt the state; what is known of the shapes goes along.

@@ -125,6 +125,7 @@ impl Driver {
     /// Makes the attempt, a step of `size` (s), the state.
     pub(super) fn accept(&mut self, control: Control, size: f64) {
         self.next.control = control;
+        self.next.control.compression = self.stored.compression;
         self.prepared = false;
         self.swap_states();
         self.tell(size);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_bodies::{BodySpec, Formulation, Kinematics};
+use carom_bodies::{BodySpec, BulkViscosity, Formulation, Kinematics, MassScaling};
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::CentralDifference;
@@ -28,6 +28,8 @@ struct Case {
     name: &'static str,
     material: Material,
     formulation: Formulation,
+    /// Whether it has bulk viscosity, and four times its mass.
+    viscous: bool,
     /// Whether a plane is in the way, with which friction.
     friction: Option<f64>,
     gravity: f64,
@@ -50,6 +52,7 @@ fn cases() -> Vec<Case> {
         name: "free",
         material: Material::Elastic(SOFT),
         formulation: Formulation::Full,
+        viscous: false,
         friction: None,
         gravity: 0.0,
         shakes: false,
@@ -92,6 +95,14 @@ fn cases() -> Vec<Case> {
             friction: Some(0.3),
             ..impact
         },
+        Case {
+            name: "plastic, viscous, one point",
+            material: plastic,
+            formulation: Formulation::Reduced { hourglass: 0.1 },
+            viscous: true,
+            friction: Some(0.3),
+            ..impact
+        },
     ]
 }
 
@@ -107,6 +118,13 @@ fn model(case: &Case) -> Model {
     let top = mesh.group_nodes(&mesh.groups["cube.top"]);
     let mut spec = BodySpec::new("cube", cells, Kinematics::Solid, case.material);
     spec.formulation = case.formulation;
+    if case.viscous {
+        spec.viscosity = Some(BulkViscosity {
+            linear: 0.06,
+            quadratic: 1.2,
+        });
+        spec.scaling = Some(MassScaling::Factor(4.0));
+    }
     let body = ModelBody {
         velocity: [1.0, 0.5, -3.0],
         ..ModelBody::new(spec)
@@ -174,6 +192,8 @@ fn terms(balance: &Balance) -> [Vec<f64>; 2] {
         balance.dissipation_scheme,
         balance.dissipation_material,
         balance.dissipation_friction,
+        balance.dissipation_viscosity,
+        balance.hourglass,
         balance.energy_residual,
     ];
     let momenta = resultants

@@ -30,6 +30,8 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             material: Material::NeoHooke(NeoHooke { initial }),
             formulation: Formulation::BBar,
             weights: None,
+            viscosity: None,
+            scaling: None,
             releases: Vec::new(),
         },
         mass: MassKind::Lumped,

@@ -23,6 +23,8 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             material: SOFT.into(),
             formulation: Formulation::Full,
             weights: None,
+            viscosity: None,
+            scaling: None,
             releases: Vec::new(),
         },
         mass: MassKind::Lumped,

@@ -8,6 +8,7 @@ mod beams;
 mod direct;
 mod discrete;
 mod edges;
+mod explicit;
 mod floating;
 mod fold;
 mod friction;

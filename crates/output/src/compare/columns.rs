@@ -45,7 +45,7 @@ const fn hidden(name: &'static str, unit: &'static str, value: fn(&Done) -> Opti
 
 /// All columns between the name of the variant and the verdict. Force positive in compression, energy change and work
 /// positive when the bodies gain, dissipation positive when lost, penetration positive.
-pub const COLUMNS: [Column; 32] = [
+pub const COLUMNS: [Column; 33] = [
     column("force_error", "force error", Form::Percent, |v| {
         v.errors.force
     }),
@@ -139,6 +139,7 @@ pub const COLUMNS: [Column; 32] = [
     hidden("dissipation_material_j", "J", |v| lost(v, "materials")),
     hidden("dissipation_damping_j", "J", |v| lost(v, "damping")),
     hidden("dissipation_friction_j", "J", |v| lost(v, "friction")),
+    hidden("dissipation_viscosity_j", "J", |v| lost(v, "viscosity")),
     hidden("newton_iterations", "", |v| {
         v.summary.newton.map(|newton| newton.iterations as f64)
     }),

@@ -170,6 +170,8 @@ fn model(system: &System) -> Model {
         };
         (body.name().to_owned(), kind.to_owned())
     });
+    let added = system.bodies.iter().filter(|body| body.added_mass() != 0.0);
+    let added = added.map(|body| (body.name().to_owned(), body.added_mass()));
     Model {
         dimension: system.dim,
         bodies: system
@@ -182,6 +184,7 @@ fn model(system: &System) -> Model {
         unknowns: system.fixed.iter().filter(|fixed| !**fixed).count(),
         contact_points: system.points(),
         mass: mass.collect(),
+        added_mass: added.collect(),
     }
 }
 
@@ -313,6 +316,7 @@ fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {
         ("materials", end.dissipation_material),
         ("damping", end.dissipation_damping),
         ("friction", end.dissipation_friction),
+        ("viscosity", end.dissipation_viscosity),
     ]);
     dissipations.insert("scheme".to_owned(), end.dissipation_scheme);
     let stored = there(&[
@@ -335,6 +339,7 @@ fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {
         residual: end.energy_residual,
         largest_residual: largest,
         largest: ledger.largest_energy,
+        largest_hourglass: (ledger.largest_hourglass > 0.0).then_some(ledger.largest_hourglass),
         relative_residual: relative(largest, ledger.largest_energy),
         identity,
     }

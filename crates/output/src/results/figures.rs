@@ -28,12 +28,19 @@ pub(crate) struct Curves {
     balanced: Trace,
     dissipated: Trace,
     /// Of runs that are not linear: what hardening stores, and what is dissipated in each way.
-    further: [Trace; 4],
+    further: [Trace; 6],
     residual: Trace,
 }
 
 /// Names of [`Curves::further`].
-const FURTHER: [&str; 4] = ["hardening", "material", "damping", "friction"];
+const FURTHER: [&str; 6] = [
+    "hardening",
+    "material",
+    "damping",
+    "friction",
+    "viscosity",
+    "hourglass",
+];
 
 impl Curves {
     /// Follows the contact point, or without a contact the first probe; `probes`: the sensors of each.
@@ -98,6 +105,8 @@ impl Curves {
             balance.dissipation_material,
             balance.dissipation_damping,
             balance.dissipation_friction,
+            balance.dissipation_viscosity,
+            balance.hourglass,
         ];
         for (trace, value) in self.further.iter_mut().zip(further) {
             trace.push(t, value);

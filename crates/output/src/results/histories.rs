@@ -146,6 +146,8 @@ impl Histories {
                 balance.dissipation_damping,
                 balance.dissipation_friction,
                 balance.work_obstacles,
+                balance.dissipation_viscosity,
+                balance.hourglass,
             ];
             row.extend(further.map(Cell::Number));
         }
@@ -350,6 +352,8 @@ pub(crate) fn columns(
             ["dissipation", "damping"],
             ["dissipation", "friction"],
             ["work", "obstacles"],
+            ["dissipation", "viscosity"],
+            ["energy", "hourglass"],
         ];
         names.extend(further.map(|path| column(&path, "J")));
     }

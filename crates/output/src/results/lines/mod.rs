@@ -5,6 +5,7 @@ mod chatter;
 mod convergence;
 mod energy;
 mod exact;
+mod explicit;
 mod finding;
 mod finite;
 mod momentum;
@@ -28,6 +29,8 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     energy::of_contact,
     energy::of_scheme,
     finite::states,
+    explicit::hourglass,
+    explicit::added_mass,
     chatter::of_contacts,
     penetration::of_contacts,
     resolution::of_peaks,
