@@ -89,7 +89,8 @@ pub enum Error {
     },
     /// Elements have shortened so far that no part of an explicit step is stable.
     #[error(
-        "step {step}, t = {time:e} s: elements have shortened or bulk viscosity acts, so that the critical step, that of {place}, is now {critical:e} s,          below the smallest part of a step, {dt:.4e} s"
+        "step {step}, t = {time:e} s: elements have shortened or bulk viscosity acts: the critical step, that of {place}, is now {critical:e} s, \
+         below the smallest part of a step, {dt:.4e} s"
     )]
     Shortened {
         /// Number of the step.
