@@ -108,6 +108,23 @@ impl DenseCholesky {
     pub fn solve(&self, x: &mut [f64]) {
         Arch::new().dispatch(Solve(self, x));
     }
+
+    /// x ← L⁻¹ x; no allocation.
+    pub fn forward(&self, x: &mut [f64]) {
+        Arch::new().dispatch(Forward(self, x));
+    }
+}
+
+struct Forward<'a>(&'a DenseCholesky, &'a mut [f64]);
+
+impl WithSimd for Forward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let DenseCholesky { n, values } = self.0;
+        solver::forward::<S>(values, *n, *n, self.1);
+    }
 }
 
 struct Solve<'a>(&'a DenseCholesky, &'a mut [f64]);

@@ -39,6 +39,8 @@ pub struct Reduction {
     pub damping: Option<Vec<f64>>,
     /// Tᵀ M r for unit translations r along the axes, kg.
     pub inertia: [Vec<f64>; 3],
+    /// rᵀ M r of the full body for the same, kg.
+    pub translated: [f64; 3],
     /// Whether supports hold nodes that are not retained.
     pub is_grounded: bool,
     /// Whether the retained unknowns have no mass.
@@ -280,16 +282,29 @@ impl Reduced {
     pub fn missing(&self, axis: usize) -> Vec<(usize, f64)> {
         let data = &*self.data;
         let n = self.unknowns.len();
-        let mut motion = self.translation(axis);
-        let own = n - data.amplitudes.len();
-        for (motion, amplitude) in motion[own..].iter_mut().zip(&data.amplitudes) {
-            *motion = amplitude.translation[axis];
-        }
+        let motion = self.rigid(axis);
         let rows = data.mass.chunks_exact(n).zip(&data.inertia[axis]);
         let missing = rows
             .map(|(row, exact)| exact - row.iter().zip(&motion).map(|(m, r)| m * r).sum::<f64>());
         let unknowns = self.unknowns.iter().map(|unknown| *unknown as usize);
         unknowns.zip(missing).collect()
+    }
+
+    /// What rᵀ M r of the full body is beyond that of a unit translation of the retained nodes and its amplitudes, kg.
+    pub fn missing_mass(&self, axis: usize) -> f64 {
+        let data = &*self.data;
+        data.translated[axis] - dot(&data.inertia[axis], &self.rigid(axis))
+    }
+
+    /// A unit translation of the retained nodes along an axis, and its amplitudes.
+    fn rigid(&self, axis: usize) -> Vec<f64> {
+        let data = &*self.data;
+        let mut motion = self.translation(axis);
+        let own = motion.len() - data.amplitudes.len();
+        for (motion, amplitude) in motion[own..].iter_mut().zip(&data.amplitudes) {
+            *motion = amplitude.translation[axis];
+        }
+        motion
     }
 
     /// 1 for the retained translations along an axis.

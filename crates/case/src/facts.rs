@@ -84,6 +84,8 @@ pub fn facts(built: &Built) -> Vec<Fact> {
             return facts;
         }
     }
+    let damped = system.modal.iter();
+    facts.extend(damped.map(|modal| modal_fact(system.bodies[modal.body].name(), &modal.modes)));
     let steps = format!(
         "{} steps of {:.6e} s{}",
         step_count(built.end - begin, system.dt),
@@ -152,6 +154,27 @@ fn reduced_fact(built: &Built, body: usize, reduced: &carom_bodies::Reduced) -> 
             data.len() - modes,
             data.retained.len(),
             system.body_mass(body)
+        ),
+    )
+}
+
+/// A line for the damping of modes.
+fn modal_fact(body: &str, modes: &[[f64; 2]]) -> Fact {
+    let ends = |column: usize| {
+        let values = modes.iter().map(|mode| mode[column]);
+        let least = values.clone().fold(f64::INFINITY, f64::min);
+        (least, values.fold(0.0, f64::max))
+    };
+    let [(low, high), (least, most)] = [0, 1].map(ends);
+    let ratio = match least == most {
+        true => format!("{least}"),
+        false => format!("{least} to {most}"),
+    };
+    fact(
+        format!("damping of modes of {body}"),
+        format!(
+            "{} modes from {low:.4e} to {high:.4e} Hz, ratio {ratio}",
+            modes.len()
         ),
     )
 }

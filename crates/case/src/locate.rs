@@ -1,6 +1,6 @@
 //! Where each value of a case stands, for what is found out after reading.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::error::{Place, Problem};
 use crate::tree::{Item, Node, join};
@@ -69,7 +69,7 @@ impl Locator {
         problem
     }
 
-    /// All problems with their places, in the order of the sources.
+    /// All problems with their places, in the order of the sources; those of tables that are made of one, once.
     #[must_use]
     pub fn locate_all(&self, problems: Vec<Problem>) -> Vec<Problem> {
         let mut problems: Vec<Problem> = problems
@@ -77,7 +77,37 @@ impl Locator {
             .map(|problem| self.locate(problem))
             .collect();
         problems.sort_by_key(|problem| problem.place);
-        problems
+        self.once(problems)
+    }
+
+    /// Problems of tables with one key in the sources, which `[repeat]` has made of one, that differ by the name of the table alone: the first
+    /// one, which tells the number of the others.
+    fn once(&self, problems: Vec<Problem>) -> Vec<Problem> {
+        let mut all: Vec<Problem> = Vec::new();
+        let mut groups = BTreeMap::new();
+        for problem in problems {
+            let Some((table, name, path)) = parts(&problem.path) else {
+                all.push(problem);
+                continue;
+            };
+            let Some(key) = self.entries.get(table).and_then(|entry| entry.key) else {
+                all.push(problem);
+                continue;
+            };
+            let (name, message) = (name.to_owned(), problem.message.replace(name, ""));
+            let group = (problem.place, key, path, message);
+            let (_, names) = groups.entry(group).or_insert_with(|| {
+                all.push(problem);
+                (all.len() - 1, BTreeSet::new())
+            });
+            names.insert(name);
+        }
+        for (at, names) in groups.into_values().filter(|(_, names)| names.len() > 1) {
+            let others = names.len() - 1;
+            let note = format!("the same in {others} more tables that are made of this one");
+            all[at].notes.push(note);
+        }
+        all
     }
 
     fn nearest(&self, path: &str) -> Option<Entry> {
@@ -92,4 +122,12 @@ impl Locator {
             path = &path[..path.rfind(['.', '[']).unwrap_or(0)];
         }
     }
+}
+
+/// Of a path, `stop.left.gap`: the table `stop.left`, its name, and the path without it.
+fn parts(path: &str) -> Option<(&str, &str, String)> {
+    let (kind, rest) = path.split_once('.')?;
+    let end = rest.find(['.', '[']).unwrap_or(rest.len());
+    let table = &path[..kind.len() + 1 + end];
+    Some((table, &rest[..end], format!("{kind}.{}", &rest[end..])))
 }

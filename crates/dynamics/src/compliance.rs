@@ -355,6 +355,7 @@ impl Compliance {
         let bytes = columns.map(|(_, column)| match column {
             Column::Diagonal(row) => 12 * row.dofs.len(),
             Column::Factored(response) => response.bytes(),
+            Column::Updated(response, products) => response.bytes() + 8 * products.len(),
         });
         bytes.sum::<usize>() + 8 * self.blocks.entries.len()
     }

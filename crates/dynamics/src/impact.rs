@@ -59,6 +59,8 @@ pub struct Impact {
     pub energy_lost: f64,
     /// The part of it that is lost in crush, J; zero of laws without memory.
     pub energy_crushed: f64,
+    /// The part of it that friction takes, J: its work on what slides, which wears it off.
+    pub friction_loss: f64,
     /// Whether the run ended before the impact did.
     pub unfinished: bool,
 }
@@ -81,6 +83,8 @@ pub(crate) struct Given {
     pub(crate) work: f64,
     /// Energy lost in crush, J.
     pub(crate) crushed: f64,
+    /// Energy lost in friction, J.
+    pub(crate) rubbed: f64,
 }
 
 /// An impact that has begun, and whose flight after it, if there is one, does not last yet.
@@ -103,6 +107,7 @@ pub(crate) struct OpenImpact {
     /// Largest value of minus the work so far, J.
     taken: f64,
     crushed: Sum,
+    rubbed: Sum,
     /// Mean velocities of the two sides before it, m/s.
     before: [[f64; 3]; 2],
     released: Option<Released>,
@@ -179,6 +184,7 @@ impl OpenImpact {
         self.work.add(given.work);
         self.taken = self.taken.max(-self.work.get());
         self.crushed.add(given.crushed);
+        self.rubbed.add(given.rubbed);
         self.pushed.add(norm(normal));
         for i in 0..3 {
             self.impulse[i].add(impulse[i]);
@@ -228,6 +234,7 @@ impl OpenImpact {
             energy_taken: self.taken,
             energy_lost: -self.work.get(),
             energy_crushed: self.crushed.get(),
+            friction_loss: self.rubbed.get(),
             unfinished: false,
         }
     }

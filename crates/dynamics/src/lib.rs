@@ -15,6 +15,7 @@ mod groups;
 mod impact;
 pub mod landing;
 mod ledger;
+mod low_rank;
 mod march;
 pub mod operator;
 pub mod records;

@@ -8,6 +8,7 @@ use carom_algebra::pattern::Cliques;
 use carom_algebra::solver::{Cholesky, FactorStats, Response, SparseRow, gram};
 
 use crate::error::Error;
+use crate::low_rank::LowRank;
 use crate::system::{System, push_cliques};
 
 /// A of the step for one connected part.
@@ -20,6 +21,8 @@ pub(crate) enum Operator {
     Diagonal(Vec<f64>),
     /// Sparse Cholesky factor.
     Factored(Box<Cholesky>),
+    /// With a part of low rank: y = (A + B Bᵀ)⁻¹ r but for the backward sweep, Y = L⁻¹ Nᵀ beside its products with H.
+    Updated(LowRank),
 }
 
 /// What `respond` keeps of one row.
@@ -29,6 +32,8 @@ pub(crate) enum Column {
     Diagonal(SparseRow),
     /// L⁻¹ Nᵀ.
     Factored(Response),
+    /// L⁻¹ Nᵀ and Hᵀ L⁻¹ Nᵀ.
+    Updated(Response, Vec<f64>),
 }
 
 impl Operator {
@@ -62,6 +67,7 @@ impl Operator {
                 }
             }
             Operator::Factored(factor) => factor.forward(r, y),
+            Operator::Updated(updated) => updated.begin(r, y),
         }
     }
 
@@ -74,6 +80,14 @@ impl Operator {
                 .into_iter()
                 .map(Column::Factored)
                 .collect(),
+            Operator::Updated(updated) => {
+                let responses = updated.factor.respond(&rows).into_iter();
+                let columns = responses.map(|response| {
+                    let products = updated.products(&response);
+                    Column::Updated(response, products)
+                });
+                columns.collect()
+            }
         }
     }
 
@@ -94,6 +108,10 @@ impl Operator {
             (Operator::Factored(_), Column::Factored(one), Column::Factored(other)) => {
                 one.dot(other)
             }
+            (Operator::Updated(_), Column::Updated(one, g), Column::Updated(other, h)) => {
+                let products = g.iter().zip(h).map(|(g, h)| g * h);
+                one.dot(other) - products.sum::<f64>()
+            }
             _ => unreachable!("columns are made by their own operator"),
         }
     }
@@ -104,7 +122,7 @@ impl Operator {
             .iter()
             .filter_map(|column| match column {
                 Column::Factored(response) => Some(response),
-                Column::Diagonal(_) => None,
+                Column::Diagonal(_) | Column::Updated(..) => None,
             })
             .collect();
         if responses.len() == columns.len() {
@@ -125,7 +143,7 @@ impl Operator {
                 .zip(&row.coefficients)
                 .map(|(&i, n)| n * y[i as usize])
                 .sum(),
-            Column::Factored(response) => response.dot_dense(y),
+            Column::Factored(response) | Column::Updated(response, _) => response.dot_dense(y),
         }
     }
 
@@ -138,6 +156,9 @@ impl Operator {
                 }
             }
             (Operator::Factored(_), Column::Factored(response)) => response.add_scaled(force, y),
+            (Operator::Updated(updated), Column::Updated(response, products)) => {
+                updated.add((response, products), force, y);
+            }
             _ => unreachable!("columns are made by their own operator"),
         }
     }
@@ -147,6 +168,7 @@ impl Operator {
         match self {
             Operator::Diagonal(_) => x.copy_from_slice(y),
             Operator::Factored(factor) => factor.backward(y, x),
+            Operator::Updated(updated) => updated.factor.backward(y, x),
         }
     }
 
@@ -155,6 +177,20 @@ impl Operator {
         match self {
             Operator::Diagonal(_) => None,
             Operator::Factored(factor) => Some(factor.stats()),
+            Operator::Updated(updated) => Some(updated.factor.stats()),
+        }
+    }
+
+    /// With B Bᵀ, of these columns of B over the unknowns of the part, in the matrix.
+    ///
+    /// # Errors
+    /// Columns that are not finite.
+    pub(crate) fn with_columns(self, columns: &[Vec<f64>]) -> Result<Operator, AlgebraError> {
+        match self {
+            Operator::Factored(factor) if !columns.is_empty() => {
+                Ok(Operator::Updated(LowRank::new(factor, columns)?))
+            }
+            other => Ok(other),
         }
     }
 }

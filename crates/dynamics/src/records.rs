@@ -282,6 +282,7 @@ impl Records {
             normal: [0, 1, 2].map(|i| dt * report.normal[i] + projected.1[i]),
             work: step.work,
             crushed,
+            rubbed: report.friction_loss,
         };
         let place = (system, contact);
         let ended = OpenImpact::follow(&mut record.open, place, &given, velocities);

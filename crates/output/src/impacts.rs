@@ -45,6 +45,9 @@ pub struct ImpactRow {
     pub energy_lost: f64,
     /// The part of it that is lost in crush, J; zero of laws without memory.
     pub energy_crushed: f64,
+    /// The part of it that friction takes, J: its work on what slides, which wears it off.
+    #[serde(default)]
+    pub friction_loss: f64,
     /// Intervals with a force: more than one where the contact opens and closes within the impact.
     pub intervals: u64,
     /// The part of the impulse that is in no force, N s: of a projection, or of another stage after a step.
@@ -52,7 +55,7 @@ pub struct ImpactRow {
 }
 
 /// Names of the columns of `impacts.csv`, with their units.
-pub const COLUMNS: [&str; 17] = [
+pub const COLUMNS: [&str; 18] = [
     "pair",
     "start_s",
     "duration_s",
@@ -70,6 +73,7 @@ pub const COLUMNS: [&str; 17] = [
     "intervals",
     "impulsive_n_s",
     "peak_steps",
+    "friction_loss_j",
 ];
 
 /// The file `impacts.csv`, open for appending.
@@ -112,6 +116,7 @@ impl ImpactTable {
             Cell::Number(impact.intervals as f64),
             Cell::Number(impact.impulsive),
             Cell::Number(impact.peak_steps as f64),
+            Cell::Number(impact.friction_loss),
         ];
         self.rows.push(cells.into_iter())?;
         self.rows.flush()

@@ -86,19 +86,27 @@ impl ModeSet<'_> {
     /// Sums and counts of a part, for people.
     pub fn facts(&self, part: &Modes) -> Vec<String> {
         let axes = AXES[..self.system.dim].iter().enumerate();
-        let sums = axes.map(|(axis, name)| {
-            let sum: f64 = part
-                .participation
-                .iter()
-                .map(|p| p.effective_mass()[axis])
-                .sum();
+        let effective = |axis: usize| {
+            let masses = part.participation.iter().map(|p| p.effective_mass()[axis]);
+            masses.sum::<f64>() / part.mass[axis]
+        };
+        let sums = axes.clone().map(|(axis, name)| {
             let mass = quantity(part.mass[axis], "kg");
-            format!("{} of {mass} along {name}", percent(sum / part.mass[axis]))
+            format!("{} of {mass} along {name}", percent(effective(axis)))
         });
         let sums: Vec<String> = sums.collect();
+        let rest = axes.map(|(axis, name)| {
+            let rest = (1.0 - effective(axis)).max(0.0);
+            format!("{} along {name}", percent(rest))
+        });
+        let rest: Vec<String> = rest.collect();
         let mut facts = vec![
             format!("{} of {} modes", part.len(), part.existing()),
             format!("effective masses: {}", sums.join(", ")),
+            format!(
+                "residual masses, of modes left out and of held nodes: {}",
+                rest.join(", ")
+            ),
         ];
         let count = part.count();
         facts.push(match (count.below.is_finite(), count.exist == count.found) {

@@ -70,6 +70,9 @@ pub struct Worst {
     pub duration: f64,
     /// Energy taken up, J.
     pub energy_taken: f64,
+    /// Energy that friction took, J.
+    #[serde(default)]
+    pub friction_loss: f64,
 }
 
 /// What contacts of a level may bear in one impact.
@@ -131,6 +134,7 @@ impl Statistics {
             impulse: impact.impulse,
             duration: impact.duration,
             energy_taken: impact.energy_taken,
+            friction_loss: impact.friction_loss,
         };
         Statistics {
             count: impacts.len(),

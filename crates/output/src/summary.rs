@@ -80,6 +80,31 @@ pub struct Model {
     /// Mass that mass scaling has added, kg, by body, where there is some.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub added_mass: BTreeMap<String, f64>,
+    /// What reduced bodies have of their full ones, by body.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub reduced: BTreeMap<String, ReducedBody>,
+    /// Frequency (Hz) and damping ratio of each damped mode, by body.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub damped_modes: BTreeMap<String, Vec<[f64; 2]>>,
+}
+
+/// What a reduced body has of the full one.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ReducedBody {
+    /// Unknowns of the full body, supports included.
+    pub full_unknowns: usize,
+    /// Retained nodes.
+    pub retained_nodes: usize,
+    /// Whether the retained nodes have no mass.
+    pub massless: bool,
+    /// Frequencies of the modes kept, Hz.
+    pub frequencies: Vec<f64>,
+    /// Effective mass of each mode kept along the axes, (Tᵀ M r)²/m of its amplitude, kg.
+    pub effective_masses: Vec<Vec<f64>>,
+    /// Highest frequency up to which those of the reduced body are those of the full one to 0.1 % by estimate, Hz.
+    pub band: Option<f64>,
+    /// Part of the mass that no mode moves along the axes, of what supports leave free.
+    pub residual_mass: Option<Vec<f64>>,
 }
 
 /// Steps in time.

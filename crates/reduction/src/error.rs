@@ -13,8 +13,8 @@ pub enum Error {
         /// Why.
         cause: carom_algebra::Error,
     },
-    /// A body that cannot be reduced.
-    #[error("body '{body}' cannot be reduced: {why}")]
+    /// A body of whose modes no use can be made.
+    #[error("modes of body '{body}' cannot be taken: {why}")]
     Refused {
         /// Its name.
         body: String,
@@ -32,6 +32,14 @@ pub enum Error {
         asked: usize,
         /// The number that exist.
         exist: usize,
+    },
+    /// Modes of a body that cannot be damped.
+    #[error("modes of body '{body}' cannot be damped: {why}")]
+    Damped {
+        /// Its name.
+        body: String,
+        /// Why.
+        why: String,
     },
     /// A static response that could not be computed.
     #[error("body '{body}' cannot be reduced: {cause}")]

@@ -43,7 +43,7 @@ impl Full {
         Ok((Full::new(model, body, &retained)?, retained))
     }
 
-    fn new(model: &Model, body: usize, retained: &[u32]) -> Result<Full, Error> {
+    pub(crate) fn new(model: &Model, body: usize, retained: &[u32]) -> Result<Full, Error> {
         let given = &model.bodies[body];
         let refused = |why| Error::Refused {
             body: given.spec.name.clone(),
@@ -51,6 +51,9 @@ impl Full {
         };
         if given.rigid.is_some() {
             return Err(refused("it is rigid"));
+        }
+        if given.reduced.is_some() {
+            return Err(refused("it is reduced already"));
         }
         let own = ModelBody {
             mass: given.mass,
@@ -62,7 +65,7 @@ impl Full {
         })?;
         if !system.bodies[0].is_linear() {
             return Err(refused(
-                "it is at finite strain; a reduced body has the forces of small strain",
+                "it is at finite strain; its modes are those of small strain",
             ));
         }
         let of_node = |&node: &u32| system.unknowns.of(system.number[node as usize]);

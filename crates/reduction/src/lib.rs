@@ -5,6 +5,7 @@
 //! on modes and reduced bodies of the documentation.
 
 mod condense;
+mod damp;
 mod error;
 mod full;
 mod matrices;
@@ -15,6 +16,7 @@ mod retained;
 mod saved;
 mod statics;
 
+pub use damp::{Ratios, damp};
 pub use error::Error;
 pub use full::Keep;
 pub use matrices::Matrices;

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use carom_algebra::eigen::{Count, Eigenpairs, lowest};
 use carom_algebra::unknowns::Kind;
+use carom_bodies::Body;
 use carom_system::System;
 
 use crate::error::Error;
@@ -132,9 +133,19 @@ impl Modes {
                     base[unknown] = 1.0;
                 }
             }
+            for (unknown, amplitude) in system.unknowns.amplitudes() {
+                base[unknown] = amplitude.translation[axis];
+            }
             force.resize(base.len(), 0.0);
             matrices.mass.multiply(&base, &mut force);
-            modes.mass[axis] = unknowns().map(|i| base[i] * force[i]).sum();
+            let reduced = group.bodies.iter().map(|&body| &system.bodies[body]);
+            for body in reduced.clone().filter_map(Body::as_reduced) {
+                let missing = body.missing(axis).into_iter();
+                missing.for_each(|(unknown, m)| force[unknown] += m);
+            }
+            let missing = reduced.filter_map(Body::as_reduced);
+            modes.mass[axis] = unknowns().map(|i| base[i] * force[i]).sum::<f64>()
+                + missing.map(|body| body.missing_mass(axis)).sum::<f64>();
             for (own, shape) in modes.participation.iter_mut().zip(&modes.pairs.vectors) {
                 own.factor[axis] = unknowns().zip(shape).map(|(i, x)| force[i] * x).sum();
             }

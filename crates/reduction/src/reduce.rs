@@ -10,7 +10,7 @@ use carom_system::{Damping, Model};
 use crate::condense::Condensed;
 use crate::error::Error;
 use crate::full::{Full, Keep};
-use crate::statics::dot;
+use crate::statics::{dot, mass_of};
 
 /// Force of a rigid motion over the largest stiffness above which something else than the body holds it.
 const HELD: f64 = 1e-8;
@@ -123,6 +123,7 @@ fn reduction(
         mass: condensed.mass,
         amplitudes,
         inertia,
+        translated: [0, 1, 2].map(|axis| mass_of(&full.matrices.mass, &full.translation(axis))),
         is_grounded,
         is_massless: keep.massless,
         masses: masses

@@ -1,44 +1,30 @@
 //! Fourier sums of equal steps.
 
-use std::f64::consts::TAU;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
 
-/// Real part of Σ_k c_k e^(2πi k n/N) for n = 0..N, by the fast Fourier transform of Cooley and Tukey (1965).
-///
-/// `coefficients`: (real, imaginary) parts; N is their number, a power of two.
+/// Real part of Σ_k c_k e^(2πi k n/N) for n = 0..N, with the number N of the coefficients (real, imaginary), any number. The plan is one for
+/// scalars, so that the sums do not depend on the processor.
 pub(crate) fn real_sums(coefficients: &[[f64; 2]]) -> Vec<f64> {
-    let count = coefficients.len();
-    debug_assert!(count.is_power_of_two());
-    let bits = count.trailing_zeros();
-    let reversed = |n: usize| match bits {
-        0 => n,
-        _ => n.reverse_bits() >> (usize::BITS - bits),
-    };
-    let mut values: Vec<[f64; 2]> = (0..count).map(|n| coefficients[reversed(n)]).collect();
-    let mut half = 1;
-    while half < count {
-        let turn = TAU / (2 * half) as f64;
-        for k in 0..half {
-            let (sin, cos) = (turn * k as f64).sin_cos();
-            for one in (k..count).step_by(2 * half) {
-                let ([a, b], [c, d]) = (values[one], values[one + half]);
-                let [x, y] = [c * cos - d * sin, c * sin + d * cos];
-                values[one] = [a + x, b + y];
-                values[one + half] = [a - x, b - y];
-            }
-        }
-        half *= 2;
+    let complex = |&[re, im]: &[f64; 2]| Complex { re, im };
+    let mut values: Vec<Complex<f64>> = coefficients.iter().map(complex).collect();
+    if !values.is_empty() {
+        let plan = FftPlanner::new().plan_fft_inverse(values.len());
+        plan.process(&mut values);
     }
-    values.iter().map(|[real, _]| *real).collect()
+    values.iter().map(|value| value.re).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use crate::random::Random;
 
     #[test]
     fn sums_are_those_of_the_formula() {
-        for count in [1, 2, 8, 64] {
+        for count in [0, 1, 2, 7, 64, 90] {
             let mut random = Random::new(3);
             let c: Vec<[f64; 2]> = (0..count)
                 .map(|_| [random.uniform(), random.uniform()])

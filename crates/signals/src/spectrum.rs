@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::oscillator::{Oscillator, Response};
+use crate::oscillator::{Advance, Oscillator, Response};
 use crate::record::Record;
 
 /// Pieces of a period between which peaks are sought.
@@ -44,6 +44,7 @@ fn peaks(record: &Record, oscillator: Oscillator) -> [f64; 2] {
     let period = TAU / oscillator.omega;
     let mut most = [0.0_f64; 2];
     let mut now = Response::default();
+    let mut advance = Advance::new(oscillator);
     let points = record.points();
     let last = points[points.len() - 1];
     let free = [[last[0], 0.0], [last[0] + period, 0.0]];
@@ -54,7 +55,7 @@ fn peaks(record: &Record, oscillator: Oscillator) -> [f64; 2] {
         let h = (t1 - t0) / pieces;
         for piece in 0..pieces as usize {
             let a = a0 + slope * h * piece as f64;
-            let next = oscillator.after(now, h, [a, slope]);
+            let next = advance.after(now, h, [a, slope]);
             let ends = [(now, a), (next, a + slope * h)];
             let of = ends.map(|(at, base)| {
                 let acceleration = oscillator.acceleration(at);

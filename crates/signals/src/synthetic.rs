@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use crate::baseline::corrected;
 use crate::error::Error;
-use crate::oscillator::{Oscillator, Response};
+use crate::fourier::real_sums;
+use crate::oscillator::{Advance, Oscillator, Response};
 use crate::random::Random;
 use crate::record::Record;
 use crate::spectrum::response_spectrum;
@@ -21,6 +22,8 @@ const TRIALS: usize = 4;
 const PART: f64 = 0.5;
 /// Pieces of a period in which a wavelet is placed.
 const PIECES: f64 = 16.0;
+/// Widths from its middle at which a wavelet is zero: e^(-28²) is none of the numbers.
+const NOTHING: f64 = 28.0;
 /// Last part of the record over which it fades to zero.
 const FADE: f64 = 0.05;
 
@@ -159,8 +162,8 @@ impl Synthetic {
         let times = self.times();
         let [low, high] = [0, self.spectrum.len() - 1].map(|k| self.spectrum[k][0]);
         let top = (1.3 * high).min(0.5 / self.step) * self.duration;
-        let lines = (0.7 * low * self.duration).ceil().max(1.0) as usize..=top as usize;
-        let mut lines: Vec<[f64; 3]> = lines
+        let first = (0.7 * low * self.duration).ceil().max(1.0) as usize;
+        let mut lines: Vec<[f64; 3]> = (first..=top as usize)
             .map(|k| {
                 let f = k as f64 / self.duration;
                 [
@@ -171,7 +174,7 @@ impl Synthetic {
             })
             .collect();
         let controls = self.controls();
-        let mut record = self.sum(&times, &lines)?;
+        let mut record = self.sum(&times, (first, &lines))?;
         for _ in 0..HARMONIC {
             let found = response_spectrum(&record, &controls, self.damping);
             let ratios = controls.iter().zip(&found.acceleration);
@@ -179,7 +182,7 @@ impl Synthetic {
             for line in &mut lines {
                 line[1] *= logarithmic(&ratios, line[0]);
             }
-            record = self.sum(&times, &lines)?;
+            record = self.sum(&times, (first, &lines))?;
         }
         Ok(record)
     }
@@ -195,15 +198,16 @@ impl Synthetic {
         all
     }
 
-    /// E(t) Σ A sin(2π f t + φ) on its baseline; `lines`: f, A, φ.
-    fn sum(&self, times: &[f64], lines: &[[f64; 3]]) -> Result<Record, Error> {
-        let at = |&t: &f64| {
-            let waves = lines
-                .iter()
-                .map(|[f, a, phase]| a * (TAU * f * t + phase).sin());
-            [t, self.envelope(t) * waves.sum::<f64>()]
-        };
-        corrected(&Record::new(times.iter().map(at).collect())?)
+    /// E(t) Σ A sin(2π f t + φ) on its baseline; `lines`: f, A, φ, with f those of the periods duration/`first` and on.
+    fn sum(&self, times: &[f64], (first, lines): (usize, &[[f64; 3]])) -> Result<Record, Error> {
+        let mut coefficients = vec![[0.0; 2]; times.len() - 1];
+        for (coefficient, [_, a, phase]) in coefficients[first..].iter_mut().zip(lines) {
+            // A sin(x + φ) is the real part of -i A e^(iφ) e^(ix)
+            *coefficient = [a * phase.sin(), -a * phase.cos()];
+        }
+        let waves = real_sums(&coefficients);
+        let at = |(n, &t): (usize, &f64)| [t, self.envelope(t) * waves[n % waves.len()]];
+        corrected(&Record::new(times.iter().enumerate().map(at).collect())?)
     }
 
     /// The point of the spectrum that is met worst, and found over target less one there.
@@ -251,6 +255,9 @@ impl Synthetic {
         let width = 1.178 * (of.omega / TAU).powf(-0.93);
         let value = |point: &[f64; 2]| {
             let x = point[0] - begin;
+            if x.abs() > NOTHING * width {
+                return [point[0], 0.0];
+            }
             let within = (3.0 * self.envelope(point[0])).min(1.0);
             let shape = (turn * x).cos() * (-(x / width).powi(2)).exp();
             [point[0], within * shape]
@@ -267,13 +274,14 @@ fn follow(record: &Record, of: Oscillator, mut until: impl FnMut(f64, f64) -> bo
     let last = points[points.len() - 1][0];
     let free = [[last, 0.0], [last + period, 0.0]];
     let mut now = Response::default();
+    let mut advance = Advance::new(of);
     for pair in points.windows(2).chain([&free[..]]) {
         let [[t0, a0], [t1, a1]] = [pair[0], pair[1]];
         let pieces = ((t1 - t0) * PIECES / period).ceil().max(1.0);
         let (h, slope) = ((t1 - t0) / pieces, (a1 - a0) / (t1 - t0));
         for piece in 0..pieces as usize {
             let since = h * piece as f64;
-            now = of.after(now, h, [a0 + slope * since, slope]);
+            now = advance.after(now, h, [a0 + slope * since, slope]);
             if until(t0 + since + h, of.acceleration(now)) {
                 return;
             }

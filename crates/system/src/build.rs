@@ -15,6 +15,7 @@ use crate::error::Error;
 use crate::initial::settle;
 use crate::mass::Mass;
 use crate::massless::redistribute;
+use crate::modal::NumberedModal;
 use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete};
 use crate::numbered::NumberedNonlinear;
 use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
@@ -120,6 +121,11 @@ impl System {
         let damping = |k: usize| model.nonlinear.damping.get(k).map_or(0.0, |d| d.mass);
         let both = (&bodies[..], &model.bodies[..]);
         let damping_mass = Mass::of_damping(both, &damping, &body_masses, &unknowns);
+        let modal = model.bodies.iter().enumerate().filter_map(|(k, body)| {
+            let given = body.modal.as_ref()?;
+            Some(NumberedModal::new(k, given, (&number, &unknowns)))
+        });
+        let modal = modal.collect();
         let load = mass.weight((&bodies, &unknowns), model.gravity);
         let nonlinear =
             NumberedNonlinear::new(&model, (&number, &unknowns), (&bodies, &mass), &fixed)?;
@@ -208,6 +214,7 @@ impl System {
             body_masses,
             mass,
             damping_mass,
+            modal,
             massless,
             fixed,
             load,

@@ -6,6 +6,7 @@ use carom_contact::law::Level;
 use carom_contact::{Contact, Initial, Integration};
 
 use crate::error::Error;
+use crate::modal::NumberedModal;
 use crate::model::{ModelBody, ModelContact};
 use crate::refused::Refused;
 use crate::system::System;
@@ -165,6 +166,12 @@ impl System {
                 );
             }
         }
+        for modal in &self.modal {
+            if let Some(why) = self.refuses_modal(modal) {
+                let name = self.bodies[modal.body].name().to_owned();
+                return refuse(Refused::ModalDamping(name), why);
+            }
+        }
         for (damping, body) in self.nonlinear.damping.iter().zip(&self.bodies) {
             if damping.stiffness != 0.0 && !body.is_linear() {
                 return refuse(
@@ -174,5 +181,27 @@ impl System {
             }
         }
         Ok(())
+    }
+
+    /// Why a body may not have damping of modes, whose matrix is in the factor of its part only where that is made once.
+    fn refuses_modal(&self, modal: &NumberedModal) -> Option<&'static str> {
+        let part = self.part_of_body[modal.body];
+        let same = |body: usize| self.part_of_body[body] == part;
+        let nonlinear =
+            |&body: &usize| !self.bodies[body].is_linear() || self.nonlinear.has_follower(body);
+        let range = &self.parts[part];
+        let mut follows = self.nonlinear.follows.iter();
+        if (0..self.bodies.len())
+            .filter(|&body| same(body))
+            .any(|body| nonlinear(&body))
+        {
+            return Some(
+                "it shares nodes with a body at finite strain, a spring with a curve or a pressure that turns with it, whose matrix is made anew \
+                 in each iteration; take `damping.mass` and `damping.stiffness`",
+            );
+        }
+        follows.any(|f| range.contains(&(f.unknown as usize))).then_some(
+            "a support moves it, and the modes are those about supports at rest; take `base-acceleration`, or `damping.stiffness`",
+        )
     }
 }

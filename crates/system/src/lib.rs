@@ -15,6 +15,7 @@ mod loads;
 mod maps;
 mod mass;
 mod massless;
+mod modal;
 mod model;
 mod motion;
 mod nonlinear;
@@ -32,6 +33,7 @@ pub use error::Error;
 pub use loads::{Load, LoadKind, NodalLoad};
 pub use maps::Maps;
 pub use mass::Mass;
+pub use modal::{ModalDamping, NumberedModal};
 pub use model::{
     Model, ModelBody, ModelConstraint, ModelContact, ModelDiscrete, ModelLink, ModelRigid,
     ModelScheme, ModelTarget, Support,

@@ -10,6 +10,7 @@ use carom_mesh::{Mesh, Surface};
 use carom_schemes::Scheme;
 
 use crate::adaptive::Adaptive;
+use crate::modal::ModalDamping;
 use crate::nonlinear::Nonlinear;
 
 /// Everything from which a system is built; names are those of the case file.
@@ -189,6 +190,8 @@ pub struct ModelBody {
     pub rigid: Option<ModelRigid>,
     /// What it is reduced to: retained nodes and modes.
     pub reduced: Option<Arc<Reduction>>,
+    /// Damping of its modes.
+    pub modal: Option<Arc<ModalDamping>>,
 }
 
 /// A rigid body and its initial rotation.
@@ -211,6 +214,7 @@ impl ModelBody {
             spin: [0.0; 3],
             rigid: None,
             reduced: None,
+            modal: None,
         }
     }
 }
@@ -342,9 +346,8 @@ impl Model {
 }
 
 fn damped(body: &ModelBody) -> bool {
-    body.reduced
-        .as_ref()
-        .is_some_and(|reduced| reduced.damping.is_some())
+    let reduced = body.reduced.as_ref();
+    body.modal.is_some() || reduced.is_some_and(|reduced| reduced.damping.is_some())
 }
 
 fn needs_newton(contact: &ModelContact) -> bool {

@@ -14,6 +14,9 @@ pub enum Refused {
     /// The damping of a body, by its name.
     #[error("damping of body '{0}'")]
     Damping(String),
+    /// The damping of modes of a body, by its name.
+    #[error("damping of the modes of body '{0}'")]
+    ModalDamping(String),
     /// A static stage.
     #[error("a static stage")]
     StaticStage,

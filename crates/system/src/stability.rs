@@ -6,6 +6,7 @@ use carom_bodies::{FrequencyBound, Placement};
 use carom_contact::law::{Local, Status};
 use carom_contact::{Contact, Rows, Search};
 
+use crate::modal::NumberedModal;
 use crate::motion::Motion;
 use crate::system::System;
 use carom_schemes::Scheme;
@@ -74,6 +75,8 @@ impl System {
         let damping = self.nonlinear.damping.iter().enumerate();
         let damping = damping.filter(|(body, _)| explicit(*body));
         let rates = damping.map(|(_, damping)| damping.mass + damping.stiffness * bodies * bodies);
+        let modal = self.modal.iter().filter(|modal| explicit(modal.body));
+        let rates = rates.chain(modal.map(NumberedModal::rate));
         let rate = rates.fold(0.0, f64::max) + dashpots;
         let critical = self
             .schemes

@@ -11,6 +11,7 @@ use carom_schemes::Scheme;
 
 use crate::adaptive::Adaptive;
 use crate::mass::Mass;
+use crate::modal::NumberedModal;
 use crate::numbered::NumberedNonlinear;
 
 /// One row of C, which couples velocities: unknowns and coefficients, with the sign of the side.
@@ -58,6 +59,8 @@ pub struct System {
     pub body_masses: Vec<Vec<(u32, f64)>>,
     /// Mass matrix.
     pub mass: Mass,
+    /// Damping of modes.
+    pub modal: Vec<NumberedModal>,
     /// Σ α M over the bodies with the factors α of Rayleigh's damping, kg/s.
     pub damping_mass: Option<Mass>,
     /// Unknowns of contact nodes without mass, ascending: they follow their equilibrium.
@@ -227,9 +230,9 @@ impl System {
         self.nonlinear.needed
     }
 
-    /// Whether any force is one of damping: of dashpots or of Rayleigh's damping.
+    /// Whether any force is one of damping: of dashpots, of Rayleigh's damping or of that of modes.
     pub fn has_damping(&self) -> bool {
-        self.has_dashpots || !self.nonlinear.damping.is_empty()
+        self.has_dashpots || !self.nonlinear.damping.is_empty() || !self.modal.is_empty()
     }
 
     /// The part of the histories of all bodies ([`Motion::history`](crate::Motion::history)) that is a body's; empty of a law

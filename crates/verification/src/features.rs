@@ -14,7 +14,7 @@ use carom_dynamics::{
 };
 use carom_materials::{Branch, J2Plasticity, Law as Material, Maxwell, NeoHooke};
 use carom_mesh::{ElementId, Mesh};
-use carom_reduction::{Keep, reduce};
+use carom_reduction::{Keep, Ratios, damp, reduce};
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
 use crate::Error;
@@ -43,10 +43,12 @@ pub(crate) enum Feature {
     Reduced,
     ReducedStage,
     ReducedZones,
+    DampedModes,
+    DampedModesZones,
 }
 
 impl Feature {
-    pub(crate) const ALL: [Feature; 17] = [
+    pub(crate) const ALL: [Feature; 19] = [
         Feature::Friction,
         Feature::FiniteStrain,
         Feature::Plasticity,
@@ -64,6 +66,8 @@ impl Feature {
         Feature::Reduced,
         Feature::ReducedStage,
         Feature::ReducedZones,
+        Feature::DampedModes,
+        Feature::DampedModesZones,
     ];
 
     pub(crate) fn name(self) -> &'static str {
@@ -85,6 +89,8 @@ impl Feature {
             Feature::Reduced => "reduced body",
             Feature::ReducedStage => "reduced body, static stage",
             Feature::ReducedZones => "reduced body, zones, m = 4",
+            Feature::DampedModes => "damped modes",
+            Feature::DampedModesZones => "damped modes, zones, m = 4",
         }
     }
 
@@ -130,6 +136,7 @@ impl Feature {
             | Feature::StaticStage
             | Feature::Massless
             | Feature::Reduced
+            | Feature::DampedModes
             | Feature::ReducedStage => Sliding::Small,
             _ => Sliding::Finite,
         }
@@ -202,6 +209,11 @@ impl Feature {
             Feature::ReducedStage => {
                 preloaded(&mut model)?;
                 reduced(&mut model)?;
+            }
+            Feature::DampedModes => damped(&mut model)?,
+            Feature::DampedModesZones => {
+                damped(&mut model)?;
+                return Built::zoned(in_contact(model, 4));
             }
             Feature::ReducedZones => {
                 reduced(&mut model)?;
@@ -301,6 +313,12 @@ fn reduced(model: &mut Model) -> Result<(), Error> {
         ..Keep::default()
     };
     Ok(reduce(model, 0, &keep)?)
+}
+
+/// The lowest modes of the upper block are damped.
+fn damped(model: &mut Model) -> Result<(), Error> {
+    damp(model, 0, &Ratios::Each(vec![0.02, 0.1, 0.05]))?;
+    Ok(())
 }
 
 /// Each block is a zone; the lower one takes `substeps` steps in one of the upper.

@@ -23,6 +23,7 @@ mod kept;
 mod kind;
 mod plastic_wave;
 mod points;
+mod pounding;
 mod repeated;
 
 mod adaptive;
@@ -85,6 +86,7 @@ mod knocking_oscillators;
 mod large_beams;
 pub mod long_run;
 mod mass_on_stop;
+mod modal_damping;
 mod modes;
 mod oblique_bar;
 mod orbiting_mass;
@@ -213,12 +215,14 @@ registry! {
     knocking_oscillators
     long_run
     mass_on_stop
+    modal_damping
     modes
     oblique_bar
     orbiting_mass
     order
     order_features
     plastic_wave
+    pounding
     quadrature
     random_field
     reduced_bodies

@@ -67,17 +67,26 @@ fn rolling(scheme: Scheme, steps: f64) -> Result<Vec<Row>, Error> {
     let near = |what: &str, found, exact, tolerance| {
         Row::near(format!("{name}: {what}"), found, exact, tolerance)
     };
+    let lost = driver.report().balance.dissipation_friction;
+    let impacts = state.impacts(driver.system());
+    let worn: f64 = impacts.iter().map(|impact| impact.friction_loss).sum();
     let mut rows = vec![
         near("speed / initial speed", v / SPEED, 2.0 / 3.0, left / SPEED),
         near("rate of sliding, m/s", v + turned, 0.0, left),
         near("time of sliding / exact", last / roll, 1.0, 1.5 / steps),
         near(
             "energy lost in friction / that of the start",
-            driver.report().balance.dissipation_friction / (0.5 * MASS * SPEED * SPEED),
+            lost / (0.5 * MASS * SPEED * SPEED),
             1.0 / 3.0,
             (left / SPEED).powi(2),
         ),
         near("m v R - J w / that of the start", kept / SPEED, 1.0, 1e-12),
+        near(
+            "friction loss of the impact / that of the run",
+            worn / lost,
+            1.0,
+            1e-12,
+        ),
     ];
     rows.extend(balances(&name, state, 0.0));
     Ok(rows)

@@ -173,6 +173,7 @@ impl Builder<'_> {
             matches!(&body.section, Some(Section::Beam(section)) if section.foundation.is_some());
         let damped = body
             .damping
+            .as_ref()
             .is_some_and(|damping| damping.stiffness.is_some());
         if on_ground && damped {
             let message =

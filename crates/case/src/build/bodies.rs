@@ -88,6 +88,7 @@ impl Builder<'_> {
                 spin,
                 rigid,
                 reduced: None,
+                modal: None,
             });
         }
         self.one_plane(&bodies);

@@ -8,6 +8,7 @@ mod builder;
 mod constraints;
 mod contacts;
 mod course;
+mod damped;
 mod discrete;
 mod explicit;
 mod fluids;
@@ -186,6 +187,7 @@ impl Builder<'_> {
             },
         };
         self.reduce(&mut model, &joints.links, &input.folder);
+        self.damp_modes(&mut model);
         if !self.problems.is_empty() {
             return None;
         }

@@ -19,10 +19,12 @@ impl Builder<'_> {
     ) -> Nonlinear {
         let time = &self.case.time;
         let damping = |body: &crate::schema::Body| {
-            body.damping.map_or(Damping::default(), |damping| Damping {
-                mass: damping.mass.map_or(0.0, |rate| rate.0),
-                stiffness: damping.stiffness.map_or(0.0, |time| time.0),
-            })
+            body.damping
+                .as_ref()
+                .map_or(Damping::default(), |damping| Damping {
+                    mass: damping.mass.map_or(0.0, |rate| rate.0),
+                    stiffness: damping.stiffness.map_or(0.0, |time| time.0),
+                })
         };
         Nonlinear {
             loads,

@@ -130,6 +130,7 @@ impl Builder<'_> {
             Refused::StaticStage => "time.static".to_string(),
             Refused::Integration(contact) => format!("contact.{contact}.integration"),
             Refused::Damping(body) => format!("body.{body}.damping.stiffness"),
+            Refused::ModalDamping(body) => format!("body.{body}.damping.modal"),
             Refused::Motion { .. } => "support".to_string(),
             Refused::Load { .. } => "load".to_string(),
             Refused::NodalLoad(load) => format!("load.{load}"),

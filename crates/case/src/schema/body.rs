@@ -8,8 +8,8 @@ use super::beam::BeamSection;
 use super::explicit::{BulkViscosity, MassScaling};
 use super::joint::Hinge;
 use carom_quantities::{
-    Angle, AngularVelocity, Area, Coordinate, Delay, Length, MomentOfInertia, Rate, Vector,
-    Velocity, Weight,
+    Angle, AngularVelocity, Area, Coordinate, Delay, Frequency, Length, MomentOfInertia, Rate,
+    Vector, Velocity, Weight,
 };
 
 /// A body: cells of the mesh, with a material.
@@ -27,7 +27,7 @@ pub struct Body {
     /// Integration of the internal work of its cells.
     #[serde(default)]
     pub formulation: Formulation,
-    /// Rayleigh damping. Default: none.
+    /// Damping, of Rayleigh or of modes. Default: none.
     pub damping: Option<Damping>,
     /// Hinges of beams. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -129,14 +129,35 @@ pub struct Rigid {
     pub centre: Option<Vector<Coordinate>>,
 }
 
-/// Rayleigh damping: the damping matrix is `mass` times the mass matrix plus `stiffness` times the stiffness matrix.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// Damping: the damping matrix is `mass` times the mass matrix plus `stiffness` times the stiffness matrix, plus what `modal` gives.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Damping {
     /// Factor of the mass matrix. It also damps rigid motion. Default: 0.
     pub mass: Option<Rate>,
     /// Factor of the stiffness matrix; for materials at small strain. Default: 0.
     pub stiffness: Option<Delay>,
+    /// Damping ratios of modes of the body, which has small strain and is not reduced. Default: none.
+    pub modal: Option<ModalDamping>,
+}
+
+/// Damping ratios of the modes of a body by itself with its supports: `ratios` of the lowest modes, or one `ratio` of all modes `below` a
+/// frequency. Other modes and rigid motions are not damped.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend(
+    "oneOf" = [{ "required": ["ratios"] }, { "required": ["ratio"] }],
+    "dependentRequired" = { "below": ["ratio"], "ratio": ["below"] },
+))]
+pub struct ModalDamping {
+    /// Ratio of each of the lowest modes that are no rigid motions.
+    #[schemars(extend("minItems" = 1, "items" = { "type": "number", "minimum": 0.0, "maximum": 1.0 }))]
+    pub ratios: Option<Vec<f64>>,
+    /// Ratio of all modes below `below`.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1.0))]
+    pub ratio: Option<f64>,
+    /// Frequency up to which modes are damped.
+    pub below: Option<Frequency>,
 }
 
 /// The section of a body of bars, beams or plane cells.

@@ -31,8 +31,8 @@ pub use beam::{
     SectionProperties, TubeShape,
 };
 pub use body::{
-    AxisymmetricSection, BarSection, Body, Damping as RayleighDamping, Formulation,
-    FormulationName, FormulationWith, Initial, Mass, Movement, MovementCourse, MovementPoint,
+    AxisymmetricSection, BarSection, Body, Damping as BodyDamping, Formulation, FormulationName,
+    FormulationWith, Initial, Mass, ModalDamping, Movement, MovementCourse, MovementPoint,
     PlaneSection, Reduced, Rigid, Section, Support,
 };
 pub use carom_laws::GivenLaw;

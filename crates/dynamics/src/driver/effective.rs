@@ -19,7 +19,7 @@ use crate::costs::Work;
 use crate::error::Error;
 use crate::operator::{Operator, Operators, factored, single};
 use crate::step_map::StepMap;
-use crate::system::{Maps, System};
+use crate::system::{Maps, NumberedModal, System};
 
 /// Sizes of the step and stages whose factors are kept beside those of the present one.
 const KEPT: usize = 3;
@@ -373,7 +373,31 @@ fn linear_part(
         *entry = a.get(place, place);
     }
     let operator = factored(system, part, &a, fixed, "effective matrix")?;
+    let columns = modal_columns(system, part, damping_rate(map).x);
+    let node = system.unknowns.node(part.start) as usize;
+    let operator = operator
+        .with_columns(&columns)
+        .map_err(|cause| Error::Factor {
+            matrix: "damping of modes",
+            node: system.mesh_node[node],
+            cause,
+        })?;
     let follows = &system.nonlinear.follows;
     let moved = follows.iter().any(|f| part.contains(&(f.unknown as usize)));
     Ok((operator, moved.then_some(a)))
+}
+
+/// The columns of the damping of modes in the matrix of a part, times the root of this factor of the damping.
+fn modal_columns(system: &System, part: &Range<usize>, factor: f64) -> Vec<Vec<f64>> {
+    let fixed = &system.fixed[part.clone()];
+    let inside = |modal: &&NumberedModal| &system.parts[system.part_of_body[modal.body]] == part;
+    let modal = system.modal.iter().filter(|_| factor > 0.0).filter(inside);
+    let columns = modal.flat_map(|modal| modal.columns_of(part));
+    let scaled = |mut column: Vec<f64>| {
+        for (b, fixed) in column.iter_mut().zip(fixed) {
+            *b *= if *fixed { 0.0 } else { factor.sqrt() };
+        }
+        column
+    };
+    columns.map(scaled).collect()
 }

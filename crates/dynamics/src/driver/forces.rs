@@ -109,6 +109,9 @@ impl Driver {
         for body in &system.bodies {
             body.add_damping_force(&vectors.rate, &mut vectors.damping);
         }
+        for modal in &system.modal {
+            modal.add_force(&vectors.rate, &mut vectors.damping);
+        }
         if let Some(mass) = &system.damping_mass {
             mass.multiply(&vectors.rate, &mut vectors.work);
             for (damping, force) in vectors.damping.iter_mut().zip(&vectors.work) {

@@ -10,6 +10,7 @@ use crate::results::costs::{counts, courant, newton, timings};
 use crate::results::exact;
 use crate::results::impacts::ContactTotals;
 use crate::results::lines::{Evidence, judge};
+use crate::results::reduced;
 use crate::results::totals::Last;
 use crate::results::{Comparison, Ending, LevelSettings, Results};
 use crate::statistics::{Level, Statistics};
@@ -185,6 +186,8 @@ fn model(system: &System) -> Model {
         contact_points: system.points(),
         mass: mass.collect(),
         added_mass: added.collect(),
+        reduced: reduced::reduced(system),
+        damped_modes: reduced::damped_modes(system),
     }
 }
 

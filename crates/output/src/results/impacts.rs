@@ -134,6 +134,7 @@ impl Impacts {
             energy_taken: impact.energy_taken,
             energy_lost: impact.energy_lost,
             energy_crushed: impact.energy_crushed,
+            friction_loss: impact.friction_loss,
             intervals: impact.intervals,
             impulsive: impact.impulsive,
         };

@@ -21,6 +21,7 @@ mod impacts;
 mod instants;
 mod lines;
 pub(crate) mod outlines;
+mod reduced;
 pub(crate) mod sensor;
 mod settings;
 mod spectra;

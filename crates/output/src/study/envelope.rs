@@ -1,4 +1,4 @@
-//! The envelope of the runs of a study: for each contact and level the largest force and the largest energy of an impact over all
+//! The envelope of the runs of a study: for each contact and level the largest force, the largest energy of an impact and the work of friction over all
 //! records, gaps and directions, with the run that gives it.
 
 use crate::Error;
@@ -34,6 +34,8 @@ pub struct Envelope {
     pub force_margin: Option<Governed>,
     /// Smallest margin of the energy.
     pub energy_margin: Option<Governed>,
+    /// Largest energy that friction took over a run, J: a measure of wear.
+    pub friction: Option<Governed>,
 }
 
 impl Study {
@@ -59,6 +61,7 @@ impl Study {
                     .largest(-1.0, |s| margin(s, |l| l.force_margin.as_ref()?.margin)),
                 energy_margin: self
                     .largest(-1.0, |s| margin(s, |l| l.energy_margin.as_ref()?.margin)),
+                friction: self.largest(1.0, |s| statistics(s, |s| s.friction_loss)),
                 name: name.clone(),
             }
         };
@@ -72,6 +75,7 @@ impl Study {
                 energy: self.largest(1.0, |s| statistics(s, |s| s.energy_taken)),
                 force_margin: None,
                 energy_margin: None,
+                friction: self.largest(1.0, |s| statistics(s, |s| s.friction_loss)),
                 name: name.clone(),
             }
         };
@@ -131,6 +135,7 @@ impl Study {
                 show(&envelope.energy, "J"),
                 show(&envelope.force_margin, "%"),
                 show(&envelope.energy_margin, "%"),
+                show(&envelope.friction, "J"),
             ];
             let name = std::iter::once(envelope.name.clone());
             name.chain(cells.into_iter().flatten()).collect()
@@ -144,6 +149,8 @@ impl Study {
             "margin of the force",
             "in",
             "margin of the energy",
+            "in",
+            "lost in friction",
             "in",
         ];
         Table {
@@ -169,6 +176,8 @@ impl Study {
             "force_margin_run",
             "energy_margin",
             "energy_margin_run",
+            "friction_loss_j",
+            "friction_loss_run",
         ];
         let rows: Vec<Vec<Cell>> = all.iter().map(cells).collect();
         write_csv(&folder.file("envelope.csv")?, &names, &rows)
@@ -181,6 +190,7 @@ fn cells(envelope: &Envelope) -> Vec<Cell<'_>> {
         &envelope.energy,
         &envelope.force_margin,
         &envelope.energy_margin,
+        &envelope.friction,
     ];
     let mut row = vec![Cell::Text(envelope.kind), Cell::Text(&envelope.name)];
     for governed in of {

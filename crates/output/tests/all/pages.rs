@@ -222,6 +222,7 @@ fn what_does_not_exist_is_a_dash() {
         energy_taken: 1.0,
         energy_lost: 1.0,
         energy_crushed: 0.0,
+        friction_loss: 0.0,
         intervals: 1,
         impulsive: 0.0,
     };

@@ -135,6 +135,7 @@ fn an_impact_that_is_not_over_has_empty_cells() {
         energy_taken: 15.0,
         energy_lost: 0.1,
         energy_crushed: 0.04,
+        friction_loss: 0.03,
         intervals: 2,
         impulsive: 0.0,
     };
@@ -153,7 +154,7 @@ fn an_impact_that_is_not_over_has_empty_cells() {
         rows[0],
         [
             "a, \"b\"", "0.0001", "0.0002", "70000.0", "66000.0", "5e-6", "6.6", "5.0", "4.5",
-            "0.9", "16.0", "15.0", "0.1", "0.04", "2.0", "0.0", "12.0"
+            "0.9", "16.0", "15.0", "0.1", "0.04", "2.0", "0.0", "12.0", "0.03"
         ]
     );
     table.push(&open).unwrap();
