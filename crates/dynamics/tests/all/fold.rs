@@ -33,6 +33,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
         spin: [0.0; 3],
         rigid: None,
         reduced: None,
+        modal: None,
     }
 }
 
