@@ -329,7 +329,7 @@ impl Operators {
         let (group, _) = self.home(unknown);
         match self.operator(group) {
             Operator::Diagonal(_) => unknown,
-            Operator::Factored(_) => self.unknowns() + group,
+            Operator::Factored(_) | Operator::Updated(_) => self.unknowns() + group,
         }
     }
 
