@@ -57,7 +57,7 @@ impl Solid {
     /// stiffness and no mass in its part makes the bound infinite. At finite strain it is that of the undeformed body, fully
     /// integrated, which no other formulation exceeds on rectangular elements as long as the hourglass factor is not above 1:
     /// hourglass modes have at most 4 μ κ/(ρ h²), h the least edge, and full integration at least 4 (λ + 2μ)/(ρ h²). With linear bulk
-    /// viscosity it is 2 over the stable step of an element, which is smaller ([`BulkViscosity`]).
+    /// viscosity it is 2 over the stable step of an element, which is smaller ([`BulkViscosity`](crate::BulkViscosity)).
     pub fn frequency_bound(&self) -> f64 {
         let varying: Vec<bool> = self.blocks.iter().flat_map(Block::varying).collect();
         let (mut place, mut even, mut uneven): (_, f64, f64) = (0, 0.0, 0.0);
