@@ -59,7 +59,7 @@ pub struct Impact {
     pub energy_lost: f64,
     /// The part of it that is lost in crush, J; zero of laws without memory.
     pub energy_crushed: f64,
-    /// The part of it that friction takes, J: its work on what slides, which wears it off.
+    /// Energy that friction takes beside it, J: its work on what slides, which wears it off.
     pub friction_loss: f64,
     /// Whether the run ended before the impact did.
     pub unfinished: bool,

@@ -45,7 +45,7 @@ pub struct ImpactRow {
     pub energy_lost: f64,
     /// The part of it that is lost in crush, J; zero of laws without memory.
     pub energy_crushed: f64,
-    /// The part of it that friction takes, J: its work on what slides, which wears it off.
+    /// Energy that friction takes beside it, J: its work on what slides, which wears it off.
     #[serde(default)]
     pub friction_loss: f64,
     /// Intervals with a force: more than one where the contact opens and closes within the impact.
