@@ -232,7 +232,9 @@ impl System {
 
     /// Whether any force is one of damping: of dashpots, of Rayleigh's damping or of that of modes.
     pub fn has_damping(&self) -> bool {
-        self.has_dashpots || !self.nonlinear.damping.is_empty() || !self.modal.is_empty()
+        let none = crate::nonlinear::Damping::default();
+        let damped = self.nonlinear.damping.iter().any(|body| *body != none);
+        self.has_dashpots || damped || !self.modal.is_empty()
     }
 
     /// The part of the histories of all bodies ([`Motion::history`](crate::Motion::history)) that is a body's; empty of a law
