@@ -129,7 +129,11 @@ impl Driver {
         let weights = &self.link_work_weights(0);
         let [old, new] = [&self.state.motion, &self.next.motion];
         let travel = on(terms, &new.u) - on(terms, &old.u);
-        let later = weights.lag * (on(terms, &new.v) - on(terms, &old.v));
+        // a row of many terms costs as much again
+        let later = match weights.lag == 0.0 {
+            true => 0.0,
+            false => weights.lag * (on(terms, &new.v) - on(terms, &old.v)),
+        };
         (weights.old * before + weights.new * now) * (travel - later)
     }
 
