@@ -69,8 +69,8 @@ pub struct Coulomb {
     start: Trial,
     change: Vec<f64>,
     reversals: Vec<u32>,
-    /// Bᵀ p.
-    motion: Vec<f64>,
+    /// What sweeps keep: D p, or Bᵀ p of a lumped mass.
+    kept: Vec<f64>,
 }
 
 impl Coulomb {
@@ -98,8 +98,9 @@ impl Coulomb {
                 self.finish(problem);
                 return Ok(());
             }
+            self.kept.clone_from(&self.trial.product);
             for _ in 0..SWEEPS << round {
-                sweep::sweep((problem, d), &mut self.trial);
+                sweep::sweep((problem, d), &mut self.trial, &mut self.kept);
             }
             self.sweeps += SWEEPS << round;
             self.trial.measure(problem, &self.reversals);
@@ -114,12 +115,12 @@ impl Coulomb {
 
     /// Sweeps alone: of points of a lumped mass few are needed, and each costs no more than one product with D.
     fn relax(&mut self, (problem, d): (&Posed, &Lumped)) -> Result<(), FrictionFailure> {
-        d.gather(&self.trial.p, &mut self.motion);
+        d.gather(&self.trial.p, &mut self.kept);
         let mut patience = PATIENCE;
         for _ in 0..ALONE {
             self.sweeps += 1;
-            let room = (&mut self.trial, &mut self.motion);
-            if sweep::sweep_lumped((problem, d), room.0, room.1) > SETTLED {
+            let room = (&mut self.trial, &mut self.kept);
+            if sweep::sweep((problem, d), room.0, room.1) > SETTLED {
                 continue;
             }
             self.trial.measure(problem, &self.reversals);

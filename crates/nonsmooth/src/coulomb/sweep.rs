@@ -13,46 +13,53 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Passes of the status of one candidate.
 const TURNS: u32 = 12;
 
-/// One sweep over all candidates; forces and D p of the trial change, its defects do not. `d`: all entries of D, row-major.
-pub(super) fn sweep((problem, d): (&Posed, &[f64]), trial: &mut Trial) {
-    for i in 0..problem.len() {
-        let (row, width) = (problem.normal(i), 1 + problem.tangents);
-        let mut others = [0.0; 3];
-        for (k, others) in others.iter_mut().enumerate().take(width) {
-            *others = trial.product[row + k] - problem.own(i, k, &trial.p);
-        }
-        let forces = solve(
-            (problem, &trial.mobile[i]),
-            i,
-            &mut trial.statuses[i],
-            &others,
-        );
-        for k in 0..width {
-            let change = forces[k] - trial.p[row + k];
-            if change != 0.0 {
-                trial.p[row + k] = forces[k];
-                // D is symmetric: its row is its column
-                let d = &d[(row + k) * problem.rows()..(row + k + 1) * problem.rows()];
-                for (product, d) in trial.product.iter_mut().zip(d) {
-                    *product += change * d;
-                }
-            }
+/// The products with D that a sweep keeps up to date.
+pub(super) trait Product {
+    /// Entry `row` of D p, from what is kept.
+    fn at(&self, row: usize, kept: &[f64]) -> f64;
+    /// What is kept when entry `row` of p changes.
+    fn change(&self, row: usize, change: f64, kept: &mut [f64]);
+}
+
+/// All entries of D, row-major; D p is kept.
+impl Product for [f64] {
+    fn at(&self, row: usize, kept: &[f64]) -> f64 {
+        kept[row]
+    }
+
+    fn change(&self, row: usize, change: f64, kept: &mut [f64]) {
+        // D is symmetric: its row is its column
+        let d = &self[row * kept.len()..(row + 1) * kept.len()];
+        for (kept, d) in kept.iter_mut().zip(d) {
+            *kept += change * d;
         }
     }
 }
 
-/// The same where D is the product of sparse rows, `motion` being Bᵀ p; the largest change over the largest force.
-pub(super) fn sweep_lumped(
-    (problem, d): (&Posed, &Lumped),
+/// D is the product of sparse rows, and Bᵀ p is kept.
+impl Product for Lumped {
+    fn at(&self, row: usize, kept: &[f64]) -> f64 {
+        self.along(row, kept)
+    }
+
+    fn change(&self, row: usize, change: f64, kept: &mut [f64]) {
+        self.add(row, change, kept);
+    }
+}
+
+/// One sweep over all candidates; forces and statuses of the trial change, its defects do not. Returns the largest change of a force
+/// over the largest force.
+pub(super) fn sweep<D: Product + ?Sized>(
+    (problem, d): (&Posed, &D),
     trial: &mut Trial,
-    motion: &mut [f64],
+    kept: &mut [f64],
 ) -> f64 {
     let (mut change, mut largest) = (0.0_f64, 0.0_f64);
     for i in 0..problem.len() {
         let (row, width) = (problem.normal(i), 1 + problem.tangents);
         let mut others = [0.0; 3];
         for (k, others) in others.iter_mut().enumerate().take(width) {
-            *others = d.along(row + k, motion) - problem.own(i, k, &trial.p);
+            *others = d.at(row + k, kept) - problem.own(i, k, &trial.p);
         }
         let forces = solve(
             (problem, &trial.mobile[i]),
@@ -64,7 +71,7 @@ pub(super) fn sweep_lumped(
             let moved = forces[k] - trial.p[row + k];
             if moved != 0.0 {
                 trial.p[row + k] = forces[k];
-                d.add(row + k, moved, motion);
+                d.change(row + k, moved, kept);
                 change = change.max(moved.abs());
             }
             largest = largest.max(forces[k].abs());
