@@ -22,3 +22,25 @@ pub(super) fn of_modes(evidence: &Evidence) -> Finding {
         )),
     }
 }
+
+/// Damping by modes leaves the others without any.
+pub(super) fn of_undamped_modes(evidence: &Evidence) -> Finding {
+    let system = evidence.system;
+    let unknowns = |body: usize| system.parts[system.part_of_body[body]].len();
+    let modal = system.modal.iter();
+    let told: Vec<String> = modal
+        .filter(|modal| modal.modes.len() < unknowns(modal.body))
+        .map(|modal| {
+            let highest = modal.modes.iter().map(|[f, _]| *f).fold(0.0, f64::max);
+            let name = system.bodies[modal.body].name();
+            format!("`{name}` above {highest:.4} Hz")
+        })
+        .collect();
+    if told.is_empty() {
+        return Finding::Absent;
+    }
+    Finding::Unchecked(format!(
+        "whether the modes without damping ring, those of {}: look at spectra of probes, or give `damping.modal` more modes",
+        told.join(", ")
+    ))
+}

@@ -8,8 +8,9 @@ use crate::verdict::{Bounds, Line};
 /// that one point does not see; up to a tenth is the rule of practice, and from a twentieth on it is worth a look.
 const HOURGLASS: Bounds = Bounds::Both(0.05, 0.1);
 
-/// Bound of the added mass relative to that of the body's material.
-const ADDED: Bounds = Bounds::Look(0.05);
+/// Bounds of the added mass relative to that of the body's material: from a twentieth on it is worth a look; as much mass again changes
+/// momenta and frequencies by the factor that is asked about.
+const ADDED: Bounds = Bounds::Both(0.05, 1.0);
 
 /// Energy of hourglass modes.
 pub(super) fn hourglass(evidence: &Evidence) -> Finding {

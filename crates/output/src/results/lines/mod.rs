@@ -45,6 +45,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     small::lost,
     convergence::of_mesh_and_step,
     convergence::of_modes,
+    convergence::of_undamped_modes,
 ];
 
 /// The verdict on a run that came to its end (`unfinished` is `None`) or did not (`unfinished` says why).
