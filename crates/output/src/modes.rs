@@ -294,7 +294,7 @@ impl ModeSet<'_> {
                 caption,
                 ..Frame::default()
             };
-            outlines.frame(system, &places, &value, frame)
+            outlines.frame(system, &|node| places.of(*node), &value, frame)
         };
         let frames: Vec<Frame> = shown.iter().map(frame).collect();
         let scene = Scene {

@@ -4,13 +4,12 @@
 //! one step in twice as many is taken.
 
 use carom_algebra::rotation::Rotation;
-use carom_contact::Target;
 use carom_dynamics::{State, System};
 
 use crate::Error;
 use crate::plot::{Frame, Scene, film_figure, quantity};
 use crate::results::cells::{cell_stresses, von_mises};
-use crate::results::outlines::{Outlines, size};
+use crate::results::outlines::{Outlines, gap, size};
 
 /// Instants kept at most, and instants shown.
 const KEPT: usize = 24;
@@ -105,25 +104,11 @@ impl Film {
             .iter()
             .map(|still| still.frame(system, &outlines))
             .collect();
-        let gap = |time: f64, place: [f64; 3]| {
-            let place = match system.axisymmetric {
-                true => [place[0].abs(), place[1], place[2]],
-                false => place,
-            };
-            let obstacles = system
-                .contacts
-                .iter()
-                .filter_map(|contact| match &contact.target {
-                    Target::Rigid(obstacle) => Some(obstacle.at(time).distance(&place).gap),
-                    Target::Surface(_) => None,
-                });
-            obstacles.fold(f64::INFINITY, f64::min)
-        };
         let scene = Scene {
             title: "Motion",
             dim: system.dim,
             field: ("von Mises stress", "Pa"),
-            gap: &gap,
+            gap: &|time, place| gap(system, time, place),
         };
         Some(film_figure(&scene, &frames))
     }
@@ -155,6 +140,11 @@ impl Still {
             marks: self.marks.clone(),
             ..Frame::default()
         };
-        outlines.frame(system, &places, &|_, cell| self.stress[cell], frame)
+        outlines.frame(
+            system,
+            &|node| places.of(*node),
+            &|_, cell| self.stress[cell],
+            frame,
+        )
     }
 }

@@ -5,19 +5,24 @@
 use carom_dynamics::{Order, State, StepReport, System};
 
 use crate::Error;
-use crate::plot::{Lines, quantity, structure_figure};
+use crate::plot::{Frame, Lines, Scene, digits, film_figure, quantity, structure_figure};
+use crate::results::outlines::{Outlines, gap, size};
 use crate::results::settings::LevelSettings;
 
 /// Most instants that are drawn.
 const DRAWN: usize = 3;
 /// Most lines of a structure that is drawn.
 const LINES: usize = 20_000;
+/// Largest displacement drawn of solids, as a part of the longest side of the model; larger ones are drawn as they are.
+const SHOWN: f64 = 0.06;
 
 /// The instants kept.
 #[derive(Debug)]
 pub(crate) struct Instants {
-    /// Nodes of each line of the structure.
+    /// Nodes of each line of a structure that has nothing but lines.
     lines: Vec<[u32; 2]>,
+    /// Nodes whose displacement is kept, ascending.
+    nodes: Vec<u32>,
     instants: Vec<Instant>,
 }
 
@@ -30,15 +35,26 @@ struct Instant {
     /// The contact of the force.
     contact: usize,
     time: f64,
-    /// Displacement of the nodes, m.
+    /// Displacement of the nodes that are kept, m.
     moved: Vec<[f64; 3]>,
-    /// Forces of all contacts that have one: contact, N.
-    forces: Vec<(usize, f64)>,
+    /// The contacts that have a force.
+    forces: Vec<Acting>,
+}
+
+/// A contact with a force.
+#[derive(Debug)]
+struct Acting {
+    contact: usize,
+    /// N.
+    force: f64,
+    /// Node of the point with its largest force.
+    node: u32,
 }
 
 impl Instants {
-    /// Nothing yet. Structures of lines are drawn: bars, beams, springs.
+    /// Nothing yet.
     pub(crate) fn new(system: &System, levels: &[LevelSettings]) -> Instants {
+        let outlines = Outlines::new(system, |_| true);
         let mut lines = Vec::new();
         for body in &system.bodies {
             for cell in body.cells() {
@@ -48,15 +64,35 @@ impl Instants {
                 }
             }
         }
+        let mut nodes = outlines.nodes();
+        if !outlines.has_patches() {
+            nodes.extend(lines.iter().flatten());
+            // marks of points that no line has
+            nodes.extend(
+                system
+                    .contacts
+                    .iter()
+                    .flat_map(|contact| contact.points.iter().map(|point| point.node())),
+            );
+            nodes.sort_unstable();
+            nodes.dedup();
+        }
+        let drawn = outlines.has_patches() || (1..=LINES).contains(&lines.len());
         let of_level = |level: &LevelSettings| Instant::new(Some(&level.name), &level.contacts);
         let all: Vec<usize> = (0..system.contacts.len()).collect();
-        let instants = match (levels, system.dim, lines.len()) {
-            (_, 0 | 1, _) | (_, _, 0) => Vec::new(),
-            (_, _, count) if count > LINES => Vec::new(),
-            ([], ..) => vec![Instant::new(None, &all)],
-            (levels, ..) => levels.iter().map(of_level).collect(),
+        let instants = match levels {
+            _ if system.dim < 2 || !drawn => Vec::new(),
+            [] => vec![Instant::new(None, &all)],
+            levels => levels.iter().map(of_level).collect(),
         };
-        Instants { lines, instants }
+        if outlines.has_patches() {
+            lines.clear();
+        }
+        Instants {
+            lines,
+            nodes,
+            instants,
+        }
     }
 
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
@@ -72,19 +108,27 @@ impl Instants {
             (instant.force, instant.contact) = (force(&contact), contact);
             instant.time = report.time;
             instant.moved.clear();
-            let of = |node| system.of_node(node, &state.motion, Order::Displacement);
-            let nodes = 0..system.x.len() as u32;
-            instant.moved.extend(nodes.map(of));
+            let of = |node: &u32| system.of_node(*node, &state.motion, Order::Displacement);
+            instant.moved.extend(self.nodes.iter().map(of));
             instant.forces.clear();
             let acting = report.contacts.iter().enumerate();
             let acting = acting.filter(|(_, contact)| contact.force > 0.0);
-            instant
-                .forces
-                .extend(acting.map(|(k, contact)| (k, contact.force)));
+            let acting = acting.filter_map(|(contact, report)| {
+                let forces = &state.interface.force[system.first_point[contact]..];
+                let points = system.contacts[contact].points.iter().zip(forces);
+                let (point, _) = points.max_by(|a, b| a.1.total_cmp(b.1))?;
+                Some(Acting {
+                    contact,
+                    force: report.force,
+                    node: point.node(),
+                })
+            });
+            instant.forces.extend(acting);
         }
     }
 
-    /// The pictures of the largest forces, the largest first; none where nothing touched or the structure has no lines.
+    /// The pictures of the largest forces, the largest first; none where nothing touched or nothing has a shape. A structure of lines is
+    /// drawn along two axes, solids in perspective beside beams.
     pub(crate) fn draw(&self, system: &System) -> Option<Result<String, Error>> {
         let mut shown: Vec<&Instant> = self.instants.iter().filter(|i| i.force > 0.0).collect();
         shown.sort_by(|a, b| b.force.total_cmp(&a.force));
@@ -92,37 +136,87 @@ impl Instants {
         if shown.is_empty() {
             return None;
         }
+        if self.lines.is_empty() {
+            return Some(self.draw_solids(system, &shown));
+        }
         let pictures: Vec<Lines> = shown.iter().map(|i| self.picture(system, i)).collect();
         Some(structure_figure(system.dim, &pictures))
     }
 
     fn picture(&self, system: &System, instant: &Instant) -> Lines {
-        let line = |nodes: &[u32; 2]| {
-            nodes.map(|node| (system.x[node as usize], instant.moved[node as usize]))
-        };
-        let place = |contact: usize| {
-            let node = system.contacts[contact].points.first()?.node();
-            Some((system.x[node as usize], instant.moved[node as usize]))
-        };
+        let moved = |node: u32| (system.x[node as usize], self.moved(instant, node));
+        let own = |acting: &Acting| acting.contact == instant.contact;
         let marks = instant.forces.iter();
-        let own = |k: usize| k == instant.contact;
-        let marks = marks.filter_map(|(k, force)| Some((place(*k)?, *force, own(*k))));
-        let name = &system.contacts[instant.contact].name;
-        let level = instant.level.as_deref().map(|level| format!("{level}: "));
+        let marks = marks.map(|acting| (moved(acting.node), acting.force, own(acting)));
         Lines {
-            caption: format!(
-                "{}{} on {name} at {}",
-                level.unwrap_or_default(),
-                quantity(instant.force, "N"),
-                quantity(instant.time, "s")
-            ),
-            lines: self.lines.iter().map(line).collect(),
+            caption: instant.caption(system),
+            lines: self.lines.iter().map(|line| line.map(moved)).collect(),
             marks: marks.collect(),
+        }
+    }
+
+    fn draw_solids(&self, system: &System, shown: &[&Instant]) -> Result<String, Error> {
+        let outlines = Outlines::new(system, |_| true);
+        let norm = |u: &[f64; 3]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
+        let moved = shown.iter().flat_map(|instant| &instant.moved);
+        let largest = moved.map(norm).fold(f64::MIN_POSITIVE, f64::max);
+        let factor = (SHOWN * size(system) / largest).max(1.0);
+        let frame = |instant: &&Instant| {
+            let place = |node: &u32| {
+                let (x, u) = (&system.x[*node as usize], self.moved(instant, *node));
+                [0, 1, 2].map(|i| x[i] + factor * u[i])
+            };
+            let value = |nodes: &[u32], _| {
+                let of_node = |node: &u32| norm(&self.moved(instant, *node));
+                nodes.iter().map(of_node).sum::<f64>() / nodes.len() as f64
+            };
+            let frame = Frame {
+                time: instant.time,
+                caption: instant.caption(system),
+                marks: instant
+                    .forces
+                    .iter()
+                    .map(|acting| place(&acting.node))
+                    .collect(),
+                ..Frame::default()
+            };
+            outlines.frame(system, &place, &value, frame)
+        };
+        let frames: Vec<Frame> = shown.iter().map(frame).collect();
+        let scene = Scene {
+            title: &format!("Largest forces: displacement × {}", digits(factor, 3)),
+            dim: system.dim,
+            field: ("displacement", "m"),
+            gap: &|time, place| match factor == 1.0 {
+                true => gap(system, time, place),
+                // a magnified motion would be seen inside of what stops it
+                false => f64::INFINITY,
+            },
+        };
+        film_figure(&scene, &frames)
+    }
+
+    /// Displacement of a node, m; zero of one that is not drawn.
+    fn moved(&self, instant: &Instant, node: u32) -> [f64; 3] {
+        match self.nodes.binary_search(&node) {
+            Ok(place) => instant.moved[place],
+            Err(_) => [0.0; 3],
         }
     }
 }
 
 impl Instant {
+    fn caption(&self, system: &System) -> String {
+        let level = self.level.as_deref().map(|level| format!("{level}: "));
+        format!(
+            "{}{} on {} at {}",
+            level.unwrap_or_default(),
+            quantity(self.force, "N"),
+            system.contacts[self.contact].name,
+            quantity(self.time, "s")
+        )
+    }
+
     fn new(level: Option<&str>, contacts: &[usize]) -> Instant {
         Instant {
             level: level.map(str::to_owned),

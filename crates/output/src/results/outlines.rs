@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_contact::Places;
+use carom_contact::Target;
 use carom_dynamics::System;
 
 use crate::plot::{Frame, Patch};
@@ -17,6 +17,20 @@ pub(crate) fn size(system: &System) -> f64 {
         high - low
     };
     (0..system.dim).map(side).fold(0.0, f64::max)
+}
+
+/// Gap of a place over the rigid obstacles of a plane model at a time in s, m: negative inside.
+pub(crate) fn gap(system: &System, time: f64, place: [f64; 3]) -> f64 {
+    let place = match system.axisymmetric {
+        true => [place[0].abs(), place[1], place[2]],
+        false => place,
+    };
+    let obstacles = system.contacts.iter();
+    let obstacles = obstacles.filter_map(|contact| match &contact.target {
+        Target::Rigid(obstacle) => Some(obstacle.at(time).distance(&place).gap),
+        Target::Surface(_) => None,
+    });
+    obstacles.fold(f64::INFINITY, f64::min)
 }
 
 /// What is drawn of the mesh, in system numbers of the nodes.
@@ -90,16 +104,29 @@ impl Outlines {
         self.patches.is_empty() && self.rims.is_empty()
     }
 
-    /// Adds what is at these places to a frame; of an axisymmetric model both halves of the section. `value`: of the nodes
+    /// The nodes that are drawn, ascending.
+    pub(crate) fn nodes(&self) -> Vec<u32> {
+        let patches = self.patches.iter().flat_map(|(nodes, _)| nodes);
+        let mut nodes: Vec<u32> = patches.chain(self.rims.iter().flatten()).copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// Whether there are cells or faces with an area.
+    pub(crate) fn has_patches(&self) -> bool {
+        !self.patches.is_empty()
+    }
+
+    /// Adds what is at the places of the nodes (m) to a frame; of an axisymmetric model both halves of the section. `value`: of the nodes
     /// around a patch, and its cell.
     pub(crate) fn frame(
         &self,
         system: &System,
-        places: &Places,
+        place: &dyn Fn(&u32) -> [f64; 3],
         value: &dyn Fn(&[u32], usize) -> f64,
         mut frame: Frame,
     ) -> Frame {
-        let place = |node: &u32| places.of(*node);
         let patch = |(nodes, cell): &(Vec<u32>, usize)| Patch {
             points: nodes.iter().map(place).collect(),
             value: value(nodes, *cell),
@@ -108,7 +135,7 @@ impl Outlines {
         let rims = self.rims.iter();
         frame
             .rims
-            .extend(rims.map(|rim| rim.iter().map(place).collect::<Vec<_>>()));
+            .extend(rims.map(|rim| rim.iter().map(place).collect()));
         if system.axisymmetric {
             mirror(&mut frame);
         }
