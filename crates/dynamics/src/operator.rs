@@ -9,7 +9,7 @@ use carom_algebra::solver::{Cholesky, FactorStats, Response, SparseRow, gram};
 
 use crate::error::Error;
 use crate::low_rank::LowRank;
-use crate::system::{System, push_cliques};
+use crate::system::{LinkRow, System, push_cliques};
 
 /// A of the step for one connected part.
 ///
@@ -451,10 +451,52 @@ pub fn assembled(
     for body in &system.bodies {
         push_cliques(body, &system.unknowns, part, &mut cliques);
     }
+    push_rows(system, part, &mut cliques);
     let mut a = Csr::from_cliques(part.len(), &cliques);
     for (k, body) in system.bodies.iter().enumerate() {
         body.assemble([stiffness_factors(k), damping, 0.0], part, &mut a);
     }
     system.mass.add_to(mass, part, part.start, &mut a);
     a
+}
+
+/// Adds the unknowns of each row of constraints inside `range`, counted from its start: the pattern that [`add_rows`] needs. Nothing without a static
+/// stage.
+pub(crate) fn push_rows(system: &System, range: &Range<usize>, cliques: &mut Cliques) {
+    for row in rows_within(system, range) {
+        let own: Vec<u32> = row.iter().map(|(i, _)| i - range.start as u32).collect();
+        cliques.push(&own);
+    }
+}
+
+/// Adds ρ Cᵀ C of the rows of constraints inside `range` to the matrix of a static step, which has no mass: a body that constraints alone hold has a matrix that is
+/// positive definite then, and with C x = 0 the solution is the same for each ρ > 0. ρ is the least stiffness of an unknown of the row along it, so that
+/// the condition stays that of the bodies. `begin`: the unknown of the first row of `a`.
+pub(crate) fn add_rows(system: &System, range: &Range<usize>, begin: usize, a: &mut Csr) {
+    for row in rows_within(system, range) {
+        let stiffness = row.iter().map(|&(i, c)| {
+            let i = i as usize - begin;
+            a.get(i, i) / (c * c)
+        });
+        let least = stiffness.filter(|k| *k > 0.0).fold(f64::INFINITY, f64::min);
+        let factor = if least.is_finite() { least } else { 1.0 };
+        for &(i, c) in row {
+            for &(j, d) in row {
+                a.add(i as usize - begin, j as usize - begin, factor * c * d);
+            }
+        }
+    }
+}
+
+fn rows_within<'a>(
+    system: &'a System,
+    range: &'a Range<usize>,
+) -> impl Iterator<Item = &'a LinkRow> + 'a {
+    let staged = system.nonlinear.preload.is_some();
+    let inside = |row: &&LinkRow| row.iter().all(|(i, _)| range.contains(&(*i as usize)));
+    system
+        .link_rows
+        .iter()
+        .filter(move |_| staged)
+        .filter(inside)
 }

@@ -52,6 +52,18 @@ pub struct Links {
     pub works: Vec<[f64; 2]>,
 }
 
+impl Links {
+    /// Without forces and works.
+    pub(crate) fn at_rest(system: &System) -> Links {
+        let rows = system.link_rows.len();
+        Links {
+            multipliers: vec![0.0; rows],
+            mixed: vec![vec![0.0; rows]; system.schemes.len()],
+            works: vec![[0.0; 2]; system.links.len()],
+        }
+    }
+}
+
 /// Arrays over all contact points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct InterfaceState {

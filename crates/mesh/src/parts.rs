@@ -19,17 +19,31 @@ impl Parts {
                 if root[node as usize] == u32::MAX {
                     root[node as usize] = node;
                 }
-                let (a, b) = (find(&mut root, nodes[0]), find(&mut root, node));
-                // the smaller number leads
-                root[a.max(b) as usize] = a.min(b);
+                unite(&mut root, nodes[0], node);
             }
         }
-        for node in 0..root.len() as u32 {
-            if root[node as usize] != u32::MAX {
-                root[node as usize] = find(&mut root, node);
+        let mut parts = Parts { root };
+        parts.shorten();
+        parts
+    }
+
+    /// Makes the parts of some nodes one; nodes that no cell has stay without a part.
+    pub fn join(&mut self, nodes: &[u32]) {
+        let mut known = nodes.iter().filter(|node| self.of(**node).is_some());
+        let Some(&first) = known.next() else { return };
+        let others: Vec<u32> = known.copied().collect();
+        for node in others {
+            unite(&mut self.root, first, node);
+        }
+        self.shorten();
+    }
+
+    fn shorten(&mut self) {
+        for node in 0..self.root.len() as u32 {
+            if self.root[node as usize] != u32::MAX {
+                self.root[node as usize] = find(&mut self.root, node);
             }
         }
-        Parts { root }
     }
 
     /// The least node of the part that a node is in; none where no cell has it.
@@ -37,6 +51,12 @@ impl Parts {
         let root = self.root[node as usize];
         (root != u32::MAX).then_some(root)
     }
+}
+
+fn unite(root: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (find(root, a), find(root, b));
+    // the smaller number leads
+    root[a.max(b) as usize] = a.min(b);
 }
 
 fn find(root: &mut [u32], mut node: u32) -> u32 {

@@ -9,7 +9,7 @@ use carom_contact::{Contact, Integration};
 use crate::error::Error;
 use crate::maps::Maps;
 use crate::refused::Refused;
-use crate::system::System;
+use crate::system::{LinkRow, System};
 use carom_schemes::Scheme;
 use carom_schemes::step_map::{Impulse, StepMap};
 
@@ -46,10 +46,15 @@ impl System {
         for &(dof, _) in self.link_rows.iter().flatten() {
             linked[self.part_of(dof as usize)] = true;
         }
-        if !self.link_rows.is_empty() && self.nonlinear.preload.is_some() {
+        let one = |row: &LinkRow| {
+            let mut parts = row.iter().map(|(dof, _)| self.part_of(*dof as usize));
+            let first = parts.next();
+            parts.all(|part| Some(part) == first)
+        };
+        if self.nonlinear.preload.is_some() && !self.link_rows.iter().all(one) {
             return Err(Error::Nonlinear {
                 what: Refused::StaticStage,
-                why: "links join velocities, which it has none of; leave out the stage or the links",
+                why: "it joins bodies of one scheme only, by constraints; leave out the stage or the links",
             });
         }
         // one matrix answers for contacts and links where multipliers act on all zones in contact alike

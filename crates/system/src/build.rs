@@ -263,7 +263,14 @@ fn numbering(model: &Model, centres: &[Option<u32>]) -> (Vec<u32>, Vec<u32>, Vec
     let count = model.mesh.nodes.len();
     let cells = model.bodies.iter().flat_map(|body| &body.spec.cells);
     let discrete = model.discrete.iter().flat_map(|some| &some.spec.cells);
-    let joined = Parts::new(&model.mesh, cells.chain(discrete).copied());
+    let mut joined = Parts::new(&model.mesh, cells.chain(discrete).copied());
+    if model.nonlinear.preload.is_some() && !model.mixes_schemes() {
+        // a static stage has no mass that would hold what only constraints hold, and takes their rows into the matrix of the part
+        for row in model.constraints.iter().flat_map(|some| &some.rows) {
+            let nodes: Vec<u32> = row.iter().map(|(node, ..)| *node).collect();
+            joined.join(&nodes);
+        }
+    }
     // parts come in the order of their first node, which leads
     let mut nodes: Vec<(u32, u32)> = (0..count as u32)
         .filter_map(|node| Some((joined.of(node)?, node)))

@@ -116,6 +116,7 @@ mod shock_front;
 mod sliding_block;
 mod sliding_work;
 mod spinning_bar;
+mod static_links;
 mod stick_slip;
 mod supports;
 mod synthetic_record;
@@ -247,6 +248,7 @@ registry! {
     sliding_block
     sliding_work
     spinning_bar
+    static_links
     stick_slip
     supports
     synthetic_record

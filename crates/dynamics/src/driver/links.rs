@@ -7,6 +7,7 @@ use super::identity::WorkWeights;
 use super::linking::{Multipliers, add_forces, of_mass};
 use crate::error::Error;
 use crate::operator::Operators;
+use crate::state::Links;
 use crate::system::{LinkRow, on};
 
 impl Driver {
@@ -119,7 +120,6 @@ impl Driver {
             return Ok(());
         }
         let system = Arc::clone(&self.system);
-        let count = system.link_rows.len();
         let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
         let mut condensed = of_mass(&system, &mut mass)?;
         let ones = vec![[1.0; 2]; system.parts.len()];
@@ -167,10 +167,9 @@ impl Driver {
         }
         self.state.motion.link_force.clone_from(&self.link_force);
         let links = &mut self.state.links;
-        links.mixed = vec![l.clone(); system.schemes.len()];
-        links.works = vec![[0.0; 2]; system.links.len()];
+        *links = Links::at_rest(&system);
+        links.mixed.fill(l.clone());
         links.multipliers = l;
-        debug_assert_eq!(links.multipliers.len(), count);
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use carom_algebra::csr::Csr;
 
 use super::loads::damping_rate;
-use crate::operator::assembled;
+use crate::operator::{add_rows, assembled};
 use crate::step_map::StepMap;
 use crate::system::System;
 
@@ -37,6 +37,9 @@ pub(super) fn part_matrix(
     let mut a = assembled(system, part, [map.inertia.x, rate], &of_body);
     if let Some(mass) = &system.damping_mass {
         mass.add_to(rate, part, part.start, &mut a);
+    }
+    if map.inertia.x == 0.0 {
+        add_rows(system, part, part.start, &mut a);
     }
     Some(a)
 }

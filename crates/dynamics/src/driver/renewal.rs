@@ -11,7 +11,7 @@ use super::linking::{Linking, Made};
 use super::loads::damping_rate;
 use crate::costs::Work;
 use crate::error::Error;
-use crate::operator::Operator;
+use crate::operator::{Operator, add_rows, push_rows};
 use crate::system::{System, push_cliques};
 
 impl Matrices {
@@ -199,6 +199,7 @@ impl Matrices {
                 push_cliques(body, &system.unknowns, &(0..n), &mut cliques);
             }
         }
+        push_rows(system, &(0..n), &mut cliques);
         for row in self.coupled.iter().flatten() {
             cliques.push(row);
         }
@@ -241,8 +242,9 @@ impl Matrices {
             .filter(|(_, is)| **is)
         {
             let inertia = at.maps.of(part.start).inertia.x;
-            if inertia != 0.0 {
-                system.mass.add_to(inertia, part, 0, a);
+            match inertia == 0.0 {
+                true => add_rows(system, part, 0, a),
+                false => system.mass.add_to(inertia, part, 0, a),
             }
             if let Some(mass) = &system.damping_mass {
                 mass.add_to(damping_rate(at.maps.of(part.start)).x, part, 0, a);

@@ -30,7 +30,7 @@ use crate::operator::Operators;
 use crate::records::Records;
 use crate::report::{ContactReport, StepReport};
 use crate::resultant::Resultant;
-use crate::state::{State, empty_state};
+use crate::state::{Links, State, empty_state};
 use crate::system::{Maps, System};
 use crate::watch::Watch;
 
@@ -198,18 +198,24 @@ impl Driver {
         self.compress();
         self.next.clone_from(&self.state);
         self.begin()?;
-        if self.has_links() {
-            // links change the velocities, on which the forces depend that links answer to
-            self.start_links()?;
-            self.compress();
-            self.begin()?;
-            self.start_links()?;
-            self.begin()?;
+        if self.has_links() && self.is_static() {
+            self.state.links = Links::at_rest(&system);
+        } else if self.has_links() {
+            self.begin_with_links()?;
         }
         self.state.control = Control::start(system.dt);
         self.next.clone_from(&self.state);
         self.tell(0.0);
         Ok(())
+    }
+
+    /// Links change the velocities, on which the forces depend that links answer to.
+    fn begin_with_links(&mut self) -> Result<(), Error> {
+        self.start_links()?;
+        self.compress();
+        self.begin()?;
+        self.start_links()?;
+        self.begin()
     }
 
     /// Gives the state the velocities, accelerations and balance with which a stage begins.
@@ -380,7 +386,8 @@ impl Driver {
         let (load, internal) = (&self.vectors.load, &self.state.motion.internal_force);
         let (mut left, mut size) = (0.0, 0.0);
         for i in (0..load.len()).filter(|&i| !self.system.fixed[i]) {
-            let outside = load[i] + self.state.motion.contact_force[i];
+            let motion = &self.state.motion;
+            let outside = load[i] + motion.contact_force[i] + motion.link_of(i);
             left += (outside - internal[i]).powi(2);
             size += load[i].powi(2) + internal[i].powi(2);
         }
@@ -401,6 +408,10 @@ impl Driver {
             return Ok(());
         }
         self.state.motion.v.clone_from(&system.initial_velocity);
-        self.begin()
+        self.begin()?;
+        match self.has_links() {
+            true => self.begin_with_links(),
+            false => Ok(()),
+        }
     }
 }
