@@ -2,17 +2,21 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use carom_dynamics::{Driver, Observer, Outcome, Stepper, march};
+use carom_dynamics::{Driver, Observer, Outcome, State, Stepper, System, go_on, march};
+use carom_output::checkpoint::Checkpoint;
 use carom_output::summary::Zones;
-use carom_output::{Ending, Fields, Probe, Reference, Results, Settings, Summary, Zoning};
+use carom_output::{
+    Checkpoints, Ending, Fields, Folder, Probe, Reference, Results, Settings, Summary, Zoning,
+};
 use carom_zones::{ModelZone, Whole};
 use thiserror::Error as ThisError;
 
 use crate::build::Built;
 use crate::describe::entries;
 use crate::input::Input;
+use crate::origin::Origin;
 use crate::schema::{Case, Field, Motion, Scheme};
 
 /// How a run ended.
@@ -38,6 +42,14 @@ pub enum Failed {
     Step(carom_dynamics::Error),
 }
 
+/// From where a run begins.
+pub(crate) enum Begin {
+    /// From the start.
+    Start,
+    /// From a checkpoint in an open results folder.
+    Checkpoint(Box<Checkpoint>, Folder),
+}
+
 /// Runs a case into a results folder. `progress` sees every accepted state; `stop` is asked before every step.
 ///
 /// # Errors
@@ -48,33 +60,88 @@ pub fn run(
     progress: &mut dyn Observer,
     stop: &dyn Fn() -> bool,
 ) -> Result<Finished, Failed> {
-    let begin = Instant::now();
+    let origin = Origin::of(input, case, &folder);
+    let settings = settings((input, case, built), folder, &origin);
+    march_from((built, settings), Begin::Start, progress, stop)
+}
+
+/// Takes all steps to the end of the case.
+pub(crate) fn march_from(
+    (built, settings): (&Built, Settings),
+    begin: Begin,
+    progress: &mut dyn Observer,
+    stop: &dyn Fn() -> bool,
+) -> Result<Finished, Failed> {
+    let now = Instant::now();
     let system = || Arc::clone(&built.system);
     match &built.zoned {
         zoned if !built.apart => {
-            let mut driver = Driver::new(system()).map_err(Failed::Start)?;
-            let mut results = Results::create(settings(input, case, built, folder), system())?;
-            let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
-            let outcome = march(&mut driver, built.end, observers, stop);
+            let mut driver = match &begin {
+                Begin::Start => Driver::new(system()).map_err(Failed::Start)?,
+                Begin::Checkpoint(saved, _) => driver_from(system(), saved)?,
+            };
+            let outcome = observed((&mut driver, built), (settings, begin), progress, stop)?;
             let zones = zoned.as_ref().map(|zoned| Zones::together(&driver, zoned));
-            conclude(results, outcome, (&driver, zones), begin)
+            conclude(outcome, (&driver, zones), now)
         }
         None => unreachable!("only zones step apart"),
         Some(zoned) => {
-            let mut whole =
-                Whole::new(zoned, system()).map_err(|error| Failed::Start(error.into()))?;
-            let mut results = Results::create(settings(input, case, built, folder), system())?;
-            let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
-            let outcome = march(&mut whole, built.end, observers, stop);
-            conclude(results, outcome, (&whole, Some(Zones::of(&whole))), begin)
+            let mut whole = match &begin {
+                Begin::Start => Whole::new(zoned, system()),
+                Begin::Checkpoint(saved, _) => Whole::resume(zoned, system(), &saved.state),
+            }
+            .map_err(|error| Failed::Start(error.into()))?;
+            if let Begin::Checkpoint(saved, _) = &begin {
+                whole.add_earlier(&saved.costs()?);
+            }
+            let outcome = observed((&mut whole, built), (settings, begin), progress, stop)?;
+            conclude(outcome, (&whole, Some(Zones::of(&whole))), now)
         }
     }
 }
 
+/// A driver that goes on from a checkpoint.
+fn driver_from(system: Arc<System>, saved: &Checkpoint) -> Result<Driver, Failed> {
+    let state = State::from_bytes(&system, &saved.state).map_err(Failed::Start)?;
+    let mut driver = Driver::resume(system, state).map_err(Failed::Start)?;
+    driver.add_earlier(&saved.costs()?);
+    Ok(driver)
+}
+
+/// The results, and how the steps ended.
+type Observed = (Results, Result<Outcome, carom_dynamics::Error>);
+
+/// Takes the steps with the results and `progress` as observers.
+fn observed(
+    (run, built): (&mut dyn Stepper, &Built),
+    (settings, begin): (Settings, Begin),
+    progress: &mut dyn Observer,
+    stop: &dyn Fn() -> bool,
+) -> Result<Observed, Failed> {
+    let system = Arc::clone(&built.system);
+    let (mut results, march): (Results, March) = match begin {
+        Begin::Start => (Results::create(settings, system)?, march),
+        Begin::Checkpoint(saved, folder) => {
+            let results = Results::resume(folder, &saved, settings, system)?;
+            (results, go_on)
+        }
+    };
+    let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
+    let outcome = march(run, built.end, observers, stop);
+    Ok((results, outcome))
+}
+
+/// [`march`] or [`go_on`].
+type March = fn(
+    &mut dyn Stepper,
+    f64,
+    &mut [&mut dyn Observer],
+    &dyn Fn() -> bool,
+) -> Result<Outcome, carom_dynamics::Error>;
+
 /// Writes what is written after the run.
 fn conclude(
-    mut results: Results,
-    outcome: Result<Outcome, carom_dynamics::Error>,
+    (mut results, outcome): Observed,
     (run, zones): (&dyn Stepper, Option<Zones>),
     begin: Instant,
 ) -> Result<Finished, Failed> {
@@ -107,24 +174,19 @@ fn conclude(
     })
 }
 
-fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Settings {
-    let set = input.sources.iter().filter(|source| source.name == "--set");
-    let overrides: String = set
-        .map(|source| format!("# --set {}\n", in_a_comment(source.text.trim())))
-        .collect();
-    let file = input
-        .sources
-        .first()
-        .map_or(String::new(), |source| source.text.clone());
+/// What the output is told of a run.
+pub(crate) fn settings(
+    (input, case, built): (&Input, &Case, &Built),
+    folder: PathBuf,
+    origin: &Origin,
+) -> Settings {
+    let file = input.sources.first();
+    let file = file.map_or(String::new(), |source| source.text.clone());
+    let checkpoint = case.output.checkpoint.unwrap_or_default();
     Settings {
         folder,
-        title: case.title.clone().unwrap_or_else(|| {
-            input
-                .sources
-                .first()
-                .map_or_else(String::new, |s| s.name.clone())
-        }),
-        case_text: overrides + &file,
+        title: origin.title.clone(),
+        case_text: comments(&origin.overrides) + &file,
         version: env!("CARGO_PKG_VERSION").to_string(),
         scheme: match &built.zoned {
             None if case.time.is_static() => "static".to_string(),
@@ -169,7 +231,19 @@ fn settings(input: &Input, case: &Case, built: &Built, folder: PathBuf) -> Setti
         reference: reference(built),
         zoning: built.zoned.as_ref().map(Zoning::of),
         warnings: built.warnings.clone(),
+        checkpoints: Checkpoints {
+            every: checkpoint.every.map(|every| every.0),
+            wall: checkpoint.least_wall().map(Duration::from_secs_f64),
+            keep: checkpoint.keep as usize,
+            origin: origin.to_json(),
+        },
     }
+}
+
+/// Overrides as they stand before the text of the case in the results folder.
+pub(crate) fn comments(overrides: &[String]) -> String {
+    let one = |text: &String| format!("# --set {}\n", in_a_comment(text.trim()));
+    overrides.iter().map(one).collect()
 }
 
 /// A text for a comment of TOML, which holds no line feed and no other control character: each becomes an escape.

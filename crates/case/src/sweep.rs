@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use carom_dynamics::{Observer, State, StepReport, Stepper, System};
+use carom_dynamics::{Observer, Stepper};
 use carom_output::compare::{Done, Outcome, Recorder, Variant};
 use carom_output::{Folder, Reference};
 use thiserror::Error as ThisError;
@@ -229,14 +229,9 @@ struct Watched {
 }
 
 impl Observer for Watched {
-    fn accepted(
-        &mut self,
-        system: &System,
-        state: &State,
-        report: &StepReport,
-    ) -> Result<(), carom_dynamics::Error> {
-        self.recorder.accepted(system, state, report)?;
-        self.watch.accepted(system, state, report)
+    fn accepted(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
+        self.recorder.accepted(run)?;
+        self.watch.accepted(run)
     }
 
     fn finish(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {

@@ -1,4 +1,4 @@
-//! The executable: `carom run`, `compare`, `study`, `modes`, `check`, `schema`, `new`, `verify`.
+//! The executable: `carom run`, `resume`, `compare`, `study`, `modes`, `check`, `schema`, `new`, `verify`.
 //!
 //! Exit codes: 0 done and the verdict `good` or `look`, 2 bad input, 3 the run failed with the last good state on disk, 4 done but
 //! the verdict bad, 130 interrupted. All that it prints goes through [`terminal`].
@@ -10,6 +10,7 @@ mod load;
 mod modes;
 mod new;
 mod progress;
+mod resume;
 mod run;
 mod study;
 mod sweep;
@@ -41,6 +42,8 @@ struct Arguments {
 enum Command {
     /// Check a case, run it, and write its results folder
     Run(run::Arguments),
+    /// Go on with a run that was cut, from the last checkpoint in its results folder
+    Resume(resume::Arguments),
     /// Run a case under several schemes and contact laws: one table, one figure per quantity, one report
     Compare(compare::Arguments),
     /// Run a case over the values of a key, with orders of convergence; or find the value that gives a result
@@ -102,6 +105,7 @@ fn obey(Arguments { log, command }: Arguments) -> u8 {
         .init();
     match command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Resume(arguments) => resume::resume(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Study(arguments) => study::study(&arguments),
         Command::Modes(arguments) => modes::modes(&arguments),

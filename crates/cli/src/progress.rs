@@ -1,6 +1,6 @@
 //! The progress of a run on a terminal: time left, simulated time, energy residual.
 
-use carom_dynamics::{Error, Observer, State, StepReport, Stepper, System};
+use carom_dynamics::{Error, Observer, Stepper};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Parts of the simulated time that the bar counts.
@@ -31,12 +31,8 @@ impl Progress {
 }
 
 impl Observer for Progress {
-    fn accepted(
-        &mut self,
-        _system: &System,
-        state: &State,
-        report: &StepReport,
-    ) -> Result<(), Error> {
+    fn accepted(&mut self, run: &dyn Stepper) -> Result<(), Error> {
+        let (state, report) = (run.state(), run.report());
         // the text is renewed as rarely as the bar: formatting would show in small models
         if report.step.is_multiple_of(64) {
             let ledger = &state.ledger;

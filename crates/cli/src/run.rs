@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use carom_case::{Built, Finished, Input, schema::Case};
+use carom_case::Finished;
 
 use carom_output::plot::quantity;
 use carom_output::summary::{Contact, Newton};
@@ -48,9 +48,20 @@ pub fn run(arguments: &Arguments) -> u8 {
         .results
         .clone()
         .unwrap_or_else(|| arguments.case.with_extension("carom"));
-    match march(&input, &case, &built, folder.clone(), arguments.quiet) {
+    let ended = until_stopped(built.end, arguments.quiet, |progress, stop| {
+        carom_case::run((&input, &case, &built), folder.clone(), progress, stop)
+    });
+    end(ended, &folder)
+}
+
+/// Tells how a run ended; returns the exit code.
+pub fn end(ended: Result<Finished, carom_case::Failed>, folder: &Path) -> u8 {
+    match ended {
         Ok(finished) => {
-            print(&finished.summary, &folder);
+            print(&finished.summary, folder);
+            if finished.interrupted {
+                err!("interrupted; `carom resume {}` goes on", folder.display());
+            }
             match (finished.interrupted, finished.summary.verdict.grade) {
                 (true, _) => INTERRUPTED,
                 (false, Grade::Good | Grade::Look) => 0,
@@ -58,19 +69,18 @@ pub fn run(arguments: &Arguments) -> u8 {
             }
         }
         Err(error) => {
-            tell(&error, &folder);
+            tell(&error, folder);
             FAILED
         }
     }
 }
 
-fn march(
-    input: &Input,
-    case: &Case,
-    built: &Built,
-    folder: PathBuf,
+/// A run up to a simulated time (s) with its progress on the terminal, which Ctrl-C, SIGTERM and SIGHUP stop before the next step.
+pub fn until_stopped<T>(
+    until: f64,
     quiet: bool,
-) -> Result<Finished, carom_case::Failed> {
+    run: impl FnOnce(&mut Progress, &dyn Fn() -> bool) -> T,
+) -> T {
     let stopped = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stopped);
     // without a handler Ctrl-C ends the program at once, as it would any other
@@ -78,10 +88,8 @@ fn march(
     if let Err(error) = handled {
         tracing::warn!("Ctrl-C will not leave a summary: {error}");
     }
-    let mut progress = Progress::new(built.end, quiet || !std::io::stderr().is_terminal());
-    carom_case::run((input, case, built), folder, &mut progress, &|| {
-        stopped.load(Ordering::Relaxed)
-    })
+    let mut progress = Progress::new(until, quiet || !std::io::stderr().is_terminal());
+    run(&mut progress, &|| stopped.load(Ordering::Relaxed))
 }
 
 /// The summary for people: forces, impulses, energy, verdict, where to look.

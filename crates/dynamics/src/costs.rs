@@ -3,11 +3,12 @@
 use std::time::Duration;
 
 use carom_algebra::solver::FactorStats;
+use serde::{Deserialize, Serialize};
 
 use crate::operator::Operators;
 
 /// Wall time spent so far by phase of the step.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Phases {
     /// Analysis and factorisation.
     pub factorisation: Duration,
@@ -24,7 +25,7 @@ pub struct Phases {
 }
 
 /// Counts of what factors were made and used for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
     /// Factors computed.
     pub factorisations: usize,
@@ -48,14 +49,16 @@ impl Work {
     }
 }
 
-/// What the run cost so far.
-#[derive(Clone, Debug, Default)]
+/// What the run cost so far. Saved without what belongs to the present size of the step.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Costs {
     /// One entry per factor, for the present size of the step.
+    #[serde(skip)]
     pub factors: Vec<FactorStats>,
     /// Over all sizes of the step.
     pub work: Work,
     /// Bytes of columns and compliance for the present size of the step.
+    #[serde(skip)]
     pub compliance_bytes: usize,
     /// Internal-force sweeps.
     pub force_sweeps: usize,
@@ -63,12 +66,14 @@ pub struct Costs {
     pub element_updates: u64,
     /// Times.
     pub phases: Phases,
+    /// Those of each zone, where zones step apart; empty elsewhere.
+    pub zones: Vec<Costs>,
 }
 
 impl Costs {
-    /// Adds the costs of another driver.
-    pub fn add(&mut self, other: Costs) {
-        self.factors.extend(other.factors);
+    /// Adds the costs of another driver, or those before a run was gone on with.
+    pub fn add(&mut self, other: &Costs) {
+        self.factors.extend_from_slice(&other.factors);
         let (work, its) = (&mut self.work, other.work);
         work.factorisations += its.factorisations;
         work.sweeps += its.sweeps;

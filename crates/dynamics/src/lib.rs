@@ -46,7 +46,7 @@ pub use exchange::Exchange;
 pub use impact::Impact;
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Tolerated};
-pub use march::{FailedProblem, Observer, Outcome, Stepper, march, step_count};
+pub use march::{FailedProblem, Observer, Outcome, Stepper, go_on, march, step_count};
 pub use records::{ContactRecord, Records};
 pub use report::{ContactReport, ContactSample, StepReport};
 pub use resultant::Resultant;

@@ -60,12 +60,7 @@ pub trait Observer {
     ///
     /// # Errors
     /// Whatever keeps it from its work; the run ends.
-    fn accepted(
-        &mut self,
-        system: &System,
-        state: &State,
-        report: &StepReport,
-    ) -> Result<(), Error>;
+    fn accepted(&mut self, run: &dyn Stepper) -> Result<(), Error>;
     /// Called once at the end, after a failed run too. The state of `run` is the last good one.
     ///
     /// # Errors
@@ -93,7 +88,34 @@ pub fn march(
     observers: &mut [&mut dyn Observer],
     stop: &dyn Fn() -> bool,
 ) -> Result<Outcome, Error> {
+    let told = match run.state().step {
+        0 => tell(run, observers),
+        _ => Ok(()),
+    };
+    let result = told.and_then(|()| steps(run, end, observers, stop));
+    finish(run, observers, result)
+}
+
+/// As [`march`], of a run that goes on: its observers know the present state.
+///
+/// # Errors
+/// As [`march`].
+pub fn go_on(
+    run: &mut dyn Stepper,
+    end: f64,
+    observers: &mut [&mut dyn Observer],
+    stop: &dyn Fn() -> bool,
+) -> Result<Outcome, Error> {
     let result = steps(run, end, observers, stop);
+    finish(run, observers, result)
+}
+
+/// Tells the observers of the end; the first error is returned.
+fn finish(
+    run: &dyn Stepper,
+    observers: &mut [&mut dyn Observer],
+    result: Result<Outcome, Error>,
+) -> Result<Outcome, Error> {
     let mut finished = Ok(());
     for observer in observers {
         finished = finished.and(observer.finish(run));
@@ -110,9 +132,6 @@ fn steps(
     stop: &dyn Fn() -> bool,
 ) -> Result<Outcome, Error> {
     let end = end - 1e-6 * run.system().dt;
-    if run.state().step == 0 {
-        tell(run, observers)?;
-    }
     while run.state().time < end {
         if stop() {
             return Ok(Outcome::Interrupted);
@@ -131,5 +150,5 @@ pub fn step_count(end: f64, dt: f64) -> u64 {
 fn tell(run: &dyn Stepper, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
     observers
         .iter_mut()
-        .try_for_each(|observer| observer.accepted(run.system(), run.state(), run.report()))
+        .try_for_each(|observer| observer.accepted(run))
 }

@@ -1,9 +1,11 @@
 //! What a step did: of each contact, and the balance at its end.
 
+use serde::{Deserialize, Serialize};
+
 use crate::ledger::Balance;
 
 /// What one contact did in a step.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactReport {
     /// Sum of the normal forces of its points, N, compressive positive.
     pub force: f64,

@@ -25,7 +25,16 @@ pub fn write(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Error> {
-    replace(path, content).map_err(Error::file("write", path))
+    write_after(path, content, || Ok(()))
+}
+
+/// As [`write()`]; `before` is called when the content is on the disk and the file not yet renamed.
+pub(crate) fn write_after(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    before: impl FnOnce() -> io::Result<()>,
+) -> Result<(), Error> {
+    replace(path, content, before).map_err(Error::file("write", path))
 }
 
 /// Writes text as a whole file.
@@ -67,7 +76,11 @@ pub(crate) fn remove_parts(folder: &Path) {
     }
 }
 
-fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+fn replace(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    before: impl FnOnce() -> io::Result<()>,
+) -> io::Result<()> {
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -78,6 +91,7 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
         .into_inner()
         .map_err(io::IntoInnerError::into_error)?;
     file.as_file().sync_all()?;
+    before()?;
     file.persist(path)?;
     Ok(())
 }

@@ -31,6 +31,12 @@ pub enum Error {
         /// The folder.
         path: PathBuf,
     },
+    /// The folder that a run should go on in has no list of results.
+    #[error("'{path}' is not a results folder of carom", path = path.display())]
+    NoResults {
+        /// The folder.
+        path: PathBuf,
+    },
     /// Another run writes into the results folder.
     #[error("another run of carom writes into '{path}'; wait for its end, or choose another folder", path = path.display())]
     Busy {
@@ -49,13 +55,23 @@ pub enum Error {
         /// The name as given.
         name: String,
     },
-    /// A saved state that cannot be encoded or taken.
-    #[error("the state '{path}': {cause}", path = path.display())]
+    /// A checkpoint that cannot be written or taken.
+    #[error("the checkpoint '{path}': {cause}", path = path.display())]
     Checkpoint {
         /// The file.
         path: PathBuf,
         /// Why.
         cause: String,
+    },
+    /// A file of an earlier part of the run that is shorter than it was at the checkpoint.
+    #[error("'{path}' has {found} bytes, at the checkpoint it had {expected}; run the case again", path = path.display())]
+    Cut {
+        /// The file.
+        path: PathBuf,
+        /// Its length at the checkpoint.
+        expected: u64,
+        /// Its length now.
+        found: u64,
     },
     /// Two columns of one table have the same name.
     #[error("two columns of '{path}' are called '{name}'", path = path.display())]

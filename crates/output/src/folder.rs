@@ -59,6 +59,70 @@ impl Folder {
         })
     }
 
+    /// Opens the results folder of an earlier run, which goes on; nothing in it is changed yet ([`Folder::cut_back`]).
+    ///
+    /// # Errors
+    /// [`Error::NoResults`] if there is no such folder; [`Error::Busy`], [`Error::Link`], [`Error::File`] as of
+    /// [`Folder::create`].
+    pub fn open(path: &Path) -> Result<Folder, Error> {
+        let list_path = path.join(LIST);
+        let none = || Error::NoResults {
+            path: path.to_owned(),
+        };
+        match fs::symlink_metadata(&list_path) {
+            Ok(found) if found.is_symlink() => return Err(Error::Link { path: list_path }),
+            Ok(found) if found.is_file() => {}
+            _ => return Err(none()),
+        }
+        let list = File::options().read(true).write(true).open(&list_path);
+        let mut list = list.map_err(Error::file("open", &list_path))?;
+        lock(&list, path)?;
+        let text = read(&mut list, &list_path)?;
+        match text.starts_with(HEADING) {
+            true => Ok(Folder {
+                path: path.to_owned(),
+                list,
+                names: BTreeSet::new(),
+            }),
+            false => Err(none()),
+        }
+    }
+
+    /// Bytes of the list so far: what it is cut back to when a run goes on from now.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn listed(&self) -> Result<u64, Error> {
+        let data = self.list.metadata();
+        let data = data.map_err(Error::file("read", &self.path.join(LIST)))?;
+        Ok(data.len())
+    }
+
+    /// Removes the files that were announced after the list had this length, and the list of them.
+    ///
+    /// # Errors
+    /// [`Error::Cut`] if the list is shorter; [`Error::File`].
+    pub fn cut_back(&mut self, length: u64) -> Result<(), Error> {
+        let path = self.path.join(LIST);
+        let found = self.listed()?;
+        let text = read(&mut self.list, &path)?;
+        let kept = usize::try_from(length).ok();
+        let Some((kept, dropped)) = kept.and_then(|length| text.split_at_checked(length)) else {
+            return Err(Error::Cut {
+                path,
+                expected: length,
+                found,
+            });
+        };
+        remove(&self.path, &format!("{HEADING}{dropped}"))?;
+        self.names = kept.lines().skip(1).map(str::to_owned).collect();
+        self.list
+            .set_len(length)
+            .and_then(|()| self.list.seek(SeekFrom::Start(length)))
+            .map_err(Error::file("write", &path))?;
+        Ok(())
+    }
+
     /// Where the folder is.
     pub fn path(&self) -> &Path {
         &self.path
@@ -158,13 +222,10 @@ fn clear(folder: &Path) -> Result<File, Error> {
         .open(&path)
         .map_err(Error::file("write", &path))?;
     lock(&list, folder)?;
-    let mut bytes = Vec::new();
-    list.read_to_end(&mut bytes)
-        .map_err(Error::file("read", &path))?;
-    let text = String::from_utf8_lossy(&bytes);
+    let text = read(&mut list, &path)?;
     // a run that was killed at once left the beginning of a heading, and nothing else
     let begun =
-        HEADING.starts_with(&*text) && fs::read_dir(folder).is_ok_and(|all| all.count() == 1);
+        HEADING.starts_with(&text) && fs::read_dir(folder).is_ok_and(|all| all.count() == 1);
     if !begun && !text.starts_with(HEADING) {
         return Err(foreign());
     }
@@ -177,6 +238,15 @@ fn clear(folder: &Path) -> Result<File, Error> {
     };
     fresh(&mut list).map_err(Error::file("write", &path))?;
     Ok(list)
+}
+
+/// The text of the list, from its beginning.
+fn read(list: &mut File, path: &Path) -> Result<String, Error> {
+    let mut bytes = Vec::new();
+    list.seek(SeekFrom::Start(0))
+        .and_then(|_| list.read_to_end(&mut bytes))
+        .map_err(Error::file("read", path))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// Takes the lock, which goes with the process.

@@ -35,12 +35,30 @@ impl History {
         self.rows.push(values.iter().map(|value| (*value).into()))
     }
 
-    /// Hands all rows to the operating system: before a checkpoint, or when somebody wants to look.
+    /// Opens the table of a run that goes on, cut back to this length.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Cut`].
+    pub fn go_on(path: &Path, columns: usize, length: u64) -> Result<History, Error> {
+        Ok(History {
+            rows: Rows::go_on(path, columns, length)?,
+        })
+    }
+
+    /// Hands all rows to the operating system, when somebody wants to look.
     ///
     /// # Errors
     /// [`Error::File`].
     pub fn flush(&mut self) -> Result<(), Error> {
         self.rows.flush()
+    }
+
+    /// Forces all rows to the disk, before a checkpoint; the length of the file.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn sync(&mut self) -> Result<u64, Error> {
+        self.rows.sync()
     }
 
     /// Closes the table, forced to the disk.

@@ -93,6 +93,24 @@ impl ImpactTable {
         })
     }
 
+    /// Opens the table of a run that goes on, cut back to this length.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Cut`].
+    pub fn go_on(path: &Path, length: u64) -> Result<ImpactTable, Error> {
+        Ok(ImpactTable {
+            rows: Rows::go_on(path, COLUMNS.len(), length)?,
+        })
+    }
+
+    /// Forces all rows to the disk; the length of the file.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn sync(&mut self) -> Result<u64, Error> {
+        self.rows.sync()
+    }
+
     /// Adds an impact and hands it to the operating system at once: impacts are rare and worth keeping.
     ///
     /// # Errors

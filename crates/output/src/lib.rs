@@ -37,7 +37,8 @@ pub use impacts::{ImpactRow, ImpactTable};
 pub use pvd::Collection;
 pub use report::Report;
 pub use results::{
-    Ending, Fields, LevelSettings, Probe, Reference, Results, Settings, Spectrum, Zoning,
+    Checkpoints, Ending, Fields, LevelSettings, Probe, Reference, Results, Settings, Spectrum,
+    Zoning,
 };
 pub use statistics::{Allowable, Level, Statistics};
 pub use summary::Summary;

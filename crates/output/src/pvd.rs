@@ -20,10 +20,22 @@ impl Collection {
     /// # Errors
     /// [`Error::File`].
     pub fn create(path: &Path) -> Result<Collection, Error> {
-        let collection = Collection {
+        Collection::go_on(path, &[])
+    }
+
+    /// The collection of a run that goes on, with what it has: times (s), and the files of each, as in [`Collection::add`].
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn go_on(path: &Path, instants: &[(f64, Vec<String>)]) -> Result<Collection, Error> {
+        let mut collection = Collection {
             path: path.to_owned(),
             entries: String::new(),
         };
+        for (time, parts) in instants {
+            let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
+            collection.append(*time, &parts);
+        }
         collection.write()?;
         Ok(collection)
     }
@@ -34,6 +46,11 @@ impl Collection {
     /// # Errors
     /// [`Error::File`]; the collection on the disk is then the one before.
     pub fn add(&mut self, time: f64, parts: &[&str]) -> Result<(), Error> {
+        self.append(time, parts);
+        self.write()
+    }
+
+    fn append(&mut self, time: f64, parts: &[&str]) {
         for (part, file) in parts.iter().enumerate() {
             let file = escape(file);
             // Writing to a String cannot fail.
@@ -42,7 +59,6 @@ impl Collection {
                 r#"    <DataSet timestep="{time:?}" part="{part}" file="{file}"/>"#
             );
         }
-        self.write()
     }
 
     fn write(&self) -> Result<(), Error> {

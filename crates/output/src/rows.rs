@@ -5,7 +5,7 @@
 //! not written stay in memory and the next flush tries them again.
 
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -50,6 +50,37 @@ impl Rows {
         rows.push(names.iter().map(|name| Cell::Text(name)))?;
         rows.flush()?;
         Ok(rows)
+    }
+
+    /// Opens the file of a run that goes on, and cuts it back to the length that it had at the checkpoint.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Cut`] if it is shorter.
+    pub fn go_on(path: &Path, columns: usize, length: u64) -> Result<Rows, Error> {
+        let mut file = File::options()
+            .write(true)
+            .open(path)
+            .map_err(Error::file("open", path))?;
+        let found = file.metadata().map_err(Error::file("open", path))?.len();
+        if found < length {
+            return Err(Error::Cut {
+                path: path.to_owned(),
+                expected: length,
+                found,
+            });
+        }
+        file.set_len(length)
+            .and_then(|()| file.seek(SeekFrom::Start(length)))
+            .map_err(Error::file("cut back", path))?;
+        Ok(Rows {
+            path: path.to_owned(),
+            file,
+            columns,
+            length,
+            pending: Vec::new(),
+            row_lengths: Vec::new(),
+            flushed: Instant::now(),
+        })
     }
 
     /// Adds a row; it reaches the file at the next flush, which is never long after.
@@ -102,21 +133,28 @@ impl Rows {
         let Err(cause) = outcome else { return Ok(()) };
         // The first cause is the one to report; if cutting fails too, the file ends with a part of a row.
         if written > complete && self.file.set_len(self.length).is_ok() {
-            use std::io::Seek;
-            let _ = self.file.seek(io::SeekFrom::Start(self.length));
+            let _ = self.file.seek(SeekFrom::Start(self.length));
         }
         Err(Error::file("write", &self.path)(cause))
     }
 
-    /// Flushes and forces the file to the disk.
+    /// Flushes and forces the file to the disk; its length.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn sync(&mut self) -> Result<u64, Error> {
+        self.flush()?;
+        let synced = self.file.sync_all();
+        synced.map_err(Error::file("write", &self.path))?;
+        Ok(self.length)
+    }
+
+    /// Forces all rows to the disk and closes the file.
     ///
     /// # Errors
     /// [`Error::File`].
     pub fn finish(mut self) -> Result<(), Error> {
-        self.flush()?;
-        self.file
-            .sync_all()
-            .map_err(Error::file("write", &self.path))
+        self.sync().map(drop)
     }
 }
 

@@ -462,12 +462,7 @@ impl Summary {
 /// Fingerprint of a text as 16 hexadecimal digits (FNV-1a, 64 bits): tells whether two runs had the same case file;
 /// no protection against intent.
 pub fn hash(text: &str) -> String {
-    hash_bytes(text.as_bytes())
-}
-
-/// The same fingerprint of bytes.
-pub(crate) fn hash_bytes(bytes: &[u8]) -> String {
-    Fingerprint::default().bytes(bytes).digits()
+    Fingerprint::default().bytes(text.as_bytes()).digits()
 }
 
 /// Numbers that may be NaN or infinite exactly when something went wrong: JSON has no word for them but `null`, so

@@ -5,11 +5,13 @@
 
 use std::collections::VecDeque;
 
+use serde::{Deserialize, Serialize};
+
 /// Largest mean of a step-wise constant quantity over a window of time, taken at the end of each step.
 ///
 /// max over k of (1/T) ∫ q dt over (t_k - T, t_k), with the quantity zero before the first step. It keeps the steps of
 /// the last T, whatever the length of the run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PeakOfMean {
     window: f64,
     /// Length (s) and value of the steps that reach into the window.

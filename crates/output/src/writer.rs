@@ -89,6 +89,19 @@ impl<B: Send + 'static> Writer<B> {
         }
     }
 
+    /// Waits until everything sent is written. `all`: the number of buffers.
+    ///
+    /// # Errors
+    /// As [`Writer::check`].
+    pub(crate) fn wait(&mut self, all: usize) -> Result<(), Error> {
+        while self.idle.len() < all {
+            let (buffer, outcome) = self.back.recv().map_err(|_| Error::Writer)?;
+            self.idle.push(buffer);
+            outcome?;
+        }
+        Ok(())
+    }
+
     /// Waits until everything sent is written, and ends the thread. Nothing to do the second time.
     ///
     /// # Errors

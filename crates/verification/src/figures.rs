@@ -1,6 +1,6 @@
 //! Histories of a contact, and the figures of merit of bars against the exact solution.
 
-use carom_dynamics::{Driver, Observer, State, StepReport, Stepper, System, march};
+use carom_dynamics::{Driver, Observer, Stepper, System, march};
 
 use crate::Error;
 use crate::bars::Run;
@@ -23,12 +23,8 @@ pub(crate) struct History {
 }
 
 impl Observer for History {
-    fn accepted(
-        &mut self,
-        _system: &System,
-        _state: &State,
-        report: &StepReport,
-    ) -> Result<(), carom_dynamics::Error> {
+    fn accepted(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
+        let report = run.report();
         if report.step > 0 {
             self.time.push(report.time);
             self.force.push(report.contacts[0].force);

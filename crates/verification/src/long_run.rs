@@ -160,12 +160,8 @@ struct Gain {
 }
 
 impl carom_dynamics::Observer for Gain {
-    fn accepted(
-        &mut self,
-        _system: &System,
-        _state: &carom_dynamics::State,
-        report: &carom_dynamics::StepReport,
-    ) -> Result<(), carom_dynamics::Error> {
+    fn accepted(&mut self, run: &dyn carom_dynamics::Stepper) -> Result<(), carom_dynamics::Error> {
+        let report = run.report();
         let energy = report.balance.energy() + report.balance.scheme_energy;
         let start = *self.start.get_or_insert(energy);
         self.largest = self.largest.max(energy - start);

@@ -15,7 +15,7 @@ use crate::zones::{Zones, ZonesState};
 use carom_dynamics::Costs;
 use carom_dynamics::records::Records;
 use carom_dynamics::state::{InterfaceState, State, empty_state};
-use carom_dynamics::{Balance, Ledger, Tolerated};
+use carom_dynamics::{Balance, Impact, Ledger, Tolerated};
 use carom_dynamics::{ContactReport, ContactSample, StepReport};
 use carom_dynamics::{FailedProblem, Stepper};
 use carom_system::{Motion, System};
@@ -44,6 +44,8 @@ pub struct Whole {
 struct Saved {
     zones: ZonesState,
     ledger: Ledger,
+    /// Impacts of all zones in the order in which they were told.
+    impacts: Vec<Impact>,
 }
 
 impl Whole {
@@ -79,6 +81,11 @@ impl Whole {
         zones.resume(&saved.zones);
         let mut whole = Whole::around(zones, zoned, system);
         whole.state.ledger = saved.ledger;
+        whole.state.records.impacts = saved.impacts;
+        let drivers = whole.zones.drivers.iter();
+        whole.impacts = drivers.map(|d| d.state().records.impacts.len()).collect();
+        let between = whole.zones.between();
+        whole.impacts_between = between.map_or(0, |(_, own)| own.records.impacts.len());
         whole.gather();
         Ok(whole)
     }
@@ -108,6 +115,13 @@ impl Whole {
             },
             zones,
             system,
+        }
+    }
+
+    /// Counts what each zone cost before this run went on with it.
+    pub fn add_earlier(&mut self, costs: &Costs) {
+        for (driver, own) in self.zones.drivers.iter_mut().zip(&costs.zones) {
+            driver.add_earlier(own);
         }
     }
 
@@ -387,6 +401,7 @@ impl Stepper for Whole {
         let saved = Saved {
             zones: self.zones.state(),
             ledger: self.state.ledger.clone(),
+            impacts: self.state.records.impacts.clone(),
         };
         postcard::to_stdvec(&saved).map_err(|cause| carom_dynamics::Error::State {
             cause: cause.to_string(),
@@ -397,7 +412,9 @@ impl Stepper for Whole {
     fn costs(&self) -> Costs {
         let mut costs = Costs::default();
         for driver in &self.zones.drivers {
-            costs.add(driver.costs());
+            let own = driver.costs();
+            costs.add(&own);
+            costs.zones.push(own);
         }
         costs
     }

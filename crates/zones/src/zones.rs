@@ -59,6 +59,8 @@ pub struct ZonesState {
     pub between: Option<BetweenState>,
     /// By zone.
     pub zones: Vec<State>,
+    /// Passes over all outer steps, for the results.
+    pub passes: u64,
 }
 
 /// The drivers of all zones, and the links between them.
@@ -200,12 +202,13 @@ impl Zones {
             origins: self.origins.clone(),
             between: self.between.as_ref().map(|between| between.state.clone()),
             zones: self.drivers.iter().map(|d| d.state().clone()).collect(),
+            passes: self.all_passes,
         }
     }
 
     /// Goes on from a state, which must be of the same zones.
     pub fn resume(&mut self, state: &ZonesState) {
-        (self.step, self.time) = (state.step, state.time);
+        (self.step, self.time, self.all_passes) = (state.step, state.time, state.passes);
         (self.control, self.sizes) = (state.control, state.sizes);
         self.multipliers[0].clone_from(&state.multipliers);
         self.earlier.clone_from(&state.earlier);

@@ -20,8 +20,9 @@ pub(super) struct Builder<'a> {
     pub(super) signals: Signals,
     /// The zones of the case.
     pub(super) plan: Plan,
-    /// Path of the case file.
+    /// Path of the case file, and the folder that its paths start from.
     pub(super) file: PathBuf,
+    pub(super) folder: PathBuf,
     /// Bodies whose reduction has a file, and where the reduction comes from.
     pub(super) reductions: Vec<(String, String)>,
 }

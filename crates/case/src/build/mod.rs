@@ -115,6 +115,7 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
             .sources
             .first()
             .map_or_else(PathBuf::new, |source| PathBuf::from(&source.name)),
+        folder: input.folder.clone(),
         reductions: Vec::new(),
     };
     builder.plan = builder.plan_zones();

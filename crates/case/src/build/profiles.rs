@@ -74,7 +74,7 @@ impl Builder<'_> {
                 dimension: "length",
             },
         ];
-        let folder = self.file.parent().unwrap_or(&self.file).to_owned();
+        let folder = self.folder.clone();
         let (points, lines) = self.file_columns(&folder, path, &csv.file, keys)?;
         Some((points, At::Lines(path.to_owned(), lines)))
     }

@@ -91,6 +91,49 @@ pub struct Output {
     pub fields: Option<Fields>,
     /// Rows of `histories.csv`. Default: one for every step.
     pub histories: Option<Histories>,
+    /// Checkpoints, from which `carom resume` goes on. One is always written at the end of a run. Default: one every 60 s of wall
+    /// time, two kept.
+    pub checkpoint: Option<Checkpoint>,
+}
+
+/// When checkpoints are written while a run goes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Checkpoint {
+    /// Simulated time between two of them. Default: by wall time alone.
+    pub every: Option<Duration>,
+    /// Wall time between two of them. It grows where writing one takes more than a hundredth of it. Default: 60 s, with `every`
+    /// none.
+    pub wall: Option<Duration>,
+    /// Number of checkpoints that are kept.
+    #[serde(default = "two")]
+    #[schemars(range(min = 1, max = 100))]
+    pub keep: u32,
+}
+
+impl Default for Checkpoint {
+    fn default() -> Checkpoint {
+        Checkpoint {
+            every: None,
+            wall: None,
+            keep: two(),
+        }
+    }
+}
+
+impl Checkpoint {
+    /// Least wall time between two checkpoints, s.
+    pub fn least_wall(&self) -> Option<f64> {
+        match (self.wall, self.every) {
+            (Some(wall), _) => Some(wall.0),
+            (None, None) => Some(60.0),
+            (None, Some(_)) => None,
+        }
+    }
+}
+
+fn two() -> u32 {
+    2
 }
 
 /// Rows of the histories.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use carom_case::{Axis, Choices, Fit, Input, Sweep, SweepError, compare, fit, study};
-use carom_dynamics::{Observer, State, StepReport, System};
+use carom_dynamics::{Observer, Stepper};
 use carom_output::Summary;
 use carom_output::compare::{COLUMNS, Comparison, Outcome, Standard};
 use carom_output::study::{Quantity, Source, Study};
@@ -32,12 +32,7 @@ const EXACT: &str = "[reference.two-bars]";
 pub struct Nobody;
 
 impl Observer for Nobody {
-    fn accepted(
-        &mut self,
-        _: &System,
-        _: &State,
-        _: &StepReport,
-    ) -> Result<(), carom_dynamics::Error> {
+    fn accepted(&mut self, _: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
         Ok(())
     }
     fn finish(&mut self, _: &dyn carom_dynamics::Stepper) -> Result<(), carom_dynamics::Error> {

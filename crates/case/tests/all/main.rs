@@ -13,6 +13,7 @@ mod reductions;
 mod reference;
 mod refine;
 mod repeat;
+mod resume;
 mod stage_one;
 mod verdict;
 mod warnings;

@@ -8,5 +8,6 @@ mod commands;
 mod compare;
 mod folders;
 mod inputs;
+mod resume;
 mod run;
 mod streams;

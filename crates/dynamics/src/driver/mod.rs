@@ -167,6 +167,8 @@ pub struct Driver {
     /// Norm of the forces that the iterations of the step may leave unbalanced, N.
     left_over: f64,
     phases: Phases,
+    /// What the run cost before this driver went on with it.
+    earlier: Costs,
 }
 
 impl Driver {
@@ -193,7 +195,7 @@ impl Driver {
     /// What the run cost so far.
     pub fn costs(&self) -> Costs {
         let elements: usize = self.system.bodies.iter().map(|b| b.cells().len()).sum();
-        Costs {
+        let mut costs = Costs {
             factors: self.effective.stats().cloned().collect(),
             work: self.effective.work(),
             compliance_bytes: self.effective.compliance_bytes()
@@ -204,7 +206,15 @@ impl Driver {
             force_sweeps: self.force_sweeps,
             element_updates: (self.force_sweeps * elements) as u64,
             phases: self.phases,
-        }
+            zones: Vec::new(),
+        };
+        costs.add(&self.earlier);
+        costs
+    }
+
+    /// Counts what the run cost before this driver went on with it.
+    pub fn add_earlier(&mut self, costs: &Costs) {
+        self.earlier.add(costs);
     }
 
     /// Whether parts float in the attempt under way.

@@ -20,7 +20,7 @@ use super::supports::Jump;
 use super::weak::{WeakForms, WithWeak};
 use super::{Driver, Which};
 use crate::control::Control;
-use crate::costs::Phases;
+use crate::costs::{Costs, Phases};
 use crate::coulomb::Coulomb;
 use crate::error::Error;
 use crate::exchange::Exchange;
@@ -140,6 +140,7 @@ impl Driver {
             prepared: false,
             left_over: 0.0,
             phases: Phases::default(),
+            earlier: Costs::default(),
             system,
         };
         let system = Arc::clone(&driver.system);

@@ -1,6 +1,6 @@
 //! What a comparison keeps of a run beside its summary: the force of every step or part of one, and the curves of the figures.
 
-use carom_dynamics::{Observer, Order, State, StepReport, Stepper, System};
+use carom_dynamics::{Observer, Order, Stepper, System};
 
 use crate::results::Reference;
 use crate::results::sensor::{ContactPoint, contact_point};
@@ -110,12 +110,8 @@ impl Recorder {
 }
 
 impl Observer for Recorder {
-    fn accepted(
-        &mut self,
-        system: &System,
-        state: &State,
-        report: &StepReport,
-    ) -> Result<(), carom_dynamics::Error> {
+    fn accepted(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
+        let (system, state, report) = (run.system(), run.state(), run.report());
         let (t, history, balance) = (report.time, &mut self.history, &report.balance);
         if let Some(point) = &self.point {
             for (end, _, contacts) in report.parts() {

@@ -18,7 +18,7 @@ use crate::summary::{
     Angular, Contact, Energy, Exact, Friction, Model, Momentum, Rejected, Summary, Time, Zones,
     hash,
 };
-use crate::{Error, Report, atomic};
+use crate::{Error, Report, atomic, checkpoint};
 
 impl Results {
     /// Writes figures, report and summary, after the run has told its end to the observers
@@ -42,7 +42,7 @@ fn conclude(mut results: Results, ending: &Ending) -> Result<Summary, Error> {
     if let Some(path) = report {
         let report = Report {
             summary: &summary,
-            impacts: &results.impacts.rows,
+            impacts: &results.impacts.told.rows,
             figures: &figures,
             case: &results.settings.case_text,
         };
@@ -128,8 +128,9 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
     let verdict = judge(&evidence, unfinished);
     let names = results.folder.names().map(str::to_owned);
     let own = ["report.html", "summary.json"];
-    // the collection names the field files, which may be thousands
-    let names = names.filter(|name| !name.starts_with("fields/"));
+    // the collection names the field files, which may be thousands; which earlier checkpoints there are depends on the clock
+    let left_out = |name: &str| name.starts_with("fields/") || checkpoint::is_earlier(name);
+    let names = names.filter(|name| !left_out(name));
     let there =
         |name: &String| own.contains(&&**name) || results.folder.path().join(name).is_file();
     Summary {
@@ -216,7 +217,7 @@ fn time(system: &System, last: &Last, zones: Option<&Zones>) -> Time {
 
 fn contacts(results: &Results) -> BTreeMap<String, Contact> {
     let system = &results.system;
-    let all = system.contacts.iter().zip(&results.impacts.contacts);
+    let all = system.contacts.iter().zip(&results.impacts.told.contacts);
     let in_time = |value: f64| (!results.is_static()).then_some(value);
     let all_impacts = &results.impacts.all;
     let name = |k: usize| system.contacts[k].name.as_str();
@@ -414,7 +415,7 @@ fn against_exact(results: &Results, comparison: &Comparison) -> Exact {
     let reference = &comparison.reference;
     let (solution, k) = (&reference.solution, reference.contact);
     let end = results.last.time.min(solution.end_time());
-    let totals = &results.impacts.contacts[k];
+    let totals = &results.impacts.told.contacts[k];
     let none = ContactRecord::default();
     let record = results.last.records.contacts.get(k).unwrap_or(&none);
     let peak = exact::peak_force(solution, end);
@@ -423,8 +424,8 @@ fn against_exact(results: &Results, comparison: &Comparison) -> Exact {
     Exact {
         name: reference.name.clone(),
         contact: results.system.contacts[k].name.clone(),
-        force_error: comparison.force.relative(),
-        displacement_error: comparison.displacement.relative(),
+        force_error: comparison.errors.force.relative(),
+        displacement_error: comparison.errors.displacement.relative(),
         peak_force: peak,
         overshoot: over(record.peak_force),
         mean_overshoot: over(totals.mean.peak()),

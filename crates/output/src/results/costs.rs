@@ -42,7 +42,7 @@ pub(super) fn newton(results: &Results, ending: &Ending) -> Newton {
 pub(super) fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f64> {
     let phases = &ending.costs.phases;
     let parts = [
-        ("total", ending.wall),
+        ("total", results.earlier + ending.wall),
         ("factorisation", phases.factorisation),
         ("internal forces", phases.forces),
         ("triangular sweeps", phases.sweeps),

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use carom_dynamics::{State, System};
+use serde::{Deserialize, Serialize};
 
 use crate::summary::Discrete;
 
 /// The largest so far.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct DiscretePeaks {
     peaks: BTreeMap<String, Discrete>,
 }

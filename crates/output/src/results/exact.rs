@@ -2,12 +2,13 @@
 
 use carom_dynamics::{Order, State, StepReport, System};
 use carom_exact::{FarEnd, Motion, Solution};
+use serde::{Deserialize, Serialize};
 
 use crate::results::Reference;
 use crate::results::sensor::{ContactPoint, Sensor};
 
 /// Sums of squares of an error and of what it is relative to.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Norms {
     error: f64,
     size: f64,
@@ -29,6 +30,12 @@ impl Norms {
 #[derive(Debug)]
 pub(crate) struct Comparison {
     pub(crate) reference: Reference,
+    pub(crate) errors: Errors,
+}
+
+/// What the comparison has gathered.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Errors {
     /// Force of each step, or part of one, against the mean of the exact force over it, over those that meet the exact
     /// contact.
     pub(crate) force: Norms,
@@ -41,9 +48,7 @@ impl Comparison {
     pub(crate) fn new(reference: Reference) -> Comparison {
         Comparison {
             reference,
-            force: Norms::default(),
-            displacement: Norms::default(),
-            start: Vec::new(),
+            errors: Errors::default(),
         }
     }
 
@@ -56,22 +61,22 @@ impl Comparison {
         let of = |s: &Sensor| s.of(system, &state.motion, Order::Displacement);
         let values = point.sides.iter().map(|(_, s)| of(s));
         if report.step == 0 {
-            self.start = values.collect();
+            self.errors.start = values.collect();
             return;
         }
         let solution = &self.reference.solution;
         let beyond = |time: f64| time > solution.end_time() * (1.0 + 1e-9);
         for (to, dt, contacts) in report.parts().filter(|(to, ..)| !beyond(*to)) {
             let force = contacts[self.reference.contact].force;
-            compare(&mut self.force, solution, [to - dt, to], force);
+            compare(&mut self.errors.force, solution, [to - dt, to], force);
         }
         if beyond(report.time) {
             return;
         }
         for (body, value) in values.enumerate().take(solution.motions().len()) {
-            let start = self.start.get(body).copied().unwrap_or(0.0);
+            let start = self.errors.start.get(body).copied().unwrap_or(0.0);
             let exact = displacement(solution, body, report.time);
-            self.displacement.add(value - start, exact);
+            self.errors.displacement.add(value - start, exact);
         }
     }
 }

@@ -9,6 +9,7 @@ use carom_contact::{Contact, Integration, Point};
 use carom_dynamics::{InterfaceState, Motion, Order, State, System};
 use carom_elements::Kind;
 use carom_mesh::Face;
+use serde::{Deserialize, Serialize};
 
 use crate::results::beams::{SECTION_FORCES, rotations, section_forces};
 use crate::results::cells::{cell_stresses, plastic_strains, von_mises};
@@ -18,7 +19,7 @@ use crate::writer::Writer;
 use crate::{Collection, Error, Folder};
 
 /// What the thread needs of a state, and the names of the files it makes of it: the bodies, then each contact.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Snapshot {
     time: f64,
     first: bool,
@@ -32,22 +33,34 @@ struct Snapshot {
 pub(crate) struct FieldOutput {
     fields: Fields,
     writer: Writer<Snapshot>,
-    /// Field files asked for so far.
-    count: u64,
-    /// Time of the last one, s.
-    last: Option<f64>,
-    /// Time of the last state seen, s.
-    seen: f64,
+    sent: Sent,
     failed: bool,
 }
 
+/// What was sent to the thread so far.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Sent {
+    /// Times of the states sent, s.
+    times: Vec<f64>,
+    /// Time of the last state seen, s.
+    seen: f64,
+}
+
+/// Buffers of the thread.
+const BUFFERS: usize = 2;
+
 impl FieldOutput {
+    /// Begins, or goes on after what was sent.
     pub(crate) fn create(
         folder: &mut Folder,
         system: &Arc<System>,
         (fields, zoning): (&Fields, Option<&Zoning>),
+        sent: Sent,
     ) -> Result<FieldOutput, Error> {
-        let collection = Collection::create(&folder.file("fields.pvd")?)?;
+        let instants = sent.times.iter().enumerate();
+        let instants = instants.map(|(number, time)| (*time, names(system, number)));
+        let instants: Vec<(f64, Vec<String>)> = instants.collect();
+        let collection = Collection::go_on(&folder.file("fields.pvd")?, &instants)?;
         let mut files = Files {
             folder: folder.path().to_owned(),
             collection,
@@ -60,14 +73,16 @@ impl FieldOutput {
         };
         Ok(FieldOutput {
             fields: fields.clone(),
-            writer: Writer::start(vec![Snapshot::default(), Snapshot::default()], move |s| {
-                files.write(s)
-            })?,
-            count: 0,
-            last: None,
-            seen: 0.0,
+            writer: Writer::start(vec![Snapshot::default(); BUFFERS], move |s| files.write(s))?,
+            sent,
             failed: false,
         })
+    }
+
+    /// Waits until all that was sent is on the disk; what it was.
+    pub(crate) fn keep(&mut self) -> Result<&Sent, Error> {
+        self.writer.wait(BUFFERS)?;
+        Ok(&self.sent)
     }
 
     /// Hands over the state if it is due.
@@ -77,16 +92,16 @@ impl FieldOutput {
         system: &System,
         state: &State,
     ) -> Result<(), Error> {
-        let due = match self.last {
+        let due = match self.sent.times.last() {
             None => true,
             Some(_) => {
                 // instants are sums of steps: a millionth of one is rounding
                 let rounding = 1e-6 * system.dt;
                 let number = |time: f64| ((time + rounding) / self.fields.every).floor();
-                number(state.time) > number(self.seen)
+                number(state.time) > number(self.sent.seen)
             }
         };
-        self.seen = state.time;
+        self.sent.seen = state.time;
         let outcome = match due {
             true => self.send(folder, system, state),
             false => self.writer.check(),
@@ -102,7 +117,7 @@ impl FieldOutput {
         system: &System,
         state: &State,
     ) -> Result<(), Error> {
-        let sent = match self.failed || self.last == Some(state.time) {
+        let sent = match self.failed || self.sent.times.last() == Some(&state.time) {
             true => Ok(()),
             false => self.send(folder, system, state),
         };
@@ -111,23 +126,25 @@ impl FieldOutput {
 
     fn send(&mut self, folder: &mut Folder, system: &System, state: &State) -> Result<(), Error> {
         let mut snapshot = self.writer.buffer()?;
-        snapshot.names.clear();
-        let mut name = |part: &str| -> Result<(), Error> {
-            let name = format!("fields/{part}-{:06}.vtu", self.count);
-            folder.file(&name)?;
-            snapshot.names.push(name);
-            Ok(())
-        };
-        name("bodies")?;
-        for contact in &system.contacts {
-            name(&format!("contact-{}", contact.name))?;
+        snapshot.names = names(system, self.sent.times.len());
+        for name in &snapshot.names {
+            folder.file(name)?;
         }
         snapshot.fill(&self.fields, state);
-        snapshot.first = self.count == 0;
-        self.count += 1;
-        self.last = Some(state.time);
+        snapshot.first = self.sent.times.is_empty();
+        self.sent.times.push(state.time);
         self.writer.send(snapshot)
     }
+}
+
+/// Names of the files of one instant.
+fn names(system: &System, number: usize) -> Vec<String> {
+    let contacts = system.contacts.iter();
+    let contacts = contacts.map(|contact| format!("contact-{}", contact.name));
+    let parts = std::iter::once("bodies".to_owned()).chain(contacts);
+    parts
+        .map(|part| format!("fields/{part}-{number:06}.vtu"))
+        .collect()
 }
 
 impl Snapshot {

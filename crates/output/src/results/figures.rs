@@ -1,6 +1,7 @@
 //! The figures of a run, from what was kept while it went.
 
 use carom_dynamics::{Order, State, StepReport, System};
+use serde::{Deserialize, Serialize};
 
 use crate::Error;
 use crate::plot::{
@@ -17,9 +18,16 @@ use crate::results::{Reference, Settings};
 pub(crate) struct Curves {
     title: String,
     contact: Option<usize>,
-    /// Name, sensor, and what it showed: displacement, velocity, acceleration.
-    motions: Vec<(String, Sensor, [Trace; 3])>,
+    sensors: Vec<(String, Sensor)>,
     recorded: [bool; 3],
+    traces: Traces,
+}
+
+/// What was seen so far.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Traces {
+    /// Of each sensor: displacement, velocity, acceleration.
+    motions: Vec<[Trace; 3]>,
     force: Trace,
     kinetic: Trace,
     strain: Trace,
@@ -32,7 +40,7 @@ pub(crate) struct Curves {
     residual: Trace,
 }
 
-/// Names of [`Curves::further`].
+/// Names of [`Traces::further`].
 const FURTHER: [&str; 6] = [
     "hardening",
     "material",
@@ -64,42 +72,49 @@ impl Curves {
             }
             (None, None) => (String::new(), Vec::new(), [false; 3]),
         };
-        let followed = |(name, sensor)| (name, sensor, Default::default());
+        let motions = sensors.iter().map(|_| Default::default());
         Curves {
             title,
             contact: point.map(|point| point.contact),
-            motions: sensors.into_iter().map(followed).collect(),
             recorded,
-            force: Trace::default(),
-            kinetic: Trace::default(),
-            strain: Trace::default(),
-            total: Trace::default(),
-            balanced: Trace::default(),
-            dissipated: Trace::default(),
-            further: Default::default(),
-            residual: Trace::default(),
+            traces: Traces {
+                motions: motions.collect(),
+                ..Traces::default()
+            },
+            sensors,
         }
+    }
+
+    /// What was seen so far.
+    pub(crate) fn kept(&self) -> &Traces {
+        &self.traces
+    }
+
+    /// Goes on from what was seen.
+    pub(crate) fn go_on(&mut self, kept: Traces) {
+        self.traces = kept;
     }
 
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
         let (t, motion, balance) = (report.time, &state.motion, &report.balance);
-        for (_, sensor, traces) in &mut self.motions {
+        let kept = &mut self.traces;
+        for ((_, sensor), traces) in self.sensors.iter().zip(&mut kept.motions) {
             for (trace, order) in traces.iter_mut().zip(Order::ALL) {
                 trace.push(t, sensor.of(system, motion, order));
             }
         }
         if let Some(contact) = self.contact {
             for (end, _, contacts) in report.parts() {
-                self.force.push(end, contacts[contact].force);
+                kept.force.push(end, contacts[contact].force);
             }
         }
-        self.kinetic.push(t, balance.kinetic);
-        self.strain.push(t, balance.strain);
-        self.total.push(t, balance.energy());
+        kept.kinetic.push(t, balance.kinetic);
+        kept.strain.push(t, balance.strain);
+        kept.total.push(t, balance.energy());
         let balanced = balance.energy() + balance.scheme_energy;
-        self.balanced.push(t, balanced);
+        kept.balanced.push(t, balanced);
         let dissipated = balance.dissipation_scheme - balance.work_contact;
-        self.dissipated.push(t, dissipated);
+        kept.dissipated.push(t, dissipated);
         let further = [
             balance.hardening,
             balance.dissipation_material,
@@ -108,10 +123,10 @@ impl Curves {
             balance.dissipation_viscosity,
             balance.hourglass,
         ];
-        for (trace, value) in self.further.iter_mut().zip(further) {
+        for (trace, value) in kept.further.iter_mut().zip(further) {
             trace.push(t, value);
         }
-        self.residual.push(t, balance.energy_residual);
+        kept.residual.push(t, balance.energy_residual);
     }
 
     /// Names of the files and figures as SVG, in the order of the report; none if no state was told.
@@ -122,10 +137,10 @@ impl Curves {
     ) -> Vec<(&'static str, Result<String, Error>)> {
         let mut figures = Vec::new();
         let abscissa = is_static.then_some(PSEUDO_TIME);
-        if self.total.is_empty() {
+        if self.traces.total.is_empty() {
             return figures;
         }
-        if !self.motions.is_empty() {
+        if !self.sensors.is_empty() {
             let name = match self.contact {
                 Some(_) => "plots/contact.svg",
                 None => "plots/probe.svg",
@@ -143,20 +158,20 @@ impl Curves {
         abscissa: Option<Axis>,
     ) -> Result<String, Error> {
         let exact: Vec<[Polyline; 3]> = reference.map_or(Vec::new(), |reference| {
-            let bodies = 0..reference.solution.motions().len().min(self.motions.len());
+            let bodies = 0..reference.solution.motions().len().min(self.sensors.len());
             bodies
                 .map(|body| motion_curves(&reference.solution, body, end))
                 .collect()
         });
-        let motions = self.motions.iter();
+        let motions = self.traces.motions.iter();
         let columns: Vec<[Polyline; 3]> = motions
-            .map(|(_, _, traces)| [0, 1, 2].map(|k: usize| traces[k].columns()))
+            .map(|traces| [0, 1, 2].map(|k: usize| traces[k].columns()))
             .collect();
         let curves = |k: usize| {
             let exact = exact
                 .iter()
                 .map(|motion| curve("exact", &motion[k], Role::Exact));
-            let names = self.motions.iter().map(|(name, _, _)| name);
+            let names = self.sensors.iter().map(|(name, _)| name);
             let computed = names.zip(&columns);
             let computed = computed.map(|(name, motion)| curve(name, &motion[k], Role::Computed));
             match self.recorded[k] {
@@ -164,7 +179,7 @@ impl Curves {
                 false => Vec::new(),
             }
         };
-        let force = self.force.columns();
+        let force = self.traces.force.columns();
         let exact_force = reference.map(|reference| force_curve(&reference.solution, end));
         let mut force_curves = Vec::new();
         if self.contact.is_some() {
@@ -182,21 +197,21 @@ impl Curves {
 
     fn energy_svg(&self, abscissa: Option<Axis>) -> Result<String, Error> {
         let columns = [
-            &self.kinetic,
-            &self.strain,
-            &self.total,
-            &self.dissipated,
-            &self.residual,
+            &self.traces.kinetic,
+            &self.traces.strain,
+            &self.traces.total,
+            &self.traces.dissipated,
+            &self.traces.residual,
         ]
         .map(Trace::columns);
         let names = ["kinetic", "strain", "total", "dissipated", "residual"];
         let at = |k: usize| curve(names[k], &columns[k], Role::Computed);
-        let further = self.further.each_ref().map(Trace::columns);
+        let further = self.traces.further.each_ref().map(Trace::columns);
         let there =
             |(_, (_, values)): &(&&'static str, &Polyline)| values.iter().any(|v| *v != 0.0);
         let further = FURTHER.iter().zip(&further).filter(there);
         let further = further.map(|(name, line)| curve(name, line, Role::Computed));
-        let balanced = self.balanced.columns();
+        let balanced = self.traces.balanced.columns();
         let own = (balanced != columns[2]).then(|| curve("balanced", &balanced, Role::Computed));
         let figure: Figure = energy_figure(
             "Energy balance",

@@ -5,6 +5,7 @@
 
 use carom_algebra::rotation::Rotation;
 use carom_dynamics::{State, System};
+use serde::{Deserialize, Serialize};
 
 use crate::Error;
 use crate::plot::{Frame, Scene, film_figure, quantity};
@@ -19,7 +20,7 @@ const SHOWN: usize = 6;
 const VISIBLE: f64 = 0.01;
 
 /// The instants kept.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Film {
     stills: Vec<Still>,
     /// Steps between two of them, as a power of two.
@@ -27,7 +28,7 @@ pub(crate) struct Film {
 }
 
 /// An instant.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Still {
     step: u64,
     time: f64,

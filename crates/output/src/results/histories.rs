@@ -7,8 +7,10 @@
 //! of the step. (One file with both would be half blank.)
 
 use std::ops::Range;
+use std::path::Path;
 
 use carom_dynamics::{ContactReport, Order, State, StepReport, System};
+use serde::{Deserialize, Serialize};
 
 use crate::history::column;
 use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor};
@@ -16,8 +18,8 @@ use crate::results::{Probe, Settings, Zoning};
 use crate::rows::{Cell, unique};
 use crate::{Error, Folder, History};
 
-const FILE: &str = "histories.csv";
-const CONTACT_FILE: &str = "contact.csv";
+pub(super) const FILE: &str = "histories.csv";
+pub(super) const CONTACT_FILE: &str = "contact.csv";
 
 /// Names of a motion with its unit, in the order displacement, velocity, acceleration.
 const MOTIONS: [(&str, &str); 3] = [
@@ -35,21 +37,35 @@ pub(crate) struct Histories {
     probes: Vec<(Probe, Vec<Sensor>)>,
     row: Vec<Cell<'static>>,
     every: Option<f64>,
-    /// What is gathered of each contact since the last row, where not every step has one.
+    since: Since,
+}
+
+/// What is gathered since the last row, where not every step has one.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Since {
+    /// Of each contact.
     means: Vec<ContactReport>,
     /// Time of these, and of the last row, s.
     gathered: f64,
     last: Option<f64>,
 }
 
+/// Lengths of the two files, and what is gathered.
+pub(crate) type Kept = ([u64; 2], Since);
+
 impl Histories {
-    /// Creates the file; `columns`: of [`columns()`]; `sensors`: of each probe.
+    /// Creates the files, or goes on with them; `columns`: of [`columns()`]; `sensors`: of each probe.
     pub(crate) fn create(
         folder: &mut Folder,
         columns: &[String],
         (system, settings): (&System, &Settings),
-        sensors: Vec<Vec<Sensor>>,
+        (sensors, kept): (Vec<Vec<Sensor>>, Option<Kept>),
     ) -> Result<Histories, Error> {
+        let (lengths, since) = kept.unzip();
+        let open = |path: &Path, columns: &[String], file: usize| match lengths {
+            Some(lengths) => History::go_on(path, columns.len(), lengths[file]),
+            None => History::create(path, columns),
+        };
         let path = folder.file(FILE)?;
         let probes = settings.probes.iter().cloned();
         let zoning = settings.zoning.as_ref();
@@ -59,21 +75,26 @@ impl Histories {
                 for k in 0..system.contacts.len() {
                     names.extend(contact_columns(system, k));
                 }
-                Some(History::create(&folder.file(CONTACT_FILE)?, &names)?)
+                Some(open(&folder.file(CONTACT_FILE)?, &names, 1)?)
             }
             false => None,
         };
         Ok(Histories {
-            file: Some(History::create(&path, columns)?),
+            file: Some(open(&path, columns, 0)?),
             contact,
             links: zoning.is_some(),
             probes: probes.zip(sensors).collect(),
             row: Vec::with_capacity(columns.len()),
             every: settings.history_every,
-            means: Vec::new(),
-            gathered: 0.0,
-            last: None,
+            since: since.unwrap_or_default(),
         })
+    }
+
+    /// Forces all rows to the disk; what the files go on from.
+    pub(crate) fn keep(&mut self) -> Result<([u64; 2], &Since), Error> {
+        let length = |file: &mut Option<History>| file.as_mut().map_or(Ok(0), History::sync);
+        let lengths = [length(&mut self.file)?, length(&mut self.contact)?];
+        Ok((lengths, &self.since))
     }
 
     /// Adds the rows of an accepted state.
@@ -90,7 +111,7 @@ impl Histories {
             return Ok(());
         };
         let contacts = match self.every {
-            Some(_) => &self.means,
+            Some(_) => &self.since.means,
             None => &report.contacts,
         };
         let (row, dim) = (&mut self.row, system.dim);
@@ -178,28 +199,31 @@ impl Histories {
     /// Whether a row is due; gathers the contacts for it. Forces of a row are means since the one before, so that their sum times
     /// the time between rows is the impulse.
     fn is_due(&mut self, report: &StepReport) -> bool {
+        let since = &mut self.since;
         let Some(every) = self.every else {
+            since.last = Some(report.time);
             return true;
         };
-        let fresh = self.gathered == 0.0;
-        self.means
+        let fresh = since.gathered == 0.0;
+        since
+            .means
             .resize(report.contacts.len(), ContactReport::default());
-        self.gathered += report.dt;
-        for (mean, contact) in self.means.iter_mut().zip(&report.contacts) {
+        since.gathered += report.dt;
+        for (mean, contact) in since.means.iter_mut().zip(&report.contacts) {
             if fresh {
                 *mean = ContactReport::default();
             }
             gather(mean, contact, report.dt);
         }
-        let due = self
+        let due = since
             .last
             .is_none_or(|last| report.time >= (last + every) * (1.0 - 1e-12));
         if !due {
             return false;
         }
-        self.last = Some(report.time);
-        let time = std::mem::take(&mut self.gathered);
-        for mean in self.means.iter_mut().filter(|_| time > 0.0) {
+        since.last = Some(report.time);
+        let time = std::mem::take(&mut since.gathered);
+        for mean in since.means.iter_mut().filter(|_| time > 0.0) {
             mean.force /= time;
             mean.friction /= time;
             mean.resultant = mean.resultant.map(|f| f / time);

@@ -1,6 +1,7 @@
 //! The table of impacts, and the peaks of the mean force.
 
 use carom_dynamics::{Impact, State, StepReport, System};
+use serde::{Deserialize, Serialize};
 
 use crate::results::Zoning;
 use crate::window::PeakOfMean;
@@ -9,6 +10,8 @@ use crate::{Error, Folder, ImpactRow, ImpactTable};
 /// The window of the mean force, as a part of the time that a wave takes along the secondary body.
 const WINDOW: f64 = 0.1;
 
+pub(super) const FILE: &str = "impacts.csv";
+
 /// Most impacts that the report shows.
 pub(crate) const SHOWN: usize = 100;
 
@@ -16,18 +19,27 @@ pub(crate) const SHOWN: usize = 100;
 #[derive(Debug)]
 pub(crate) struct Impacts {
     file: Option<ImpactTable>,
-    /// Ended impacts already written.
-    written: usize,
     /// All impacts, once the run has ended.
     pub(crate) all: Vec<Impact>,
+    pub(crate) told: Told,
+}
+
+/// What was told of impacts so far.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Told {
+    /// Ended impacts already written.
+    written: usize,
     /// The first [`SHOWN`] rows.
     pub(crate) rows: Vec<ImpactRow>,
     /// By contact.
     pub(crate) contacts: Vec<ContactTotals>,
 }
 
+/// Length of the file, and what was told.
+pub(crate) type Kept = (u64, Told);
+
 /// What is gathered of a contact beside the records of the state.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct ContactTotals {
     /// Mean of the force.
     pub(crate) mean: PeakOfMean,
@@ -64,11 +76,27 @@ impl Impacts {
             }
         };
         Ok(Impacts {
-            file: Some(ImpactTable::create(&folder.file("impacts.csv")?)?),
-            written: 0,
+            file: Some(ImpactTable::create(&folder.file(FILE)?)?),
             all: Vec::new(),
-            rows: Vec::new(),
-            contacts: (0..system.contacts.len()).map(totals).collect(),
+            told: Told {
+                contacts: (0..system.contacts.len()).map(totals).collect(),
+                ..Told::default()
+            },
+        })
+    }
+
+    /// Forces the file to the disk; its length, and what was told.
+    pub(crate) fn keep(&mut self) -> Result<(u64, &Told), Error> {
+        let length = self.file.as_mut().map_or(Ok(0), ImpactTable::sync)?;
+        Ok((length, &self.told))
+    }
+
+    /// Goes on from a length of the file and what was told.
+    pub(crate) fn go_on(folder: &mut Folder, (length, told): Kept) -> Result<Impacts, Error> {
+        Ok(Impacts {
+            file: Some(ImpactTable::go_on(&folder.file(FILE)?, length)?),
+            all: Vec::new(),
+            told,
         })
     }
 
@@ -83,7 +111,7 @@ impl Impacts {
             .parts()
             .filter(|_| report.step > system.static_steps());
         for (_, dt, contacts) in parts {
-            for (totals, contact) in self.contacts.iter_mut().zip(contacts) {
+            for (totals, contact) in self.told.contacts.iter_mut().zip(contacts) {
                 totals.mean.push(dt, contact.force);
                 totals.peak_friction = totals.peak_friction.max(contact.friction);
                 if contact.closed > 0 {
@@ -92,8 +120,8 @@ impl Impacts {
             }
         }
         let ended = &state.records.impacts;
-        while let Some(impact) = ended.get(self.written) {
-            self.written += 1;
+        while let Some(impact) = ended.get(self.told.written) {
+            self.told.written += 1;
             self.push(system, impact)?;
         }
         Ok(())
@@ -102,10 +130,10 @@ impl Impacts {
     /// Adds the impacts that still go on, or whose flight does not last yet, and closes the file. Nothing to do the second time.
     pub(crate) fn finish(&mut self, system: &System, state: &State) -> Result<(), Error> {
         let all = state.impacts(system);
-        for impact in all.iter().skip(self.written) {
+        for impact in all.iter().skip(self.told.written) {
             self.push(system, impact)?;
         }
-        self.written = all.len();
+        self.told.written = all.len();
         self.all = all;
         self.file.take().map_or(Ok(()), ImpactTable::finish)
     }
@@ -114,7 +142,7 @@ impl Impacts {
         let Some(file) = &mut self.file else {
             return Ok(());
         };
-        let totals = &mut self.contacts[impact.contact as usize];
+        let totals = &mut self.told.contacts[impact.contact as usize];
         let peak_mean_force = totals.mean.take();
         let over = |value: f64| (!impact.unfinished).then_some(value);
         let parting = |value: f64| over(value).filter(|_| !totals.of_parts);
@@ -139,8 +167,8 @@ impl Impacts {
             impulsive: impact.impulsive,
         };
         let outcome = file.push(&row);
-        if self.rows.len() < SHOWN {
-            self.rows.push(row);
+        if self.told.rows.len() < SHOWN {
+            self.told.rows.push(row);
         }
         outcome
     }

@@ -3,6 +3,7 @@
 //! A state is kept whenever a force is larger than all before, so memory is one displacement for each level.
 
 use carom_dynamics::{Order, State, StepReport, System};
+use serde::{Deserialize, Serialize};
 
 use crate::Error;
 use crate::plot::{Frame, Lines, Scene, digits, film_figure, quantity, structure_figure};
@@ -26,8 +27,8 @@ pub(crate) struct Instants {
     instants: Vec<Instant>,
 }
 
-#[derive(Debug)]
-struct Instant {
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Instant {
     /// Name of the level; none for all contacts.
     level: Option<String>,
     contacts: Vec<usize>,
@@ -42,7 +43,7 @@ struct Instant {
 }
 
 /// A contact with a force.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Acting {
     contact: usize,
     /// N.
@@ -93,6 +94,16 @@ impl Instants {
             nodes,
             instants,
         }
+    }
+
+    /// What was kept so far.
+    pub(crate) fn kept(&self) -> &[Instant] {
+        &self.instants
+    }
+
+    /// Goes on from what was kept.
+    pub(crate) fn go_on(&mut self, kept: Vec<Instant>) {
+        self.instants = kept;
     }
 
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {

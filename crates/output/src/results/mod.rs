@@ -12,6 +12,7 @@ mod cells;
 mod conclusion;
 mod costs;
 mod discrete;
+mod due;
 pub(crate) mod exact;
 mod fields;
 mod figures;
@@ -19,6 +20,7 @@ mod film;
 mod histories;
 mod impacts;
 mod instants;
+mod keeping;
 mod lines;
 pub(crate) mod outlines;
 mod reduced;
@@ -30,13 +32,13 @@ pub(crate) mod trace;
 mod zoning;
 
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use carom_dynamics::{Observer, State, StepReport, Stepper, System};
 
-use crate::summary;
 use crate::{Error, Folder, atomic, checkpoint};
 use discrete::DiscretePeaks;
+use due::Due;
 use exact::Comparison;
 use fields::FieldOutput;
 use figures::Curves;
@@ -46,7 +48,9 @@ use impacts::Impacts;
 use instants::Instants;
 use sensor::ContactPoint;
 
-pub use settings::{Ending, Fields, LevelSettings, Probe, Reference, Settings, Spectrum};
+pub use settings::{
+    Checkpoints, Ending, Fields, LevelSettings, Probe, Reference, Settings, Spectrum,
+};
 use spectra::Spectra;
 use totals::{Last, Totals};
 pub use zoning::Zoning;
@@ -73,6 +77,12 @@ pub struct Results {
     /// Mean velocity of the bodies at the start, m/s.
     start: Vec<[f64; 3]>,
     last: Last,
+    due: Due,
+    /// Whether an accepted state has not been taken whole: no checkpoint is written any more.
+    broken: bool,
+    /// When this part of the run began, and the wall time of those before.
+    begin: Instant,
+    earlier: Duration,
 }
 
 impl Results {
@@ -83,22 +93,44 @@ impl Results {
     /// folder. Only the last may leave something on the disk.
     pub fn create(settings: Settings, system: Arc<System>) -> Result<Results, Error> {
         let point = sensor::contact_point(&system, settings.reference.as_ref(), None);
+        for probe in &settings.probes {
+            sensor::of_probe(&system, probe)?;
+        }
+        histories::columns(&system, &settings, point.as_ref())?;
+        // what is wrong with the settings is found before there is a folder
+        let folder = Folder::create(&settings.folder)?;
+        Results::with((settings, system), folder, Default::default())
+    }
+
+    /// Writes the case into the folder and opens the tables, those of a run that goes on at what was kept.
+    fn with(
+        (settings, system): (Settings, Arc<System>),
+        mut folder: Folder,
+        (kept, told, sent): (Option<histories::Kept>, Option<impacts::Kept>, fields::Sent),
+    ) -> Result<Results, Error> {
+        let point = sensor::contact_point(&system, settings.reference.as_ref(), None);
         let probes = settings.probes.iter();
         let probes = probes.map(|probe| sensor::of_probe(&system, probe));
         let probes = probes.collect::<Result<Vec<_>, Error>>()?;
         let columns = histories::columns(&system, &settings, point.as_ref())?;
-        // what is wrong with the settings is found before there is a folder
-        let mut folder = Folder::create(&settings.folder)?;
         atomic::write_text(&folder.file("case.toml")?, &settings.case_text)?;
+        for place in 0..settings.checkpoints.keep {
+            folder.file(&checkpoint::name(place))?;
+        }
         let curves = Curves::new(&system, &settings, point.as_ref(), &probes);
         let spectra = Spectra::new(&settings, &probes);
-        let histories = Histories::create(&mut folder, &columns, (&system, &settings), probes)?;
-        let impacts = Impacts::create(&mut folder, &system, settings.zoning.as_ref())?;
+        let histories =
+            Histories::create(&mut folder, &columns, (&system, &settings), (probes, kept))?;
+        let impacts = match told {
+            Some(told) => Impacts::go_on(&mut folder, told)?,
+            None => Impacts::create(&mut folder, &system, settings.zoning.as_ref())?,
+        };
         let fields = match &settings.fields {
             Some(fields) => Some(FieldOutput::create(
                 &mut folder,
                 &system,
                 (fields, settings.zoning.as_ref()),
+                sent,
             )?),
             None => None,
         };
@@ -112,6 +144,10 @@ impl Results {
             totals: Totals::default(),
             start: velocities(&system, &system.initial_velocity),
             last: Last::default(),
+            due: Due::from(0.0),
+            broken: false,
+            begin: Instant::now(),
+            earlier: Duration::ZERO,
             system,
             settings,
             folder,
@@ -155,6 +191,11 @@ impl Results {
     /// Ends the tables and the thread, and keeps what the summary needs. Everything is tried, whatever fails.
     fn end(&mut self, run: &dyn Stepper) -> Result<(), Error> {
         let state = run.state();
+        // before the last rows and fields, which a run that goes on has not
+        let kept = match self.broken {
+            true => Ok(()),
+            false => self.keep(run),
+        };
         let forces = |k: usize| {
             let points = self.system.first_point[k]..self.system.first_point[k + 1];
             state.interface.force[points].iter().any(|f| *f != 0.0)
@@ -180,19 +221,9 @@ impl Results {
                 Some(fields) => fields.finish(&mut self.folder, &self.system, state),
                 None => Ok(()),
             },
-            self.keep(run),
+            kept,
         ];
         outcomes.into_iter().collect()
-    }
-
-    /// The last good state on disk.
-    fn keep(&mut self, run: &dyn Stepper) -> Result<(), Error> {
-        let path = self.folder.file("checkpoints/last.state")?;
-        let bytes = run.saved().map_err(|cause| Error::Checkpoint {
-            path: path.clone(),
-            cause: cause.to_string(),
-        })?;
-        checkpoint::write(&path, &summary::hash(&self.settings.case_text), &bytes)
     }
 
     /// Writes one more file into the folder, atomically.
@@ -205,14 +236,11 @@ impl Results {
 }
 
 impl Observer for Results {
-    fn accepted(
-        &mut self,
-        _system: &System,
-        state: &State,
-        report: &StepReport,
-    ) -> Result<(), carom_dynamics::Error> {
+    fn accepted(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
         let begin = Instant::now();
-        let outcome = self.take(state, report);
+        let taken = self.take(run.state(), run.report());
+        self.broken |= taken.is_err();
+        let outcome = taken.and_then(|()| self.keep_if_due(run));
         self.totals.spent += begin.elapsed();
         outcome.map_err(observer)
     }

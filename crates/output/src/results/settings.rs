@@ -37,6 +37,22 @@ pub struct Settings {
     pub zoning: Option<Zoning>,
     /// Warnings of the check.
     pub warnings: Vec<String>,
+    /// When checkpoints are written.
+    pub checkpoints: Checkpoints,
+}
+
+/// When checkpoints are written, and what they say of the case. One is always written at the end, also of a step that fails.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoints {
+    /// Simulated time between two of them, s; `None`: by wall time alone.
+    pub every: Option<f64>,
+    /// Least wall time between two of them; `None`: by simulated time alone. They come less often where writing one takes more than
+    /// a hundredth of it.
+    pub wall: Option<Duration>,
+    /// How many are kept.
+    pub keep: usize,
+    /// Which case they are of: given back when a run goes on.
+    pub origin: String,
 }
 
 /// Contacts that are judged together.

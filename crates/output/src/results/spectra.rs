@@ -46,6 +46,18 @@ impl Spectra {
         }
     }
 
+    /// What was kept so far: the histories of each probe.
+    pub(crate) fn kept(&self) -> Vec<&[Vec<[f64; 2]>]> {
+        self.probes.iter().map(|p| &p.histories[..]).collect()
+    }
+
+    /// Goes on from what was kept.
+    pub(crate) fn go_on(&mut self, kept: Vec<Vec<Vec<[f64; 2]>>>) {
+        for (probe, histories) in self.probes.iter_mut().zip(kept) {
+            probe.histories = histories;
+        }
+    }
+
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
         for probe in &mut self.probes {
             let frame = system.frame_acceleration(report.time, report.dt);

@@ -3,9 +3,10 @@
 use std::time::Duration;
 
 use carom_dynamics::{Control, Ledger, Records};
+use serde::{Deserialize, Serialize};
 
 /// What is counted over the steps.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Totals {
     /// Passes of the status loop.
     pub(crate) passes: u64,

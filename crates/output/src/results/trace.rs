@@ -1,5 +1,7 @@
 //! A history kept for a figure, in bounded memory.
 
+use serde::{Deserialize, Serialize};
+
 use crate::plot::thin;
 
 /// Most samples that a trace holds: 1 MB.
@@ -8,7 +10,7 @@ const LIMIT: usize = 1 << 16;
 /// Samples of a quantity over time. When it is full it is thinned to the first, lowest, highest and last sample of
 /// [`LIMIT`] / 8 equal parts of the time so far: no extreme is lost, and a figure, a few thousand dots wide, does not
 /// change.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Trace {
     points: Vec<(f64, f64)>,
 }

@@ -279,25 +279,30 @@ fn nothing_in_a_results_folder_is_reached_through_a_link() {
 }
 
 #[test]
-fn a_saved_state_comes_back_and_a_damaged_or_foreign_one_is_refused() {
+fn a_saved_state_comes_back_and_a_damaged_one_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("last.state");
+    let path = folder.path().join(checkpoint::name(0));
+    std::fs::create_dir(folder.path().join(checkpoint::FOLDER)).unwrap();
     let system = models::two_bars(8);
     let mut driver = carom_dynamics::Driver::new(system.clone()).unwrap();
     driver.step().unwrap();
     let bytes = driver.state().to_bytes().unwrap();
-    checkpoint::write(&path, "0123", &bytes).unwrap();
-    let bytes = checkpoint::read(&path, "0123").unwrap();
+    let parts: [&[u8]; 4] = [b"a case", &bytes, b"", b""];
+    let written = checkpoint::write(folder.path(), 1, (1, 0.5), parts).unwrap();
+    assert_eq!(written, std::fs::metadata(&path).unwrap().len());
+    let saved = checkpoint::read(&path).unwrap();
+    assert_eq!((saved.head.step, saved.head.time), (1, 0.5));
+    assert_eq!(saved.origin, "a case");
+    let bytes = saved.state;
     let state = |system| carom_dynamics::State::from_bytes(system, &bytes);
     assert_eq!(&state(&system).unwrap(), driver.state());
     let other = state(&models::two_bars(9)).unwrap_err().to_string();
     assert!(other.contains("another model"));
-    let refused = |case: &str| checkpoint::read(&path, case).unwrap_err().to_string();
-    assert!(refused("4567").contains("another case"));
+    let refused = || checkpoint::read(&path).unwrap_err().to_string();
     let mut bytes = std::fs::read(&path).unwrap();
     *bytes.last_mut().unwrap() ^= 1;
     std::fs::write(&path, &bytes).unwrap();
-    assert!(refused("0123").contains("damaged"));
+    assert!(refused().contains("damaged"));
     std::fs::write(&path, "a text\n").unwrap();
-    assert!(refused("0123").contains("no state"));
+    assert!(refused().contains("no checkpoint"));
 }

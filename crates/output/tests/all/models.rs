@@ -11,7 +11,7 @@ use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme, Suppor
 use carom_exact::{Bar, Impact};
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
-use carom_output::{Fields, Probe, Reference, Settings};
+use carom_output::{Checkpoints, Fields, Probe, Reference, Settings};
 
 pub const LENGTH: f64 = 0.254;
 pub const AREA: f64 = 6.45e-4;
@@ -151,6 +151,12 @@ pub fn settings(folder: &Path) -> Settings {
         reference: None,
         zoning: None,
         warnings: Vec::new(),
+        checkpoints: Checkpoints {
+            every: None,
+            wall: None,
+            keep: 2,
+            origin: "a case".to_owned(),
+        },
     }
 }
 

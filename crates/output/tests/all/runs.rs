@@ -7,7 +7,7 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Driver, Error, Observer, State, StepReport, Stepper, System, march};
+use carom_dynamics::{Driver, Error, Observer, StepReport, Stepper, System, march};
 use carom_output::{Ending, Grade, Results, Settings, Summary};
 
 use crate::models::{self, AREA, LENGTH, SPEED};
@@ -18,8 +18,8 @@ use crate::{grids, tables};
 pub struct Reports(pub Vec<StepReport>);
 
 impl Observer for Reports {
-    fn accepted(&mut self, _: &System, _: &State, report: &StepReport) -> Result<(), Error> {
-        self.0.push(report.clone());
+    fn accepted(&mut self, run: &dyn Stepper) -> Result<(), Error> {
+        self.0.push(run.report().clone());
         Ok(())
     }
 

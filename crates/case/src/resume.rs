@@ -1,0 +1,106 @@
+//! Going on with a run from the checkpoint in its results folder.
+
+use std::path::Path;
+
+use carom_dynamics::Observer;
+use carom_output::checkpoint::{self, Checkpoint};
+use carom_output::{Error, Folder};
+
+use crate::build::{Built, build};
+use crate::error::Problem;
+use crate::input::{Input, Source};
+use crate::origin::Origin;
+use crate::parse::parse;
+use crate::run::{Begin, Failed, Finished, comments, march_from, settings};
+use crate::schema::Case;
+
+/// A run that can go on. Nothing in its folder has been changed.
+pub struct Resume {
+    input: Input,
+    case: Case,
+    /// The case as built.
+    pub built: Built,
+    folder: Folder,
+    checkpoint: Box<Checkpoint>,
+    origin: Origin,
+    /// Why newer checkpoints are not used.
+    pub unusable: Vec<Error>,
+}
+
+/// Why a run cannot go on.
+#[derive(Debug)]
+pub enum NotResumed {
+    /// The folder or its checkpoints cannot be used.
+    Folder(Error),
+    /// The case cannot be built, or is another one than that of the checkpoint.
+    Case(Vec<Source>, Vec<Problem>),
+}
+
+impl Resume {
+    /// Reads the newest checkpoint of a results folder and the case that stands there, with the overrides of the run and further
+    /// ones. These may change `output`, `title` and `time.end`.
+    ///
+    /// # Errors
+    /// No results folder, or one that another run writes into; no checkpoint that can be used; problems of the case; a case of
+    /// another model, with each key that differs.
+    pub fn open(path: &Path, overrides: &[String]) -> Result<Resume, NotResumed> {
+        let folder = Folder::open(path).map_err(NotResumed::Folder)?;
+        let (checkpoint, unusable) = checkpoint::latest(path).map_err(NotResumed::Folder)?;
+        let mut origin: Origin = serde_json::from_str(&checkpoint.origin)
+            .map_err(|cause| Error::Checkpoint {
+                path: path.join(checkpoint::FOLDER),
+                cause: cause.to_string(),
+            })
+            .map_err(NotResumed::Folder)?;
+        let written = comments(&origin.overrides);
+        origin.overrides.extend_from_slice(overrides);
+        let mut input = Input::read(&path.join("case.toml"), &origin.overrides)
+            .map_err(|problems| NotResumed::Case(Vec::new(), problems))?;
+        input.folder = path.join(&origin.folder);
+        let refused = |problems| NotResumed::Case(input.sources.clone(), problems);
+        let (case, locator) = parse(&input).map_err(refused)?;
+        let problems = origin.differences(&case, &input, checkpoint.head.time);
+        if !problems.is_empty() {
+            return Err(refused(locator.locate_all(problems)));
+        }
+        let built = build(&case, &locator, &input).map_err(refused)?;
+        // the copy in the folder begins with the overrides, which it is given anew
+        if let Some(file) = input.sources.first_mut()
+            && let Some(text) = file.text.strip_prefix(&written)
+        {
+            file.text = text.to_owned();
+        }
+        let title = case.title.clone();
+        origin.title = title.unwrap_or(origin.title);
+        Ok(Resume {
+            input,
+            case,
+            built,
+            folder,
+            checkpoint: Box::new(checkpoint),
+            origin,
+            unusable,
+        })
+    }
+
+    /// Step and simulated time (s) of the checkpoint.
+    pub fn instant(&self) -> (u64, f64) {
+        (self.checkpoint.head.step, self.checkpoint.head.time)
+    }
+
+    /// Goes on to the end of the case, as [`run`](crate::run()).
+    ///
+    /// # Errors
+    /// As [`run`](crate::run()); a folder that has less than the checkpoint says.
+    pub fn run(
+        self,
+        progress: &mut dyn Observer,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Finished, Failed> {
+        let origin = self.origin.of_the_rest(&self.input, &self.case);
+        let path = self.folder.path().to_owned();
+        let settings = settings((&self.input, &self.case, &self.built), path, &origin);
+        let begin = Begin::Checkpoint(self.checkpoint, self.folder);
+        march_from((&self.built, settings), begin, progress, stop)
+    }
+}

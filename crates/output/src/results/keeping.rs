@@ -1,0 +1,154 @@
+//! Checkpoints of a run and its results: what they hold, and how results go on from one.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant as Clock};
+
+use carom_dynamics::{Stepper, System};
+use serde::Deserialize;
+
+use super::due::Due;
+use super::{
+    Results, discrete, exact, fields, figures, film, histories, impacts, instants, totals,
+};
+use crate::checkpoint::{self, Checkpoint};
+use crate::results::Settings;
+use crate::{Error, Folder};
+
+/// What the results have gathered: bytes of the list of files, histories, impacts, fields, figures, film, instants of largest forces,
+/// springs and dashpots, spectra, errors against the exact solution, totals, wall time of the run.
+#[derive(Deserialize)]
+struct Gathered(
+    u64,
+    histories::Kept,
+    impacts::Kept,
+    Option<fields::Sent>,
+    figures::Traces,
+    film::Film,
+    Vec<instants::Instant>,
+    discrete::DiscretePeaks,
+    Vec<Vec<Vec<[f64; 2]>>>,
+    Option<exact::Errors>,
+    totals::Totals,
+    Duration,
+);
+
+impl Results {
+    /// Opens the results of a run that goes on from a checkpoint: tables and lists are cut back to it, and what was written after it is
+    /// removed. `run` of the same checkpoint is to be gone on with by [`carom_dynamics::go_on`].
+    ///
+    /// # Errors
+    /// [`Error::Checkpoint`], [`Error::Cut`] if the folder has less than the checkpoint says; [`Error::File`].
+    pub fn resume(
+        mut folder: Folder,
+        checkpoint: &Checkpoint,
+        settings: Settings,
+        system: Arc<System>,
+    ) -> Result<Results, Error> {
+        let Gathered(
+            listed,
+            histories,
+            impacts,
+            sent,
+            traces,
+            film,
+            instants,
+            discrete,
+            spectra,
+            errors,
+            totals,
+            wall,
+        ) = checkpoint.gathered()?;
+        let tables = [
+            (histories::FILE, histories.0[0]),
+            (histories::CONTACT_FILE, histories.0[1]),
+            (impacts::FILE, impacts.0),
+        ];
+        for (name, expected) in tables {
+            let path = folder.path().join(name);
+            let found = std::fs::metadata(&path).map_or(0, |data| data.len());
+            if found < expected {
+                return Err(Error::Cut {
+                    path,
+                    expected,
+                    found,
+                });
+            }
+        }
+        folder.cut_back(listed)?;
+        let mut results = Results::with(
+            (settings, system),
+            folder,
+            (Some(histories), Some(impacts), sent.unwrap_or_default()),
+        )?;
+        results.curves.go_on(traces);
+        results.film = film;
+        results.instants.go_on(instants);
+        results.discrete = discrete;
+        results.spectra.go_on(spectra);
+        if let (Some(comparison), Some(errors)) = (&mut results.comparison, errors) {
+            comparison.errors = errors;
+        }
+        results.totals = totals;
+        results.earlier = wall;
+        results.due = Due::from(checkpoint.head.time);
+        Ok(results)
+    }
+
+    /// Writes a checkpoint if one is due.
+    pub(super) fn keep_if_due(&mut self, run: &dyn Stepper) -> Result<(), Error> {
+        let state = run.state();
+        let is_due = self
+            .due
+            .take(&self.settings.checkpoints, state.time, self.system.dt);
+        match is_due {
+            true => self.keep(run),
+            false => Ok(()),
+        }
+    }
+
+    /// Writes a checkpoint, unless there is one of this step.
+    pub(super) fn keep(&mut self, run: &dyn Stepper) -> Result<(), Error> {
+        let state = run.state();
+        if self.due.is_of(state.step) {
+            return Ok(());
+        }
+        let begin = Clock::now();
+        let fields = self.fields.as_mut().map(fields::FieldOutput::keep);
+        let gathered = (
+            self.folder.listed()?,
+            self.histories.keep()?,
+            self.impacts.keep()?,
+            fields.transpose()?,
+            self.curves.kept(),
+            &self.film,
+            self.instants.kept(),
+            &self.discrete,
+            self.spectra.kept(),
+            self.comparison.as_ref().map(|c| &c.errors),
+            &self.totals,
+            self.earlier + self.begin.elapsed(),
+        );
+        let refused = |cause: String| Error::Checkpoint {
+            path: self.folder.path().join(checkpoint::name(0)),
+            cause,
+        };
+        let encoded = |bytes: postcard::Result<Vec<u8>>| bytes.map_err(|e| refused(e.to_string()));
+        let gathered = encoded(postcard::to_stdvec(&gathered))?;
+        let costs = encoded(postcard::to_stdvec(&run.costs()))?;
+        let saved = run.saved().map_err(|cause| refused(cause.to_string()))?;
+        let settings = &self.settings.checkpoints;
+        let bytes = checkpoint::write(
+            self.folder.path(),
+            settings.keep,
+            (state.step, state.time),
+            [settings.origin.as_bytes(), &saved, &costs, &gathered],
+        )?;
+        let spent = begin.elapsed();
+        tracing::debug!(
+            "checkpoint of step {}: {bytes} bytes in {spent:?}",
+            state.step
+        );
+        self.due.written(state.step, spent);
+        Ok(())
+    }
+}
