@@ -42,6 +42,11 @@ impl Basis {
         }
     }
 
+    /// The nodes whose motion it gives, ascending.
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = u32> {
+        self.first.iter().map(|(node, _)| *node)
+    }
+
     /// Each amplitude, and what of a rigid motion it is.
     pub fn amplitudes(&self) -> impl Iterator<Item = (usize, &Amplitude)> {
         self.amplitudes

@@ -4,6 +4,7 @@
 //! sparse factorisation, so that none of them appears in a signature of another crate. Results never depend on the number
 //! of threads; they depend on the instruction set of the processor, which is chosen once at run time.
 
+pub mod arrowhead;
 pub mod basis;
 pub mod csr;
 pub mod dense;

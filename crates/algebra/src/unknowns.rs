@@ -31,10 +31,12 @@ pub struct Unknowns {
     turning: Vec<u32>,
     /// What carries a node that is carried, by node; empty where none is.
     carriers: Vec<Option<Carrier>>,
-    /// Nodes of amplitudes, ascending.
-    amplitudes: Vec<u32>,
+    /// Whether the unknowns of a node are amplitudes, by node; empty where there are none.
+    amplitudes: Vec<bool>,
     /// Motions of nodes by unknowns of others.
     bases: Vec<Basis>,
+    /// The basis that gives the motion of a node, by node; empty where none does.
+    basis: Vec<Option<u32>>,
 }
 
 /// What carries a node without unknowns: it keeps its place in the frame of another node.
@@ -65,7 +67,10 @@ impl Unknowns {
             map.first.push(map.node.len() as u32);
             match kind {
                 NodeKind::Translations | NodeKind::SmallRotations | NodeKind::Recovered => {}
-                NodeKind::Amplitudes(_) => map.amplitudes.push(number as u32),
+                NodeKind::Amplitudes(_) => {
+                    map.amplitudes.resize(number + 1, false);
+                    map.amplitudes[number] = true;
+                }
                 NodeKind::Turning => map.turning.push(number as u32),
                 NodeKind::Carried(carrier) => {
                     map.carriers.resize(number + 1, None);
@@ -129,11 +134,16 @@ impl Unknowns {
 
     #[inline]
     fn has_amplitudes(&self, node: u32) -> bool {
-        !self.amplitudes.is_empty() && self.amplitudes.binary_search(&node).is_ok()
+        self.amplitudes.get(node as usize) == Some(&true)
     }
 
     /// Adds the motions of nodes by the unknowns of others.
     pub fn recover(&mut self, basis: Basis) {
+        self.basis.resize(self.nodes(), None);
+        let number = self.bases.len() as u32;
+        for node in basis.nodes() {
+            self.basis[node as usize].get_or_insert(number);
+        }
         self.bases.push(basis);
     }
 
@@ -239,8 +249,9 @@ impl Unknowns {
 impl Unknowns {
     /// The translations of a node that a basis gives, zero of other nodes without any.
     fn recovered(&self, node: u32, values: &[f64]) -> [f64; 3] {
-        let mut bases = self.bases.iter();
-        let motion = bases.find_map(|basis| basis.motion(node, self.dim, values));
+        let basis = self.basis.get(node as usize).copied().flatten();
+        let motion =
+            basis.and_then(|basis| self.bases[basis as usize].motion(node, self.dim, values));
         motion.unwrap_or([0.0; 3])
     }
 }

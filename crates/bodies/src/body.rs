@@ -152,7 +152,7 @@ impl Body {
         match self {
             Body::Solid(_) | Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) => false,
             Body::Discrete(discrete) => discrete.has_damping(),
-            Body::Reduced(reduced) => reduced.reduction().damping.is_some(),
+            Body::Reduced(reduced) => reduced.reduction().matrices.damping.is_some(),
         }
     }
 

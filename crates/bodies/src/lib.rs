@@ -44,7 +44,7 @@ pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{BulkViscosity, FollowerPressure, Formulation, FrequencyBound, Placement, Stored};
 pub use kinematics::{Kinematics, MassKind};
-pub use reduced::{Reduced, Reduction};
+pub use reduced::{Reduced, ReducedMass, ReducedMatrices, Reduction};
 pub use reducible::Reducible;
 pub use release::Release;
 pub use rigid::{Inertia, Rigid};

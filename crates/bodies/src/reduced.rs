@@ -1,11 +1,13 @@
-//! Reduced bodies: retained nodes and amplitudes of modes, with dense matrices.
+//! Reduced bodies: retained nodes and amplitudes of modes.
 //!
-//! Forces are `f = K q + C q̇` and inertia `M q̈` with q the unknowns of the retained nodes and the amplitudes. The motion of the full
+//! Forces are `f = K q + C q̇` and inertia `M q̈` with q the unknowns of the retained nodes and the amplitudes. The matrices are
+//! arrowheads: amplitudes couple with retained unknowns, not with each other. Bodies that are equal share them. The motion of the full
 //! body is u = T q, from which stresses are recovered. What makes the matrices is not known here.
 
 use std::ops::Range;
 use std::sync::Arc;
 
+use carom_algebra::arrowhead::Arrowhead;
 use carom_algebra::basis::{Amplitude, Basis};
 use carom_algebra::csr::Csr;
 use carom_algebra::reduce::dot;
@@ -31,12 +33,8 @@ pub struct Reduction {
     pub amplitudes: Vec<Amplitude>,
     /// T: one row for each unknown of the full body, over the retained unknowns and the amplitudes.
     pub rows: Arc<[f64]>,
-    /// K over the retained unknowns, node after node, and the amplitudes; row-major, N/m.
-    pub stiffness: Vec<f64>,
-    /// M, kg.
-    pub mass: Vec<f64>,
-    /// C, N s/m, if the body is damped.
-    pub damping: Option<Vec<f64>>,
+    /// K, M and C.
+    pub matrices: Arc<ReducedMatrices>,
     /// Tᵀ M r for unit translations r along the axes, kg.
     pub inertia: [Vec<f64>; 3],
     /// rᵀ M r of the full body for the same, kg.
@@ -57,6 +55,64 @@ pub struct Reduction {
     /// Part of the mass, of what supports leave free, that the reduced body does not move with unit translations along the axes.
     /// None as above.
     pub unmoved: Option<[f64; 3]>,
+}
+
+/// The matrices of a reduced body, over the retained unknowns, node after node, and the amplitudes.
+#[derive(Debug, PartialEq)]
+pub struct ReducedMatrices {
+    /// K, N/m.
+    pub stiffness: Arrowhead,
+    /// M, kg.
+    pub mass: Arrowhead,
+    /// C, N s/m, if the body is damped.
+    pub damping: Option<Arrowhead>,
+}
+
+/// The mass of a reduced body on a system.
+#[derive(Clone, Debug)]
+pub struct ReducedMass {
+    matrices: Arc<ReducedMatrices>,
+    /// Unknowns of the system.
+    unknowns: Arc<[u32]>,
+}
+
+impl ReducedMass {
+    /// Adds `factor` M x (kg times the unit of x) to `y`, both system vectors.
+    pub fn add_product(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        each_product(&self.matrices.mass, &self.unknowns, x, |i, part| {
+            y[i] += factor * part;
+        });
+    }
+
+    /// Visits the entries of M that are not zero, by unknowns of the system, kg.
+    pub fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        for (a, &i) in self.unknowns.iter().enumerate() {
+            for (b, &j) in self.unknowns.iter().enumerate() {
+                let entry = self.matrices.mass.get(a, b);
+                if entry != 0.0 {
+                    visit(i as usize, j as usize, entry);
+                }
+            }
+        }
+    }
+
+    /// Whether its unknowns are among these; those of a body are in one connected part.
+    pub fn is_in(&self, part: &Range<usize>) -> bool {
+        let first = self.unknowns.first();
+        first.is_some_and(|unknown| part.contains(&(*unknown as usize)))
+    }
+}
+
+/// Visits parts of the entries of a matrix times a vector of the system, by unknown; an entry is the sum of its parts.
+#[inline]
+fn each_product(
+    matrix: &Arrowhead,
+    unknowns: &[u32],
+    u: &[f64],
+    mut visit: impl FnMut(usize, f64),
+) {
+    let at = |own: usize| unknowns[own] as usize;
+    matrix.each_product(|own| u[at(own)], |own, part| visit(at(own), part));
 }
 
 impl Reduction {
@@ -88,9 +144,7 @@ pub struct Reduced {
     /// Retained nodes, and the node of the amplitudes.
     nodes: Vec<u32>,
     /// Unknowns of the system.
-    unknowns: Vec<u32>,
-    /// The same, as ranges of those that follow each other.
-    runs: Vec<Range<usize>>,
+    unknowns: Arc<[u32]>,
 }
 
 impl Reduced {
@@ -110,16 +164,9 @@ impl Reduced {
                 first..first + data.unknowns.of(0).len()
             }
         };
-        let mut runs: Vec<Range<usize>> = Vec::new();
-        for next in nodes.iter().map(own) {
-            match runs.last_mut() {
-                Some(run) if run.end == next.start => run.end = next.end,
-                _ => runs.push(next),
-            }
-        }
+        let own = nodes.iter().flat_map(own);
         Reduced {
-            unknowns: runs.iter().cloned().flatten().map(|i| i as u32).collect(),
-            runs,
+            unknowns: own.map(|unknown| unknown as u32).collect(),
             nodes,
             data,
         }
@@ -139,7 +186,7 @@ impl Reduced {
         let amplitudes = self.unknowns[own..].iter().map(|unknown| *unknown as usize);
         let amplitudes = amplitudes.zip(data.amplitudes.iter().copied()).collect();
         Basis::new(
-            self.unknowns.clone(),
+            self.unknowns.to_vec(),
             Arc::clone(&data.rows),
             first,
             amplitudes,
@@ -171,27 +218,32 @@ impl Reduced {
         visit(&self.nodes);
     }
 
-    /// Visits the entries of a matrix times a vector of the system, by unknown.
-    fn each_product(&self, matrix: &[f64], u: &[f64], visit: &mut dyn FnMut(usize, f64)) {
-        for (row, i) in matrix.chunks_exact(self.unknowns.len()).zip(&self.unknowns) {
-            let (mut product, mut rest) = (0.0, row);
-            for run in &self.runs {
-                let (own, others) = rest.split_at(run.len());
-                product += dot(own, &u[run.clone()]);
-                rest = others;
-            }
-            visit(*i as usize, product);
+    /// M.
+    pub fn mass(&self) -> ReducedMass {
+        ReducedMass {
+            matrices: Arc::clone(&self.data.matrices),
+            unknowns: Arc::clone(&self.unknowns),
         }
+    }
+
+    /// Adds `factor` K u to `f` and returns the strain energy (J).
+    fn add_stiffness_force(&self, factor: f64, u: &[f64], f: &mut [f64]) -> f64 {
+        let mut energy = 0.0;
+        each_product(
+            &self.data.matrices.stiffness,
+            &self.unknowns,
+            u,
+            |i, part| {
+                f[i] += factor * part;
+                energy += 0.5 * part * u[i];
+            },
+        );
+        energy
     }
 
     /// Adds K u to `f` and returns the strain energy (J).
     pub(crate) fn internal_force(&self, u: &[f64], f: &mut [f64]) -> f64 {
-        let mut energy = 0.0;
-        self.each_product(&self.data.stiffness, u, &mut |i, force| {
-            f[i] += force;
-            energy += 0.5 * force * u[i];
-        });
-        energy
+        self.add_stiffness_force(1.0, u, f)
     }
 
     /// Adds the internal forces; see [`Body::force`](crate::Body::force).
@@ -199,14 +251,8 @@ impl Reduced {
         let strain = match at.from {
             None => self.internal_force(at.u, f),
             Some(from) => {
-                let stiffness = &self.data.stiffness;
-                let mut energy = 0.0;
-                self.each_product(stiffness, at.u, &mut |i, force| {
-                    f[i] += 0.5 * force;
-                    energy += 0.5 * force * at.u[i];
-                });
-                self.each_product(stiffness, from, &mut |i, force| f[i] += 0.5 * force);
-                energy
+                self.add_stiffness_force(0.5, from, f);
+                self.add_stiffness_force(0.5, at.u, f)
             }
         };
         Stored {
@@ -217,8 +263,8 @@ impl Reduced {
 
     /// Adds C v to `f`.
     pub(crate) fn add_damping_force(&self, v: &[f64], f: &mut [f64]) {
-        if let Some(damping) = &self.data.damping {
-            self.each_product(damping, v, &mut |i, force| f[i] += force);
+        if let Some(damping) = &self.data.matrices.damping {
+            each_product(damping, &self.unknowns, v, |i, part| f[i] += part);
         }
     }
 
@@ -234,14 +280,16 @@ impl Reduced {
         if !self.unknowns.first().is_some_and(in_part) {
             return;
         }
-        let [stiffness, mass] = [&self.data.stiffness, &self.data.mass];
-        let damping = self.data.damping.as_ref();
-        let n = self.unknowns.len();
+        let ReducedMatrices {
+            stiffness,
+            mass,
+            damping,
+        } = &*self.data.matrices;
         for (a, &i) in self.unknowns.iter().enumerate() {
             for (b, &j) in self.unknowns.iter().enumerate() {
-                let at = a * n + b;
-                let c = damping.map_or(0.0, |damping| damping[at]);
-                let value = factors[0] * stiffness[at] + factors[1] * c + factors[2] * mass[at];
+                let [k, m] = [stiffness, mass].map(|matrix| matrix.get(a, b));
+                let c = damping.as_ref().map_or(0.0, |damping| damping.get(a, b));
+                let value = factors[0] * k + factors[1] * c + factors[2] * m;
                 matrix.add(i as usize - part.start, j as usize - part.start, value);
             }
         }
@@ -280,12 +328,10 @@ impl Reduced {
     /// What Tᵀ M r is beyond M of a unit translation of the retained nodes and its amplitudes, by unknown, kg: zero where the
     /// basis holds the translation.
     pub fn missing(&self, axis: usize) -> Vec<(usize, f64)> {
-        let data = &*self.data;
-        let n = self.unknowns.len();
         let motion = self.rigid(axis);
-        let rows = data.mass.chunks_exact(n).zip(&data.inertia[axis]);
-        let missing = rows
-            .map(|(row, exact)| exact - row.iter().zip(&motion).map(|(m, r)| m * r).sum::<f64>());
+        let mut missing = self.data.inertia[axis].clone();
+        let mass = &self.data.matrices.mass;
+        mass.each_product(|own| motion[own], |own, part| missing[own] -= part);
         let unknowns = self.unknowns.iter().map(|unknown| *unknown as usize);
         unknowns.zip(missing).collect()
     }

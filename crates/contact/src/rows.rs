@@ -152,6 +152,13 @@ impl Rows {
         }
     }
 
+    /// Moves the gaps of the points from `first` on to those of `initial`, whose rows they have, moved by N u.
+    pub fn move_again(&mut self, first: usize, initial: &Rows, u: &[f64]) {
+        for (point, gap) in (first..).zip(&initial.gaps) {
+            self.gaps[point] = gap + self.product(point, u);
+        }
+    }
+
     /// Begins a point of the given gap and normal, which is its resultant as well.
     pub(crate) fn push(&mut self, gap: f64, normal: [f64; 3]) {
         self.begin(self.len(), gap, normal);

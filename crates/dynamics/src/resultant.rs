@@ -34,28 +34,23 @@ impl Resultant {
         let mut sum = Resultant::default();
         let (unknowns, share) = (&system.unknowns, 1.0 / displacements.len() as f64);
         // forces that a model does not have are an empty vector
-        let nodes = if f.is_empty() { 0 } else { system.x.len() };
-        let mut part = 0;
-        for node in 0..nodes {
-            let mut x = system.x[node];
-            let node = node as u32;
-            let translations = unknowns.translations_of(node);
-            if translations.is_empty() {
-                continue;
-            }
-            // nodes follow each other in the order of the parts
-            while system.parts[part].end <= translations.start {
-                part += 1;
-            }
-            let force = unknowns.vector(node, f);
-            let moved = match system.undeformed[part] {
-                true => &[],
-                false => displacements,
+        if f.is_empty() {
+            return sum;
+        }
+        let dim = system.dim;
+        for lever in &system.levers.nodes {
+            let first = lever.first as usize;
+            let vector = |values: &[f64]| {
+                let mut vector = [0.0; 3];
+                vector[..dim].copy_from_slice(&values[first..first + dim]);
+                vector
             };
-            for u in moved {
-                let u = unknowns.vector(node, u);
-                for i in 0..3 {
-                    x[i] += share * u[i];
+            let (mut x, force) = (system.x[lever.node as usize], vector(f));
+            if !lever.undeformed {
+                for u in displacements.iter().map(|u| vector(u)) {
+                    for i in 0..3 {
+                        x[i] += share * u[i];
+                    }
                 }
             }
             for i in 0..3 {
@@ -63,21 +58,20 @@ impl Resultant {
                 sum.linear[i] += force[i];
                 sum.angular[i] += x[j] * force[k] - x[k] * force[j];
             }
-            if !unknowns.rotations_of(node).is_empty() && unknowns.frame(node).is_none() {
-                let moment = unknowns.spin(node, f);
-                for i in 0..3 {
-                    sum.angular[i] += moment[i];
+            if lever.bends {
+                match dim {
+                    2 => sum.angular[2] += f[first + 2],
+                    _ => (0..3).for_each(|i| sum.angular[i] += f[first + dim + i]),
                 }
             }
         }
-        for (unknown, amplitude) in unknowns.amplitudes().filter(|_| !f.is_empty()) {
+        for (unknown, amplitude) in &system.levers.amplitudes {
             for i in 0..3 {
-                sum.linear[i] += amplitude.translation[i] * f[unknown];
-                sum.angular[i] += amplitude.rotation[i] * f[unknown];
+                sum.linear[i] += amplitude.translation[i] * f[*unknown];
+                sum.angular[i] += amplitude.rotation[i] * f[*unknown];
             }
         }
-        let moments = if f.is_empty() { &[][..] } else { frames };
-        for (frame, &node) in moments.iter().zip(unknowns.turning()) {
+        for (frame, &node) in frames.iter().zip(unknowns.turning()) {
             let own = frame.matrix() * Vec3::from(unknowns.spin(node, f));
             let turned = |u: &&[f64]| {
                 let increment = unknowns.spin(node, u).into();

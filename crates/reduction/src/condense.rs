@@ -151,7 +151,8 @@ impl Full {
         let root = total.sqrt();
         let scaled = |mode: &Vec<f64>| mode.iter().map(|x| root * x).collect::<Vec<_>>();
         columns.extend(pairs.vectors.iter().map(scaled));
-        let (stiffness, mass) = (projected(stiffness, &columns), projected(mass, &columns));
+        let (mut stiffness, mut mass) = (projected(stiffness, &columns), projected(mass, &columns));
+        self.uncouple(&mut stiffness, &mut mass);
         let squares = squares(pairs);
         Ok(Condensed {
             estimates: match self.border.is_empty() {
@@ -164,6 +165,20 @@ impl Full {
             mass,
             columns,
         })
+    }
+
+    /// Sets to zero what rounding leaves of Ψᵀ K Φ and beside the diagonals of Φᵀ K Φ and Φᵀ M Φ: static responses need no force on the other
+    /// unknowns, and modes are orthogonal.
+    fn uncouple(&self, stiffness: &mut [f64], mass: &mut [f64]) {
+        let (b, n) = (self.border.len(), stiffness.len().isqrt());
+        for i in 0..n {
+            for j in (0..n).filter(|&j| j != i && i.max(j) >= b) {
+                stiffness[i * n + j] = 0.0;
+                if i.min(j) >= b {
+                    mass[i * n + j] = 0.0;
+                }
+            }
+        }
     }
 
     /// With the flexibility G of the retained unknowns b that the modes Φ leave: u = Φ q + G_b G_bb⁻¹ (u_b - Φ_b q).

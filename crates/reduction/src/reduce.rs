@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use carom_algebra::arrowhead::Arrowhead;
 use carom_algebra::basis::Amplitude;
-use carom_bodies::{BodySpec, MassKind, Reducible, Reduction};
+use carom_bodies::{BodySpec, MassKind, ReducedMatrices, Reducible, Reduction};
 use carom_system::{Damping, Model};
 
 use crate::condense::Condensed;
@@ -118,9 +119,11 @@ fn reduction(
         unknowns: system.unknowns.clone(),
         mesh_node: system.mesh_node.clone(),
         retained,
-        damping: damping(&condensed, keep, total),
-        stiffness: condensed.stiffness,
-        mass: condensed.mass,
+        matrices: Arc::new(ReducedMatrices {
+            damping: damping(&condensed, keep, total).map(|c| Arrowhead::new(count, &c)),
+            stiffness: Arrowhead::new(count, &condensed.stiffness),
+            mass: Arrowhead::new(count, &condensed.mass),
+        }),
         amplitudes,
         inertia,
         translated: [0, 1, 2].map(|axis| mass_of(&full.matrices.mass, &full.translation(axis))),
@@ -178,8 +181,17 @@ impl Full {
         body: usize,
         parts: (&Keep, Vec<u32>, Condensed),
     ) -> Result<(), Error> {
+        let spec = model.bodies[body].spec.clone();
+        let mut reduction = reduction(self, spec, parts)?;
+        // steps that read the matrices of bodies of one kind find them in the cache
+        let others = || model.bodies.iter().filter_map(|body| body.reduced.as_ref());
+        if let Some(equal) = others().find(|other| other.matrices == reduction.matrices) {
+            reduction.matrices = Arc::clone(&equal.matrices);
+        }
+        if let Some(equal) = others().find(|other| other.rows == reduction.rows) {
+            reduction.rows = Arc::clone(&equal.rows);
+        }
         let given = &mut model.bodies[body];
-        let reduction = reduction(self, given.spec.clone(), parts)?;
         given.mass = MassKind::Consistent;
         given.reduced = Some(Arc::new(reduction));
         Ok(())

@@ -13,6 +13,7 @@ use carom_schemes::Scheme;
 use crate::contacts::{numbered, renumbered, sides};
 use crate::error::Error;
 use crate::initial::settle;
+use crate::levers::Levers;
 use crate::mass::Mass;
 use crate::massless::redistribute;
 use crate::modal::NumberedModal;
@@ -193,8 +194,10 @@ impl System {
         let constrained = model.constraints.iter().flat_map(|some| &some.rows);
         // what a constraint holds is on one side
         let inner_terms = inner_terms.chain(constrained.map(Vec::len)).collect();
+        let undeformed = undeformed(&bodies, &part_of_body, parts.len());
         let system = System {
-            undeformed: undeformed(&bodies, &part_of_body, parts.len()),
+            levers: Levers::new(&unknowns, parts.iter().zip(&undeformed)),
+            undeformed,
             part_of_body,
             origin,
             tolerance: 1e-12 * model.length(),

@@ -5,18 +5,21 @@ use std::ops::Range;
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_algebra::unknowns::{Kind, Unknowns};
-use carom_bodies::{Body, MassKind};
+use carom_bodies::{Body, MassKind, ReducedMass};
 
 use crate::cliques::push_cliques;
 use crate::model::ModelBody;
 
-/// Mass of the system: a diagonal, and the consistent part where there is one.
+/// Mass of the system: a diagonal, and the consistent part where there is one. Reduced bodies keep their own, which equal bodies
+/// share.
 #[derive(Debug)]
 pub struct Mass {
     /// Row sums of the lumped bodies, kg, one entry per unknown.
     pub lumped: Vec<f64>,
     /// Consistent mass of the other bodies.
-    pub consistent: Option<Csr>,
+    consistent: Option<Csr>,
+    /// Masses of the reduced bodies, each with its factor.
+    reduced: Vec<(f64, ReducedMass)>,
     /// What of it has no weight: that of fluids around beams.
     weightless: Option<Box<Mass>>,
 }
@@ -35,6 +38,8 @@ struct Parts<'a> {
     kind: &'a dyn Fn(usize) -> MassKind,
     lumped: &'a AddLumped<'a>,
     consistent: &'a AddConsistent<'a>,
+    /// Factor of the mass of a reduced body.
+    reduced: &'a dyn Fn(usize) -> f64,
 }
 
 impl Parts<'_> {
@@ -44,11 +49,16 @@ impl Parts<'_> {
         let mut mass = Mass {
             lumped: vec![0.0; n],
             consistent: None,
+            reduced: Vec::new(),
             weightless: None,
         };
         let mut cliques = Cliques::new();
         let mut consistent = Vec::new();
         for (k, body) in self.bodies.iter().enumerate().filter(|(k, _)| takes(*k)) {
+            if let Body::Reduced(reduced) = body {
+                mass.reduced.push(((self.reduced)(k), reduced.mass()));
+                continue;
+            }
             match (self.kind)(k) {
                 MassKind::Lumped => (self.lumped)(k, &mut mass.lumped),
                 MassKind::Consistent => {
@@ -70,10 +80,16 @@ impl Parts<'_> {
 }
 
 impl Mass {
+    /// Whether it is a diagonal.
+    pub fn is_lumped(&self) -> bool {
+        self.consistent.is_none() && self.reduced.is_empty()
+    }
+
     /// Whether it has a consistent part among these unknowns.
     pub fn couples(&self, unknowns: &Range<usize>) -> bool {
         let of = |matrix: &Csr| unknowns.clone().any(|i| matrix.get(i, i) != 0.0);
-        self.consistent.as_ref().is_some_and(of)
+        let mut reduced = self.reduced.iter();
+        self.consistent.as_ref().is_some_and(of) || reduced.any(|(_, mass)| mass.is_in(unknowns))
     }
 
     /// y = M x.
@@ -81,6 +97,9 @@ impl Mass {
         match &self.consistent {
             Some(matrix) => matrix.multiply(x, y),
             None => y.fill(0.0),
+        }
+        for (factor, mass) in &self.reduced {
+            mass.add_product(*factor, x, y);
         }
         for i in 0..y.len() {
             y[i] += self.lumped[i] * x[i];
@@ -134,6 +153,7 @@ impl Mass {
             kind: &kind,
             lumped: &|k, mass| bodies[k].add_lumped_mass(mass),
             consistent: &|k, n, matrix| bodies[k].assemble([0.0, 0.0, 1.0], &(0..n), matrix),
+            reduced: &|_| 1.0,
         };
         let mut mass = whole.gather(&|_| true);
         let fluid = Parts {
@@ -189,6 +209,7 @@ impl Mass {
             consistent: &|k, n, matrix| {
                 bodies[k].assemble([0.0, 0.0, factors(k)], &(0..n), matrix);
             },
+            reduced: factors,
         };
         Some(parts.gather(&damped))
     }
@@ -197,6 +218,9 @@ impl Mass {
     pub fn add_to(&self, factor: f64, part: &Range<usize>, origin: usize, a: &mut Csr) {
         for (i, m) in part.clone().zip(&self.lumped[part.clone()]) {
             a.add(i - origin, i - origin, factor * m);
+        }
+        for (own, mass) in self.reduced.iter().filter(|(_, mass)| mass.is_in(part)) {
+            mass.each_entry(|i, j, m| a.add(i - origin, j - origin, factor * own * m));
         }
         let Some(mass) = &self.consistent else {
             return;

@@ -347,7 +347,7 @@ impl Model {
 
 fn damped(body: &ModelBody) -> bool {
     let reduced = body.reduced.as_ref();
-    body.modal.is_some() || reduced.is_some_and(|reduced| reduced.damping.is_some())
+    body.modal.is_some() || reduced.is_some_and(|reduced| reduced.matrices.damping.is_some())
 }
 
 fn needs_newton(contact: &ModelContact) -> bool {

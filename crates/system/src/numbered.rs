@@ -100,8 +100,12 @@ impl NumberedNonlinear {
         (number, unknowns): (&[u32], &Unknowns),
         fixed: &[bool],
     ) -> Result<(), Error> {
-        let place = self.amplitudes.len();
-        self.amplitudes.push(amplitude.clone());
+        // many supports follow one record
+        let known = self.amplitudes.iter().position(|known| known == amplitude);
+        let place = known.unwrap_or(self.amplitudes.len());
+        if known.is_none() {
+            self.amplitudes.push(amplitude.clone());
+        }
         let (Kind::Translation(direction) | Kind::Rotation(direction) | Kind::Amplitude(direction)) =
             kind;
         let mut own: Vec<u32> = Vec::new();
@@ -145,11 +149,18 @@ impl NumberedNonlinear {
     /// Displacement at `to` of the unknowns that follow a function of time, m; of rotations the increment from the time
     /// `from` on that Cayley's map makes a turn by the difference of the angles.
     pub fn prescribe(&self, [from, to]: [f64; 2], u: &mut [f64]) {
+        // supports that follow one function mostly follow each other
+        let mut last = None;
         for follows in &self.follows {
             let amplitude = &self.amplitudes[follows.amplitude];
-            u[follows.unknown as usize] = match follows.turns {
-                true => Rotation::increment(amplitude.at(to) - amplitude.at(from)),
-                false => amplitude.at(to),
+            u[follows.unknown as usize] = match (follows.turns, last) {
+                (true, _) => Rotation::increment(amplitude.at(to) - amplitude.at(from)),
+                (false, Some((of, value))) if of == follows.amplitude => value,
+                (false, _) => {
+                    let value = amplitude.at(to);
+                    last = Some((follows.amplitude, value));
+                    value
+                }
             };
         }
     }

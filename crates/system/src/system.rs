@@ -10,6 +10,7 @@ use carom_mesh::{Face, Mesh};
 use carom_schemes::Scheme;
 
 use crate::adaptive::Adaptive;
+use crate::levers::Levers;
 use crate::mass::Mass;
 use crate::modal::NumberedModal;
 use crate::numbered::NumberedNonlinear;
@@ -49,6 +50,8 @@ pub struct System {
     /// Whether moments of the forces on the nodes of each part are about their undeformed places: those of parts whose bodies all
     /// have small displacements, point masses and springs aside. Their internal forces have no moment about these.
     pub undeformed: Vec<bool>,
+    /// What forces act on.
+    pub levers: Levers,
     /// Bodies.
     pub bodies: Vec<Body>,
     /// Whether there are springs: their forces may have a resultant.

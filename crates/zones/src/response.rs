@@ -77,7 +77,7 @@ pub(crate) fn answer<'a>(
     scale: f64,
 ) -> Answer<'a> {
     let span = 0..system.unknowns();
-    let matrix = match stiffness == 0.0 && system.mass.consistent.is_none() {
+    let matrix = match stiffness == 0.0 && system.mass.is_lumped() {
         true => Matrix::Diagonal(system.mass.lumped.iter().map(|m| mass * m).collect()),
         false => Matrix::Sparse(assembled(system, &span, [mass, 0.0], &|_| stiffness)),
     };

@@ -21,11 +21,12 @@ const DEPENDENT: f64 = 1e-12;
 /// Blocks between two looks at what has converged.
 const LOOK: usize = 4;
 
-/// Dimension of the space beyond which what has not converged is left to another space: a number, and a multiple of the pairs.
-const LARGEST: [usize; 2] = [240, 5];
-
-/// Vectors of the largest eigenvalues, orthonormal: at most `count`, fewer where some do not converge.
-pub(super) fn largest(operator: &mut Operator, count: usize) -> Result<Vec<Vec<f64>>, Error> {
+/// Vectors of the largest eigenvalues, orthonormal: at most `count`, fewer where some do not converge in a space of this dimension.
+pub(super) fn largest(
+    operator: &mut Operator,
+    count: usize,
+    dimension: usize,
+) -> Result<Vec<Vec<f64>>, Error> {
     let mut space = Space::default();
     let mut noise = Noise(0x9e37_79b9_7f4a_7c15);
     let start = (0..BLOCK.max(count.min(2 * BLOCK))).map(|_| {
@@ -36,7 +37,7 @@ pub(super) fn largest(operator: &mut Operator, count: usize) -> Result<Vec<Vec<f
     let mut blocks = 0;
     loop {
         let next = space.extend(std::mem::take(&mut block));
-        let full = space.basis.len() >= LARGEST[0].max(LARGEST[1] * count);
+        let full = space.basis.len() >= dimension;
         if blocks % LOOK == LOOK - 1 || next == 0 || full {
             let found = space.converged(count, operator)?;
             if found.len() == count || next == 0 || full {

@@ -35,8 +35,12 @@ const GAP: f64 = 1e-5;
 /// Part of the largest eigenvalue below which pairs are refined.
 const LOW: f64 = 1e-4;
 
-/// Searches for what is missing.
+/// Searches for what the count tells to be missing.
 const SEARCHES: usize = 6;
+
+/// Dimension of the space of a search: a number, and a multiple of all pairs sought, however few are missing. Those that are missing lie
+/// closest together.
+const SPACE: [usize; 2] = [240, 5];
 
 /// Eigenvalues and vectors.
 type Pairs = (Vec<f64>, Vec<Vec<f64>>);
@@ -121,10 +125,10 @@ impl<'a> Search<'a> {
         }
         self.find(sought.saturating_sub(self.vectors.len()))?;
         let mut counted = self.counted(count)?;
-        for _ in 0..SEARCHES {
-            if self.vectors.len() >= count && counted.exist <= counted.found {
-                break;
-            }
+        let mut searches = 0;
+        // each search finds some, or is the last
+        while self.vectors.len() < count || counted.exist > counted.found && searches < SEARCHES {
+            searches += 1;
             let missing = counted.exist.saturating_sub(counted.found);
             let short = sought.saturating_sub(self.vectors.len());
             if self.find(missing.max(short).max(1))? == 0 {
@@ -197,7 +201,8 @@ impl<'a> Search<'a> {
         if count == 0 {
             return Ok(0);
         }
-        let found = lanczos::largest(&mut self.operator, count)?;
+        let space = SPACE[0].max(SPACE[1] * (self.vectors.len() + count));
+        let found = lanczos::largest(&mut self.operator, count, space)?;
         let number = found.len();
         for y in found {
             self.vectors.push(self.operator.backward(&y));

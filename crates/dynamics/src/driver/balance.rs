@@ -10,6 +10,7 @@ use std::sync::Arc;
 use carom_contact::law::Level;
 
 use super::identity::{End, energies};
+use super::scratch::Works;
 use super::{Driver, Which};
 use crate::error::Error;
 use crate::ledger::{Beyond, Energies, Squares, Tolerated};
@@ -224,7 +225,8 @@ impl Driver {
         let obstacles = self.obstacle_work(&of_contact);
         let own_before = self.own_energy_at_the_start(&identity);
         let own_after = self.own_energies(End::Finish, &identity, self.stored.strain);
-        let springs = self.balanced_springs();
+        let mut works = std::mem::take(&mut self.works);
+        self.balanced_springs(&mut works.springs);
         let factor = self.contact_factor();
         let counted = self.identity.is_some().then(|| self.work_weights());
         let (old, new) = (&self.state.motion, &self.next.motion);
@@ -238,80 +240,61 @@ impl Driver {
             lagged,
             ..energies(&system, new, of, &mut vectors.work).of_zones(&self.maps, &system, new)
         };
-        let contact: Vec<f64> = vectors.contact.iter().map(|f| factor * f).collect();
         if pushes {
             for (f, c) in vectors.inertia.iter_mut().zip(&vectors.contact) {
                 *f -= maps.contact() * c;
             }
         }
-        let link: Vec<f64> = match self.link_force.is_empty() {
-            true => vec![0.0; system.unknowns()],
-            false => self.link_force.clone(),
-        };
-        // supports hold what the balance leaves at their unknowns
-        let fixed = |i: usize| system.fixed[i];
-        let own: Vec<f64> = (0..system.unknowns())
-            .map(|i| match (fixed(i), pushes) {
-                (false, _) => 0.0,
-                (true, true) => {
-                    // held nodes have no push
-                    vectors.inertia[i]
-                        + maps.contact() * vectors.contact[i]
-                        + vectors.balanced[i]
-                        + vectors.damping[i]
-                        - vectors.load[i]
-                        - link[i]
-                }
-                (true, false) => {
-                    vectors.inertia[i] + vectors.balanced[i] + vectors.damping[i]
-                        - vectors.load[i]
-                        - link[i]
-                }
-            })
-            .collect();
-        let held: Vec<f64> = (0..system.unknowns())
-            .map(|i| if fixed(i) { -contact[i] } else { 0.0 })
-            .collect();
-        let reaction: Vec<f64> = match pushes {
-            true => own.clone(),
-            false => own
-                .iter()
-                .zip(&held)
-                .map(|(own, held)| own + held)
-                .collect(),
-        };
+        let link = &self.link_force[..];
+        works.hold(
+            &system,
+            vectors,
+            (link, factor, pushes.then(|| maps.contact())),
+        );
+        let Works {
+            contact,
+            own,
+            held,
+            reaction,
+            springs,
+            mean,
+        } = &mut works;
         let now = [
-            &vectors.load,
-            &contact,
-            &reaction,
+            &vectors.load[..],
+            contact,
+            reaction,
             &vectors.inertia,
             &vectors.balanced,
             &vectors.damping,
-            &link,
-            &springs,
+            link,
+            springs,
         ];
         let before = &self.state.forces;
-        let mean = |k: usize, now: &[f64]| -> Vec<f64> {
-            let weights = if k == 1 { &of_contact } else { &weights };
-            let from_start = weights.iter().any(|of| of[0] != 0.0);
-            match before.get(k).filter(|f| from_start && !f.is_empty()) {
-                Some(f) => {
-                    let weighted = |(span, zone): &(Range<usize>, usize)| {
-                        let [old, new] = weights[*zone];
-                        span.clone().map(move |i| old * f[i] + new * now[i])
-                    };
-                    zones.iter().flat_map(weighted).collect()
-                }
-                None => now.to_vec(),
-            }
-        };
         let way = |f: &[f64]| -> f64 { (0..f.len()).map(|i| f[i] * (new.u[i] - old.u[i])).sum() };
-        let means = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| mean(k, now[k]));
-        let [load, touch, support, mut inertia, internal, damping] =
-            [0, 1, 2, 3, 4, 5].map(|k| way(&means[k]));
+        let places = (&old.frames[..], &[&old.u[..], &new.u[..]][..]);
+        let (mut of_way, mut resultants) = ([0.0; 8], [Resultant::default(); 8]);
+        for (k, now) in now.into_iter().enumerate() {
+            let weights = if k == 1 { &of_contact } else { &weights };
+            let before = before.get(k).map_or(&[][..], |f| &f[..]);
+            let force = mean_force([before, now], (weights, zones), mean);
+            of_way[k] = way(force);
+            if !matches!(k, 3 | 4) {
+                resultants[k] = Resultant::at(&system, places, force);
+            }
+        }
+        let [
+            load,
+            touch,
+            support,
+            mut inertia,
+            internal,
+            damping,
+            links,
+            _,
+        ] = of_way;
         if pushes {
             // the inertia of the push is the force that gives it
-            inertia += touch + way(&held);
+            inertia += touch + way(held);
         }
         let start = &self.state.ledger.balance;
         // what supports that jump give is no inertia of the step
@@ -340,24 +323,26 @@ impl Driver {
             energy: self.left_over * travel.sum::<f64>().sqrt(),
             momentum: self.left_over * nodes.sqrt() * self.dt,
         };
-        let places = (&old.frames[..], &[&old.u[..], &new.u[..]][..]);
+        let [loads, contacts, reactions, _, _, damped, linked, sprung] = resultants;
         let forces = [
-            Resultant::at(&system, places, &means[0]),
-            Resultant::at(&system, places, &means[1]),
-            Resultant::at(&system, places, &means[2])
-                .plus(&Resultant::at(&system, places, &means[7]).reversed()),
+            loads,
+            contacts,
+            reactions.plus(&sprung.reversed()),
             match pushes {
-                true => Resultant::at(&system, places, &held),
+                true => Resultant::at(&system, places, held),
                 false => Resultant::default(),
             },
-            Resultant::at(&system, places, &means[6])
-                .plus(&Resultant::at(&system, places, &means[5]).reversed()),
+            linked.plus(&damped.reversed()),
         ];
         let go_on = weights.iter().any(|of| of[0] != 0.0) || maps.is_static();
-        self.next.forces = match go_on {
-            true => now.iter().map(|f| f.to_vec()).collect(),
-            false => Vec::new(),
-        };
+        match go_on {
+            true => self.next.forces.resize_with(now.len(), Vec::new),
+            false => self.next.forces.clear(),
+        }
+        for (kept, force) in self.next.forces.iter_mut().zip(now) {
+            kept.clear();
+            kept.extend_from_slice(force);
+        }
         if !maps.is_static() {
             let exchange = &mut self.next.exchange;
             exchange.follow(&self.state.exchange);
@@ -365,8 +350,9 @@ impl Driver {
                 exchange.jump(&system, impulses);
             }
             let spring = |i: usize| springs.get(i).unwrap_or(&0.0);
+            let linked = |i: usize| link.get(i).unwrap_or(&0.0);
             let own =
-                |i: usize| vectors.load[i] + own[i] + link[i] - vectors.damping[i] - spring(i);
+                |i: usize| vectors.load[i] + own[i] + linked(i) - vectors.damping[i] - spring(i);
             let dt = self.dt;
             exchange.add(&system, (0, dt, |i| maps.of(i).impulse), own);
             exchange.add(&system, (1, dt, |i| maps.of(i).contact_impulse), |i| {
@@ -403,13 +389,14 @@ impl Driver {
         self.next.ledger.add(
             (dt, &identity, impulses),
             &energies,
-            [load, work_contact - friction - obstacles, way(&means[6])],
+            [load, work_contact - friction - obstacles, links],
             &squares,
             forces,
         );
         if maps.is_static() {
             self.next.ledger.end_static_step();
         }
+        self.works = works;
     }
 
     /// The term of the scheme in the energy of the ledger, at the start of the step, J.
@@ -433,4 +420,23 @@ impl Driver {
         self.system.mass.multiply(&motion.a, work);
         carom_algebra::reduce::dot(&motion.a, work)
     }
+}
+
+/// Mean of a force over the step with the weights of each zone, N: the force of the step where that at the start has no weight or is not known.
+fn mean_force<'a>(
+    [before, now]: [&'a [f64]; 2],
+    (weights, zones): (&[[f64; 2]], &[(Range<usize>, usize)]),
+    mean: &'a mut Vec<f64>,
+) -> &'a [f64] {
+    let from_start = weights.iter().any(|of| of[0] != 0.0);
+    if !from_start || before.len() != now.len() {
+        return now;
+    }
+    mean.clear();
+    for (span, zone) in zones.iter().filter(|_| !now.is_empty()) {
+        let [old, new] = weights[*zone];
+        let forces = before[span.clone()].iter().zip(&now[span.clone()]);
+        mean.extend(forces.map(|(before, now)| old * before + new * now));
+    }
+    mean
 }

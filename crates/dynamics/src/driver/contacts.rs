@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use carom_contact::Balance;
 use carom_contact::law::{End, Level, Local, Status};
+use carom_contact::{Balance, Contact, Sliding};
 
 use super::paired::{Paired, append, instant, looks_ahead, part_way, told};
 use super::{Driver, Vectors};
@@ -34,8 +34,11 @@ impl Driver {
             self.maps
                 .whole(|map| map.displacement, &self.state.motion, [x, push], end);
         }
-        self.pairing.clear();
         let predicts = !self.vectors.ahead.is_empty();
+        let stand = self.rows_stand && !predicts;
+        if !stand {
+            self.pairing.clear();
+        }
         let mut placed = None;
         for (k, contact) in system.contacts.iter().enumerate() {
             let paired = self.paired_at(k);
@@ -58,6 +61,12 @@ impl Driver {
                     .whole(|map| paired.row(map), motion, [x, push], place),
             }
             placed = configuration;
+            if stand {
+                let (first, place) = (system.first_point[k], &self.vectors.place);
+                let initial = &self.initial[k].rows;
+                self.pairing.rows.move_again(first, initial, place);
+                continue;
+            }
             self.pairing.span = self.span(k);
             let first = self.pairing.len();
             self.append(k, self.state.time + self.paired_after(k));
@@ -65,6 +74,8 @@ impl Driver {
                 self.move_gaps(first, paired);
             }
         }
+        let stands = |contact: &Contact| contact.sliding == Sliding::Small && !contact.moves();
+        self.rows_stand = !turns && !predicts && system.contacts.iter().all(stands);
         self.stack();
     }
 
@@ -296,6 +307,7 @@ impl Driver {
 
     /// Pairs all contacts as the state has them.
     pub(super) fn pair_now(&mut self) {
+        self.rows_stand = false;
         self.pairing.clear();
         self.pairing.span = [0.0; 2];
         self.vectors.end.clear();

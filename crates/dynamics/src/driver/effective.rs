@@ -14,6 +14,7 @@ use carom_contact::Pairing;
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
 use super::part_matrix::part_matrix;
+use crate::columns::HeldColumns;
 use crate::compliance::Compliance;
 use crate::costs::Work;
 use crate::error::Error;
@@ -61,8 +62,8 @@ pub(super) struct Matrices {
     pub(super) linking: Option<Linking>,
     /// Whether links join parts that the iterations make anew.
     pub(super) links_iterate: bool,
-    /// The matrices of linear parts with the rows and columns of held unknowns, where supports move, by group.
-    pub(super) held: Vec<Option<Csr>>,
+    /// The columns of held unknowns in the matrices of linear parts where supports move.
+    pub(super) held: HeldColumns,
     /// Those of the other parts together, with the rows and columns of held unknowns.
     pub(super) matrix: Option<Csr>,
     /// Unknowns of the contact points whose curvature the pattern has room for, by group, one after the other.
@@ -206,11 +207,7 @@ impl Effective {
         if let Some(matrix) = &now.matrix {
             matrix.multiply(x, y);
         }
-        for (group, matrix) in now.operators.groups.iter().zip(&now.held) {
-            if let ([part], Some(matrix)) = (&group.parts[..], matrix) {
-                matrix.multiply(&x[part.clone()], &mut y[part.clone()]);
-            }
-        }
+        now.held.add_product(x, y);
     }
 
     /// The factors, and the compliance that goes with them; none before all are made.
@@ -306,13 +303,13 @@ impl Matrices {
         let coupled = vec![Vec::new(); others.len()];
         let mut operators = Operators::of(&system.parts, [linear, others].concat());
         let mut diagonal = vec![0.0; system.unknowns()];
-        let mut held = Vec::new();
+        let mut held = HeldColumns::default();
         for group in &mut operators.groups[..first] {
             let part = group.parts[0].clone();
             let map = maps.of(part.start);
-            let (operator, matrix) = linear_part(system, &part, map, between, &mut diagonal)?;
+            let of = (map, between);
+            let operator = linear_part(system, &part, of, (&mut diagonal, &mut held))?;
             group.operator = Some(operator);
-            held.push(matrix);
         }
         let mut compliance = Compliance::new(
             system.points() * (1 + system.tangents()),
@@ -354,20 +351,19 @@ impl Matrices {
     }
 }
 
-/// The factor of the matrix of a linear part, and the matrix itself where supports of the part move; adds its diagonal.
+/// The factor of the matrix of a linear part; adds its diagonal, and where supports of the part move its columns of held unknowns.
 fn linear_part(
     system: &System,
     part: &Range<usize>,
-    map: &StepMap,
-    between: bool,
-    diagonal: &mut [f64],
-) -> Result<(Operator, Option<Csr>), Error> {
+    (map, between): (&StepMap, bool),
+    (diagonal, held): (&mut [f64], &mut HeldColumns),
+) -> Result<Operator, Error> {
     let fixed = &system.fixed[part.clone()];
     let Some(a) = part_matrix(system, part, map, between) else {
         let lumped = &system.mass.lumped[part.clone()];
         let masses: Vec<f64> = lumped.iter().map(|m| map.inertia.x * m).collect();
         diagonal[part.clone()].copy_from_slice(&masses);
-        return Ok((Operator::diagonal(&masses, fixed), None));
+        return Ok(Operator::diagonal(&masses, fixed));
     };
     for (place, entry) in diagonal[part.clone()].iter_mut().enumerate() {
         *entry = a.get(place, place);
@@ -383,8 +379,10 @@ fn linear_part(
             cause,
         })?;
     let follows = &system.nonlinear.follows;
-    let moved = follows.iter().any(|f| part.contains(&(f.unknown as usize)));
-    Ok((operator, moved.then_some(a)))
+    if follows.iter().any(|f| part.contains(&(f.unknown as usize))) {
+        held.append(&a, fixed, part.start);
+    }
+    Ok(operator)
 }
 
 /// The columns of the damping of modes in the matrix of a part, times the root of this factor of the damping.

@@ -58,7 +58,7 @@ impl Direct {
             && (0..unknowns.nodes()).all(|node| unknowns.first(node as u32) == dim * node)
             && (0..unknowns.len()).all(moves);
         let solids = system.bodies.iter().all(|body| body.as_solid().is_some());
-        let mass = system.mass.consistent.is_none() && system.massless.is_empty();
+        let mass = system.mass.is_lumped() && system.massless.is_empty();
         let free = system.nonlinear.follows.is_empty()
             && system.link_rows.is_empty()
             && !system.has_damping()

@@ -85,7 +85,7 @@ use leapfrog::Direct;
 use linking::Multipliers;
 use mixing::Mixing;
 use paired::Manner;
-use scratch::{Pace, Predictor, Projected, Restoring, Vectors};
+use scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use supports::Jump;
 use weak::{WeakForms, WithWeak};
 
@@ -126,6 +126,8 @@ pub struct Driver {
     /// Those of groups of candidates that do not act on each other, where there are several.
     interfaces: Vec<Interface>,
     pairing: Pairing,
+    /// Whether its rows are those of the reference places, so that its gaps alone move.
+    rows_stand: bool,
     /// Contacts with small sliding where all nodes are at their reference places; empty until they are paired.
     initial: Vec<Pairing>,
     search: Vec<Search>,
@@ -157,6 +159,7 @@ pub struct Driver {
     next: State,
     report: StepReport,
     vectors: Vectors,
+    works: Works,
     /// Energies of the iteration.
     stored: Stored,
     /// Forces of links in the step, N; empty without links.

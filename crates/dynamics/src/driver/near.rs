@@ -38,6 +38,7 @@ impl Driver {
         let system = Arc::clone(&self.system);
         let width = 1 + system.tangents();
         let mut pairing = std::mem::take(&mut self.pairing);
+        self.rows_stand = false;
         let begins = self.active.begins();
         if begins {
             pairing.open_all(&system.contacts, system.dim);

@@ -52,13 +52,12 @@ impl Driver {
     pub(super) fn enter_jump(&mut self, mut jump: Jump) {
         let system = Arc::clone(&self.system);
         let identity = self.identity_of_ledger();
-        let springs = match system.is_nonlinear() && system.has_springs {
-            true => {
-                self.vectors.place.copy_from_slice(&self.next.motion.u);
-                self.springs_at_place(false)
-            }
-            false => Vec::new(),
-        };
+        let mut springs = std::mem::take(&mut self.works.springs);
+        springs.clear();
+        if system.is_nonlinear() && system.has_springs {
+            self.vectors.place.copy_from_slice(&self.next.motion.u);
+            self.springs_at_place(false, &mut springs);
+        }
         let (nonlinear, factor) = (system.is_nonlinear(), self.contact_factor());
         let (old, new) = (&self.state.motion, &self.next.motion);
         let Vectors {
@@ -103,6 +102,7 @@ impl Driver {
             for (reaction, spring) in work.iter_mut().zip(&springs) {
                 *reaction -= spring;
             }
+            self.works.springs = springs;
         } else {
             reactions(&system, self.maps.first(), old, new, inertia, work);
             self.take_linear_springs();

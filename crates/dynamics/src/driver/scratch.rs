@@ -1,5 +1,7 @@
 //! What stages of a step leave for the stages after them: scratch, which no step needs from the one before.
 
+use crate::system::System;
+
 /// System vectors of the iterations.
 #[derive(Default)]
 pub(super) struct Vectors {
@@ -37,6 +39,59 @@ pub(super) struct Vectors {
     pub(super) work: Vec<f64>,
     /// Histories of the bodies at the end of the attempt.
     pub(super) history: Vec<f64>,
+}
+
+/// Forces in the balance of a step by works, N.
+#[derive(Default)]
+pub(super) struct Works {
+    /// Of contacts as the ledger counts them.
+    pub(super) contact: Vec<f64>,
+    /// What the balance leaves to supports, with what contact forces give by themselves in the inertia where they push.
+    pub(super) own: Vec<f64>,
+    /// What supports hold of contact forces.
+    pub(super) held: Vec<f64>,
+    /// Of supports.
+    pub(super) reaction: Vec<f64>,
+    /// Of springs; empty without any.
+    pub(super) springs: Vec<f64>,
+    /// Mean of one force over the step.
+    pub(super) mean: Vec<f64>,
+}
+
+impl Works {
+    /// Sets all but springs and mean. `link`: forces of links, N, empty without any; `factor`: of the contact forces; `push`: the factor of
+    /// contact forces that push by themselves.
+    pub(super) fn hold(
+        &mut self,
+        system: &System,
+        vectors: &Vectors,
+        (link, factor, push): (&[f64], f64, Option<f64>),
+    ) {
+        let n = system.unknowns();
+        for force in [
+            &mut self.contact,
+            &mut self.own,
+            &mut self.held,
+            &mut self.reaction,
+        ] {
+            force.resize(n, 0.0);
+        }
+        for i in 0..n {
+            self.contact[i] = factor * vectors.contact[i];
+            if !system.fixed[i] {
+                continue;
+            }
+            let inside = vectors.inertia[i] + vectors.balanced[i] + vectors.damping[i];
+            // held nodes have no push
+            let pushed = push.map_or(0.0, |factor| factor * vectors.contact[i]);
+            self.own[i] = inside + pushed - vectors.load[i] - link.get(i).unwrap_or(&0.0);
+            self.held[i] = -self.contact[i];
+            self.reaction[i] = match push {
+                Some(_) => self.own[i],
+                None => self.own[i] + self.held[i],
+            };
+        }
+    }
 }
 
 /// How fast the iterations go.

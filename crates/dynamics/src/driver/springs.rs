@@ -6,23 +6,24 @@ use carom_bodies::Placement;
 use super::Driver;
 
 impl Driver {
-    /// Forces of springs in the balance of the step, N; empty without springs.
-    pub(super) fn balanced_springs(&mut self) -> Vec<f64> {
+    /// Writes the forces of springs in the balance of the step, N; none without springs.
+    pub(super) fn balanced_springs(&mut self, forces: &mut Vec<f64>) {
         let super::Vectors { x, push, place, .. } = &mut self.vectors;
         if self.system.has_springs {
             self.maps
                 .whole(|map| map.force, &self.state.motion, [x, push], place);
         }
-        self.springs_at_place(self.between())
+        self.springs_at_place(self.between(), forces);
     }
 
-    /// Forces of springs at the displacement in `place`, or between that of the state and this one, N; empty without springs.
-    pub(super) fn springs_at_place(&mut self, between: bool) -> Vec<f64> {
+    /// Writes the forces of springs at the displacement in `place`, or between that of the state and this one, N; none without springs.
+    pub(super) fn springs_at_place(&self, between: bool, forces: &mut Vec<f64>) {
         let system = &*self.system;
+        forces.clear();
         if !system.has_springs {
-            return Vec::new();
+            return;
         }
-        let mut forces = vec![0.0; system.unknowns()];
+        forces.resize(system.unknowns(), 0.0);
         let at = Placement {
             u: &self.vectors.place,
             v: &self.vectors.rate,
@@ -32,9 +33,8 @@ impl Driver {
             old: &[],
         };
         for body in &system.bodies {
-            body.add_unbalanced_force(&at, &mut forces);
+            body.add_unbalanced_force(&at, forces);
         }
-        forces
     }
 
     /// Takes from `work` the forces of linear springs in the balance of the step.

@@ -15,7 +15,7 @@ use super::leapfrog::Direct;
 use super::linking::Multipliers;
 use super::mixing::Mixing;
 use super::paired::sums_compliances;
-use super::scratch::{Pace, Predictor, Projected, Restoring, Vectors};
+use super::scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use super::supports::Jump;
 use super::weak::{WeakForms, WithWeak};
 use super::{Driver, Which};
@@ -129,6 +129,8 @@ impl Driver {
                 work: zeros(),
                 history: state.motion.history.clone(),
             },
+            works: Works::default(),
+            rows_stand: false,
             next: state.clone(),
             state,
             stored: Stored::default(),
@@ -299,7 +301,8 @@ impl Driver {
     fn start_works(&mut self, strain: f64, hardening: f64) {
         let system = Arc::clone(&self.system);
         // where the forces of the start were evaluated
-        let springs = self.springs_at_place(false);
+        let mut springs = Vec::new();
+        self.springs_at_place(false, &mut springs);
         self.forces_at_the_start(springs);
         self.start_exchange();
         let identity = self.identity_of_ledger();

@@ -7,8 +7,9 @@
 //! `M_ff Δv_f = -M_fh Δv_h`, with the impulse `J = M Δv` of the supports (zero on f) and its work `J · (v + ½ Δv)`, which is
 //! the change of the kinetic energy.
 
+use crate::columns::HeldColumns;
 use crate::error::Error;
-use crate::operator::Operators;
+use crate::operator::{Operators, assembled};
 use crate::resultant::Resultant;
 use crate::system::{Motion, System};
 
@@ -24,11 +25,32 @@ pub(super) struct Jump {
     pub(super) work: f64,
     /// Velocity at the start: before the jump while an attempt is under way, after it otherwise.
     velocity: Vec<f64>,
-    /// Factor of the mass; none where it is diagonal, or before the first jump.
-    mass: Option<Operators>,
+    /// Factor of the mass, and its columns of held unknowns; none where it is diagonal, or before the first jump.
+    mass: Option<(Operators, HeldColumns)>,
     change: Vec<f64>,
     momentum: Vec<f64>,
+    /// Scratch of the solve.
+    half: Vec<f64>,
+    carried: Vec<f64>,
     jumps: bool,
+}
+
+/// The columns of the mass at held unknowns.
+fn held_columns(system: &System) -> HeldColumns {
+    let mut columns = HeldColumns::default();
+    for part in &system.parts {
+        let fixed = &system.fixed[part.clone()];
+        match system.mass.couples(part) {
+            true => {
+                let mass = assembled(system, part, [1.0, 0.0], &|_| 0.0);
+                columns.append(&mass, fixed, part.start);
+            }
+            false => {
+                columns.append_diagonal(&system.mass.lumped[part.clone()], fixed, part.start);
+            }
+        }
+    }
+    columns
 }
 
 impl Jump {
@@ -39,28 +61,33 @@ impl Jump {
 
     /// Completes the change of the velocity by that of the free unknowns, and finds the impulse.
     fn carry_along(&mut self, system: &System) -> Result<(), Error> {
-        system.mass.multiply(&self.change, &mut self.momentum);
-        if system.mass.consistent.is_none() {
+        if system.mass.is_lumped() {
+            system.mass.multiply(&self.change, &mut self.momentum);
             return Ok(());
         }
-        let mut mass = match self.mass.take() {
+        let (factor, columns) = match &mut self.mass {
             Some(mass) => mass,
-            None => Operators::new(system, 1.0, 0.0, "mass matrix")?,
+            empty => empty.insert((
+                Operators::new(system, 1.0, 0.0, "mass matrix")?,
+                held_columns(system),
+            )),
         };
+        self.momentum.fill(0.0);
+        columns.add_product(&self.change, &mut self.momentum);
         for (p, fixed) in self.momentum.iter_mut().zip(&system.fixed) {
             *p = if *fixed { 0.0 } else { -*p };
         }
-        let mut half = vec![0.0; self.momentum.len()];
-        let mut carried = vec![0.0; self.momentum.len()];
-        mass.begin(&self.momentum, &mut half);
-        mass.end(&mut half, &mut carried);
-        self.mass = Some(mass);
+        let (half, carried) = (&mut self.half, &mut self.carried);
+        half.resize(self.momentum.len(), 0.0);
+        carried.resize(self.momentum.len(), 0.0);
+        factor.begin(&self.momentum, half);
+        factor.end(half, carried);
         for (i, change) in self.change.iter_mut().enumerate() {
             if !system.fixed[i] {
                 *change = carried[i];
             }
         }
-        system.mass.multiply(&self.change, &mut self.momentum);
+        columns.product_at_held(&self.change, &mut self.momentum);
         Ok(())
     }
 

@@ -1,0 +1,52 @@
+//! Where nodal forces act: what their resultant and their moment about the origin need of a node.
+
+use std::ops::Range;
+
+use carom_algebra::basis::Amplitude;
+use carom_algebra::unknowns::Unknowns;
+
+/// A node with unknowns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lever {
+    /// Its number.
+    pub node: u32,
+    /// Its first unknown: translations come before rotations.
+    pub first: u32,
+    /// Whether it has rotations about the axes of coordinates.
+    pub bends: bool,
+    /// Whether moments are about its undeformed place ([`System::undeformed`](crate::System::undeformed)).
+    pub undeformed: bool,
+}
+
+/// All that forces act on.
+#[derive(Debug)]
+pub struct Levers {
+    /// The nodes with translations, ascending.
+    pub nodes: Vec<Lever>,
+    /// The amplitudes, each with its unknown.
+    pub amplitudes: Vec<(usize, Amplitude)>,
+}
+
+impl Levers {
+    /// `parts`: unknowns of each part, and whether it is undeformed.
+    pub(crate) fn new<'a>(
+        unknowns: &Unknowns,
+        parts: impl Iterator<Item = (&'a Range<usize>, &'a bool)>,
+    ) -> Levers {
+        let of_part = |(part, undeformed): (&'a Range<usize>, &'a bool)| {
+            let [first, last] = [part.start, part.end - 1].map(|unknown| unknowns.node(unknown));
+            let nodes = (first..=last).filter(|node| !unknowns.translations_of(*node).is_empty());
+            nodes.map(move |node| Lever {
+                node,
+                first: unknowns.first(node) as u32,
+                bends: !unknowns.rotations_of(node).is_empty() && unknowns.frame(node).is_none(),
+                undeformed: *undeformed,
+            })
+        };
+        let amplitudes = unknowns.amplitudes();
+        Levers {
+            nodes: parts.flat_map(of_part).collect(),
+            amplitudes: amplitudes.map(|(unknown, of)| (unknown, *of)).collect(),
+        }
+    }
+}
