@@ -276,7 +276,7 @@ impl Driver {
         for (k, now) in now.into_iter().enumerate() {
             let weights = if k == 1 { &of_contact } else { &weights };
             let before = before.get(k).map_or(&[][..], |f| &f[..]);
-            let force = mean_force([before, now], (weights, zones), mean);
+            let force = mean_force([before, now], weights, zones, mean);
             of_way[k] = way(force);
             if !matches!(k, 3 | 4) {
                 resultants[k] = Resultant::at(&system, places, force);
@@ -425,7 +425,8 @@ impl Driver {
 /// Mean of a force over the step with the weights of each zone, N: the force of the step where that at the start has no weight or is not known.
 fn mean_force<'a>(
     [before, now]: [&'a [f64]; 2],
-    (weights, zones): (&[[f64; 2]], &[(Range<usize>, usize)]),
+    weights: &[[f64; 2]],
+    zones: &[(Range<usize>, usize)],
     mean: &'a mut Vec<f64>,
 ) -> &'a [f64] {
     let from_start = weights.iter().any(|of| of[0] != 0.0);
