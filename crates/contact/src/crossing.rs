@@ -6,6 +6,7 @@
 
 use carom_mesh::{Face, Projection};
 
+use crate::search::faces::FaceTree;
 use crate::search::{Search, foot_on};
 use crate::sight::View;
 use crate::{Places, Point};
@@ -32,7 +33,7 @@ impl Search {
         (point, view): (&Point, Option<View>),
     ) -> Option<Opposite<'a>> {
         if point.crosses() {
-            return self.crossed(places, faces, point);
+            return self.faces.crossed(places, faces, point);
         }
         let (foot, face) = self.facing(places, faces, view, &point.place(places))?;
         Some(Opposite {
@@ -41,9 +42,11 @@ impl Search {
             face,
         })
     }
+}
 
+impl FaceTree {
     /// The place between the nodes of a point that is nearest to an axis.
-    fn crossed<'a>(
+    pub(crate) fn crossed<'a>(
         &self,
         places: &Places,
         faces: &'a [Face],

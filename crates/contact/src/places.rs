@@ -44,7 +44,20 @@ pub struct Places<'a> {
 
 impl Places<'_> {
     /// Current position of a node in m.
+    #[inline]
     pub fn of(&self, node: u32) -> [f64; 3] {
+        // nearly all nodes have three translations of their own
+        let own = self.unknowns.translations_of(node);
+        match (self.u.get(own), self.unknowns.carrier(node)) {
+            (Some(&[u, v, w]), None) => {
+                let x = self.x[node as usize];
+                [x[0] + u, x[1] + v, x[2] + w]
+            }
+            _ => self.of_any(node),
+        }
+    }
+
+    fn of_any(&self, node: u32) -> [f64; 3] {
         let own = self.unknowns.moved_by(node);
         let mut place = self.x[own as usize];
         for (x, u) in place

@@ -7,7 +7,7 @@
 use crate::Places;
 
 /// Points whose instants are looked at together.
-const BLOCK: usize = 64;
+pub(crate) const BLOCK: usize = 64;
 
 /// Part of a distance that counts as rounding.
 const ROUNDING: f64 = 1e-9;

@@ -212,68 +212,69 @@ impl View<'_> {
     pub(crate) fn shows(&self, item: u32, foot: &Projection, normals: &[[f64; 3]]) -> bool {
         foot.gap >= -self.sight.depth[self.point]
             && self.opposes(foot, normals)
-            && self
-                .sight
-                .beside
-                .of(self.point)
-                .binary_search(&item)
-                .is_err()
+            && !self.is_beside(item)
     }
 
-    /// Takes the normals of the faces around the viewer among those of all.
-    pub(crate) fn see(&self, places: &Places, normals: &mut Vec<[f64; 3]>) {
+    /// Takes the normals of the faces around the viewer among those of all, unless they are of this configuration: `seen` tells
+    /// in which one each was taken, and which one is `now`.
+    pub(crate) fn see(
+        &self,
+        places: &Places,
+        normals: &mut Vec<[f64; 3]>,
+        (seen, now): (&mut Vec<u32>, u32),
+    ) {
         normals.resize(self.sight.faces.len(), [0.0; 3]);
+        seen.resize(normals.len(), 0);
         for &k in self.sight.around.of(self.point) {
-            normals[k as usize] = normal(&self.sight.faces[k as usize], places);
+            let k = k as usize;
+            if seen[k] != now {
+                seen[k] = now;
+                normals[k] = normal(&self.sight.faces[k], places);
+            }
         }
     }
 
-    /// The most that nodes may move, m, before a face that is out of view may come into it; zero of one that may be in view.
-    /// Normals as in [`View::shows`].
+    /// The most that nodes may move, m, before a face that is out of view, wherever the foot on it is, may come into it; zero of one
+    /// that may be in view. Normals as in [`View::shows`].
     pub(crate) fn hidden(
         &self,
         (item, face): (u32, &Face),
-        foot: &Projection,
         places: &Places,
         normals: &[[f64; 3]],
     ) -> f64 {
-        if self
-            .sight
-            .beside
-            .of(self.point)
-            .binary_search(&item)
-            .is_ok()
-        {
+        if self.is_beside(item) {
             return f64::INFINITY;
         }
         let around = self.sight.around.of(self.point).iter();
         let around = around.map(|&k| (&self.sight.faces[k as usize], &normals[k as usize]));
-        turned::until_opposed((face, foot), around, (OPPOSED, places)).max(turned::until_behind(
-            (face, foot),
-            self.sight.depth[self.point],
-            places,
-        ))
+        turned::until_opposed(face, around, (OPPOSED, places))
     }
 
-    /// Whether a face is out of view wherever the foot on it is: beside the viewer, or with normals that make less than 90° with
-    /// those of all faces around it. Normals as in [`View::shows`].
+    /// The most that nodes may move, m, before the viewer, at `x` (m) and deep behind a face, may be within the depth or before the face.
+    pub(crate) fn behind(&self, face: &Face, x: &[f64; 3], places: &Places) -> f64 {
+        turned::until_behind(face, (x, self.sight.depth[self.point]), places)
+    }
+
+    fn is_beside(&self, item: u32) -> bool {
+        let beside = self.sight.beside.of(self.point);
+        beside.binary_search(&item).is_ok()
+    }
+
+    /// Whether a face is out of view wherever the foot on it is: beside the viewer at `x` (m), with the viewer too deep behind it, or with normals
+    /// that make less than 90° with those of all faces around it. Normals as in [`View::shows`].
     pub(crate) fn is_blind(
         &self,
         (item, face): (u32, &Face),
+        x: &[f64; 3],
         places: &Places,
         normals: &[[f64; 3]],
     ) -> bool {
-        if self
-            .sight
-            .beside
-            .of(self.point)
-            .binary_search(&item)
-            .is_ok()
-        {
+        if self.is_beside(item) {
             return true;
         }
         let around = self.sight.around.of(self.point).iter();
-        turned::turns_away(face, around.map(|&k| &normals[k as usize]), places)
+        let normals = around.map(|&k| &normals[k as usize]);
+        turned::is_blind(face, normals, (x, self.sight.depth[self.point]), places)
     }
 
     fn opposes(&self, foot: &Projection, normals: &[[f64; 3]]) -> bool {

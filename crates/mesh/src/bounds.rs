@@ -85,12 +85,6 @@ impl Bounds {
             .fold(0.0, |reach, x| reach.max(x.abs()))
     }
 
-    /// Sum of the sides in m; zero for the empty box.
-    pub(crate) fn sides(&self) -> f64 {
-        let side = |i: usize| (self.max[i] - self.min[i]).max(0.0);
-        side(0) + side(1) + side(2)
-    }
-
     pub(crate) fn centre(&self, axis: usize) -> f64 {
         0.5 * (self.min[axis] + self.max[axis])
     }

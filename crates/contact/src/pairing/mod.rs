@@ -8,6 +8,8 @@ mod block;
 mod clip;
 mod curvature;
 mod foothold;
+mod found;
+mod look;
 mod merge;
 mod mortar;
 mod near;
@@ -21,6 +23,7 @@ mod tie;
 use carom_algebra::csr::Csr;
 
 use self::block::Block;
+use self::found::Look;
 use self::merge::Merge;
 pub use self::near::Near;
 use self::share::{Quadrature, Share};
@@ -64,9 +67,11 @@ pub struct Pairing {
     work: Work,
 }
 
-/// Scratch of the mortar method.
+/// Scratch of the mortar method, and of looks at near points.
 #[derive(Clone, Debug, Default)]
 struct Work {
+    /// What the looks of each group of points have found.
+    looks: Vec<Vec<Look>>,
     found: Vec<u32>,
     quadrature: Vec<Quadrature>,
     shares: Vec<Share>,

@@ -152,11 +152,15 @@ impl<'a> Sweep<'a> {
             let Some((closest, _)) = search.closest(target, view, &cell.middle(), within) else {
                 continue;
             };
-            search.overlapping(target, &shade(&cell, &closest), found);
+            search
+                .faces
+                .overlapping(target, &shade(&cell, &closest), found);
             for &item in found.iter() {
                 let face = &faces[item as usize];
                 let low = is_linear(element) && is_linear(face.kind.table());
-                self.over_face((&cell, low), face, |foot| search.shows(view, item, foot));
+                self.over_face((&cell, low), face, |foot| {
+                    search.faces.shows(view, item, foot)
+                });
             }
         }
     }

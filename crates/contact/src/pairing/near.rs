@@ -5,9 +5,8 @@ use std::f64::consts::SQRT_2;
 use carom_mesh::Face;
 
 use super::Pairing;
-use super::stencil::Stencil;
 use crate::rest::Rest;
-use crate::search::{faces_point, foot_on, spread};
+use crate::search::{foot_on, spread};
 use crate::{Contact, Integration, Places, Point, Search, Sliding, Target};
 
 /// What a pairing of the near points of a contact is given.
@@ -17,7 +16,7 @@ pub struct Near<'a> {
     /// Largest gap that is looked at, m.
     pub reach: f64,
     /// Whether a point, by its number in the contact, was inside at the last step: it may then be so at any depth.
-    pub inside: &'a dyn Fn(usize) -> bool,
+    pub inside: &'a (dyn Fn(usize) -> bool + Sync),
     /// Points of a contact of small sliding where all nodes are at their reference places.
     pub initial: &'a Pairing,
 }
@@ -56,7 +55,7 @@ impl Pairing {
     }
 
     /// Keeps a point that was paired if its gap is within reach.
-    fn keep(&mut self, at: usize, area: f64, reach: f64) {
+    pub(super) fn keep(&mut self, at: usize, area: f64, reach: f64) {
         if self.rows.gap(at) <= reach {
             self.near.push(at as u32);
         } else if self.rows.gap(at) < f64::INFINITY {
@@ -110,7 +109,7 @@ impl Contact {
         } else {
             self.points.len()
         };
-        search.begin_count();
+        search.begin();
         self.travel(&mut rest, units, places);
         rest.due(&mut due);
         if !due.is_empty() {
@@ -129,10 +128,7 @@ impl Contact {
                     rest.lay(0, clearance);
                 }
                 (false, false) => {
-                    for &point in &due {
-                        let clearance = self.look(places, search, (near, point as usize), pairing);
-                        rest.lay(point, clearance);
-                    }
+                    self.look_at_all((places, near), (search, &due), &mut rest, pairing);
                 }
             }
             rest.close(&due);
@@ -183,91 +179,6 @@ impl Contact {
         (nodes, most)
     }
 
-    /// Distance from which on nothing is looked at, m: a foot may lie as far sideways as along the normal.
-    fn limit(&self, point: usize, reach: f64) -> f64 {
-        let beside = self.points[point].radius - self.offset(point);
-        SQRT_2 * (reach + beside.max(0.0))
-    }
-
-    /// Looks at a point; how far the motion may bring it before it is looked at again, m.
-    fn look(
-        &self,
-        places: &Places,
-        search: &mut Search,
-        (near, k): (&Near, usize),
-        pairing: &mut Pairing,
-    ) -> f64 {
-        let point = &self.points[k];
-        let at = near.first + k;
-        let (stencil, clearance) = match &self.target {
-            Target::Rigid(obstacle) => {
-                let x = point.place(places);
-                let gap = obstacle.at(places.time).distance(&x).gap + self.offset(k) - point.radius;
-                let clearance = if gap == f64::INFINITY {
-                    0.0
-                } else {
-                    gap - near.reach
-                };
-                if gap <= near.reach {
-                    let of = (point, None, pairing.span);
-                    (Stencil::new(self, places, search, of), clearance)
-                } else {
-                    (None, clearance)
-                }
-            }
-            Target::Surface(_) if point.crosses() => {
-                let of = (point, None, pairing.span);
-                (Stencil::new(self, places, search, of), 0.0)
-            }
-            Target::Surface(faces) => self.look_at((places, faces), search, (near, k)),
-        };
-        if stencil.is_some() {
-            pairing.place(places, (at, point.area), stencil);
-            pairing.rows.shift(at, self.offset(k));
-            pairing.keep(at, point.area, near.reach);
-        }
-        clearance
-    }
-
-    /// What a point faces on a surface, and how far both sides may come before it is looked at again, m.
-    fn look_at(
-        &self,
-        (places, faces): (&Places, &[Face]),
-        search: &mut Search,
-        (near, k): (&Near, usize),
-    ) -> (Option<Stencil>, f64) {
-        let (point, view) = (&self.points[k], self.view(k));
-        let (x, limit) = (point.place(places), self.limit(k, near.reach));
-        let inside = (near.inside)(k);
-        search.seat(k);
-        if let Some(view) = view {
-            search.see(view, places);
-        }
-        let within = match view.is_some() && !inside {
-            true => limit,
-            false => f64::INFINITY,
-        };
-        let found = search.closest((places, faces), view, &x, within);
-        if inside
-            || found
-                .as_ref()
-                .is_some_and(|(foot, _)| foot.distance <= limit)
-        {
-            let facing = found.filter(|(foot, face)| faces_point(foot, face));
-            let stencil =
-                facing.map(|(foot, face)| Stencil::on_face(places, point, &x, &foot, face));
-            return (stencil, 0.0);
-        }
-        match view {
-            Some(view) => (None, search.rest_of((places, faces), view, &x, limit)),
-            // both sides move
-            None => (
-                None,
-                found.map_or(f64::INFINITY, |(foot, _)| 0.5 * (foot.distance - limit)),
-            ),
-        }
-    }
-
     /// The points of a contact of small sliding, whose gaps are linear in the displacement.
     fn move_near(
         &self,
@@ -310,10 +221,7 @@ impl Contact {
         pairing: &mut Pairing,
     ) -> f64 {
         let kept = pairing.near.len();
-        search.seat(0);
-        if let Some(sight) = &self.sight {
-            search.see_all(sight, places);
-        }
+        search.faces.see_all(self.sight.as_ref(), places);
         self.pair_points(places, search, (near.first, pairing));
         for (k, point) in self.points.iter().enumerate() {
             let at = near.first + k;
@@ -343,7 +251,7 @@ impl Contact {
             let distance = match &self.target {
                 Target::Surface(faces) => {
                     let measure = |item| foot_on(places, faces, item, &middle).0.distance;
-                    let item = search.nearest(&middle, 0.0, measure);
+                    let item = search.faces.nearest(&middle, 0.0, measure);
                     item.map_or(f64::INFINITY, measure)
                 }
                 Target::Rigid(obstacle) => {

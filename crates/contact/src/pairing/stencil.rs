@@ -10,7 +10,7 @@ use super::foothold::Foothold;
 use super::round;
 use crate::crossing::Opposite;
 use crate::sight::View;
-use crate::{Contact, Places, Point, Rows, Search, Target};
+use crate::{Contact, Obstacle, Places, Point, Rows, Search, Target};
 
 /// A point, its gap, and what is at the other end of it.
 #[derive(Clone, Debug)]
@@ -52,30 +52,7 @@ impl Stencil {
         (point, view, span): (&Point, Option<View>, [f64; 2]),
     ) -> Option<Stencil> {
         match &contact.target {
-            Target::Rigid(obstacle) => {
-                let (x, placed) = (point.place(places), obstacle.at(places.time));
-                let found = placed.distance(&x);
-                if found.gap == f64::INFINITY {
-                    return None;
-                }
-                let stencil = Stencil {
-                    point: *point,
-                    gap: found.gap - point.radius,
-                    normal: found.normal,
-                    first: [0; 2 * NODES],
-                    carried: false,
-                    foot: Foot::Obstacle {
-                        hessian: found.hessian,
-                        velocity: placed.velocity(&x),
-                        carried: obstacle.mean_velocity(
-                            &x,
-                            places.time,
-                            span.map(|after| places.time + after),
-                        ),
-                    },
-                };
-                Some(stencil.numbered(places))
-            }
+            Target::Rigid(obstacle) => Stencil::on_obstacle(places, point, obstacle, span),
             Target::Surface(faces) => {
                 let Opposite { point, foot, face } =
                     search.opposite(places, faces, (point, view))?;
@@ -83,6 +60,34 @@ impl Stencil {
                 Some(Stencil::on_face(places, &point, &x, &foot, face))
             }
         }
+    }
+
+    /// The stencil of a point against an obstacle, `None` where it faces nothing. `span` as in [`Stencil::new`].
+    pub fn on_obstacle(
+        places: &Places,
+        point: &Point,
+        obstacle: &Obstacle,
+        span: [f64; 2],
+    ) -> Option<Stencil> {
+        let (x, placed) = (point.place(places), obstacle.at(places.time));
+        let found = placed.distance(&x);
+        if found.gap == f64::INFINITY {
+            return None;
+        }
+        let span = span.map(|after| places.time + after);
+        let stencil = Stencil {
+            point: *point,
+            gap: found.gap - point.radius,
+            normal: found.normal,
+            first: [0; 2 * NODES],
+            carried: false,
+            foot: Foot::Obstacle {
+                hessian: found.hessian,
+                velocity: placed.velocity(&x),
+                carried: obstacle.mean_velocity(&x, places.time, span),
+            },
+        };
+        Some(stencil.numbered(places))
     }
 
     /// The stencil of a point at `x` whose closest point on a face is known.

@@ -6,8 +6,8 @@
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use carom_algebra::tensor::Vec3;
-use carom_elements::Kind;
-use carom_mesh::{Face, Projection};
+use carom_elements::{Kind, MAX_FACE_NODES};
+use carom_mesh::Face;
 
 use crate::Places;
 
@@ -33,8 +33,8 @@ impl Corners {
     }
 }
 
-/// Normals of the corners of a straight face, and the least height of the triangles there, m; none of a curved one.
-fn corners(face: &Face, places: &Places) -> Option<(Corners, f64)> {
+/// Normals of the corners of a straight face, their places, and the least height of the triangles there, m; none of a curved one.
+fn corners(face: &Face, places: &Places) -> Option<(Corners, [Vec3; MAX_FACE_NODES], f64)> {
     let n = match face.kind {
         Kind::Tri3 => 3,
         Kind::Quad4 => 4,
@@ -49,45 +49,57 @@ fn corners(face: &Face, places: &Places) -> Option<(Corners, f64)> {
         least = least.min(cross.norm() / one.norm().max(other.norm()));
         normals[k] = cross / cross.norm();
     }
-    Some((Corners(normals, n), least))
+    Some((Corners(normals, n), x, least))
 }
 
-/// Whether the normals of a straight face make less than 90° with these: they are sums of those of its corners.
-pub(super) fn turns_away<'a>(
+/// Whether a straight face is out of view wherever the foot on it is: its normals make less than 90° with all of these, or a place is
+/// deeper behind it than `depth` (m).
+///
+/// The normals of a face are sums of those of its corners with positive factors, since ∂y/∂ξ × ∂y/∂η of a bilinear face is linear in ξ
+/// and η. With n_j the unit normals at the corners and y = Σ N_k x_k, n · (x - y) is therefore below -d everywhere if n_j · (x - x_k) is for all
+/// j and k.
+pub(super) fn is_blind<'a>(
     face: &Face,
     mut around: impl Iterator<Item = &'a [f64; 3]>,
+    (x, depth): (&[f64; 3], f64),
     places: &Places,
 ) -> bool {
-    let Some((corners, _)) = corners(face, places) else {
+    let Some((corners, at, _)) = corners(face, places) else {
         return false;
     };
     around.all(|normal| corners.iter().all(|n| n.dot(&Vec3::from(*normal)) > 0.0))
+        || under(&corners, &at, x) > depth
+}
+
+/// How far a place is at least behind a straight face along the normal of any place of it, m; negative if it may be before it.
+fn under(corners: &Corners, at: &[Vec3], x: &[f64; 3]) -> f64 {
+    let x = Vec3::from(*x);
+    let ways = at[..corners.1].iter().map(|corner| corner - x);
+    ways.flat_map(|way| corners.iter().map(move |n| n.dot(&way)))
+        .fold(f64::INFINITY, f64::min)
 }
 
 fn angle(a: &Vec3, b: &Vec3) -> f64 {
     a.dot(b).clamp(-1.0, 1.0).acos()
 }
 
-/// Until a face is turned against one of those around a point, given with their normals, by more than the angle of the cosine
-/// `opposed`.
+/// Until a face is anywhere turned against one of those around a point, given with their normals, by more than the angle of the
+/// cosine `opposed`.
 pub(super) fn until_opposed<'a>(
-    (face, foot): (&Face, &Projection),
+    face: &Face,
     around: impl Iterator<Item = (&'a Face, &'a [f64; 3])>,
     (opposed, places): (f64, &Places),
 ) -> f64 {
-    let Some((normals, mut height)) = corners(face, places) else {
+    let Some((normals, _, mut height)) = corners(face, places) else {
         return 0.0;
     };
     // normals inside of a face are between those of its corners, which stay around their mean
     let mean = normals.iter().sum::<Vec3>();
     let mean = mean / mean.norm();
-    let warp = normals
-        .iter()
-        .map(|n| angle(n, &mean))
-        .fold(angle(&foot.normal.into(), &mean), f64::max);
+    let warp = normals.iter().map(|n| angle(n, &mean)).fold(0.0, f64::max);
     let mut widest = 0.0_f64;
     for (own, normal) in around {
-        let Some((_, least)) = corners(own, places) else {
+        let Some((.., least)) = corners(own, places) else {
             return 0.0;
         };
         height = height.min(least);
@@ -97,15 +109,65 @@ pub(super) fn until_opposed<'a>(
     motion(height, (0.5 * free).min(0.9 * FRAC_PI_2 - warp))
 }
 
-/// Until a point behind a face is within the depth of it, or before it.
-pub(super) fn until_behind((face, foot): (&Face, &Projection), depth: f64, places: &Places) -> f64 {
-    if foot.gap > 0.0 {
-        return 0.0;
-    }
-    let Some((_, height)) = corners(face, places) else {
+/// Until a place behind a straight face is within the depth of it, or before it; zero if it may be so now.
+pub(super) fn until_behind(face: &Face, (x, depth): (&[f64; 3], f64), places: &Places) -> f64 {
+    let Some((normals, at, height)) = corners(face, places) else {
         return 0.0;
     };
-    let deep = 0.5 * (foot.distance - SQRT_2 * depth);
-    let before = (0.5 * ASIDE * foot.distance).min(motion(height, TILTED));
-    deep.min(before)
+    // no more than the distance of the foot
+    let distance = under(&normals, &at, x);
+    let deep = 0.5 * (distance - SQRT_2 * depth);
+    let before = (0.5 * ASIDE * distance).min(motion(height, TILTED));
+    deep.min(before).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_algebra::unknowns::Unknowns;
+    use carom_mesh::{ElementId, face_nodes, project};
+    use carom_testing::Random;
+
+    use super::*;
+    use crate::Frames;
+
+    #[test]
+    fn bounds_over_the_corners_of_a_warped_face_hold_everywhere_on_it() {
+        let mut random = Random(3);
+        let mut point = |size: f64| [(); 3].map(|()| random.between(-size, size));
+        let face = Face {
+            kind: Kind::Quad4,
+            nodes: face_nodes(&[0, 1, 2, 3]),
+            parent: ElementId { block: 0, index: 0 },
+            axis: [0.0; 3],
+            radius: None,
+        };
+        let unknowns = Unknowns::translations(3, 4);
+        let mut deep = 0;
+        for _ in 0..2000 {
+            let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+            let x = square.map(|[x, y]| {
+                let shake = point(0.25);
+                [x + shake[0], y + shake[1], shake[2]]
+            });
+            let places = Places {
+                unknowns: &unknowns,
+                time: 0.0,
+                x: &x,
+                u: &[0.0; 12],
+                frames: Frames::default(),
+            };
+            let (normals, at, _) = corners(&face, &places).unwrap();
+            let mean = normals.iter().sum::<Vec3>();
+            let mean = mean / mean.norm();
+            let most = normals.iter().map(|n| angle(n, &mean)).fold(0.0, f64::max);
+            let place = point(2.0);
+            let foot = project(&face, &x, &place);
+            // rounding of places of size one
+            assert!(foot.gap <= -under(&normals, &at, &place) + 1e-14);
+            // that of acos near zero
+            assert!(angle(&foot.normal.into(), &mean) <= most + 1e-7);
+            deep += usize::from(under(&normals, &at, &place) > 0.1);
+        }
+        assert!(deep > 200, "{deep}");
+    }
 }

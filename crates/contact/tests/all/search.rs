@@ -158,7 +158,7 @@ fn pairings_of_moving_surfaces_equal_brute_force_whatever_the_search_remembers()
 fn a_slow_surface_is_hardly_searched() {
     let mut scene = Scene::new(Kind::Quad4, 40, 300);
     let mut search = Search::default();
-    let mut projections = Vec::new();
+    let mut projections = 0;
     let shape = scene.displacement(0.0, 0.1);
     for step in 0..12 {
         let u: Vec<f64> = shape.iter().map(|u| 1e-2 * f64::from(step) * u).collect();
@@ -170,11 +170,11 @@ fn a_slow_surface_is_hardly_searched() {
             frames: Frames::default(),
         };
         paired(&scene.contact, &places, &mut search);
-        projections.push(search.projections());
+        projections = search.projections();
     }
-    // of 1600 faces a point asks the one on which its foot was and those of its eight neighbours that may be as close
-    assert!(projections[11] < 300 * 9, "{projections:?}");
-    assert!(projections[11] < projections[0], "{projections:?}");
+    // of 1600 faces a point asks the one on which its foot was, and those beyond the two edges and the corner that are nearest to
+    // the foot; one more for all that the motion of both sides leaves open
+    assert!(projections < 300 * 5, "{projections}");
 }
 
 #[test]

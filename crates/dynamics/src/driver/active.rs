@@ -4,6 +4,10 @@ use std::ops::Range;
 
 use crate::system::System;
 
+/// Gap up to which a point is near, over the mean diagonal of the faces. In a stable step a wave crosses no more than the height of
+/// a cell, and sides come closer by far less.
+const REACH: f64 = 0.25;
+
 /// The points of an attempt.
 #[derive(Default)]
 pub(super) struct Active {
@@ -30,7 +34,7 @@ impl Active {
             points: Vec::new(),
             before: Vec::new(),
             reaches: contacts
-                .map(|(contact, faces)| contact.mean_diagonal(faces, &system.x))
+                .map(|(contact, faces)| REACH * contact.mean_diagonal(faces, &system.x))
                 .collect(),
             offered: false,
             goes_on: false,

@@ -1,7 +1,7 @@
 //! The contacts of an explicit step: points that are far from what they face cost nothing.
 //!
-//! A point is near if its gap is within the mean diagonal of the faces of its contact, more than two sides come closer by in
-//! two steps. Others face nothing in such a step. Vectors over all points change at points alone that are near, or were so in the step
+//! A point is near if its gap is within a quarter of the mean diagonal of the faces of its contact, more than two sides come
+//! closer by in two steps. Others face nothing in such a step. Vectors over all points change at points alone that are near, or were so in the step
 //! before.
 
 use std::sync::Arc;

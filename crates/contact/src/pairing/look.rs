@@ -1,0 +1,153 @@
+//! Looks at points that may be near what they face: group after group on several threads, the same groups on any number.
+//!
+//! A look reads the configuration and writes the memory of its group alone. What it found is put into the pairing afterwards, in
+//! the order of the points.
+
+use std::f64::consts::SQRT_2;
+
+use carom_mesh::Face;
+use rayon::prelude::*;
+
+use super::found::Look;
+use super::stencil::Stencil;
+use super::{Near, Pairing};
+use crate::rest::{BLOCK, Rest};
+use crate::search::faces::{FaceTree, Question};
+use crate::search::faces_point;
+use crate::search::group::Group;
+use crate::search::kept::Kept;
+use crate::{Contact, Places, Search, Target};
+
+impl Contact {
+    /// Looks at the points that are due and takes the near ones into a pairing.
+    pub(super) fn look_at_all(
+        &self,
+        (places, near): (&Places, &Near),
+        (search, due): (&mut Search, &[u32]),
+        rest: &mut Rest,
+        pairing: &mut Pairing,
+    ) {
+        search.faces.begin_sight();
+        for &point in due {
+            if let Some(view) = self.view(point as usize) {
+                search.faces.see(view, places);
+            }
+        }
+        let groups = &mut search.groups;
+        groups.resize_with(self.points.len().div_ceil(BLOCK), Group::default);
+        let mut first = 0;
+        for points in due.chunk_by(|a, b| *a as usize / BLOCK == *b as usize / BLOCK) {
+            groups[points[0] as usize / BLOCK].due = first..first + points.len();
+            first += points.len();
+        }
+        let (faces, span) = (&search.faces, pairing.span);
+        let mut looks = std::mem::take(&mut pairing.work.looks);
+        looks.resize_with(groups.len().max(looks.len()), Vec::new);
+        let pieces = groups.par_iter_mut().zip(&mut looks);
+        pieces.for_each(|(group, looks)| {
+            for &point in &due[std::mem::take(&mut group.due)] {
+                looks.push(self.look((places, near, span), faces, point, group));
+            }
+        });
+        for (group, looks) in groups.iter_mut().zip(&mut looks) {
+            search.scratch.projections += std::mem::take(&mut group.scratch.projections);
+            for look in looks.drain(..) {
+                let k = look.point as usize;
+                rest.lay(look.point, look.clearance);
+                if look.stencil.is_some() {
+                    let (at, area) = (near.first + k, self.points[k].area);
+                    pairing.place(places, (at, area), look.stencil);
+                    pairing.rows.shift(at, self.offset(k));
+                    pairing.keep(at, area, near.reach);
+                }
+            }
+        }
+        pairing.work.looks = looks;
+    }
+
+    fn look(
+        &self,
+        (places, near, span): (&Places, &Near, [f64; 2]),
+        tree: &FaceTree,
+        number: u32,
+        group: &mut Group,
+    ) -> Look {
+        let point = &self.points[number as usize];
+        let (stencil, clearance) = match &self.target {
+            Target::Rigid(obstacle) => {
+                let x = point.place(places);
+                let distance = obstacle.at(places.time).distance(&x);
+                let gap = distance.gap + self.offset(number as usize) - point.radius;
+                let stencil = match gap <= near.reach {
+                    true => Stencil::on_obstacle(places, point, obstacle, span),
+                    false => None,
+                };
+                let clearance = if gap == f64::INFINITY {
+                    0.0
+                } else {
+                    gap - near.reach
+                };
+                (stencil, clearance)
+            }
+            Target::Surface(faces) if point.crosses() => {
+                let found = tree.crossed(places, faces, point);
+                let stencil = found.map(|found| {
+                    let x = found.point.place(places);
+                    Stencil::on_face(places, &found.point, &x, &found.foot, found.face)
+                });
+                (stencil, 0.0)
+            }
+            Target::Surface(faces) => self.look_at((places, faces), tree, (near, number), group),
+        };
+        Look {
+            point: number,
+            clearance,
+            stencil,
+        }
+    }
+
+    /// What a point faces on a surface, and how far both sides may come before it is looked at again, m.
+    fn look_at(
+        &self,
+        target: (&Places, &[Face]),
+        tree: &FaceTree,
+        (near, number): (&Near, u32),
+        group: &mut Group,
+    ) -> (Option<Stencil>, f64) {
+        let k = number as usize;
+        let (point, view, inside) = (&self.points[k], self.view(k), (near.inside)(k));
+        let (x, limit) = (point.place(target.0), self.limit(k, near.reach));
+        let question = Question {
+            x,
+            view,
+            within: match view.is_some() && !inside {
+                true => limit,
+                false => f64::INFINITY,
+            },
+        };
+        let slot = k % BLOCK;
+        if group.kept.len() <= slot {
+            group.kept.resize_with(BLOCK, Kept::default);
+        }
+        let found = tree.closest(target, &question, &mut group.kept[slot], &mut group.scratch);
+        let is_near = |distance: f64| inside || distance <= limit;
+        match (found, view) {
+            (Some((foot, face)), _) if is_near(foot.distance) => {
+                let faces = faces_point(&foot, face);
+                let stencil = faces.then(|| Stencil::on_face(target.0, point, &x, &foot, face));
+                (stencil, 0.0)
+            }
+            (None, _) if inside => (None, 0.0),
+            (_, Some(view)) => (None, tree.rest_of(target, view, &x, limit)),
+            // both sides move
+            (Some((foot, _)), None) => (None, 0.5 * (foot.distance - limit)),
+            (None, None) => (None, f64::INFINITY),
+        }
+    }
+
+    /// Distance from which on nothing is looked at, m: a foot may lie as far sideways as along the normal.
+    fn limit(&self, point: usize, reach: f64) -> f64 {
+        let beside = self.points[point].radius - self.offset(point);
+        SQRT_2 * (reach + beside.max(0.0))
+    }
+}

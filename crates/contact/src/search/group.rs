@@ -1,0 +1,23 @@
+//! Points of a contact that one thread looks at, one after the other, with what they remember.
+
+use std::ops::Range;
+
+use super::faces::Scratch;
+use super::kept::Kept;
+
+/// A block of the points that rest.
+#[derive(Debug, Default)]
+pub(crate) struct Group {
+    /// What each point remembers.
+    pub kept: Vec<Kept>,
+    pub scratch: Scratch,
+    /// Which of the points that are due are in the group.
+    pub due: Range<usize>,
+}
+
+impl Group {
+    /// Memory in bytes.
+    pub fn bytes(&self) -> usize {
+        self.kept.iter().map(Kept::bytes).sum()
+    }
+}
