@@ -41,6 +41,8 @@ pub struct Reduction {
     pub translated: [f64; 3],
     /// Whether supports hold nodes that are not retained.
     pub is_grounded: bool,
+    /// Along which axes nothing holds the full body: K r = 0 of a translation r, beside rounding.
+    pub is_free: [bool; 3],
     /// Whether the retained unknowns have no mass.
     pub is_massless: bool,
     /// Lumped masses of the nodes of the full body, by node of the mesh, kg.
@@ -145,6 +147,8 @@ pub struct Reduced {
     nodes: Vec<u32>,
     /// Unknowns of the system.
     unknowns: Arc<[u32]>,
+    /// Free translations over its unknowns, and the first retained translation along the axis of each, by own number.
+    free: Vec<(Vec<f64>, usize)>,
 }
 
 impl Reduced {
@@ -165,11 +169,18 @@ impl Reduced {
             }
         };
         let own = nodes.iter().flat_map(own);
-        Reduced {
+        let mut body = Reduced {
             unknowns: own.map(|unknown| unknown as u32).collect(),
             nodes,
             data,
+            free: Vec::new(),
+        };
+        for axis in (0..3).filter(|&axis| body.data.is_free[axis]) {
+            let first = body.translation(axis).iter().position(|r| *r == 1.0);
+            let motion = body.rigid(axis);
+            body.free.extend(first.map(|first| (motion, first)));
         }
+        body
     }
 
     /// Motions of the nodes that are not retained, for the unknowns of the system.
@@ -227,8 +238,33 @@ impl Reduced {
     }
 
     /// Adds `factor` K u to `f` and returns the strain energy (J).
+    ///
+    /// Where translations r are free, it is Pᵀ K P u with P = 1 - Σ r eᵀ, e the first retained translation along the axis of r: the same but for rounding. K r
+    /// is the rounding of K times the motion, which in a long way, and with modes that are stiff, would push the body; the sum of the forces is zero so.
     fn add_stiffness_force(&self, factor: f64, u: &[f64], f: &mut [f64]) -> f64 {
         let mut energy = 0.0;
+        if !self.free.is_empty() {
+            let mut sums = [0.0; 3];
+            let at = |own: usize| self.unknowns[own] as usize;
+            let deformed = |own: usize| {
+                let free = self.free.iter();
+                free.fold(u[at(own)], |u_own, (motion, first)| {
+                    u_own - motion[own] * u[at(*first)]
+                })
+            };
+            let stiffness = &self.data.matrices.stiffness;
+            stiffness.each_product(deformed, |own, part| {
+                f[at(own)] += factor * part;
+                energy += 0.5 * part * deformed(own);
+                for (sum, (motion, _)) in sums.iter_mut().zip(&self.free) {
+                    *sum += motion[own] * part;
+                }
+            });
+            for (sum, (_, first)) in sums.iter().zip(&self.free) {
+                f[at(*first)] -= factor * sum;
+            }
+            return energy;
+        }
         each_product(
             &self.data.matrices.stiffness,
             &self.unknowns,

@@ -10,6 +10,9 @@ use crate::matrices::Matrices;
 use crate::retained::retained;
 use crate::statics::dot;
 
+/// Force of a translation, over the largest stiffness, that is rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// What a reduction keeps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Keep {
@@ -114,6 +117,20 @@ impl Full {
             *motion = 0.0;
         }
         motion
+    }
+
+    /// Whether a motion is one and needs no force: K r = 0 beside the rounding of the elements' sums.
+    pub(crate) fn is_free(&self, motion: &[f64]) -> bool {
+        let stiffness = &self.matrices.stiffness;
+        let mut force = vec![0.0; motion.len()];
+        stiffness.multiply(motion, &mut force);
+        let largest =
+            |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |m, x| m.max(x.abs()));
+        let free = force.iter().zip(&self.fixed).filter(|(_, fixed)| !**fixed);
+        let left = largest(&mut free.map(|(force, _)| *force));
+        let moves = largest(&mut motion.iter().copied());
+        let stiffest = largest(&mut (0..motion.len()).map(|i| stiffness.get(i, i)));
+        moves > 0.0 && left <= ROUNDING * moves * stiffest
     }
 
     /// The motion of a unit rotation about an axis through a place.

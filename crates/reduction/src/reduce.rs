@@ -87,11 +87,12 @@ fn reduction(
         (border..count).map(of).collect()
     };
     let mut amplitudes = vec![Amplitude::default(); count - border];
-    let mut is_grounded = false;
+    let (mut is_grounded, mut is_free) = (false, [false; 3]);
     for axis in 0..3 {
         // nodes that supports hold do not move with the others
         let [moved, turned] = [full.translation(axis), full.rotation(axis, [0.0; 3])]
             .map(|motion| full.freed(motion));
+        is_free[axis] = full.is_free(&moved);
         let moves = share(&moved, &full.inertia(&condensed.columns, &moved));
         let turns = share(&turned, &full.inertia(&condensed.columns, &turned));
         let mut motion: Vec<f64> = full.border.iter().map(|&unknown| moved[unknown]).collect();
@@ -128,6 +129,7 @@ fn reduction(
         inertia,
         translated: [0, 1, 2].map(|axis| mass_of(&full.matrices.mass, &full.translation(axis))),
         is_grounded,
+        is_free,
         is_massless: keep.massless,
         masses: masses
             .map(|(node, m)| (system.mesh_node[*node as usize], *m))
