@@ -167,7 +167,7 @@ fn truss(side: usize) -> (Csr, Csr, Vec<u32>) {
 
 #[test]
 fn many_modes_of_a_large_problem_are_found_without_a_dense_matrix() {
-    // 164 vectors are sought of 3200: the largest space of one search does not give them all
+    // 164 vectors of 3200
     let (k, m, groups) = truss(40);
     let problem = Problem {
         stiffness: &k,
