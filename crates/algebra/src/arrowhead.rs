@@ -1,7 +1,9 @@
 //! Symmetric arrowhead matrices: a dense leading block, its coupling with the other unknowns, and the diagonal of these.
 //!
-//!     A = [ D   E ]     D d × d, T diagonal, E left out where it is zero
-//!         [ Eᵀ  T ]
+//! ```text
+//! A = [ D   E ]     D d × d, T diagonal, E left out where it is zero
+//!     [ Eᵀ  T ]
+//! ```
 //!
 //! Products are those of whole columns, several rows at a time, in one order and without fused operations: their bits depend on the
 //! matrix and the vector alone, on no instruction set.
