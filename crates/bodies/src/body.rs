@@ -14,7 +14,7 @@ use crate::reduced::Reduced;
 use crate::rigid::Rigid;
 use crate::scratch::Scratch;
 use crate::solid::{BodySpec, Solid};
-use crate::{Error, FrequencyBound, Kinematics, Placement, Stored};
+use crate::{Deleted, Error, FrequencyBound, Kinematics, Placement, Stored};
 
 /// A body: mass, forces f(u, v), their derivatives, energies.
 #[derive(Debug)]
@@ -400,6 +400,35 @@ impl Body {
             Body::Discrete(discrete) => discrete.each_element(visit),
             Body::Rigid(rigid) => visit(&[rigid.node()]),
             Body::Reduced(reduced) => reduced.each_element(visit),
+        }
+    }
+
+    /// The same for the elements that are not deleted in this history of the body.
+    pub fn each_element_left(&self, history: &[f64], visit: &mut dyn FnMut(&[u32])) {
+        match self {
+            Body::Solid(solid) => solid.each_element_left(history, visit),
+            other => other.each_element(visit),
+        }
+    }
+
+    /// Whether elements are deleted; see [`Solid::has_deletion`].
+    pub fn has_deletion(&self) -> bool {
+        self.as_solid().is_some_and(Solid::has_deletion)
+    }
+
+    /// Whether each element is deleted in this history of the body, in the order of [`Body::cells`]; none of a body without deletion.
+    pub fn deleted(&self, history: &[f64]) -> Option<Vec<bool>> {
+        self.as_solid()?.deleted(history)
+    }
+
+    /// Deletes elements at the end of a step; see [`Solid::delete`].
+    ///
+    /// # Errors
+    /// As [`Solid::force`].
+    pub fn delete(&self, at: &Placement, new: &mut [f64]) -> Result<Deleted, Error> {
+        match self {
+            Body::Solid(solid) => solid.delete(at, new),
+            _ => Ok(Deleted::default()),
         }
     }
 

@@ -42,7 +42,9 @@ pub use discrete::{
 };
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
-pub use finite::{BulkViscosity, FollowerPressure, Formulation, FrequencyBound, Placement, Stored};
+pub use finite::{
+    BulkViscosity, Deleted, FollowerPressure, Formulation, FrequencyBound, Placement, Stored,
+};
 pub use kinematics::{Kinematics, MassKind};
 pub use reduced::{Reduced, ReducedMass, ReducedMatrices, Reduction};
 pub use reducible::Reducible;

@@ -41,6 +41,9 @@ pub struct BodySpec {
     pub viscosity: Option<BulkViscosity>,
     /// Mass scaling.
     pub scaling: Option<MassScaling>,
+    /// Mean plastic strain over the points of an element at which it is deleted: its forces and energies are none from then on, its mass
+    /// stays. Needs a law with plastic strain and an explicit scheme. None: no element is deleted.
+    pub deletion: Option<f64>,
     /// Hinges of beams.
     pub releases: Vec<Release>,
 }
@@ -62,6 +65,7 @@ impl BodySpec {
             weights: None,
             viscosity: None,
             scaling: None,
+            deletion: None,
             releases: Vec::new(),
         }
     }
@@ -123,7 +127,7 @@ impl Solid {
             shear_modulus: elastic.shear_modulus(),
         };
         let is_viscous = spec.viscosity.is_some();
-        let finite = |law: Law| Finite::new(law, shape, is_viscous);
+        let finite = |law: Law| Finite::new(law, shape, is_viscous, spec.deletion);
         let parts = Parts {
             mesh,
             spec: &spec,
@@ -323,6 +327,19 @@ impl Solid {
         for block in &self.blocks {
             block.elements(visit);
         }
+    }
+
+    /// Calls `visit` with the nodes of each element that is not deleted in this history of the body.
+    pub fn each_element_left(&self, history: &[f64], visit: &mut dyn FnMut(&[u32])) {
+        let Some(deleted) = self.deleted(history) else {
+            return self.each_element(visit);
+        };
+        let mut deleted = deleted.into_iter();
+        self.each_element(&mut |nodes| {
+            if deleted.next() != Some(true) {
+                visit(nodes);
+            }
+        });
     }
 
     /// Volume (m³) and mean stress (Pa) of each element, in the order of [`Solid::cells`].

@@ -5,8 +5,8 @@ use carom_quantities::units::with_article;
 
 use crate::error::Problem;
 use crate::schema::{
-    Adaptive, Case, Contact, Count, Integration, IntegrationWith, LargestStep, Line, Obstacle,
-    Part, Step, StepRule,
+    Adaptive, Case, Contact, Count, Integration, IntegrationWith, LargestStep, Line, Motion,
+    Obstacle, Part, Step, StepRule,
 };
 
 /// Most nodes of a generated part or a refined mesh: beyond it a case is a slip of the pen.
@@ -37,6 +37,15 @@ pub(crate) fn check(case: &Case) -> Vec<Problem> {
             let message = "a random force is a function of time by itself";
             let problem = Problem::new(format!("load.{name}.amplitude"), message);
             problems.push(problem.accepted(["no `amplitude`"]));
+        }
+    }
+    for (name, probe) in case.probe.iter() {
+        let accelerates =
+            |motion: &Motion| matches!(motion, Motion::Acceleration | Motion::AbsoluteAcceleration);
+        if !probe.filter.is_empty() && !probe.record.iter().any(accelerates) {
+            let message = "the probe records no acceleration that could be filtered";
+            let problem = Problem::new(format!("probe.{name}.filter"), message);
+            problems.push(problem.accepted(["record = [\"acceleration\"]", "no `filter`"]));
         }
     }
     check_time(case, &mut problems);

@@ -198,6 +198,7 @@ pub(crate) fn settings(
                 .collect::<Vec<_>>()
                 .join(", "),
         },
+        end: built.end,
         probes: built
             .probes
             .iter()
@@ -211,6 +212,7 @@ pub(crate) fn settings(
                     acceleration: has(Motion::Acceleration),
                     absolute_acceleration: has(Motion::AbsoluteAcceleration),
                     spectrum: probe.spectrum.clone(),
+                    filters: probe.filters.clone(),
                 }
             })
             .collect(),

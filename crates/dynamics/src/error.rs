@@ -104,6 +104,21 @@ pub enum Error {
         /// The element that bounds it, in words.
         place: Box<str>,
     },
+    /// The bulk viscosity of a step is stronger than its size is stable with.
+    #[error(
+        "step {step}, t = {time:e} s: the compression in it is so fast that bulk viscosity makes the critical step {critical:.4e} s, below \
+         the smallest part of a step, {dt:.4e} s; give a smaller step"
+    )]
+    Viscous {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start, s.
+        time: f64,
+        /// Size of the attempt, s.
+        dt: f64,
+        /// The critical step with the viscosity of the attempt, s.
+        critical: f64,
+    },
     /// A secondary surface without area.
     #[error("contact '{contact}': the matrix of the multiplier on the secondary surface: {cause}")]
     WeakForm {

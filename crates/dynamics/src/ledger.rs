@@ -5,6 +5,7 @@
 //! ([`EnergyIdentity`](crate::EnergyIdentity)), in a nonlinear one the works of inertia and internal forces minus the changes of
 //! the energies. See `docs/src/theory/balances.md`.
 
+use carom_bodies::{Deleted, Stored};
 use serde::{Deserialize, Serialize};
 
 use crate::resultant::Resultant;
@@ -43,6 +44,8 @@ pub struct Balance {
     pub dissipation_friction: f64,
     /// Dissipation of bulk viscosity.
     pub dissipation_viscosity: f64,
+    /// Energy of deleted elements: what their strain and hardening had stored.
+    pub dissipation_deletion: f64,
     /// Energy that hardening stores.
     pub hardening: f64,
     /// What of the strain energy resists the hourglass modes of elements with one point.
@@ -81,6 +84,7 @@ impl Balance {
             dissipation_damping: self.dissipation_damping + other.dissipation_damping,
             dissipation_friction: self.dissipation_friction + other.dissipation_friction,
             dissipation_viscosity: self.dissipation_viscosity + other.dissipation_viscosity,
+            dissipation_deletion: self.dissipation_deletion + other.dissipation_deletion,
             hardening: self.hardening + other.hardening,
             hourglass: self.hourglass + other.hourglass,
             energy_residual: self.energy_residual + other.energy_residual,
@@ -93,9 +97,10 @@ impl Balance {
         }
     }
 
-    /// Energy that the materials took, J: strain energy, hardening, what they and bulk viscosity dissipated.
+    /// Energy that the materials took, J: strain energy, hardening, what they and bulk viscosity dissipated, what deleted elements had.
     pub fn internal(&self) -> f64 {
-        self.strain + self.hardening + self.dissipation_material + self.dissipation_viscosity
+        let stored = self.strain + self.hardening + self.dissipation_deletion;
+        stored + self.dissipation_material + self.dissipation_viscosity
     }
 
     /// Kinetic and strain energy, J.
@@ -152,6 +157,8 @@ pub struct Ledger {
     pub largest_internal: f64,
     /// Whether the steps are those of a static stage, whose works are sums over the steps.
     pub is_static: bool,
+    /// Number of elements deleted so far.
+    pub deleted: u64,
     /// What the iterations may have left unbalanced so far.
     pub tolerated: Tolerated,
     /// Largest absolute energy residual so far, J.
@@ -168,6 +175,8 @@ pub struct Ledger {
     resized: Sum,
     /// Works and dissipations of [`Beyond`], in its order.
     beyond: [Sum; 6],
+    /// Energy of deleted elements, J.
+    deletion: Sum,
     hardening: f64,
     hourglass: f64,
     impulses: [[Sum; 6]; 5],
@@ -320,6 +329,25 @@ impl Ledger {
         (self.hardening, self.hourglass) = (beyond.hardening, beyond.hourglass);
         self.tolerated.energy += beyond.tolerated.energy;
         self.tolerated.momentum += beyond.tolerated.momentum;
+    }
+
+    /// Moves what deleted elements had stored at the end of the step just added to its own term.
+    pub(crate) fn delete(&mut self, deleted: &Deleted) {
+        let Stored {
+            strain,
+            hardening,
+            hourglass,
+            ..
+        } = deleted.stored;
+        self.deleted += deleted.elements as u64;
+        self.deletion.add(strain + hardening);
+        self.hardening -= hardening;
+        self.hourglass -= hourglass;
+        let balance = &mut self.balance;
+        balance.strain -= strain;
+        balance.hardening = self.hardening;
+        balance.hourglass = self.hourglass;
+        balance.dissipation_deletion = self.deletion.get();
     }
 
     /// Adds an impulse of supports at the start of the step that [`Ledger::add`] then closes.
@@ -480,7 +508,8 @@ impl Ledger {
             + dissipation_material
             + dissipation_damping
             + dissipation_friction
-            + dissipation_viscosity;
+            + dissipation_viscosity
+            + self.deletion.get();
         let [impulse_loads, impulse_contact] = [impulse(0), impulse(1)];
         let impulse_supports = impulse(2).combine(1.0, &impulse(3), 1.0);
         let impulse_links = impulse(4);
@@ -504,6 +533,7 @@ impl Ledger {
             dissipation_damping,
             dissipation_friction,
             dissipation_viscosity,
+            dissipation_deletion: self.deletion.get(),
             hardening: self.hardening,
             hourglass: self.hourglass,
             energy_residual: change - works + dissipations,

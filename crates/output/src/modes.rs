@@ -262,7 +262,7 @@ impl ModeSet<'_> {
     /// The first shapes of a part that deform it; none on a line, and none of points and springs alone.
     fn figure(&self, part: &Modes) -> Option<Result<String, Error>> {
         let system = self.system;
-        let outlines = Outlines::new(system, |body| part.bodies.contains(&body));
+        let outlines = Outlines::new(system, |body, _| part.bodies.contains(&body));
         if system.dim < 2 || outlines.is_blank() {
             return None;
         }

@@ -298,7 +298,7 @@ pub struct Energy {
     /// some of `supports` and `obstacles` that move.
     pub works: BTreeMap<String, f64>,
     /// Energy lost over the run, positive when lost: by the `scheme`, and where there is some in `materials`, by `damping`, by
-    /// `friction` and by bulk `viscosity`.
+    /// `friction`, by bulk `viscosity` and by the `deletion` of elements.
     pub dissipations: BTreeMap<String, f64>,
     /// Energy stored over the run beside strain energy, positive when stored, where there is some: in `hardening`, and by the
     /// `scheme` in a term of its own.

@@ -1,9 +1,11 @@
-//! Functions of time: amplitudes, records of earthquakes, their integrals, response spectra, random and synthetic signals.
+//! Functions of time: amplitudes, records of earthquakes, their integrals, response spectra, filters of impact tests, random and
+//! synthetic signals.
 //!
 //! All numbers are in SI units. Nothing here knows a mesh, a body or a case file. Theory: `docs/src/theory/signals.md`.
 
 mod amplitude;
 mod baseline;
+mod channel;
 mod csv;
 mod error;
 mod field;
@@ -16,6 +18,7 @@ mod synthetic;
 
 pub use amplitude::Amplitude;
 pub use baseline::corrected;
+pub use channel::ChannelFilter;
 pub use csv::{Column, Table};
 pub use error::Error;
 pub use field::RandomField;

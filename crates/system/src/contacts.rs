@@ -143,6 +143,9 @@ pub(crate) fn numbered(
             let crosses = model.mesh.dim == 3
                 && matches!(&contact.primary, ModelTarget::Surface(other) if other.faces.iter().all(is_axis));
             let mut points = nodes(surface, &model.mesh, number, factor);
+            if let Some(body) = solid.filter(|body| body.spec.deletion.is_some()) {
+                points.extend(inner_nodes(&body.spec.cells, surface, &model.mesh, number));
+            }
             if crosses {
                 let axes = surface.faces.iter().filter(|face| is_axis(face));
                 points.extend(axes.map(|face| crossing(&renumbered(face, number))));
@@ -225,6 +228,20 @@ fn nodes(
         .map(|((&node, area), radius)| {
             Point::at_node(number[node as usize], area, 0.0).around(radius)
         })
+        .collect()
+}
+
+/// The nodes of these cells that are not on the surface, in the order of the cells: the deletion of cells may lay them bare. They stand
+/// for no area.
+fn inner_nodes(cells: &[ElementId], surface: &Surface, mesh: &Mesh, number: &[u32]) -> Vec<Point> {
+    let mut seen = vec![false; mesh.nodes.len()];
+    for &node in &surface.nodes {
+        seen[node as usize] = true;
+    }
+    let nodes = cells.iter().flat_map(|&cell| mesh.element_nodes(cell));
+    let inner = nodes.filter(|&&node| !std::mem::replace(&mut seen[node as usize], true));
+    inner
+        .map(|&node| Point::at_node(number[node as usize], 0.0, 0.0))
         .collect()
 }
 

@@ -13,6 +13,7 @@ mod build;
 mod check;
 mod collision;
 mod error;
+mod explicit_implicit;
 mod features;
 mod figures;
 mod glued;
@@ -72,6 +73,7 @@ mod conveyor;
 mod coulomb_oscillator;
 mod crushed_stop;
 mod crushed_tube;
+mod deletion;
 mod energy_identity;
 mod energy_identity_features;
 mod first_force;
@@ -116,6 +118,7 @@ mod shock_front;
 mod sliding_block;
 mod sliding_work;
 mod spinning_bar;
+mod spinning_ring;
 mod static_links;
 mod stick_slip;
 mod supports;
@@ -203,8 +206,10 @@ registry! {
     coulomb_oscillator
     crushed_stop
     crushed_tube
+    deletion
     energy_identity
     energy_identity_features
+    explicit_implicit
     first_force
     glued_rotating
     hertz_cylinder
@@ -248,6 +253,7 @@ registry! {
     sliding_block
     sliding_work
     spinning_bar
+    spinning_ring
     static_links
     stick_slip
     supports

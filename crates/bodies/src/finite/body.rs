@@ -10,9 +10,11 @@ use super::placement::Stored;
 #[derive(Debug)]
 pub(crate) struct Finite {
     pub(super) law: Law,
-    /// Numbers that are kept of a point: those of the law, and with bulk viscosity ln J.
+    /// Numbers that are kept of a point: those of the law, with bulk viscosity ln J, with deletion whether the element is deleted.
     pub(super) kept: usize,
     pub(super) kept_by_law: usize,
+    /// Plastic strain at which elements are deleted.
+    pub(super) limit: Option<f64>,
     pub(super) shape: Shape,
 }
 
@@ -28,12 +30,13 @@ pub(crate) struct Outcome {
 pub(super) type Failed = (usize, Fault);
 
 impl Finite {
-    pub(crate) fn new(law: Law, shape: Shape, is_viscous: bool) -> Finite {
+    pub(crate) fn new(law: Law, shape: Shape, is_viscous: bool, limit: Option<f64>) -> Finite {
         let kept_by_law = law.finite().map_or(0, Material::history_len);
         Finite {
             law,
-            kept: kept_by_law + usize::from(is_viscous),
+            kept: kept_by_law + usize::from(is_viscous) + usize::from(limit.is_some()),
             kept_by_law,
+            limit,
             shape,
         }
     }

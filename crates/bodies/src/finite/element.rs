@@ -19,6 +19,8 @@ pub(super) struct Local<'a> {
     pub(super) dt: f64,
     /// History of its points at the start of the step.
     pub(super) old: &'a [f64],
+    /// Numbers that the law keeps of a point.
+    pub(super) of_law: usize,
     /// Coefficients of the bulk viscosity.
     pub(super) viscosity: Option<[f64; 2]>,
 }
@@ -160,13 +162,13 @@ impl Local<'_> {
     ) -> Result<(Response, Damped<f64>), Fault> {
         let length = new.len() / points;
         let range = point * length..(point + 1) * length;
-        let of_law = length - usize::from(self.viscosity.is_some());
-        let (old, before) = self.old[range.clone()].split_at(of_law);
-        let (new, after) = new[range].split_at_mut(of_law);
+        let (old, before) = self.old[range.clone()].split_at(self.of_law);
+        let (new, after) = new[range].split_at_mut(self.of_law);
+        after.copy_from_slice(before);
         let updated = self.law.update(f, self.dt, (old, new), want);
         let mut response = updated.map_err(|failure| Fault::Law { point, failure })?;
         let mut damped = Damped::default();
-        if let (Some(coefficients), [before], [after]) = (self.viscosity, before, after) {
+        if let (Some(coefficients), [before, ..], [after, ..]) = (self.viscosity, before, after) {
             let h = [0, 1, 2].map(|i| [0, 1, 2].map(|j| f[(i, j)] - f64::from(u8::from(i == j))));
             damped = damp(&h, coefficients, (*before, self.dt));
             let mut stress = [[0.0; 3]; 3];

@@ -123,6 +123,15 @@ impl Sweep<'_> {
             for (q, weight) in room.law.weights.iter_mut().enumerate() {
                 self.chunk.weigh(first, q, weight);
             }
+            if self.finite.limit.is_some() {
+                let old = &self.at.old[first * self.finite.kept * points..];
+                let new = &mut self.new[first * self.finite.kept * points..];
+                self.finite.leave_out(
+                    points,
+                    (old, &mut new[..count * self.finite.kept * points]),
+                    &mut room.u,
+                );
+            }
             let mut found = simd.vectorize(Gradients(&elements, &mut room));
             if elements.between && found.is_ok() {
                 let (at, strains) = (&mut room.law, elements.together == Together::Dilated);

@@ -7,6 +7,7 @@ mod batch;
 mod between;
 mod body;
 mod cell;
+mod deletion;
 mod dilatation;
 mod element;
 mod formulation;
@@ -25,6 +26,7 @@ mod viscosity;
 
 pub(crate) use body::{Finite, Outcome};
 pub(crate) use cell::Shape;
+pub use deletion::Deleted;
 pub use formulation::Formulation;
 pub use placement::{Placement, Stored};
 pub use pressure::FollowerPressure;

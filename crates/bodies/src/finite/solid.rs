@@ -5,7 +5,7 @@ use carom_mesh::ElementId;
 
 use super::body::{Failed, Finite};
 use super::element::Fault;
-use super::{Placement, Stored};
+use super::{Deleted, Placement, Stored};
 use crate::error::Error;
 use crate::scratch::Scratch;
 use crate::solid::Solid;
@@ -94,6 +94,33 @@ impl Solid {
         }
     }
 
+    /// Whether its elements are deleted where their material has flowed too far ([`BodySpec::deletion`](crate::BodySpec)).
+    pub fn has_deletion(&self) -> bool {
+        self.finite
+            .as_ref()
+            .is_some_and(|finite| finite.limit.is_some())
+    }
+
+    /// Whether each element is deleted in this history of the body; none of a body without deletion.
+    pub fn deleted(&self, history: &[f64]) -> Option<Vec<bool>> {
+        self.finite.as_ref()?.deleted(self.blocks(), history)
+    }
+
+    /// Deletes elements at the end of a step, which ends at `at` with the history `new`: those whose mean plastic strain over the points
+    /// has reached the limit. They have no forces and energies from then on.
+    ///
+    /// # Errors
+    /// As [`Solid::force`].
+    pub fn delete(&self, at: &Placement, new: &mut [f64]) -> Result<Deleted, Error> {
+        match &self.finite {
+            None => Ok(Deleted::default()),
+            Some(finite) => {
+                let deleted = finite.delete(self.blocks(), at, new);
+                deleted.map_err(|failed| self.failed(failed))
+            }
+        }
+    }
+
     /// Adds `factor` ∂f/∂u (N/m) to a matrix over all unknowns of the system.
     ///
     /// The derivative is by `at.u`, with `at.from` held: between two displacements a body at small strain adds `factor` K/2,
@@ -132,9 +159,14 @@ impl Solid {
         let (mut bound, mut scaled) = (FrequencyBound::default(), Vec::new());
         let (mut first, mut element) = (0, 0);
         let modulus = self.bulk_modulus();
+        let deleted = finite.deleted(self.blocks(), at.old);
         let visited = finite.each_tangent(self.blocks(), at, &mut |of_nodes, dim, k| {
             let masses = &masses[first..first + of_nodes.len()];
             first += of_nodes.len();
+            if deleted.as_ref().is_some_and(|deleted| deleted[element]) {
+                element += 1;
+                return;
+            }
             stability::scale(dim, k, masses, &mut scaled);
             let norm = scaled.iter().map(|b| b * b).sum::<f64>().sqrt();
             let viscous = self.coefficients(element);

@@ -26,7 +26,7 @@ pub(super) type VisitTangent<'a> = dyn FnMut(&[u32], usize, &mut [f64]) + 'a;
 
 impl Finite {
     /// Numbers that the points of an element keep.
-    fn kept_of_element(&self, block: &Block) -> usize {
+    pub(super) fn kept_of_element(&self, block: &Block) -> usize {
         self.kept * self.shape.points(block)
     }
 
@@ -174,7 +174,7 @@ impl Finite {
     }
 
     /// Calls `then` with an element where it is. `kept`: its place in `at.old`.
-    fn at_element<T>(
+    pub(super) fn at_element<T>(
         &self,
         element: &Element,
         at: &Placement,
@@ -182,7 +182,10 @@ impl Finite {
         then: impl FnOnce(&Local) -> Result<T, Fault>,
     ) -> Result<T, Fault> {
         let n = element.unknowns();
-        let u = element.gather(at.u);
+        let mut u = element.gather(at.u);
+        if self.is_deleted(&at.old[kept.clone()]) {
+            u = [0.0; MAX_UNKNOWNS];
+        }
         let from = at.from.map(|from| element.gather(from));
         let Some(law) = self.law.finite() else {
             return Err(Fault::NoBetween);
@@ -193,6 +196,7 @@ impl Finite {
             from: from.as_ref().map(|from| &from[..n]),
             dt: at.dt,
             old: &at.old[kept],
+            of_law: self.kept_by_law,
             viscosity: element.viscosity,
         })
     }
@@ -261,7 +265,7 @@ impl Finite {
         u: &[f64],
         history: &[f64],
     ) -> Vec<(f64, Mat3)> {
-        let (mut out, mut kept, mut room) = (Vec::new(), 0, Element::room());
+        let (mut out, mut kept) = (Vec::new(), 0);
         let at = Placement {
             u,
             v: &[],
@@ -271,14 +275,16 @@ impl Finite {
             old: history,
         };
         for block in blocks {
-            let mut new = vec![0.0; self.kept_of_element(block)];
-            for place in 0..block.len() {
-                block.set(&mut room, &self.shape, place);
-                let old = kept..kept + new.len();
-                kept = old.end;
-                let stress = self.at_element(&room, &at, old, |local| room.cauchy(local, &mut new));
-                out.push(stress.unwrap_or((f64::NAN, Mat3::repeat(f64::NAN))));
-            }
+            let own = self.kept_of_element(block);
+            let room = || (Element::room(), vec![0.0; own]);
+            let all = (0..block.len()).into_par_iter();
+            out.par_extend(all.map_init(room, |(element, new), place| {
+                block.set(element, &self.shape, place);
+                let old = kept + own * place..kept + own * (place + 1);
+                let stress = self.at_element(element, &at, old, |local| element.cauchy(local, new));
+                stress.unwrap_or((f64::NAN, Mat3::repeat(f64::NAN)))
+            }));
+            kept += own * block.len();
         }
         out
     }
@@ -318,7 +324,7 @@ impl Block {
     }
 
     /// Makes `element` the one at this place of the block.
-    fn set(&self, element: &mut Element, shape: &Shape, place: usize) {
+    pub(super) fn set(&self, element: &mut Element, shape: &Shape, place: usize) {
         let (chunk, place) = (place / self.chunk_length(), place % self.chunk_length());
         element.set(shape, self, &self.chunks[chunk], place);
     }

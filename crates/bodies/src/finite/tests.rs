@@ -214,9 +214,9 @@ fn kernels_give_what_one_element_after_the_other_gives() {
                         "{kind:?} {kinematics:?} {formulation:?} {} {count}",
                         law.key()
                     );
-                    let finite = Finite::new(law, shape, false);
+                    let finite = Finite::new(law, shape, false, None);
                     compare(&finite, &sample, false, &name);
-                    let viscous = Finite::new(law, shape, true);
+                    let viscous = Finite::new(law, shape, true, None);
                     compare(&viscous, &damped, false, &format!("{name} viscous"));
                     if !law.dissipates() {
                         compare(&finite, &sample, true, &format!("{name} between"));
@@ -241,7 +241,7 @@ fn an_element_inside_out_is_named() {
             for node in 80..88 {
                 u[3 * node] = -2.5 * block.chunks[0].x[node][0];
             }
-            let finite = Finite::new(law, shape, false);
+            let finite = Finite::new(law, shape, false, None);
             for way in [0, 1, 2] {
                 for between in [false, true] {
                     let fault = swept(&finite, &block, &u, way, between).outcome.fault;

@@ -1,7 +1,7 @@
 //! Beams: sections from shapes and properties, and what beams refuse.
 
 use carom_bodies::{
-    BeamSection, BeamTheory, Kinematics, Rotations, SectionProperties, SectionShape,
+    BeamSection, BeamTheory, BodySpec, Kinematics, Rotations, SectionProperties, SectionShape,
 };
 use carom_materials::Law;
 use carom_mesh::Mesh;
@@ -190,18 +190,16 @@ impl Builder<'_> {
         }
     }
 
-    /// Initial angular velocity of beams, rad/s.
-    pub(super) fn spin_of_beams(
+    /// Initial angular velocity of beams and of solids at finite strain, about their centre of mass, rad/s.
+    pub(super) fn initial_spin(
         &mut self,
         mesh: &Mesh,
         (path, body): (&str, &Body),
-        kinematics: Kinematics,
+        spec: &BodySpec,
     ) -> [f64; 3] {
-        let given = body
-            .initial
-            .as_ref()
-            .and_then(|initial| initial.spin.as_ref());
-        let (Kinematics::Beam(section), Some(given)) = (kinematics, given) else {
+        let initial = body.initial.as_ref();
+        let given = initial.and_then(|initial| initial.spin.as_ref());
+        let (None, Some(given)) = (&body.rigid, given) else {
             return [0.0; 3];
         };
         let spin = match (given.given(), mesh.dim) {
@@ -209,15 +207,25 @@ impl Builder<'_> {
             _ => given.si(),
         };
         let flat = mesh.dim == 3 || spin[0] == 0.0 && spin[1] == 0.0;
-        if section.rotations == Rotations::Finite && flat {
-            return spin;
-        }
-        let (message, accepted) = match flat {
-            true => (
+        let (turns, message, accepted) = match spec.kinematics {
+            Kinematics::Beam(section) => (
+                section.rotations == Rotations::Finite,
                 "beams with small rotations do not spin",
                 "rotations = \"finite\"",
             ),
-            false => (
+            Kinematics::Axisymmetric | Kinematics::Bar { .. } => {
+                (false, "here a body does not turn", "no spin")
+            }
+            _ => (
+                spec.material.finite().is_some(),
+                "a body at small strain does not turn",
+                "a material at finite strain, or rigid = {}",
+            ),
+        };
+        let (message, accepted) = match (turns, flat) {
+            (true, true) => return spin,
+            (false, _) => (message, accepted),
+            (true, false) => (
                 "in the plane a body turns about z only",
                 "one component, about z",
             ),

@@ -69,10 +69,11 @@ impl Builder<'_> {
                 weights: None,
                 viscosity: body.bulk_viscosity.map(Into::into),
                 scaling: body.mass_scaling.map(Into::into),
+                deletion: body.deletion.map(|deletion| deletion.plastic_strain),
                 releases: Vec::new(),
             };
             let spec = self.hinged(mesh, (&path, body), spec);
-            let spin = self.spin_of_beams(mesh, (&path, body), kinematics);
+            let spin = self.initial_spin(mesh, (&path, body), &spec);
             let rigid = match kinematics {
                 Kinematics::Beam(_) => None,
                 _ => self.rigid(mesh, &path, body, &spec),

@@ -1,7 +1,10 @@
-//! Bulk viscosity and mass scaling: what they are made of, and where they are refused.
+//! Bulk viscosity, mass scaling and deletion: what they are made of, and where they are refused.
 
 use carom_bodies::{BulkViscosity, Kinematics, MassScaling};
-use carom_dynamics::ModelBody;
+use carom_contact::Integration;
+use carom_dynamics::{ModelBody, ModelContact, ModelTarget};
+use carom_materials::{Law, Material};
+use carom_mesh::Surface;
 
 use super::Builder;
 use crate::error::Problem;
@@ -26,7 +29,66 @@ impl From<schema::MassScaling> for MassScaling {
 }
 
 impl Builder<'_> {
-    /// Refuses bulk viscosity and mass scaling where they mean nothing.
+    /// Refuses deletion where there is no plastic strain, and in zones.
+    fn deletes(&mut self, path: &str, material: &Law) {
+        let mut history = vec![0.0; material.finite().map_or(0, Material::history_len)];
+        if let Some(law) = material.finite() {
+            law.start(&mut history);
+        }
+        if material.finite().is_none() || material.plastic_strain(&history).is_none() {
+            let message = "cells are deleted at a plastic strain, and this material has none";
+            let problem = Problem::new(path, message).found(material.key());
+            self.problems
+                .push(problem.accepted(["j2", "j2-table", "johnson-cook"]));
+        } else if !self.plan.zones.is_empty() {
+            let message = "cells are not deleted in runs with zones";
+            let problem = Problem::new(path, message);
+            self.problems.push(problem.accepted(["no `zone`"]));
+        }
+    }
+
+    /// Refuses contacts that deletion leaves without faces or areas.
+    pub(super) fn contacts_of_deleted(&mut self, bodies: &[ModelBody], contacts: &[ModelContact]) {
+        let deletes = |surface: &Surface| {
+            let parent = surface.faces.first().map(|face| face.parent)?;
+            let owner = |body: &&ModelBody| body.spec.cells.binary_search(&parent).is_ok();
+            let body = bodies.iter().find(owner)?;
+            body.spec.deletion.map(|_| body.spec.name.clone())
+        };
+        for contact in contacts {
+            let path = format!("contact.{}", contact.name);
+            let primary = match &contact.primary {
+                ModelTarget::Surface(primary) => deletes(primary),
+                ModelTarget::Rigid(_) => None,
+            };
+            if let Some(body) = primary {
+                let message = format!(
+                    "cells of body `{body}` are deleted, so that its surface changes and cannot be the primary side"
+                );
+                let problem = Problem::new(path, message);
+                self.problems.push(problem.accepted([
+                    "the surface as `secondary`, whose points are then all nodes of the body",
+                    "an obstacle in its place",
+                ]));
+                continue;
+            }
+            let Some(body) = deletes(&contact.secondary) else {
+                continue;
+            };
+            let nodes = contact.integration == Integration::Node;
+            if !nodes || contact.law.is_function() {
+                let message = format!(
+                    "cells of body `{body}` are deleted, so that the areas of its surface change"
+                );
+                let problem = Problem::new(path, message);
+                self.problems.push(problem.accepted([
+                    "integration = \"node\" with a law without areas: velocity, restitution, displacement",
+                ]));
+            }
+        }
+    }
+
+    /// Refuses bulk viscosity, mass scaling and deletion where they mean nothing.
     pub(super) fn explicit_alone(&mut self, bodies: &[ModelBody]) {
         for (number, body) in bodies.iter().enumerate() {
             let zone = self.plan.zone_of(number);
@@ -39,6 +101,7 @@ impl Builder<'_> {
             for (key, given) in [
                 ("bulk-viscosity", spec.viscosity.is_some()),
                 ("mass-scaling", spec.scaling.is_some()),
+                ("deletion", spec.deletion.is_some()),
             ] {
                 let path = format!("{path}.{key}");
                 if given && !explicit {
@@ -53,6 +116,9 @@ impl Builder<'_> {
                             .accepted(["a body without `section.beam`, `rigid` and `reduction`"]),
                     );
                 }
+            }
+            if spec.deletion.is_some() {
+                self.deletes(&format!("{path}.deletion"), &spec.material);
             }
             if spec.viscosity.is_none() {
                 continue;

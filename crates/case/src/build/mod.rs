@@ -94,6 +94,8 @@ pub struct BuiltProbe {
     pub record: Vec<Motion>,
     /// Response spectrum of its absolute acceleration.
     pub spectrum: Option<Spectrum>,
+    /// Classes (Hz) of the filters of its accelerations.
+    pub filters: Vec<u32>,
 }
 
 /// Builds the system of a case.
@@ -156,6 +158,7 @@ impl Builder<'_> {
             bodies.iter().map(|body| body.spec.cells.clone()).collect();
         let mut contacts = self.contacts(&mesh, &bodies, &cells);
         self.listed_twice(&contacts);
+        self.contacts_of_deleted(&bodies, &contacts);
         contacts.extend(self.stops(&mesh, &bodies, &discrete));
         self.nonlinear_in_zones();
         self.stresses_between(&bodies);
@@ -236,6 +239,7 @@ impl Builder<'_> {
         self.warn_of_steps(system.dt);
         self.able_to_act(&system);
         self.with_area(&system);
+        self.fine_enough(system.dt);
         self.penetration(&system);
         self.moved(&system, &nodes);
         self.startable(&system);

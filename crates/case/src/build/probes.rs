@@ -8,6 +8,7 @@ use carom_dynamics::ModelBody;
 use carom_elements::{MAX_NODES, map};
 use carom_mesh::{ElementId, Group, Mesh};
 use carom_output::Spectrum;
+use carom_signals::ChannelFilter;
 
 use super::{Builder, BuiltProbe};
 use crate::error::Problem;
@@ -27,6 +28,7 @@ impl Builder<'_> {
                     nodes: shares(mesh, group, axisymmetric),
                     record: probe.record.clone(),
                     spectrum,
+                    filters: probe.filter.iter().map(|class| class.frequency()).collect(),
                 });
             }
         }
@@ -49,6 +51,26 @@ impl Builder<'_> {
             given.points as usize,
             given.damping,
         ))
+    }
+
+    /// Refuses filters for which the steps, of `dt` (s), are too long.
+    pub(super) fn fine_enough(&mut self, dt: f64) {
+        for (name, probe) in self.case.probe.iter() {
+            for (place, class) in probe.filter.iter().enumerate() {
+                let longest = ChannelFilter::longest_step(f64::from(class.frequency()));
+                if dt > longest * (1.0 + 1e-9) {
+                    let path = format!("probe.{name}.filter[{place}]");
+                    let message = format!(
+                        "the filter needs ten steps in the period of its class, and a step is {dt:.4e} s"
+                    );
+                    let problem = Problem::new(path, message).found(class.name());
+                    self.problems.push(problem.accepted([
+                        format!("steps of at most {longest:.4e} s"),
+                        "a lower class".to_owned(),
+                    ]));
+                }
+            }
+        }
     }
 
     /// Refuses probes on nodes of no body. `of`: cells of each body; with overlaps without those that are removed.

@@ -24,12 +24,6 @@ impl Builder<'_> {
             .as_ref()
             .and_then(|initial| initial.spin.as_ref());
         let Some(rigid) = &body.rigid else {
-            if spin.is_some() {
-                let message = "a body that deforms has no angular velocity as a whole";
-                let problem = Problem::new(format!("{path}.initial.spin"), message);
-                self.problems
-                    .push(problem.accepted(["rigid = {}", "no spin"]));
-            }
             return None;
         };
         self.suits_rigid(path, body);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
 use super::beam::BeamSection;
-use super::explicit::{BulkViscosity, MassScaling};
+use super::explicit::{BulkViscosity, Deletion, MassScaling};
 use super::joint::Hinge;
 use carom_quantities::{
     Angle, AngularVelocity, Area, Coordinate, Delay, Frequency, Length, MomentOfInertia, Rate,
@@ -40,6 +40,8 @@ pub struct Body {
     pub bulk_viscosity: Option<BulkViscosity>,
     /// Mass scaling, for explicit schemes. Default: none.
     pub mass_scaling: Option<MassScaling>,
+    /// Deletion of cells that have flowed too far, for explicit schemes. Default: none.
+    pub deletion: Option<Deletion>,
     /// Initial state. After a static stage the velocity applies at the end of that stage. Default: at rest, undeformed.
     pub initial: Option<Initial>,
 }
@@ -216,7 +218,8 @@ pub struct Initial {
     pub velocity: Option<Vector<Velocity>>,
     /// Displacement from the position of the mesh.
     pub displacement: Option<Vector<Coordinate>>,
-    /// Angular velocity of a rigid body about the axes of coordinates: three components, or one about z in the plane.
+    /// Angular velocity about the axes of coordinates: three components, or one about z in the plane. Of rigid bodies, and about their
+    /// centre of mass of bodies at finite strain and beams with finite rotations.
     pub spin: Option<Vector<AngularVelocity>>,
 }
 

@@ -1,4 +1,4 @@
-//! What bodies of explicit schemes have beside: bulk viscosity, mass scaling.
+//! What bodies of explicit schemes have beside: bulk viscosity, mass scaling, deletion of cells.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -26,6 +26,16 @@ fn linear() -> f64 {
 
 fn quadratic() -> f64 {
     1.2
+}
+
+/// Deletion of cells: a cell whose material has flowed too far has no force any more. Its mass stays at its nodes, its energy is a term of
+/// its own in the balance. For materials with plastic strain and explicit schemes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Deletion {
+    /// Mean equivalent plastic strain over the integration points of a cell at which it is deleted.
+    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 100.0))]
+    pub plastic_strain: f64,
 }
 
 /// Mass scaling: mass added to cells so that explicit steps may be larger. Gravity acts on it, momentum and kinetic energy count it.

@@ -47,7 +47,7 @@ pub use contact::{
     Penetration, Sliding,
 };
 pub use discrete::{Dashpot, DashpotPoint, Ends, PointMass, Spring, SpringPoint, Stop};
-pub use explicit::{BulkViscosity, MassScaling};
+pub use explicit::{BulkViscosity, Deletion, MassScaling};
 pub use joint::{
     AddedMass, Channel, Constraint, ConstraintTerm, FluidGap, Foundation, Hinge, RigidLink,
 };

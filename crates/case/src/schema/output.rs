@@ -16,6 +16,47 @@ pub struct Probe {
     pub record: Vec<Motion>,
     /// Response spectrum of the absolute acceleration, for floor spectra. Default: none.
     pub response_spectrum: Option<ProbeSpectrum>,
+    /// Filters of SAE J211-1 behind which `acceleration` and `absolute-acceleration` are written too, in `filtered.csv`. Default:
+    /// none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("uniqueItems" = true))]
+    pub filter: Vec<ChannelClass>,
+}
+
+/// A channel frequency class of SAE J211-1: a low-pass filter without shift of phase. It needs ten steps in the period of its class.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+pub enum ChannelClass {
+    /// Corner at 100 Hz: whole structures.
+    #[serde(rename = "cfc-60")]
+    Cfc60,
+    /// Corner at 300 Hz: velocities and displacements by integration.
+    #[serde(rename = "cfc-180")]
+    Cfc180,
+    /// Corner at 1000 Hz: parts of structures.
+    #[serde(rename = "cfc-600")]
+    Cfc600,
+    /// Corner at 1650 Hz: accelerations at the point of an impact.
+    #[serde(rename = "cfc-1000")]
+    Cfc1000,
+}
+
+impl ChannelClass {
+    /// The class, Hz.
+    pub fn frequency(self) -> u32 {
+        match self {
+            ChannelClass::Cfc60 => 60,
+            ChannelClass::Cfc180 => 180,
+            ChannelClass::Cfc600 => 600,
+            ChannelClass::Cfc1000 => 1000,
+        }
+    }
+
+    /// Its name in the case file.
+    pub fn name(self) -> String {
+        format!("cfc-{}", self.frequency())
+    }
 }
 
 /// A response spectrum: largest absolute acceleration of oscillators on the probe, by their frequency.

@@ -288,3 +288,61 @@ fn the_log_tells_which_factor_an_iteration_takes_and_why() {
     );
     assert_eq!(told(&[]), "");
 }
+
+/// A bar that runs against a support, with one cell of which explicit steps become too long: the run ends with the name of the cell that
+/// the front has reached, its critical step above that of no step taken, and the state before it.
+#[test]
+fn an_explicit_run_whose_steps_become_unstable_ends_with_the_cell_and_the_last_good_state() {
+    let work = tempfile::tempdir().unwrap();
+    let file = r#"carom = 1
+[mesh]
+generate.bar.box = { origin = [0.0, 0.0, 0.0], size = [1.0, 0.1, 0.1], elements = [10, 1, 1] }
+[material.rubber]
+density = 1000.0
+neo-hooke = { young = "10 MPa", poisson = 0.3 }
+[body.bar]
+region = "bar"
+material = "rubber"
+initial = { velocity = [-40.0, 0.0, 0.0] }
+[support.end]
+on = "bar.left"
+fix = ["x", "y", "z"]
+[time]
+end = "10 ms"
+step = { critical = 0.8 }
+scheme.central-difference = {}
+newton = { halvings = 0 }
+"#;
+    fs::write(work.path().join("case.toml"), file).unwrap();
+    let output = carom(work.path(), &["run", "case.toml"]);
+    let said = text(&output);
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("cell 0 of block 0 in body 'bar'"), "{said}");
+    let steps = summary(work.path())["time"]["steps"].as_u64().unwrap();
+    assert!(
+        steps > 0 && said.contains(&format!("step {}, t = ", steps + 1)),
+        "{said}"
+    );
+    assert_eq!(rows(work.path()) as u64, steps + 1);
+    let results = work.path().join("case.carom");
+    let table = fs::read_to_string(results.join("histories.csv")).unwrap();
+    let numbers = table.lines().skip(1).flat_map(|line| line.split(','));
+    let given = numbers.filter(|cell| !cell.is_empty());
+    assert!(
+        given
+            .map(|cell| cell.parse::<f64>().unwrap())
+            .all(f64::is_finite)
+    );
+    assert!(results.join("checkpoints/last.state").is_file());
+    // the same bar takes halves where it may
+    let halved = [
+        "run",
+        "case.toml",
+        "--set",
+        "time.newton.halvings=8",
+        "--set",
+        "time.end='3 ms'",
+    ];
+    let output = carom(work.path(), &halved);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+}

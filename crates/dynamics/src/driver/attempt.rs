@@ -16,6 +16,8 @@ impl Driver {
         let outcome = self.attempt_after_jump(Driver::take_stages);
         self.forget_predictor();
         outcome?;
+        self.check_viscosity(dt)?;
+        self.delete_elements()?;
         if self.is_known_finite() {
             return Ok(());
         }

@@ -22,6 +22,7 @@ mod candidates;
 mod carried;
 mod compressed;
 mod contacts;
+mod deletion;
 mod describe;
 mod direct;
 mod effective;

@@ -46,7 +46,7 @@ impl Driver {
             if shapes.changed <= CHANGE {
                 return Ok(());
             }
-            shapes.changed = largest_change(system, &shapes.u, &motion.u);
+            shapes.changed = largest_change(system, &motion.history, [&shapes.u, &motion.u]);
         }
         if !known || shapes.changed > WORTH * CHANGE {
             let (critical, bound) = system.critical_step_at(motion)?;
@@ -59,7 +59,7 @@ impl Driver {
         let shape = |(k, body): (usize, &Body)| {
             changes(body).then(|| Shape {
                 velocity: system.mean_velocity(k, &motion.v),
-                shortest: shortest(system, body, at),
+                shortest: shortest(system, (k, &motion.history), at),
             })
         };
         shapes.bodies.clear();
@@ -115,6 +115,26 @@ impl Driver {
         }
     }
 
+    /// Drops an attempt of `dt` (s) in which bulk viscosity was stronger than its size is stable with: the impact began in it, of which
+    /// the step before did not know.
+    ///
+    /// # Errors
+    /// [`Error::Viscous`].
+    pub(super) fn check_viscosity(&self, dt: f64) -> Result<(), Error> {
+        let state = &self.state;
+        let more = state.shapes.by_compression * self.stored.compression;
+        let critical = 1.0 / (PART / state.control.stable + 0.5 * more);
+        if more > 0.0 && dt > critical {
+            return Err(Error::Viscous {
+                step: state.step + 1,
+                time: state.time,
+                dt,
+                critical,
+            });
+        }
+        Ok(())
+    }
+
     /// Makes the attempt the state; what is known of the shapes goes along.
     pub(super) fn swap_states(&mut self) {
         self.next.motion.compose(&self.system.unknowns);
@@ -146,9 +166,14 @@ fn largest_rate(system: &System, shapes: &[Option<Shape>], v: &[f64]) -> f64 {
     bodies.filter_map(of_body).fold(0.0, f64::max)
 }
 
-/// Calls `visit` with the nodes of each pair of an element.
-fn each_pair(body: &Body, visit: &mut impl FnMut(u32, u32)) {
-    body.each_element(&mut |nodes| {
+/// Calls `visit` with the nodes of each pair of an element of a body, those of deleted elements left out. `histories`: of all.
+fn each_pair(
+    system: &System,
+    (number, histories): (usize, &[f64]),
+    visit: &mut impl FnMut(u32, u32),
+) {
+    let history = system.history(number, histories);
+    system.bodies[number].each_element_left(history, &mut |nodes| {
         for (k, &a) in nodes.iter().enumerate() {
             for &b in &nodes[..k] {
                 visit(a, b);
@@ -168,20 +193,21 @@ fn square(system: &System, [a, b]: [u32; 2], u: &[f64]) -> f64 {
 }
 
 /// Shortest distance of two nodes of an element of a body, m.
-fn shortest(system: &System, body: &Body, u: &[f64]) -> f64 {
+fn shortest(system: &System, of: (usize, &[f64]), u: &[f64]) -> f64 {
     let mut least = f64::INFINITY;
-    each_pair(body, &mut |a, b| {
+    each_pair(system, of, &mut |a, b| {
         least = least.min(square(system, [a, b], u))
     });
     least.sqrt()
 }
 
 /// Largest change of the distance of two nodes of an element from one motion to another, relative.
-fn largest_change(system: &System, before: &[f64], now: &[f64]) -> f64 {
+fn largest_change(system: &System, histories: &[f64], places: [&[f64]; 2]) -> f64 {
     let mut range: [f64; 2] = [1.0; 2];
-    for body in system.bodies.iter().filter(|body| changes(body)) {
-        each_pair(body, &mut |a, b| {
-            let [before, now] = [before, now].map(|u| square(system, [a, b], u));
+    let bodies = system.bodies.iter().enumerate();
+    for (number, _) in bodies.filter(|(_, body)| changes(body)) {
+        each_pair(system, (number, histories), &mut |a, b| {
+            let [before, now] = places.map(|u| square(system, [a, b], u));
             let ratio = now / before;
             range = [range[0].min(ratio), range[1].max(ratio)];
         });

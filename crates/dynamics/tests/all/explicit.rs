@@ -194,3 +194,49 @@ fn a_collapsed_element_ends_the_run_with_its_name() {
         other => panic!("{other}"),
     }
 }
+
+/// A bar flies at 0.4 c against the support of one end. In its first step nothing is known of the compression to come: without bulk
+/// viscosity the step is stable; with it its quadratic part has γ dt of about ten, where 2 γ dt + ω² dt² ≤ 4 is stable, so that attempts are
+/// dropped and parts of the step taken.
+#[test]
+fn the_first_step_of_a_hard_impact_is_taken_in_halves() {
+    let first_step = |quadratic: f64| {
+        let (mesh, mut spec) = bar(10);
+        spec.viscosity = Some(BulkViscosity {
+            linear: 0.0,
+            quadratic,
+        });
+        let c = INITIAL.wave_speed(carom_materials::Plane::Full);
+        let mut supports = confined(&mesh);
+        supports.push(Support {
+            nodes: mesh.group_nodes(&mesh.groups["bar.left"]),
+            fix: [true; 3],
+            fix_rotations: [false; 3],
+        });
+        let body = ModelBody {
+            velocity: [-0.4 * c, 0.0, 0.0],
+            ..ModelBody::new(spec)
+        };
+        let mut model = Model {
+            supports,
+            ..Model::new(vec![body], mesh, CENTRAL, 1e-4)
+        };
+        model.dt = 0.6 * System::new(model.clone()).unwrap().critical_step();
+        let mut driver = Driver::new(System::new(model).unwrap()).unwrap();
+        driver.step().unwrap();
+        let attempts = driver.report().attempts;
+        for _ in 0..20 {
+            driver.step().unwrap();
+        }
+        let state = driver.state();
+        (
+            attempts,
+            state.control.failed,
+            state.ledger.largest_made / state.ledger.initial.energy(),
+        )
+    };
+    let (attempts, failed, made) = first_step(0.0);
+    assert_eq!((attempts, failed), (1, 0), "{made}");
+    let (attempts, failed, made) = first_step(3.0);
+    assert!(attempts > 2 && failed > 0, "{attempts} {failed} {made}");
+}

@@ -25,6 +25,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             weights: None,
             viscosity: None,
             scaling: None,
+            deletion: None,
             releases: Vec::new(),
         },
         mass: MassKind::Lumped,

@@ -45,7 +45,7 @@ const fn hidden(name: &'static str, unit: &'static str, value: fn(&Done) -> Opti
 
 /// All columns between the name of the variant and the verdict. Force positive in compression, energy change and work
 /// positive when the bodies gain, dissipation positive when lost, penetration positive.
-pub const COLUMNS: [Column; 33] = [
+pub const COLUMNS: [Column; 34] = [
     column("force_error", "force error", Form::Percent, |v| {
         v.errors.force
     }),
@@ -140,6 +140,7 @@ pub const COLUMNS: [Column; 33] = [
     hidden("dissipation_damping_j", "J", |v| lost(v, "damping")),
     hidden("dissipation_friction_j", "J", |v| lost(v, "friction")),
     hidden("dissipation_viscosity_j", "J", |v| lost(v, "viscosity")),
+    hidden("dissipation_deletion_j", "J", |v| lost(v, "deletion")),
     hidden("newton_iterations", "", |v| {
         v.summary.newton.map(|newton| newton.iterations as f64)
     }),

@@ -41,3 +41,14 @@ pub(crate) fn von_mises(stress: &[f64; 6]) -> f64 {
     let shear = xy * xy + yz * yz + xz * xz;
     (0.5 * normal + 3.0 * shear).sqrt()
 }
+
+/// Whether each cell is deleted; `None` if no body has deletion.
+pub(crate) fn deleted(system: &System, histories: &[f64]) -> Option<Vec<bool>> {
+    let has_deletion = system.bodies.iter().any(|body| body.has_deletion());
+    let bodies = system.bodies.iter().enumerate();
+    let of_bodies = bodies.flat_map(|(k, body)| {
+        let own = body.deleted(system.history(k, histories));
+        own.unwrap_or(vec![false; body.cells().len()])
+    });
+    has_deletion.then(|| of_bodies.collect())
+}

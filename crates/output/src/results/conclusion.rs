@@ -35,6 +35,7 @@ impl Results {
 fn conclude(mut results: Results, ending: &Ending) -> Result<Summary, Error> {
     let mut errors = Vec::new();
     let figures = draw(&mut results, &mut errors);
+    keep(results.filtered.write(&mut results.folder), &mut errors);
     let report = keep(results.folder.file("report.html"), &mut errors);
     let path = keep(results.folder.file("summary.json"), &mut errors);
     let cause = ending.unfinished.clone();
@@ -321,6 +322,7 @@ fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {
         ("damping", end.dissipation_damping),
         ("friction", end.dissipation_friction),
         ("viscosity", end.dissipation_viscosity),
+        ("deletion", end.dissipation_deletion),
     ]);
     dissipations.insert("scheme".to_owned(), end.dissipation_scheme);
     let stored = there(&[

@@ -12,7 +12,7 @@ use carom_mesh::Face;
 use serde::{Deserialize, Serialize};
 
 use crate::results::beams::{SECTION_FORCES, rotations, section_forces};
-use crate::results::cells::{cell_stresses, plastic_strains, von_mises};
+use crate::results::cells::{cell_stresses, deleted, plastic_strains, von_mises};
 use crate::results::{Fields, Zoning};
 use crate::vtu::{Cells, Field, Grid, Values, write};
 use crate::writer::Writer;
@@ -336,6 +336,14 @@ impl Volume {
                 values: Values::Scalar(plastic),
             });
         }
+        let deleted = deleted(system, &snapshot.motion.history);
+        let deleted = deleted.map(|all| all.into_iter().map(i32::from).collect::<Vec<_>>());
+        if let Some(deleted) = &deleted {
+            cell_fields.push(Field {
+                name: "deleted",
+                values: Values::Integer(deleted),
+            });
+        }
         write(
             path,
             &Grid {
@@ -434,10 +442,11 @@ impl SurfaceGrid {
         let points = contact.points.iter().zip(force);
         let pressure: Vec<f64> = points
             .map(|(point, force)| {
-                if *force == 0.0 {
-                    0.0
-                } else {
-                    force / point.area
+                match (*force == 0.0, point.area > 0.0) {
+                    (true, _) => 0.0,
+                    (false, true) => force / point.area,
+                    // a node inside that the deletion of elements has laid bare
+                    (false, false) => f64::NAN,
                 }
             })
             .collect();

@@ -36,17 +36,18 @@ pub(crate) struct Traces {
     balanced: Trace,
     dissipated: Trace,
     /// Of runs that are not linear: what hardening stores, and what is dissipated in each way.
-    further: [Trace; 6],
+    further: [Trace; 7],
     residual: Trace,
 }
 
 /// Names of [`Traces::further`].
-const FURTHER: [&str; 6] = [
+const FURTHER: [&str; 7] = [
     "hardening",
     "material",
     "damping",
     "friction",
     "viscosity",
+    "deletion",
     "hourglass",
 ];
 
@@ -121,6 +122,7 @@ impl Curves {
             balance.dissipation_damping,
             balance.dissipation_friction,
             balance.dissipation_viscosity,
+            balance.dissipation_deletion,
             balance.hourglass,
         ];
         for (trace, value) in kept.further.iter_mut().zip(further) {

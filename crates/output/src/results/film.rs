@@ -1,7 +1,7 @@
 //! What the film strip needs, kept while a run goes: the motion at a few instants, in bounded memory.
 //!
-//! Every accepted state is a candidate. When more than [`KEPT`] are kept, every other one is dropped, and from then on only
-//! one step in twice as many is taken.
+//! The stress of all cells costs as much as some twenty explicit steps, so instants are chosen beforehand: [`KEPT`] at equal distances
+//! up to the end time. A run that ends earlier shows those that it has reached.
 
 use carom_algebra::rotation::Rotation;
 use carom_dynamics::{State, System};
@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::Error;
 use crate::plot::{Frame, Scene, film_figure, quantity};
-use crate::results::cells::{cell_stresses, von_mises};
+use crate::results::cells::{cell_stresses, deleted, von_mises};
 use crate::results::outlines::{Outlines, gap, size};
 
-/// Instants kept at most, and instants shown.
-const KEPT: usize = 24;
+/// Instants kept, and instants shown: the distances of these are a multiple of the distances of those.
+const KEPT: usize = 16;
 const SHOWN: usize = 6;
 
 /// Displacement, relative to the size of the model, below which the pictures of a linear run would all look the same.
@@ -23,8 +23,8 @@ const VISIBLE: f64 = 0.01;
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Film {
     stills: Vec<Still>,
-    /// Steps between two of them, as a power of two.
-    doublings: u32,
+    /// Time from one to the next, s.
+    every: f64,
 }
 
 /// An instant.
@@ -36,21 +36,29 @@ struct Still {
     frames: Vec<Rotation>,
     /// Equivalent stress of the cells, Pa.
     stress: Vec<f64>,
+    /// Whether each cell is deleted; none where no body has deletion.
+    deleted: Option<Vec<bool>>,
     /// Places with a contact force, m.
     marks: Vec<[f64; 3]>,
 }
 
 impl Film {
-    /// Keeps the state if its turn has come.
-    pub(crate) fn push(&mut self, system: &System, state: &State) {
-        if system.dim < 2 || !state.step.is_multiple_of(1 << self.doublings) {
-            return;
+    /// Of a run up to the time `end`, s.
+    pub(crate) fn new(end: f64) -> Film {
+        Film {
+            stills: Vec::new(),
+            every: end / (KEPT - 1) as f64,
         }
-        self.keep(system, state);
-        if self.stills.len() > KEPT {
-            self.doublings += 1;
-            let every = 1u64 << self.doublings;
-            self.stills.retain(|still| still.step.is_multiple_of(every));
+    }
+
+    /// Keeps the state if it is the first at or after the next instant.
+    pub(crate) fn push(&mut self, system: &System, state: &State) {
+        // a step that ends there to within rounding is there
+        let reached = (state.time / self.every + 1e-6).floor();
+        let kept = self.stills.last();
+        let due = kept.is_none_or(|still| reached > (still.time / self.every + 1e-6).floor());
+        if system.dim > 1 && due {
+            self.keep(system, state);
         }
     }
 
@@ -84,6 +92,7 @@ impl Film {
             u: motion.u.clone(),
             frames: motion.frames.clone(),
             stress: stress.iter().map(von_mises).collect(),
+            deleted: deleted(system, &motion.history),
             marks,
         });
     }
@@ -96,15 +105,15 @@ impl Film {
         if self.stills.len() < 2 || !(system.is_nonlinear() || largest > VISIBLE * size(system)) {
             return None;
         }
-        let outlines = Outlines::new(system, |_| true);
+        let outlines = Outlines::new(system, |_, _| true);
         if outlines.is_blank() {
             return None;
         }
-        let shown = self.shown();
-        let frames: Vec<Frame> = shown
-            .iter()
-            .map(|still| still.frame(system, &outlines))
-            .collect();
+        let frame = |still: &&Still| match &still.deleted {
+            None => still.frame(system, &outlines),
+            Some(deleted) => still.frame(system, &Outlines::new(system, |_, cell| !deleted[cell])),
+        };
+        let frames: Vec<Frame> = self.shown().iter().map(frame).collect();
         let scene = Scene {
             title: "Motion",
             dim: system.dim,

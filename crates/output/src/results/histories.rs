@@ -172,6 +172,10 @@ impl Histories {
             ];
             row.extend(further.map(Cell::Number));
         }
+        if deletes(system) {
+            let deleted = state.ledger.deleted as f64;
+            row.extend([balance.dissipation_deletion, deleted].map(Cell::Number));
+        }
         let momenta = [&balance.momentum, &balance.momentum_residual];
         let linear = momenta.iter().flat_map(|momentum| &momentum.linear[..dim]);
         row.extend(linear.copied().map(Cell::Number));
@@ -272,6 +276,11 @@ fn put(system: &System, (k, contact): (usize, &ContactReport), row: &mut Vec<Cel
     if system.friction[k] > 0.0 {
         row.extend([contact.friction, contact.slipping as f64].map(Cell::Number));
     }
+}
+
+/// Whether elements are deleted.
+fn deletes(system: &System) -> bool {
+    system.bodies.iter().any(|body| body.has_deletion())
 }
 
 /// The axes about which angular momentum is shown: of linear models none, as theirs is that of small displacements.
@@ -380,6 +389,10 @@ pub(crate) fn columns(
             ["energy", "hourglass"],
         ];
         names.extend(further.map(|path| column(&path, "J")));
+    }
+    if deletes(system) {
+        names.push(column(&["dissipation", "deletion"], "J"));
+        names.push(column(&["status", "deleted elements"], ""));
     }
     names.extend(components.iter().map(|i| column(&["momentum", i], "N s")));
     let residual = |i: &&str| column(&["momentum", &format!("residual {i}")], "N s");

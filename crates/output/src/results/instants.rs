@@ -55,7 +55,7 @@ struct Acting {
 impl Instants {
     /// Nothing yet.
     pub(crate) fn new(system: &System, levels: &[LevelSettings]) -> Instants {
-        let outlines = Outlines::new(system, |_| true);
+        let outlines = Outlines::new(system, |_, _| true);
         let mut lines = Vec::new();
         for body in &system.bodies {
             for cell in body.cells() {
@@ -167,7 +167,7 @@ impl Instants {
     }
 
     fn draw_solids(&self, system: &System, shown: &[&Instant]) -> Result<String, Error> {
-        let outlines = Outlines::new(system, |_| true);
+        let outlines = Outlines::new(system, |_, _| true);
         let norm = |u: &[f64; 3]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
         let moved = shown.iter().flat_map(|instant| &instant.moved);
         let largest = moved.map(norm).fold(f64::MIN_POSITIVE, f64::max);

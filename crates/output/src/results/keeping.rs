@@ -15,7 +15,7 @@ use crate::results::Settings;
 use crate::{Error, Folder};
 
 /// What the results have gathered: bytes of the list of files, histories, impacts, fields, figures, film, instants of largest forces,
-/// springs and dashpots, spectra, errors against the exact solution, totals, wall time of the run.
+/// springs and dashpots, spectra, filtered accelerations, errors against the exact solution, totals, wall time of the run.
 #[derive(Deserialize)]
 struct Gathered(
     u64,
@@ -27,6 +27,7 @@ struct Gathered(
     Vec<instants::Instant>,
     discrete::DiscretePeaks,
     Vec<Vec<Vec<[f64; 2]>>>,
+    (Vec<f64>, Vec<Vec<f64>>),
     Option<exact::Errors>,
     totals::Totals,
     Duration,
@@ -54,6 +55,7 @@ impl Results {
             instants,
             discrete,
             spectra,
+            filtered,
             errors,
             totals,
             wall,
@@ -85,6 +87,7 @@ impl Results {
         results.instants.go_on(instants);
         results.discrete = discrete;
         results.spectra.go_on(spectra);
+        results.filtered.go_on(filtered);
         if let (Some(comparison), Some(errors)) = (&mut results.comparison, errors) {
             comparison.errors = errors;
         }
@@ -124,6 +127,7 @@ impl Results {
             self.instants.kept(),
             &self.discrete,
             self.spectra.kept(),
+            self.filtered.kept(),
             self.comparison.as_ref().map(|c| &c.errors),
             &self.totals,
             self.earlier + self.begin.elapsed(),

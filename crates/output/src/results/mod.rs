@@ -17,6 +17,7 @@ pub(crate) mod exact;
 mod fields;
 mod figures;
 mod film;
+mod filtered;
 mod histories;
 mod impacts;
 mod instants;
@@ -43,6 +44,7 @@ use exact::Comparison;
 use fields::FieldOutput;
 use figures::Curves;
 use film::Film;
+use filtered::Filtered;
 use histories::Histories;
 use impacts::Impacts;
 use instants::Instants;
@@ -72,6 +74,7 @@ pub struct Results {
     instants: Instants,
     discrete: DiscretePeaks,
     spectra: Spectra,
+    filtered: Filtered,
     comparison: Option<Comparison>,
     totals: Totals,
     /// Mean velocity of the bodies at the start, m/s.
@@ -119,6 +122,7 @@ impl Results {
         }
         let curves = Curves::new(&system, &settings, point.as_ref(), &probes);
         let spectra = Spectra::new(&settings, &probes);
+        let filtered = Filtered::new(&settings, &probes);
         let histories =
             Histories::create(&mut folder, &columns, (&system, &settings), (probes, kept))?;
         let impacts = match told {
@@ -136,10 +140,11 @@ impl Results {
         };
         Ok(Results {
             curves,
-            film: Film::default(),
+            film: Film::new(settings.end),
             instants: Instants::new(&system, &settings.levels),
             discrete: DiscretePeaks::default(),
             spectra,
+            filtered,
             comparison: settings.reference.clone().map(Comparison::new),
             totals: Totals::default(),
             start: velocities(&system, &system.initial_velocity),
@@ -173,6 +178,7 @@ impl Results {
         self.instants.push(&self.system, state, report);
         self.discrete.push(&self.system, state);
         self.spectra.push(&self.system, state, report);
+        self.filtered.push(&self.system, state, report);
         if let (Some(comparison), Some(point)) = (&mut self.comparison, point) {
             comparison.push((&self.system, point), state, report);
         }

@@ -42,22 +42,27 @@ pub(crate) struct Outlines {
 }
 
 impl Outlines {
-    /// All cells and the outer edges of plane bodies, the outer faces of solids, the axes of bars and beams, of the bodies that are
-    /// `shown`.
-    pub(crate) fn new(system: &System, shown: impl Fn(usize) -> bool) -> Outlines {
+    /// All cells and the outer edges of plane bodies, the outer faces of solids, the axes of bars and beams, of what is `shown`: asked
+    /// with the number of the body and that of the cell among the cells of all bodies.
+    pub(crate) fn new(system: &System, shown: impl Fn(usize, usize) -> bool) -> Outlines {
         let mut outlines = Outlines {
             patches: Vec::new(),
             rims: Vec::new(),
         };
         let mut cell = 0;
         for (number, body) in system.bodies.iter().enumerate() {
-            if body.as_discrete().is_some() || !shown(number) {
+            if body.as_discrete().is_some() {
                 cell += body.cells().len();
                 continue;
             }
+            let shown = |cell| shown(number, cell);
             // the faces that only one cell of the body has
             let mut outer: BTreeMap<Vec<u32>, Option<(Vec<u32>, usize)>> = BTreeMap::new();
             for &element in body.cells() {
+                if !shown(cell) {
+                    cell += 1;
+                    continue;
+                }
                 let nodes = system.mesh.element_nodes(element);
                 let number = |local: &usize| system.number[nodes[*local] as usize];
                 let table = system.mesh.kind(element).table();

@@ -23,6 +23,8 @@ pub struct Settings {
     pub version: String,
     /// Time scheme with its parameters, as text: `theta, theta = 0.5`.
     pub scheme: String,
+    /// Time at which the run is to end, s.
+    pub end: f64,
     /// Histories of groups of nodes.
     pub probes: Vec<Probe>,
     /// Contacts that are judged together.
@@ -83,6 +85,8 @@ pub struct Probe {
     pub absolute_acceleration: bool,
     /// Response spectrum of the absolute acceleration; `None` for none.
     pub spectrum: Option<Spectrum>,
+    /// Classes (Hz) of the filters ([`ChannelFilter`](carom_signals::ChannelFilter)) behind which the accelerations are written too.
+    pub filters: Vec<u32>,
 }
 
 /// Frequencies and damping ratio of a response spectrum.

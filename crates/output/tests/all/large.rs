@@ -84,6 +84,7 @@ fn turning(system: Arc<System>, rate: f64) -> Arc<System> {
 
 fn run(system: &Arc<System>, settings: Settings, end: f64) -> (Reports, Driver, Summary) {
     let mut newton = Driver::new(Arc::clone(system)).unwrap();
+    let settings = Settings { end, ..settings };
     let mut results = Results::create(settings, Arc::clone(system)).unwrap();
     let mut reports = Reports::default();
     march(&mut newton, end, &mut [&mut reports, &mut results], &|| {

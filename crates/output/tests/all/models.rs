@@ -144,6 +144,7 @@ pub fn settings(folder: &Path) -> Settings {
         case_text: "carom = 1\n".to_owned(),
         version: "0.1.0".to_owned(),
         scheme: "a scheme".to_owned(),
+        end: duration(),
         probes: Vec::new(),
         levels: Vec::new(),
         history_every: None,
@@ -185,5 +186,6 @@ pub fn probe(system: &System, name: &str, group: &str) -> Probe {
         acceleration: true,
         absolute_acceleration: false,
         spectrum: None,
+        filters: Vec::new(),
     }
 }
