@@ -21,6 +21,8 @@ pub struct Records {
     pub small: Smallness,
     /// Time at which the force of each contact point ended last, s.
     opened: Vec<f64>,
+    /// Whether all elements at the node of each contact point are deleted; empty as long as none is.
+    pub(crate) loose: Vec<bool>,
 }
 
 /// Record of one contact.
@@ -40,6 +42,9 @@ pub struct ContactRecord {
     pub hasty_closings: u64,
     /// How often a point's force began otherwise.
     pub closings: u64,
+    /// How often the force of a point began whose elements are all deleted, not counted in the two before: it strikes by itself, as often
+    /// as its flight has it.
+    pub loose_closings: u64,
     /// Largest penetration at the end of a step, m.
     pub penetration: f64,
     /// Energy lost in crush so far, J: what it took to crush the points, less what they can give back.
@@ -119,7 +124,8 @@ impl ContactRecord {
 
     /// Changes of status to a closing that is due: 2 where each point closes once and opens once in an impact. A closing is
     /// not due if the point opened less than four steps ago, or less than a wave needs to pass over four elements: mesh and step
-    /// carry nothing that fast. 0 where nothing ever closed.
+    /// carry nothing that fast. Points whose elements are all deleted are not counted: nothing makes their force begin again but
+    /// their own flight. 0 where nothing ever closed.
     pub fn chatter(&self) -> f64 {
         match self.closings {
             0 => 0.0,
@@ -145,7 +151,13 @@ impl ContactRecord {
     }
 
     /// Counts the points whose force begins in a step. `opened`: when that of each point ended last, s.
-    fn count_closings(&mut self, system: &System, contact: usize, step: &Step, opened: &mut [f64]) {
+    /// `loose`: whether the elements of each are deleted, by the number of the point; empty for none.
+    fn count_closings(
+        &mut self,
+        (system, contact): (&System, usize),
+        step: &Step,
+        (opened, loose): (&mut [f64], &[bool]),
+    ) {
         let first = system.first_point[contact];
         let ([start, end], [old, new]) = (step.span, step.forces);
         let least = TREMBLE * self.peak_force / step.report.closed.max(1) as f64;
@@ -153,6 +165,7 @@ impl ContactRecord {
             let point = first + k;
             match (old[point] != 0.0, new[point] != 0.0) {
                 (true, false) => *opened = end,
+                (false, true) if loose.get(point) == Some(&true) => self.loose_closings += 1,
                 (false, true) => {
                     let soon = RESOLVED * f64::max(end - start, passage(system, contact));
                     match start - *opened < soon {
@@ -203,6 +216,7 @@ impl Records {
             impacts: Vec::new(),
             small: Smallness::of(system),
             opened: vec![f64::NEG_INFINITY; system.points()],
+            loose: Vec::new(),
         }
     }
 
@@ -212,6 +226,7 @@ impl Records {
         self.contacts.clone_from(&before.contacts);
         self.small.follow(&before.small);
         self.opened.clone_from(&before.opened);
+        self.loose.clone_from(&before.loose);
         self.impacts.truncate(before.impacts.len());
         self.impacts
             .extend_from_slice(&before.impacts[self.impacts.len()..]);
@@ -256,7 +271,7 @@ impl Records {
         record.status_changes += report.status_changes as u64;
         if report.status_changes > 0 {
             let opened = &mut self.opened[system.points_of(contact)];
-            record.count_closings(system, contact, step, opened);
+            record.count_closings((system, contact), step, (opened, &self.loose));
         }
         record.mixed = record.mixed.max(report.mixed as u64);
         if report.gap.is_finite() {

@@ -363,3 +363,38 @@ law.velocity = {}
     );
     assert_eq!(*histories["dissipation.friction_j"].last().unwrap(), lost);
 }
+
+#[test]
+fn a_run_with_deleted_cells_says_that_it_cannot_tell_what_breaks_and_one_without_does_not() {
+    let run = |speed: f64| {
+        let text = format!(
+            r#"
+carom = 1
+mesh.generate.bar.box = {{ origin = [0.0, 0.0, 0.0], size = [0.1, 0.1, 0.4], elements = [1, 1, 4] }}
+material.steel = {{ density = 7800.0, j2 = {{ young = "200 GPa", poisson = 0.3, yield-stress = "400 MPa", hardening = "1 GPa" }} }}
+[body.bar]
+region = "bar"
+material = "steel"
+formulation.reduced = {{}}
+deletion.plastic-strain = 0.05
+initial.velocity = [0.0, 0.0, -{speed:?}]
+[contact.wall]
+secondary = "bar.bottom"
+obstacle.plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }}
+law.velocity = {{}}
+[time]
+end = "3 ms"
+step.critical = 0.5
+scheme.central-difference = {{}}
+"#
+        );
+        result(&text).0.verdict.unchecked
+    };
+    let says = |unchecked: &[String]| {
+        let says = |what: &str| unchecked.iter().any(|why| why.contains(what));
+        ["of 4 cells were deleted", "whose cells are all deleted"].map(says)
+    };
+    // at 1 m/s nothing yields: ρ c v is a tenth of the yield stress
+    assert_eq!(says(&run(1.0)), [false; 2]);
+    assert_eq!(says(&run(200.0)), [true; 2]);
+}

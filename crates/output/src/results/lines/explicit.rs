@@ -1,4 +1,4 @@
-//! What bodies of explicit schemes have beside the model: hourglass control, mass scaling.
+//! What bodies of explicit schemes have beside the model: hourglass control, mass scaling, deletion.
 
 use super::{Evidence, Finding, worst};
 use crate::form::Form;
@@ -51,5 +51,36 @@ pub(super) fn added_mass(evidence: &Evidence) -> Finding {
         ),
         ADDED,
         "use less of it, or see by `carom study` what it changes",
+    ))
+}
+
+/// What no number of a run with deleted cells can tell.
+pub(super) fn deleted_cells(evidence: &Evidence) -> Finding {
+    let deleted = evidence.last.ledger.deleted;
+    if deleted == 0 {
+        return Finding::Absent;
+    }
+    let bodies = evidence.system.bodies.iter();
+    let cells = bodies.filter(|body| body.has_deletion());
+    let cells: usize = cells.map(|body| body.cells().len()).sum();
+    Finding::Unchecked(format!(
+        "whether the mesh decides what breaks: {deleted} of {cells} cells were deleted; vary `mesh.refine` with `carom study`"
+    ))
+}
+
+/// What nodes without cells make of the forces of contacts.
+pub(super) fn loose_nodes(evidence: &Evidence) -> Finding {
+    let contacts = evidence.system.contacts.iter();
+    let records = contacts.zip(&evidence.last.records.contacts);
+    let of_loose = records.filter(|(_, record)| record.loose_closings > 0);
+    let named: Vec<String> = of_loose
+        .map(|(contact, record)| format!("{} in contact `{}`", record.loose_closings, contact.name))
+        .collect();
+    if named.is_empty() {
+        return Finding::Absent;
+    }
+    Finding::Unchecked(format!(
+        "the force of nodes whose cells are all deleted: each strikes with its own mass, so that the mesh decides on blows and peaks ({}); read impulses and means over time",
+        named.join(", ")
     ))
 }

@@ -31,6 +31,8 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     finite::states,
     explicit::hourglass,
     explicit::added_mass,
+    explicit::deleted_cells,
+    explicit::loose_nodes,
     chatter::of_contacts,
     penetration::of_contacts,
     resolution::of_peaks,
