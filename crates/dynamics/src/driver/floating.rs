@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use carom_contact::Target;
 
-use super::rigid::Rigid;
+use super::joined::Joined;
 use crate::error::Error;
 use crate::system::System;
 
@@ -48,16 +48,24 @@ impl Floating {
             None => &[],
         };
         for part in stages {
-            let alone = [part.clone()];
-            let rigid = Rigid::new(system, &alone, None);
-            let Some(motion) = rigid.free_motion() else {
+            let whole = Joined::whole(system, part);
+            let free = whole.free();
+            let apart = Joined::apart(system, part);
+            // what the bodies of the part can do beyond moving together
+            if apart.groups.len() > 1 {
+                let against = apart.free();
+                let loose = against
+                    .iter()
+                    .find(|(group, _)| !touches(system, &group.nodes));
+                if let Some(&(group, motion)) = loose.filter(|_| against.len() > free.len()) {
+                    return Err(free_motion(system, &group.nodes, motion));
+                }
+            }
+            let Some(&(group, motion)) = free.first() else {
                 continue;
             };
-            if !touches(system, part) {
-                return Err(Error::FreeMotion {
-                    body: body_of(system, part),
-                    motion: motion.to_string(),
-                });
+            if !touches(system, &group.nodes) {
+                return Err(free_motion(system, &group.nodes, motion));
             }
             parts.push(part.clone());
         }
@@ -108,9 +116,16 @@ fn size_of_elements(system: &System, part: &Range<usize>) -> f64 {
     sum / count.max(1.0)
 }
 
-/// Whether a contact has the part on one side and something else on the other.
-fn touches(system: &System, part: &Range<usize>) -> bool {
-    let inside = |node: u32| part.contains(&system.unknowns.first(node));
+fn free_motion(system: &System, nodes: &[u32], motion: &str) -> Error {
+    Error::FreeMotion {
+        body: body_at(system, nodes[0]),
+        motion: motion.to_string(),
+    }
+}
+
+/// Whether a contact has some of these nodes, ascending, on one side and something else on the other.
+fn touches(system: &System, nodes: &[u32]) -> bool {
+    let inside = |node: u32| nodes.binary_search(&node).is_ok();
     system.contacts.iter().any(|contact| {
         let nodes = contact.points.iter().flat_map(|point| point.carriers());
         let own: Vec<bool> = nodes.map(|(node, _)| inside(node)).collect();
@@ -128,7 +143,11 @@ fn touches(system: &System, part: &Range<usize>) -> bool {
 
 /// Name of the body at the first node of a part.
 pub(super) fn body_of(system: &System, part: &Range<usize>) -> String {
-    let first = system.unknowns.node(part.start);
+    body_at(system, system.unknowns.node(part.start))
+}
+
+/// Name of a body with a node.
+fn body_at(system: &System, first: u32) -> String {
     let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(node, _)| *node == first);
     let body = system.body_masses.iter().position(owns).unwrap_or(0);
     system.bodies[body].name().to_string()

@@ -32,6 +32,7 @@ mod friction;
 mod held;
 mod identity;
 mod impulse;
+mod joined;
 mod landing;
 mod leapfrog;
 pub mod linked;

@@ -242,49 +242,6 @@ impl<'a> Rigid<'a> {
             Some((node, angles[part]))
         })
     }
-
-    /// What holding an unknown at its initial place takes from the motions of its part: of a finite rotation the turn about its axis.
-    fn held_by(&self, unknown: usize) -> Vec<f64> {
-        let unknowns = &self.system.unknowns;
-        let node = unknowns.node(unknown);
-        let (Kind::Rotation(axis), Some(frame)) = (unknowns.kind(unknown), unknowns.frame(node))
-        else {
-            return self.of([(unknown, 1.0)]);
-        };
-        let mut held = vec![0.0; self.parts.len() * self.modes.len()];
-        if let Some(part) = self.part_of(unknown) {
-            let matrix = self.system.initial_frames[frame].matrix();
-            for (k, mode) in self.modes.iter().enumerate() {
-                let turn = turn_of(mode);
-                let along: f64 = (0..3).map(|i| matrix[(i, axis)] * turn[i]).sum();
-                held[part * self.modes.len() + k] = along;
-            }
-        }
-        held
-    }
-
-    /// The first of the motions that neither supports nor springs hold, with those before it held.
-    pub(super) fn free_motion(&self) -> Option<&'static str> {
-        let mut held = Span::default();
-        for i in self.parts.iter().flat_map(Range::clone) {
-            if self.system.fixed[i] {
-                held.add(self.held_by(i));
-            }
-        }
-        for body in &self.system.bodies {
-            body.each_spring(&mut |row| {
-                held.add(self.of(row.iter().copied()));
-            });
-        }
-        // a single node has no turn
-        let moves = |j: usize| self.frames.iter().any(|frame| frame.squares[j] > 0.0);
-        let mut modes = self.modes.iter().enumerate().filter(|(j, _)| moves(*j));
-        modes.find_map(|(j, mode)| {
-            let mut unit = vec![0.0; self.modes.len()];
-            unit[j] = 1.0;
-            held.add(unit).then_some(mode.0)
-        })
-    }
 }
 
 /// Whether a part turns by finite angles.
@@ -362,10 +319,10 @@ pub(super) fn norm(vector: &[f64]) -> f64 {
 }
 
 /// A motion in words, and its displacement at a place relative to the centre.
-type Mode = (&'static str, fn(&[f64; 3]) -> [f64; 3]);
+pub(super) type Mode = (&'static str, fn(&[f64; 3]) -> [f64; 3]);
 
 /// Rotation of a motion per unit, about the axes of coordinates.
-fn turn_of((_, shape): &Mode) -> [f64; 3] {
+pub(super) fn turn_of((_, shape): &Mode) -> [f64; 3] {
     if shape(&[0.0; 3]) != [0.0; 3] {
         return [0.0; 3];
     }
@@ -373,7 +330,7 @@ fn turn_of((_, shape): &Mode) -> [f64; 3] {
     [of_y[2], of_z[0], of_x[1]]
 }
 
-fn modes(dim: usize, axisymmetric: bool) -> Vec<Mode> {
+pub(super) fn modes(dim: usize, axisymmetric: bool) -> Vec<Mode> {
     if axisymmetric {
         return vec![("move along its axis", |_| [0.0, 1.0, 0.0])];
     }

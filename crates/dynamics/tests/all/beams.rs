@@ -1,12 +1,13 @@
 //! Beams in the step: balances of energy, momentum and angular momentum, allocations, mass, what is refused.
 
+use carom_algebra::unknowns::Kind;
 use carom_bodies::{BeamSection, BeamTheory, BodySpec, Kinematics, MassKind, SectionShape};
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Law, Plane};
 use carom_dynamics::scheme::{CentralDifference, EnergyMomentum, Newmark, Theta};
 use carom_dynamics::{
-    Driver, Error, Model, ModelBody, ModelContact, ModelTarget, Preload, Scheme, State, Support,
-    System,
+    Driver, Error, Model, ModelBody, ModelConstraint, ModelContact, ModelTarget, Preload, Scheme,
+    State, Support, System,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
@@ -164,6 +165,47 @@ fn a_clamp_at_one_node_holds_a_beam_and_a_hinge_does_not() {
             "{refused:?}"
         );
     }
+}
+
+/// A beam hangs on the end of a clamped one by the rows of a constraint: each motion that they leave is named.
+#[test]
+fn a_static_stage_names_the_beam_that_a_constraint_leaves_free() {
+    use Kind::{Rotation, Translation};
+    let hung = |tied: &[Kind]| {
+        let mut model = beam(2, NEWMARK, MassKind::Consistent);
+        let second = generate::line("b", [0.8, -0.6, 0.0], [1.8, -0.6, 0.0], 10, 2);
+        model.mesh.merge("b", second).unwrap();
+        let mut body = model.bodies[0].clone();
+        body.spec.name = "b".into();
+        body.spec.cells = model.mesh.groups["b"].elements.clone();
+        model.bodies.push(body);
+        model.gravity = [0.0, -9.81, 0.0];
+        model.supports = vec![Support {
+            nodes: vec![0],
+            fix: [true; 3],
+            fix_rotations: [true; 3],
+        }];
+        let row = |&kind: &Kind| vec![(10, kind, 1.0), (11, kind, -1.0)];
+        model.constraints = vec![ModelConstraint {
+            name: "joint".into(),
+            rows: tied.iter().map(row).collect(),
+        }];
+        model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });
+        match Driver::new(System::new(model).unwrap()) {
+            Err(Error::FreeMotion { body, motion }) => format!("{body} can {motion}"),
+            Err(other) => panic!("{other}"),
+            Ok(mut driver) => driver
+                .step()
+                .map_or_else(|e| e.to_string(), |_| "held".into()),
+        }
+    };
+    let [x, y, turn] = [Translation(0), Translation(1), Rotation(2)];
+    assert_eq!(hung(&[x, y, turn]), "held");
+    assert_eq!(hung(&[y]), "b can move along x");
+    assert_eq!(hung(&[x]), "b can move along y");
+    assert_eq!(hung(&[x, turn]), "b can move along y");
+    // about the hinge: translations with the turn, of which the last is named
+    assert_eq!(hung(&[x, y]), "b can turn about z");
 }
 
 #[test]
