@@ -4,6 +4,7 @@
 //! [`Driver`] owns factors and scratch. [`march`] is the loop; observers see accepted states only. No files, no
 //! printing.
 
+mod blocks;
 mod columns;
 mod compliance;
 pub mod condensed;

@@ -7,44 +7,15 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
+use crate::blocks::{self, Block, Buffer, pattern};
 use crate::resultant::Resultant;
 use crate::step_map::Row;
 use crate::system::System;
 
-/// Nodes of a block: what it reads and writes stays in the nearest cache.
-const NODES: usize = 128;
 /// Blocks that one thread takes, at least.
 const PANEL: usize = 16;
 /// Lanes in which the unknowns of a block are added.
 const LANES: usize = 8;
-
-/// Nodes of one connected part that follow each other.
-#[derive(Clone, Debug)]
-pub(crate) struct Block {
-    /// First node, and one end more.
-    nodes: [usize; 2],
-    /// Its part.
-    pub(crate) part: usize,
-    /// Whether any of their unknowns is held.
-    held: bool,
-}
-
-/// The blocks of a system whose nodes have translations alone.
-pub(crate) fn blocks(system: &System) -> Vec<Block> {
-    let dim = system.dim;
-    let of_part = |(part, unknowns): (usize, &Range<usize>)| {
-        let (begin, end) = (unknowns.start / dim, unknowns.end / dim);
-        (begin..end).step_by(NODES).map(move |first| {
-            let last = end.min(first + NODES);
-            Block {
-                nodes: [first, last],
-                part,
-                held: system.fixed[dim * first..dim * last].contains(&true),
-            }
-        })
-    };
-    system.parts.iter().enumerate().flat_map(of_part).collect()
-}
 
 /// Sums over nodes in a step from `u` to u₊ on the way Δu = u₊ - u.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,6 +36,8 @@ pub(crate) struct Sums {
     pub(crate) forces: [Resultant; 3],
     /// Sums of the forces of the end: loads with the reactions to all but contacts, and the reactions to contacts.
     pub(crate) outside: [[f64; 3]; 2],
+    /// Largest |v₊ - w|² of a node.
+    pub(crate) fastest: f64,
 }
 
 impl Sums {
@@ -86,6 +59,7 @@ impl Sums {
         for (sum, term) in outside.zip(other.outside.iter().flatten()) {
             *sum += term;
         }
+        self.fastest = self.fastest.max(other.fastest);
     }
 
     /// Leaves out what is no force in an axisymmetric system.
@@ -108,6 +82,8 @@ pub(crate) struct Update<'a> {
     pub(crate) u: &'a [f64],
     /// Internal forces at start and end, N.
     pub(crate) f: [&'a [f64]; 2],
+    /// Mass of each node, kg.
+    pub(crate) mass: &'a [f64],
     /// Velocity, m/s, and acceleration, m/s², at the start.
     pub(crate) v: &'a [f64],
     pub(crate) a: &'a [f64],
@@ -118,6 +94,10 @@ pub(crate) struct Update<'a> {
     pub(crate) way: Row,
     /// v₊ by v, a and the acceleration a₊ of the end.
     pub(crate) velocity: Row,
+    /// The displacement after the next step by u₊, v₊ and a₊, if that is as long as this one.
+    pub(crate) ahead: Row,
+    /// w of each part, m/s.
+    pub(crate) reference: &'a [[f64; 3]],
     /// Weights of the forces of start and end in their means, of the works and of the resultants.
     pub(crate) weights: [[f64; 2]; 2],
     /// Whether moments are those of the places reached: of momentum at the end, of forces in the middle of the way. Otherwise in the
@@ -125,28 +105,25 @@ pub(crate) struct Update<'a> {
     pub(crate) moves: bool,
 }
 
+/// The vectors of the end that are written: displacement after the next step, velocity, acceleration.
+type End<'a> = [&'a mut [f64]; 3];
+
 impl Update<'_> {
-    /// Writes velocities and accelerations of the end, and the sums of each block.
-    pub(crate) fn run(&self, blocks: &[Block], sums: &mut [Sums], out: [&mut [f64]; 2]) {
+    /// Writes velocities and accelerations of the end and the displacement ahead, and the sums of each block.
+    pub(crate) fn run(&self, blocks: &[Block], sums: &mut [Sums], out: End) {
         self.panel(blocks, sums, (0, out));
     }
 
     /// The same for some of the blocks; the vectors begin at the unknown `origin`.
-    fn panel(
-        &self,
-        blocks: &[Block],
-        sums: &mut [Sums],
-        (origin, [v, a]): (usize, [&mut [f64]; 2]),
-    ) {
+    fn panel(&self, blocks: &[Block], sums: &mut [Sums], (origin, out): (usize, End)) {
         if blocks.len() >= 2 * PANEL {
             let (before, after) = blocks.split_at(blocks.len() / 2);
             let (sums, rest) = sums.split_at_mut(before.len());
             let border = self.system.dim * after[0].nodes[0];
-            let (v, v_rest) = v.split_at_mut(border - origin);
-            let (a, a_rest) = a.split_at_mut(border - origin);
+            let [one, two, three] = out.map(|vector| vector.split_at_mut(border - origin));
             rayon::join(
-                || self.panel(before, sums, (origin, [v, a])),
-                || self.panel(after, rest, (border, [v_rest, a_rest])),
+                || self.panel(before, sums, (origin, [one.0, two.0, three.0])),
+                || self.panel(after, rest, (border, [one.1, two.1, three.1])),
             );
             return;
         }
@@ -155,7 +132,7 @@ impl Update<'_> {
             blocks,
             sums,
             origin,
-            out: [v, a],
+            out,
         });
     }
 }
@@ -165,7 +142,7 @@ struct Panel<'a> {
     blocks: &'a [Block],
     sums: &'a mut [Sums],
     origin: usize,
-    out: [&'a mut [f64]; 2],
+    out: End<'a>,
 }
 
 impl WithSimd for Panel<'_> {
@@ -174,18 +151,23 @@ impl WithSimd for Panel<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let dim = self.update.system.dim;
-        let [v, a] = self.out;
+        let [ahead, v, a] = self.out;
+        let mut buffers = Buffers::default();
         for (block, sums) in self.blocks.iter().zip(self.sums) {
             let [first, last] = block.nodes.map(|node| dim * node);
             let range = first - self.origin..last - self.origin;
-            let out = [&mut v[range.clone()], &mut a[range]];
+            let out = [
+                &mut ahead[range.clone()],
+                &mut v[range.clone()],
+                &mut a[range],
+            ];
             *sums = Sums::default();
-            let update = self.update;
+            let (update, buffers) = (&self.update, &mut buffers);
             match (&update.load, &update.contact) {
-                (None, None) => update.block::<false, false>(block, sums, out),
-                (Some(_), None) => update.block::<true, false>(block, sums, out),
-                (None, Some(_)) => update.block::<false, true>(block, sums, out),
-                (Some(_), Some(_)) => update.block::<true, true>(block, sums, out),
+                (None, None) => update.block::<false, false>((block, buffers), sums, out),
+                (Some(_), None) => update.block::<true, false>((block, buffers), sums, out),
+                (None, Some(_)) => update.block::<false, true>((block, buffers), sums, out),
+                (Some(_), Some(_)) => update.block::<true, true>((block, buffers), sums, out),
             }
         }
     }
@@ -197,10 +179,43 @@ struct Within<'a> {
     f: [&'a [f64]; 2],
     v: &'a [f64],
     a: &'a [f64],
-    mass: &'a [f64],
     fixed: &'a [bool],
     load: Ends<'a>,
     contact: Ends<'a>,
+}
+
+/// What a block keeps between its loops.
+#[derive(Default)]
+struct Buffers {
+    mass: Buffer,
+    /// Places for the moments of momentum and of forces.
+    place: Buffer,
+    middle: Buffer,
+    momentum: Buffer,
+    /// Means of loads and contact forces, and the loads of the end.
+    load: Buffer,
+    touch: Buffer,
+    outside: Buffer,
+    /// v₊ - w.
+    relative: Buffer,
+}
+
+impl Buffers {
+    /// Leaves nothing of a longer block behind `n` entries.
+    #[inline(always)]
+    fn end(&mut self, n: usize) {
+        let all = [
+            &mut self.mass,
+            &mut self.place,
+            &mut self.middle,
+            &mut self.momentum,
+            &mut self.load,
+            &mut self.touch,
+            &mut self.outside,
+            &mut self.relative,
+        ];
+        all.into_iter().for_each(|buffer| buffer.end(n));
+    }
 }
 
 /// A force on some of the unknowns.
@@ -215,51 +230,180 @@ fn within<'a>(ends: &Option<Ends<'a>>, range: &Range<usize>) -> Ends<'a> {
     }
 }
 
+/// Entries from one of them on; `other` where there are none.
+#[inline(always)]
+fn take<T: Copy>(vector: &[T], first: usize, other: T) -> [T; LANES] {
+    let mut out = [other; LANES];
+    match vector.get(first..first + LANES) {
+        Some(entries) => out.copy_from_slice(entries),
+        None => out
+            .iter_mut()
+            .zip(&vector[first..])
+            .for_each(|(out, entry)| *out = *entry),
+    }
+    out
+}
+
+/// The same of a force at both ends.
+#[inline(always)]
+fn ends(of: &Ends, first: usize) -> [[f64; LANES]; 2] {
+    let mut out = [[0.0; LANES]; 2];
+    for (out, (force, factor)) in out.iter_mut().zip(of) {
+        *out = take(force, first, 0.0);
+        out.iter_mut().for_each(|value| *value *= factor);
+    }
+    out
+}
+
+#[inline(always)]
+fn sum_of(weights: [f64; 2], [one, other]: &[[f64; LANES]; 2]) -> [f64; LANES] {
+    let mut out = [0.0; LANES];
+    for k in 0..LANES {
+        out[k] = weights[0] * one[k] + weights[1] * other[k];
+    }
+    out
+}
+
+/// Writes entries from one of them on, those that there are.
+#[inline(always)]
+fn put(vector: &mut [f64], first: usize, values: &[f64; LANES]) {
+    match vector.get_mut(first..first + LANES) {
+        Some(entries) => entries.copy_from_slice(values),
+        None => vector[first..]
+            .iter_mut()
+            .zip(values)
+            .for_each(|(entry, value)| *entry = *value),
+    }
+}
+
 impl Update<'_> {
     #[inline(always)]
     fn block<const LOADED: bool, const TOUCHED: bool>(
         &self,
-        block: &Block,
+        (block, buffers): (&Block, &mut Buffers),
         sums: &mut Sums,
-        [v1, a1]: [&mut [f64]; 2],
+        out: End,
     ) {
-        let [first, last] = block.nodes.map(|node| self.system.dim * node);
-        let range = first..last;
+        let (dim, [first, last]) = (self.system.dim, block.nodes);
+        let range = dim * first..dim * last;
         let within = Within {
             u: &self.u[range.clone()],
             f: self.f.map(|f| &f[range.clone()]),
             v: &self.v[range.clone()],
             a: &self.a[range.clone()],
-            mass: &self.system.mass.lumped[range.clone()],
             fixed: &self.system.fixed[range.clone()],
             load: within(&self.load, &range),
             contact: within(&self.contact, &range),
         };
-        self.move_on::<LOADED, TOUCHED>(&within, sums, [&mut *v1, &mut *a1]);
-        self.resultants::<LOADED, TOUCHED>(block, &within, sums, [v1, a1]);
+        buffers.end(range.len());
+        buffers.mass.spread(dim, &self.mass[first..last]);
+        buffers.place.fill(dim, &self.system.x[first..last]);
+        let w = pattern(dim, &self.reference[block.part]);
+        let [ahead, v1, a1] = out;
+        let out = [ahead, v1, &mut *a1];
+        self.move_on::<LOADED, TOUCHED>((&within, &w), (buffers, sums), out);
+        self.resultants::<LOADED, TOUCHED>(range.len(), buffers, sums);
+        if block.held {
+            self.reactions::<LOADED, TOUCHED>((&within, buffers), sums, a1);
+        }
     }
 
-    /// Accelerations and velocities of the end, works and squares.
+    /// Accelerations and velocities of the end, the displacement ahead, works and squares.
     #[inline(always)]
     fn move_on<const LOADED: bool, const TOUCHED: bool>(
         &self,
-        of: &Within,
-        sums: &mut Sums,
-        [v1, a1]: [&mut [f64]; 2],
+        (of, w): (&Within, &[f64; blocks::LANES]),
+        (buffers, sums): (&mut Buffers, &mut Sums),
+        [ahead, v1, a1]: End,
     ) {
-        let n = v1.len();
+        let [old, new] = self.weights[0];
+        let means = self.weights[1];
+        // |v₊|², |a|², |a₊|², four works, |Δu|², five squares
         let mut lanes = [[0.0; LANES]; 13];
-        let whole = n - n % LANES;
-        for first in (0..whole).step_by(LANES) {
+        let moved = f64::from(u8::from(self.moves));
+        for first in (0..v1.len()).step_by(LANES) {
+            let (u, v, a) = (
+                take(of.u, first, 0.0),
+                take(of.v, first, 0.0),
+                take(of.a, first, 0.0),
+            );
+            let f = [take(of.f[0], first, 0.0), take(of.f[1], first, 0.0)];
+            let fixed = take(of.fixed, first, true);
+            let [mut load, mut touch] = [[[0.0; LANES]; 2]; 2];
+            if LOADED {
+                load = ends(&of.load, first);
+            }
+            if TOUCHED {
+                touch = ends(&of.contact, first);
+            }
+            let m: [f64; LANES] = buffers.mass.lanes(first);
+            let place: [f64; LANES] = buffers.place.lanes(first);
+            let w: [f64; LANES] = take(w, first % w.len(), 0.0);
+            let [
+                mut x,
+                mut speed,
+                mut far,
+                mut end,
+                mut middle,
+                mut momentum,
+                mut relative,
+            ] = [[0.0; LANES]; 7];
             for k in 0..LANES {
-                let out = [&mut v1[first + k], &mut a1[first + k]];
-                self.unknown::<LOADED, TOUCHED>(of, first + k, out, (k, &mut lanes));
+                let du = self.way.v * v[k] + self.way.a * a[k];
+                let mut outside = 0.0;
+                if LOADED {
+                    outside = load[1][k];
+                }
+                if TOUCHED {
+                    outside += touch[1][k];
+                }
+                let free = (outside - f[1][k]) / m[k];
+                x[k] = if fixed[k] { 0.0 } else { free };
+                speed[k] = self.velocity.v * v[k] + self.velocity.a * a[k] + self.velocity.x * x[k];
+                far[k] = self.ahead.u * u[k] + self.ahead.v * speed[k] + self.ahead.a * x[k];
+                end[k] = place[k] + moved * u[k];
+                middle[k] = end[k] - moved * (0.5 * du);
+                momentum[k] = m[k] * speed[k];
+                relative[k] = speed[k] - w[k];
+                let inertia = [m[k] * a[k], m[k] * x[k]];
+                lanes[0][k] += momentum[k] * speed[k];
+                lanes[1][k] += inertia[0] * a[k];
+                lanes[2][k] += inertia[1] * x[k];
+                lanes[3][k] += (old * inertia[0] + new * inertia[1]) * du;
+                lanes[4][k] += (old * f[0][k] + new * f[1][k]) * du;
+                lanes[7][k] += du * du;
+                lanes[8][k] += inertia[1] * inertia[1];
+                lanes[9][k] += f[1][k] * f[1][k];
+                lanes[12][k] += (m[k] * v[k]) * (m[k] * v[k]);
+                if LOADED {
+                    lanes[5][k] += (old * load[0][k] + new * load[1][k]) * du;
+                    lanes[10][k] += load[1][k] * load[1][k];
+                }
+                if TOUCHED {
+                    lanes[6][k] += (old * touch[0][k] + new * touch[1][k]) * du;
+                    lanes[11][k] += touch[1][k] * touch[1][k];
+                }
+            }
+            // sums stay in vector registers or in memory: without it their lanes are taken apart
+            std::hint::black_box(&mut lanes);
+            put(ahead, first, &far);
+            put(v1, first, &speed);
+            put(a1, first, &x);
+            buffers.place.put(first, &end);
+            buffers.momentum.put(first, &momentum);
+            buffers.relative.put(first, &relative);
+            if LOADED || TOUCHED {
+                buffers.middle.put(first, &middle);
+            }
+            if LOADED {
+                buffers.load.put(first, &sum_of(means, &load));
+                buffers.outside.put(first, &load[1]);
+            }
+            if TOUCHED {
+                buffers.touch.put(first, &sum_of(means, &touch));
             }
         }
-        for i in whole..n {
-            let out = [&mut v1[i], &mut a1[i]];
-            self.unknown::<LOADED, TOUCHED>(of, i, out, (i - whole, &mut lanes));
-        }
+        buffers.relative.end(v1.len());
         let sum = |number: usize| lanes[number].iter().sum::<f64>();
         sums.velocity = sum(0);
         sums.acceleration = [sum(1), sum(2)];
@@ -268,86 +412,45 @@ impl Update<'_> {
         sums.squares = [sum(8), sum(9), sum(10), sum(11), sum(12)];
     }
 
-    /// One unknown, whose terms are added in lane k: |v₊|², |a|², |a₊|², four works, |Δu|², five squares.
-    #[inline(always)]
-    fn unknown<const LOADED: bool, const TOUCHED: bool>(
-        &self,
-        of: &Within,
-        i: usize,
-        [v1, a1]: [&mut f64; 2],
-        (k, lanes): (usize, &mut [[f64; LANES]; 13]),
-    ) {
-        let [old, new] = self.weights[0];
-        let (m, du) = (of.mass[i], self.way.v * of.v[i] + self.way.a * of.a[i]);
-        let ([f, f1], [mut load, mut touch]) = ([of.f[0][i], of.f[1][i]], [[0.0; 2]; 2]);
-        let mut outside = 0.0;
-        if LOADED {
-            load = [
-                of.load[0].1 * of.load[0].0[i],
-                of.load[1].1 * of.load[1].0[i],
-            ];
-            outside = load[1];
-        }
-        if TOUCHED {
-            let [start, end] = &of.contact;
-            touch = [start.1 * start.0[i], end.1 * end.0[i]];
-            outside += touch[1];
-        }
-        let x = (outside - f1) / m;
-        let x = if of.fixed[i] { 0.0 } else { x };
-        let speed = self.velocity.v * of.v[i] + self.velocity.a * of.a[i] + self.velocity.x * x;
-        (*v1, *a1) = (speed, x);
-        let inertia = [m * of.a[i], m * x];
-        lanes[0][k] += m * speed * speed;
-        lanes[1][k] += inertia[0] * of.a[i];
-        lanes[2][k] += inertia[1] * x;
-        lanes[3][k] += (old * inertia[0] + new * inertia[1]) * du;
-        lanes[4][k] += (old * f + new * f1) * du;
-        lanes[7][k] += du * du;
-        lanes[8][k] += inertia[1] * inertia[1];
-        lanes[9][k] += f1 * f1;
-        lanes[12][k] += (m * of.v[i]) * (m * of.v[i]);
-        if LOADED {
-            lanes[5][k] += (old * load[0] + new * load[1]) * du;
-            lanes[10][k] += load[1] * load[1];
-        }
-        if TOUCHED {
-            lanes[6][k] += (old * touch[0] + new * touch[1]) * du;
-            lanes[11][k] += touch[1] * touch[1];
-        }
-    }
-
-    /// Resultants of momentum and forces.
+    /// Resultants of momentum, loads and contact forces of a block of `n` unknowns.
     #[inline(always)]
     fn resultants<const LOADED: bool, const TOUCHED: bool>(
         &self,
-        block: &Block,
-        of: &Within,
+        n: usize,
+        buffers: &Buffers,
         sums: &mut Sums,
-        [v1, a1]: [&[f64]; 2],
+    ) {
+        let dim = self.system.dim;
+        sums.momentum = buffers.momentum.resultant(&buffers.place, dim, n);
+        sums.fastest = buffers.relative.largest_square(dim, n);
+        if LOADED {
+            sums.forces[0] = buffers.load.resultant(&buffers.middle, dim, n);
+            sums.outside[0] = buffers.outside.total(dim, n);
+        }
+        if TOUCHED {
+            sums.forces[1] = buffers.touch.resultant(&buffers.middle, dim, n);
+        }
+    }
+
+    /// What supports give: they hold what the balance leaves.
+    #[inline(always)]
+    fn reactions<const LOADED: bool, const TOUCHED: bool>(
+        &self,
+        (of, buffers): (&Within, &mut Buffers),
+        sums: &mut Sums,
+        a1: &[f64],
     ) {
         let (dim, [old, new]) = (self.system.dim, self.weights[1]);
-        let [first, last] = block.nodes;
-        for (node, x) in self.system.x[first..last].iter().enumerate() {
-            let own = dim * node..dim * (node + 1);
-            let (mut end, mut middle) = (*x, *x);
-            if self.moves {
-                for (axis, i) in own.clone().enumerate() {
-                    let way = self.way.v * of.v[i] + self.way.a * of.a[i];
-                    end[axis] += of.u[i];
-                    middle[axis] += of.u[i] - 0.5 * way;
-                }
-            }
-            let mut momentum = [0.0; 3];
-            for (axis, i) in own.clone().enumerate() {
-                momentum[axis] = of.mass[i] * v1[i];
-            }
-            attach(&mut sums.momentum, &end, &momentum);
-            if !LOADED && !TOUCHED && !block.held {
-                continue;
-            }
-            let mut forces = [[0.0; 3]; 3];
-            for (axis, i) in own.enumerate() {
+        let Buffers {
+            mass,
+            place,
+            middle,
+            load: reaction,
+            ..
+        } = buffers;
+        for i in 0..a1.len() {
+            let mut held = 0.0;
+            if of.fixed[i] {
                 let [mut load, mut touch] = [[0.0; 2]; 2];
                 if LOADED {
                     load = of.load.map(|(force, factor)| factor * force[i]);
@@ -355,33 +458,19 @@ impl Update<'_> {
                 if TOUCHED {
                     touch = of.contact.map(|(force, factor)| factor * force[i]);
                 }
-                forces[0][axis] = old * load[0] + new * load[1];
-                forces[1][axis] = old * touch[0] + new * touch[1];
-                sums.outside[0][axis] += load[1];
-                if of.fixed[i] {
-                    // supports hold what the balance leaves
-                    let inside = [
-                        of.mass[i] * of.a[i] + of.f[0][i] - load[0],
-                        of.mass[i] * a1[i] + of.f[1][i] - load[1],
-                    ];
-                    forces[2][axis] = old * (inside[0] - touch[0]) + new * (inside[1] - touch[1]);
-                    sums.outside[0][axis] += inside[1];
-                    sums.outside[1][axis] -= touch[1];
-                }
+                let inside = [
+                    mass.get(i) * of.a[i] + of.f[0][i] - load[0],
+                    mass.get(i) * a1[i] + of.f[1][i] - load[1],
+                ];
+                held = old * (inside[0] - touch[0]) + new * (inside[1] - touch[1]);
+                sums.outside[0][i % dim] += inside[1];
+                sums.outside[1][i % dim] -= touch[1];
             }
-            for (sum, force) in sums.forces.iter_mut().zip(&forces) {
-                attach(sum, &middle, force);
-            }
+            reaction.set(i, held);
+            let way = self.way.v * of.v[i] + self.way.a * of.a[i];
+            let back = if self.moves { 0.5 * way } else { 0.0 };
+            middle.set(i, place.get(i) - back);
         }
-    }
-}
-
-/// Adds a force at a place.
-#[inline(always)]
-fn attach(sum: &mut Resultant, x: &[f64; 3], force: &[f64; 3]) {
-    for i in 0..3 {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        sum.linear[i] += force[i];
-        sum.angular[i] += x[j] * force[k] - x[k] * force[j];
+        sums.forces[2] = reaction.resultant(middle, dim, a1.len());
     }
 }

@@ -44,6 +44,7 @@ impl Driver {
     pub(super) fn leave_direct(&mut self) {
         if let Some(direct) = &mut self.direct {
             (direct.clean, direct.finite) = (false, false);
+            (direct.pending, direct.ready) = (None, None);
         }
         self.active.leave();
     }
@@ -70,7 +71,7 @@ impl Driver {
             self.next.motion.contact_force.fill(0.0);
             self.vectors.x.fill(0.0);
         }
-        self.place_end();
+        self.place_end(direct);
         self.forces_of_end()?;
         let loads = self.loads_of_end(direct.loaded);
         let before_it = self.follow_interface();
@@ -90,9 +91,15 @@ impl Driver {
         Ok(())
     }
 
-    /// Displacements of the end.
-    fn place_end(&mut self) {
+    /// Displacements of the end: those found ahead, if the step is as long as it was taken to be.
+    fn place_end(&mut self, direct: &mut Direct) {
         let (row, motion) = (self.maps.first().displacement, &self.state.motion);
+        direct.pending = None;
+        if direct.ready.take() == Some(row) {
+            std::mem::swap(&mut self.next.motion.u, &mut direct.ahead);
+            self.next.motion.frames.clone_from(&motion.frames);
+            return;
+        }
         let start = Known::from(motion);
         let ends = self.next.motion.u.par_chunks_mut(UNKNOWNS).enumerate();
         ends.for_each(|(chunk, end)| {
@@ -185,12 +192,17 @@ impl Driver {
         let map = self.maps.first();
         let means = [map.impulse.old, map.impulse.new];
         let moves = system.is_nonlinear();
+        let shapes = &self.state.shapes.bodies;
+        self.rates.refer(&system.part_of_body, shapes);
         let (old, new) = (&self.state.motion, &mut self.next.motion);
         let varying = &self.vectors.load[..];
         let before = self.state.forces.first().map_or(varying, |load| &load[..]);
         let update = Update {
             system: &system,
             u: &new.u,
+            mass: &direct.mass,
+            ahead: map.displacement,
+            reference: &self.rates.reference,
             f: [&old.internal_force, &new.internal_force],
             v: &old.v,
             a: &old.a,
@@ -206,7 +218,9 @@ impl Driver {
             weights: [means, if moves { means } else { [0.0, 1.0] }],
             moves,
         };
-        update.run(&direct.blocks, &mut direct.sums, [&mut new.v, &mut new.a]);
+        let out = [&mut direct.ahead[..], &mut new.v, &mut new.a];
+        update.run(&direct.blocks, &mut direct.sums, out);
+        direct.pending = Some(map.displacement);
         let forces = &mut self.next.forces;
         match loads {
             Loads::Varying => {

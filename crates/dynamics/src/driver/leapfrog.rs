@@ -2,14 +2,23 @@
 
 use carom_algebra::unknowns::Kind;
 
+use crate::blocks::{Block, blocks};
 use crate::groups::{Groups, OfGroup};
 use crate::scheme::EnergyIdentity;
 use crate::step_map::{Impulse, Row, StepMap};
 use crate::system::System;
-use crate::update::{Block, Sums, blocks};
+use crate::update::Sums;
 
 /// What such steps need beside the state.
 pub(super) struct Direct {
+    /// Mass of each node, kg.
+    pub(super) mass: Vec<f64>,
+    /// Displacement of the step after the next, m, if that is as long as the one that was taken last.
+    pub(super) ahead: Vec<f64>,
+    /// With which row it was found in the attempt.
+    pub(super) pending: Option<Row>,
+    /// The same once the attempt is the state.
+    pub(super) ready: Option<Row>,
     pub(super) blocks: Vec<Block>,
     /// Sums of each block.
     pub(super) sums: Vec<Sums>,
@@ -58,7 +67,10 @@ impl Direct {
             && (0..unknowns.nodes()).all(|node| unknowns.first(node as u32) == dim * node)
             && (0..unknowns.len()).all(moves);
         let solids = system.bodies.iter().all(|body| body.as_solid().is_some());
-        let mass = system.mass.is_lumped() && system.massless.is_empty();
+        let lumped = &system.mass.lumped;
+        let even = |mass: &[f64]| mass.iter().all(|own| *own == mass[0]);
+        let mass =
+            system.mass.is_lumped() && system.massless.is_empty() && lumped.chunks(dim).all(even);
         let free = system.nonlinear.follows.is_empty()
             && system.link_rows.is_empty()
             && !system.has_damping()
@@ -66,6 +78,10 @@ impl Direct {
         (plain && solids && mass && free).then(|| {
             let blocks = blocks(system);
             Direct {
+                mass: lumped.iter().step_by(dim).copied().collect(),
+                ahead: vec![0.0; unknowns.len()],
+                pending: None,
+                ready: None,
                 sums: vec![Sums::default(); blocks.len()],
                 parts: vec![Sums::default(); system.parts.len()],
                 blocks,

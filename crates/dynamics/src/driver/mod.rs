@@ -74,6 +74,7 @@ use crate::coulomb::{Coulomb, FrictionProblem, Slip};
 use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::report::StepReport;
 use crate::scheme::EnergyIdentity;
+use crate::shapes::Rates;
 use crate::state::State;
 use crate::step_map::StepMap;
 use crate::system::{Maps, System};
@@ -112,6 +113,7 @@ pub struct Driver {
     effective: Effective,
     /// For steps whose matrix is the lumped mass; none where there are no such steps.
     direct: Option<Direct>,
+    rates: Rates,
     floating: Floating,
     /// Every which step is dropped once, in tests.
     forced: Option<u64>,

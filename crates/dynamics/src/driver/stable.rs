@@ -42,7 +42,13 @@ impl Driver {
         let (motion, shapes) = (&self.state.motion, &mut self.state.shapes);
         let known = !shapes.u.is_empty();
         if known {
-            shapes.changed += dt * largest_rate(system, &shapes.bodies, &motion.v);
+            let fastest = |part: usize, w: &[f64; 3]| match &self.direct {
+                // the last pass has found them
+                Some(direct) if direct.ready.is_some() => direct.parts[part].fastest,
+                _ => fastest(system, part, (w, &motion.v)),
+            };
+            let parts = &system.part_of_body;
+            shapes.changed += dt * self.rates.largest(parts, &shapes.bodies, fastest);
             if shapes.changed <= CHANGE {
                 return Ok(());
             }
@@ -141,6 +147,9 @@ impl Driver {
         std::mem::swap(&mut self.state.shapes, &mut self.next.shapes);
         std::mem::swap(&mut self.state, &mut self.next);
         self.active.accept();
+        if let Some(direct) = &mut self.direct {
+            direct.ready = direct.pending.take();
+        }
     }
 }
 
@@ -149,21 +158,18 @@ fn changes(body: &Body) -> bool {
     body.as_solid().is_some() && !body.is_linear()
 }
 
-/// Bound of the rate at which the distance of two nodes of an element changes, relative to the shortest, 1/s.
-fn largest_rate(system: &System, shapes: &[Option<Shape>], v: &[f64]) -> f64 {
-    let of_body = |(nodes, shape): (&Vec<(u32, f64)>, &Option<Shape>)| {
-        let shape = shape.as_ref()?;
-        let square = |&(node, _): &(u32, f64)| {
-            let v = system.unknowns.vector(node, v);
-            let relative = [0, 1, 2].map(|i| v[i] - shape.velocity[i]);
-            relative.iter().map(|v| v * v).sum::<f64>()
-        };
-        let largest = |nodes: &[(u32, f64)]| nodes.iter().map(square).fold(0.0, f64::max);
-        let squares = nodes.par_chunks(NODES).map(largest);
-        Some(2.0 * squares.reduce(|| 0.0, f64::max).sqrt() / shape.shortest)
+/// Largest square of |v - w| over the nodes of a part, m²/s².
+fn fastest(system: &System, part: usize, (w, v): (&[f64; 3], &[f64])) -> f64 {
+    let square = |node: usize| {
+        let mut sum = 0.0;
+        for (axis, unknown) in system.unknowns.translations_of(node as u32).enumerate() {
+            sum += (v[unknown] - w[axis]).powi(2);
+        }
+        sum
     };
-    let bodies = system.body_masses.iter().zip(shapes);
-    bodies.filter_map(of_body).fold(0.0, f64::max)
+    let nodes = system.nodes_of(&system.parts[part]).into_par_iter();
+    let squares = nodes.with_min_len(NODES).map(square);
+    squares.reduce(|| 0.0, f64::max)
 }
 
 /// Calls `visit` with the nodes of each pair of an element of a body, those of deleted elements left out. `histories`: of all.

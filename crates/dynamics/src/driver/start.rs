@@ -30,6 +30,7 @@ use crate::operator::Operators;
 use crate::records::Records;
 use crate::report::{ContactReport, StepReport};
 use crate::resultant::Resultant;
+use crate::shapes::Rates;
 use crate::state::{Links, State, empty_state};
 use crate::system::{Maps, System};
 use crate::watch::Watch;
@@ -67,6 +68,7 @@ impl Driver {
             identity: None,
             effective: Effective::new(),
             direct: Direct::of(&system),
+            rates: Rates::new(system.parts.len()),
             floating: Floating::new(&system)?,
             forced: None,
             ahead: system.dt,
@@ -196,6 +198,7 @@ impl Driver {
         let system = Arc::clone(&self.system);
         self.size(system.dt, system.dt);
         self.prepared = false;
+        self.leave_direct();
         self.state.records = Records::of(&system);
         self.vectors.x.fill(0.0);
         self.compress();

@@ -100,6 +100,7 @@ impl Driver {
                 Err(error) => {
                     if let Some(start) = start {
                         self.state = start;
+                        self.leave_direct();
                     }
                     return Err(unheld.unwrap_or(error));
                 }

@@ -1,0 +1,253 @@
+//! Blocks of nodes, and resultants of the forces on one, several nodes at a time.
+//!
+//! A vector keeps the components of a node together, so that the factors of a term of a moment are an entry of the places and one of the forces
+//! that is at most two further: x_i f_(i±1) and x_i f_(i±2). All these products are added in lanes, each of one axis; those
+//! that are no term of a moment are left out at the end.
+
+use std::ops::Range;
+
+use crate::resultant::Resultant;
+use crate::system::System;
+
+/// Nodes of a block, at most: what it reads and writes stays in the nearest cache.
+const NODES: usize = 128;
+
+/// Lanes: a multiple of one, two and three components, and of the width of the processor's registers.
+pub(crate) const LANES: usize = 24;
+
+/// Zeros before and after a block, for the entries that it does not have.
+const RIM: usize = 2;
+
+/// A vector repeated, as the unknowns of nodes follow each other.
+pub(crate) fn pattern(dim: usize, w: &[f64; 3]) -> [f64; LANES] {
+    std::array::from_fn(|k| w[k % dim])
+}
+
+/// Nodes of one connected part that follow each other.
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    /// First node, and one end more.
+    pub(crate) nodes: [usize; 2],
+    /// Its part.
+    pub(crate) part: usize,
+    /// Whether any of their unknowns is held.
+    pub(crate) held: bool,
+}
+
+/// The blocks of a system whose nodes have translations alone.
+pub(crate) fn blocks(system: &System) -> Vec<Block> {
+    let dim = system.dim;
+    let of_part = |(part, unknowns): (usize, &Range<usize>)| {
+        let (begin, end) = (unknowns.start / dim, unknowns.end / dim);
+        (begin..end).step_by(NODES).map(move |first| {
+            let last = end.min(first + NODES);
+            Block {
+                nodes: [first, last],
+                part,
+                held: system.fixed[dim * first..dim * last].contains(&true),
+            }
+        })
+    };
+    system.parts.iter().enumerate().flat_map(of_part).collect()
+}
+
+/// A vector of the unknowns of a block; zero behind them.
+pub(crate) struct Buffer([f64; 3 * NODES + 2 * RIM]);
+
+impl Default for Buffer {
+    #[inline(always)]
+    fn default() -> Buffer {
+        Buffer([0.0; 3 * NODES + 2 * RIM])
+    }
+}
+
+impl Buffer {
+    /// Sets an entry.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, i: usize, value: f64) {
+        self.0[RIM + i] = value;
+    }
+
+    #[inline(always)]
+    pub(crate) fn get(&self, i: usize) -> f64 {
+        self.0[RIM + i]
+    }
+
+    /// Entries from one of them on.
+    #[inline(always)]
+    pub(crate) fn lanes<const W: usize>(&self, first: usize) -> [f64; W] {
+        let mut out = [0.0; W];
+        out.copy_from_slice(&self.0[RIM + first..][..W]);
+        out
+    }
+
+    /// Writes entries from one of them on.
+    #[inline(always)]
+    pub(crate) fn put<const W: usize>(&mut self, first: usize, values: &[f64; W]) {
+        self.0[RIM + first..][..W].copy_from_slice(values);
+    }
+
+    /// Leaves nothing of a longer block behind the first `n` entries.
+    #[inline(always)]
+    pub(crate) fn end(&mut self, n: usize) {
+        let behind = &mut self.0[RIM + n..];
+        let count = behind.len().min(LANES);
+        behind[..count].fill(0.0);
+    }
+
+    /// Takes `dim` components of the vectors of some nodes.
+    #[inline(always)]
+    pub(crate) fn fill(&mut self, dim: usize, vectors: &[[f64; 3]]) {
+        let entries = &mut self.0[RIM..];
+        if dim == 3 {
+            entries[..3 * vectors.len()].copy_from_slice(vectors.as_flattened());
+        } else {
+            for (entry, vector) in entries.chunks_exact_mut(dim).zip(vectors) {
+                entry.copy_from_slice(&vector[..dim]);
+            }
+        }
+    }
+
+    /// Takes a number of each node, for its `dim` unknowns.
+    #[inline(always)]
+    pub(crate) fn spread(&mut self, dim: usize, numbers: &[f64]) {
+        match dim {
+            3 => self.repeat::<3>(numbers),
+            2 => self.repeat::<2>(numbers),
+            _ => self.repeat::<1>(numbers),
+        }
+    }
+
+    #[inline(always)]
+    fn repeat<const D: usize>(&mut self, numbers: &[f64]) {
+        let (entries, _) = self.0[RIM..].as_chunks_mut();
+        for (entry, number) in entries.iter_mut().zip(numbers) {
+            *entry = [*number; D];
+        }
+    }
+
+    /// Entries from i + shift - [`RIM`] on.
+    #[inline(always)]
+    fn at(&self, i: usize, shift: usize) -> &[f64; LANES] {
+        // the last lanes end with the buffer
+        match self.0[i + shift..].first_chunk() {
+            Some(entries) => entries,
+            None => &[0.0; LANES],
+        }
+    }
+
+    /// Resultant of these forces at places, `dim` components of each, of `n` entries.
+    #[inline(always)]
+    pub(crate) fn resultant(&self, places: &Buffer, dim: usize, n: usize) -> Resultant {
+        let mut linear = [0.0; LANES];
+        // of places with the forces two before, one before, one behind, two behind
+        let mut products = [[0.0; LANES]; 4];
+        for i in (0..n).step_by(LANES) {
+            let (x, f) = (places.at(i, RIM), self.at(i, RIM));
+            for k in 0..LANES {
+                linear[k] += f[k];
+            }
+            for (products, shift) in products.iter_mut().zip([0, 1, 3, 4]) {
+                let other = self.at(i, shift);
+                for k in 0..LANES {
+                    products[k] += x[k] * other[k];
+                }
+            }
+        }
+        let sum = |lanes: &[f64; LANES], axis: usize| -> f64 {
+            lanes.iter().skip(axis).step_by(dim).sum()
+        };
+        let mut out = Resultant::default();
+        for axis in 0..dim {
+            out.linear[axis] = sum(&linear, axis);
+        }
+        let [two_before, before, behind, two_behind] = &products;
+        if dim > 1 {
+            out.angular[2] = sum(behind, 0) - sum(before, 1);
+        }
+        if dim > 2 {
+            out.angular[0] = sum(behind, 1) - sum(before, 2);
+            out.angular[1] = sum(two_before, 2) - sum(two_behind, 0);
+        }
+        out
+    }
+
+    /// Σ over the nodes, axis by axis.
+    #[inline(always)]
+    pub(crate) fn total(&self, dim: usize, n: usize) -> [f64; 3] {
+        let mut lanes = [0.0; LANES];
+        for i in (0..n).step_by(LANES) {
+            let f = self.at(i, RIM);
+            for k in 0..LANES {
+                lanes[k] += f[k];
+            }
+        }
+        let mut out = [0.0; 3];
+        for (axis, out) in out.iter_mut().enumerate().take(dim) {
+            *out = lanes.iter().skip(axis).step_by(dim).sum();
+        }
+        out
+    }
+
+    /// Largest square of the length of a node's vector.
+    #[inline(always)]
+    pub(crate) fn largest_square(&self, dim: usize, n: usize) -> f64 {
+        let mut most = [0.0; LANES];
+        for i in (0..n).step_by(LANES) {
+            let mut squares = [0.0; LANES];
+            for shift in RIM..RIM + dim {
+                let v = self.at(i, shift);
+                for k in 0..LANES {
+                    squares[k] += v[k] * v[k];
+                }
+            }
+            for k in 0..LANES {
+                if squares[k] > most[k] {
+                    most[k] = squares[k];
+                }
+            }
+        }
+        let own = most.iter().step_by(dim);
+        own.fold(0.0, |most: f64, &square| most.max(square))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn resultants_in_lanes_are_those_node_by_node() {
+        for (dim, nodes) in [(1, 5), (2, 12), (2, 128), (3, 1), (3, 9), (3, 128)] {
+            let n = dim * nodes;
+            let value = |i: usize, of: f64| (of * (i + 1) as f64).sin();
+            let (mut x, mut f) = (Buffer::default(), Buffer::default());
+            let place = |node: usize| [0, 1, 2].map(|i| value(3 * node + i, 0.7));
+            x.fill(dim, &(0..nodes).map(place).collect::<Vec<_>>());
+            (0..n).for_each(|i| f.set(i, value(i, 1.3)));
+            let (mut linear, mut angular, mut largest) = ([0.0; 3], [0.0; 3], 0.0f64);
+            for node in 0..nodes {
+                let mut force = [0.0; 3];
+                (0..dim).for_each(|i| force[i] = f.get(dim * node + i));
+                let mut at = [0.0; 3];
+                at[..dim].copy_from_slice(&place(node)[..dim]);
+                for i in 0..3 {
+                    let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                    linear[i] += force[i];
+                    angular[i] += at[j] * force[k] - at[k] * force[j];
+                }
+                largest = largest.max(force.iter().map(|f| f * f).sum());
+            }
+            // rounding of sums of 128 numbers of one
+            let near =
+                |a: [f64; 3], b: [f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 128.0 * 1e-15);
+            let found = f.resultant(&x, dim, n);
+            assert!(
+                near(found.linear, linear) && near(found.angular, angular),
+                "{dim} {nodes}"
+            );
+            assert!(near(f.total(dim, n), linear));
+            assert_eq!(f.largest_square(dim, n), largest);
+        }
+    }
+}
