@@ -2,8 +2,9 @@
 //!
 //! `cargo bench -p carom-benches --bench search`. The faces are a waved sheet of quadrilaterals with one secondary node over
 //! each. "first": tree and all; "fast": the sheet moves by a face per pairing, forth and back, boxes are refitted and all points searched;
-//! "slow": by a hundredth of a face, most points ask the faces that they have kept. The last lines print the best times,
-//! since other processes may be running.
+//! "slow": by a hundredth of a face, most points ask the faces that they have kept. "refit" and "query" are two parts of "fast": the boxes
+//! of all faces, and the closest points of all points without their rows. `CAROM_BENCH_THREADS=2` sets the threads (1 unless given).
+//! The last lines print the best times, since other processes may be running.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -17,7 +18,19 @@ use carom_elements::Kind;
 use carom_mesh::{ElementId, Face, face_nodes};
 use criterion::{BenchmarkId, Criterion, SamplingMode};
 
-fn main() {
+/// What of a pairing is timed.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    All,
+    Refit,
+    Query,
+}
+
+fn main() -> Result<(), rayon::ThreadPoolBuildError> {
+    let threads = std::env::var("CAROM_BENCH_THREADS").ok();
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.and_then(|n| n.parse().ok()).unwrap_or(1))
+        .build_global()?;
     let mut criterion = Criterion::default()
         .sample_size(10)
         .warm_up_time(Duration::from_millis(1))
@@ -31,6 +44,7 @@ fn main() {
         println!("{line}");
     }
     criterion.final_summary();
+    Ok(())
 }
 
 fn sheet(criterion: &mut Criterion, side: u32) -> Vec<String> {
@@ -38,10 +52,17 @@ fn sheet(criterion: &mut Criterion, side: u32) -> Vec<String> {
     let n = f64::from(side * side);
     let unknowns = Unknowns::translations(3, x.len());
     let mut lines = Vec::new();
-    for (name, step) in [("first", 0.0), ("fast", 1.0), ("slow", 0.01)] {
+    let kinds = [
+        ("first", 0.0, Part::All),
+        ("fast", 1.0, Part::All),
+        ("refit", 1.0, Part::Refit),
+        ("query", 1.0, Part::Query),
+        ("slow", 0.01, Part::All),
+    ];
+    for (name, step, part) in kinds {
         let mut u = vec![0.0; 3 * x.len()];
         let (mut search, mut rows) = (Search::default(), Rows::default());
-        let mut best = Duration::MAX;
+        let (mut feet, mut best) = (Vec::new(), Duration::MAX);
         let mut way = step;
         let mut pair = |search: &mut Search| {
             // the sheet moves forth and back, the points over it stay
@@ -55,12 +76,22 @@ fn sheet(criterion: &mut Criterion, side: u32) -> Vec<String> {
                 u: &u,
                 frames: Frames::default(),
             };
-            let begin = Instant::now();
-            rows.clear();
-            contact.pair(&places, search, &mut rows);
-            let elapsed = begin.elapsed();
-            black_box(&rows);
-            elapsed
+            let mut begin = Instant::now();
+            if part == Part::All {
+                rows.clear();
+                contact.pair(&places, search, &mut rows);
+                black_box(&rows);
+                return begin.elapsed();
+            }
+            contact.renew(&places, search);
+            let refit = begin.elapsed();
+            begin = Instant::now();
+            contact.feet(&places, search, &mut feet);
+            black_box(&feet);
+            match part {
+                Part::Refit => refit,
+                Part::Query | Part::All => begin.elapsed(),
+            }
         };
         // lists of faces are made once the boxes have stood for some steps
         let before = if step == 0.0 { 0 } else { 6 };

@@ -1,6 +1,6 @@
 //! One contact: secondary points that carry the forces, what they face, and the law between them.
 
-use carom_mesh::Face;
+use carom_mesh::{Face, Projection};
 
 use crate::sight::View;
 use crate::{Basis, Held, Law, Mortar, Obstacle, Places, Point, Search, Shape, Sight};
@@ -79,8 +79,22 @@ impl Contact {
         }
     }
 
-    /// Brings the search to a configuration.
-    pub(crate) fn renew(&self, places: &Places, search: &mut Search) {
+    /// The closest point of the target to each point that faces one, into `feet`, which is cleared first; none on an obstacle. `search` is
+    /// that of these places ([`Contact::renew`]).
+    pub fn feet(&self, places: &Places, search: &mut Search, feet: &mut Vec<Option<Projection>>) {
+        feet.clear();
+        let Target::Surface(faces) = &self.target else {
+            return;
+        };
+        search.begin();
+        for (k, point) in self.points.iter().enumerate() {
+            let found = search.opposite(places, faces, (point, self.view(k)));
+            feet.push(found.map(|found| found.foot));
+        }
+    }
+
+    /// Brings the search to a configuration: takes the boxes of the faces unless they have hardly moved.
+    pub fn renew(&self, places: &Places, search: &mut Search) {
         if let Target::Surface(faces) = &self.target {
             search.renew(places, faces, self.sight.as_ref());
         }

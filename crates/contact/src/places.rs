@@ -50,7 +50,7 @@ impl Places<'_> {
         let own = self.unknowns.translations_of(node);
         match (self.u.get(own), self.unknowns.carrier(node)) {
             (Some(&[u, v, w]), None) => {
-                let x = self.x[node as usize];
+                let x = &self.x[node as usize];
                 [x[0] + u, x[1] + v, x[2] + w]
             }
             _ => self.of_any(node),

@@ -21,10 +21,16 @@ impl Bounds {
     };
 
     /// The smallest box around some points.
+    #[inline]
     pub fn of(points: &[[f64; 3]]) -> Bounds {
-        points.iter().fold(Bounds::EMPTY, |bounds, &x| {
-            bounds.union(&Bounds { min: x, max: x })
-        })
+        let mut bounds = Bounds::EMPTY;
+        for x in points {
+            for (i, &x) in x.iter().enumerate() {
+                bounds.min[i] = bounds.min[i].min(x);
+                bounds.max[i] = bounds.max[i].max(x);
+            }
+        }
+        bounds
     }
 
     /// A box around the whole of a face with these node positions, curved or not: around its Bézier points.
@@ -32,6 +38,10 @@ impl Bounds {
     /// A quadratic face bulges out of the box of its nodes, but not out of that of the coefficients of its Bernstein
     /// polynomials, which are positive and sum to one. Farin (2002).
     pub fn of_face(kind: Kind, nodes: &[[f64; 3]]) -> Bounds {
+        // a straight face is in the box of its corners
+        if matches!(kind, Kind::Point1 | Kind::Bar2 | Kind::Tri3 | Kind::Quad4) {
+            return Bounds::of(nodes);
+        }
         let mut points = [[0.0; 3]; MAX_FACE_NODES];
         let points = &mut points[..nodes.len()];
         points.copy_from_slice(nodes);
@@ -48,11 +58,14 @@ impl Bounds {
     }
 
     /// The smallest box around two.
+    #[inline]
     pub fn union(&self, other: &Bounds) -> Bounds {
-        Bounds {
-            min: [0, 1, 2].map(|i| self.min[i].min(other.min[i])),
-            max: [0, 1, 2].map(|i| self.max[i].max(other.max[i])),
+        let mut both = *self;
+        for i in 0..3 {
+            both.min[i] = both.min[i].min(other.min[i]);
+            both.max[i] = both.max[i].max(other.max[i]);
         }
+        both
     }
 
     /// The box moved outward by `margin` on every side, in m.
@@ -69,6 +82,7 @@ impl Bounds {
     }
 
     /// Squared distance from a point to the box, in m²; zero inside.
+    #[inline]
     pub fn distance_squared(&self, point: &[f64; 3]) -> f64 {
         (0..3)
             .map(|i| {

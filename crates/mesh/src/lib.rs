@@ -13,6 +13,7 @@ pub mod generate;
 pub mod inside;
 mod mesh;
 mod parts;
+mod patch;
 pub mod project;
 pub mod raise;
 pub mod read;

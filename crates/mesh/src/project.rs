@@ -6,6 +6,7 @@
 
 use carom_elements::{Kind, MAX_FACE_NODES, MAX_NODES, map};
 
+use crate::patch::Foot;
 use crate::vector::{difference, dot};
 use crate::{Face, curved};
 
@@ -39,6 +40,12 @@ pub struct Projection {
 /// neighbourhood: the result is then one of them, and it is the closest of all if the point is nearer than the face's
 /// radius of curvature. For the end of a bar the normal is the face's axis.
 pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Projection {
+    if let (Kind::Quad4, Some(corners)) = (face.kind, positions.first_chunk()) {
+        let foot = Foot::new(corners, point);
+        let inside = foot.free.iter().all(|free| free.abs() <= 1.0 + SLACK);
+        let xi = [foot.xi[0], foot.xi[1], 0.0];
+        return placed(face, point, (xi, foot.point, foot.normal), inside);
+    }
     let element = face.kind.table();
     // Seen from the point: far from the origin the rounding of places would keep iterations from their end.
     let mut local = [[0.0; 3]; MAX_FACE_NODES];
@@ -50,8 +57,7 @@ pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Project
         (0, _) => ([0.0; 3], [0.0; 3]),
         (1, false) => on_segment(positions, point),
         (1, true) => curved::on_curve(element, local, origin),
-        (2, false) if element.nodes == 3 => on_triangle(positions, point),
-        (2, false) => on_patch(local),
+        (2, false) => on_triangle(positions, point),
         (2, true) => curved::on_patch(element, local, origin),
         _ => unreachable!("a face has two dimensions at most"),
     };
@@ -63,6 +69,18 @@ pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Project
         Kind::Point1 => face.axis,
         _ => map::measure(positions, &dn[..element.nodes], element.dim).1,
     };
+    let inside = (element.contains)(&free, SLACK);
+    placed(face, point, (xi, foot, normal), inside)
+}
+
+/// What is known of a foot, from its reference coordinates, place and normal; `inside` as in [`Projection`].
+#[inline]
+fn placed(
+    face: &Face,
+    point: &[f64; 3],
+    (xi, foot, normal): ([f64; 3], [f64; 3], [f64; 3]),
+    inside: bool,
+) -> Projection {
     let to_point = difference(point, &foot);
     let distance = dot(&to_point, &to_point).sqrt();
     if let Some(radius) = face.radius.filter(|_| face.is_round()) {
@@ -85,7 +103,7 @@ pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Project
         normal,
         gap: dot(&normal, &to_point) - face.radius.unwrap_or(0.0),
         distance,
-        inside: (element.contains)(&free, SLACK),
+        inside,
     }
 }
 
@@ -122,93 +140,6 @@ fn on_triangle(x: &[[f64; 3]], point: &[f64; 3]) -> ([f64; 3], [f64; 3]) {
         }
     }
     (best.1, free)
-}
-
-/// Closest point of a bilinear patch to the origin, and where Newton's step from there would go if the patch went on.
-///
-/// f = |x - y(ξ, η)|²/2 is a parabola along each coordinate line. Newton's step is kept if it does not raise f, then
-/// f is minimised along each coordinate line in turn: what no longer moves is a minimum in the square, its edges
-/// included.
-fn on_patch(corners: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
-    let patch = Patch::new(corners);
-    let mut xi = [0.0; 3];
-    for _ in 0..MAX_PASSES {
-        let before = xi;
-        let trial = patch.newton(&xi).map(|c| c.clamp(-1.0, 1.0));
-        // Round-off in f hides the last digits of the minimum, where the step is at its best.
-        if patch.half_square(&trial) <= patch.half_square(&xi) * (1.0 + 1e-14) {
-            xi = trial;
-        }
-        for axis in 0..2 {
-            let (tangents, r) = patch.tangents(&xi);
-            let step = dot(&tangents[axis], &r) / dot(&tangents[axis], &tangents[axis]);
-            xi[axis] = (xi[axis] + step).clamp(-1.0, 1.0);
-        }
-        if (0..2).all(|i| (xi[i] - before[i]).abs() < 1e-14) {
-            break;
-        }
-    }
-    let free = patch.newton(&xi);
-    (xi, free)
-}
-
-/// Bound on the passes of [`on_patch`]; Newton's method takes about five.
-const MAX_PASSES: usize = 100;
-
-/// A bilinear quadrilateral `y = m + ξ s + η t + ξη w`, m.
-struct Patch {
-    middle: [f64; 3],
-    sides: [[f64; 3]; 2],
-    twist: [f64; 3],
-}
-
-impl Patch {
-    fn new(corners: &[[f64; 3]]) -> Patch {
-        let sum = |signs: [f64; 4]| map::point(corners, &signs.map(|sign| 0.25 * sign));
-        Patch {
-            middle: sum([1.0; 4]),
-            sides: [sum([-1.0, 1.0, 1.0, -1.0]), sum([-1.0, -1.0, 1.0, 1.0])],
-            twist: sum([1.0, -1.0, 1.0, -1.0]),
-        }
-    }
-
-    /// r = -y(ξ), the way to the origin.
-    fn to_point(&self, xi: &[f64; 3]) -> [f64; 3] {
-        let [s, t] = &self.sides;
-        [0, 1, 2].map(|i| {
-            -(self.middle[i] + xi[0] * s[i] + xi[1] * t[i] + xi[0] * xi[1] * self.twist[i])
-        })
-    }
-
-    /// f = |r|²/2.
-    fn half_square(&self, xi: &[f64; 3]) -> f64 {
-        let r = self.to_point(xi);
-        0.5 * dot(&r, &r)
-    }
-
-    /// The tangents t_i = ∂y/∂ξ_i, and r.
-    fn tangents(&self, xi: &[f64; 3]) -> ([[f64; 3]; 2], [f64; 3]) {
-        let t = [0, 1].map(|a| [0, 1, 2].map(|i| self.sides[a][i] + xi[1 - a] * self.twist[i]));
-        (t, self.to_point(xi))
-    }
-
-    /// Newton's next point, unclamped: ξ - H^-1 ∇f with ∇f_i = -t_i·r, H_ij = t_i·t_j - r·∂²y/∂ξ_i∂ξ_j; without
-    /// the second derivative (Gauss and Newton) where H is not positive definite.
-    fn newton(&self, xi: &[f64; 3]) -> [f64; 3] {
-        let ([s, t], r) = self.tangents(xi);
-        // ∂²y/∂ξ∂η of the bilinear map; the other second derivatives are zero.
-        let twist = &self.twist;
-        let (ss, tt, st) = (dot(&s, &s), dot(&t, &t), dot(&s, &t));
-        let full = st - dot(&r, twist);
-        let mixed = if ss * tt > full * full { full } else { st };
-        let det = ss * tt - mixed * mixed;
-        let (sr, tr) = (dot(&s, &r), dot(&t, &r));
-        [
-            xi[0] + (tt * sr - mixed * tr) / det,
-            xi[1] + (ss * tr - mixed * sr) / det,
-            0.0,
-        ]
-    }
 }
 
 #[cfg(test)]

@@ -29,8 +29,8 @@ pub struct BoxTree {
     boxes: Vec<Bounds>,
     /// Nodes by level: those of the first have the items, eight each; node k of the next has nodes 8 k to 8 k + 7.
     levels: Vec<Vec<Wide>>,
-    /// Around all items.
-    bounds: Bounds,
+    /// Largest coordinate of an item, m.
+    reach: f64,
     /// Where coordinates of nodes begin, m.
     origin: [f64; 3],
     /// Sides of the boxes of all nodes when the tree was built, m.
@@ -57,7 +57,7 @@ impl BoxTree {
                 centre if centre.is_finite() => centre,
                 _ => 0.0,
             }),
-            bounds,
+            reach: 0.0,
             built: 0.0,
         };
         tree.refit(boxes);
@@ -78,7 +78,7 @@ impl BoxTree {
     /// Takes new boxes of the same items, as many as before, and recomputes the tree's boxes in linear time.
     pub fn refit(&mut self, boxes: &[Bounds]) {
         debug_assert_eq!(boxes.len(), self.items.len());
-        self.bounds = around(boxes);
+        self.reach = around(boxes).reach();
         let origin = self.origin;
         let Some((leaves, upper)) = self.levels.split_first_mut() else {
             return;
@@ -164,11 +164,11 @@ impl BoxTree {
     /// Bound of the rounding of distances between a point and places in the tree, m.
     pub fn rounding(&self, point: &[f64; 3]) -> f64 {
         // a foot is a sum of some ten products: this is a hundred times what it can err
-        1e-13 * (self.bounds.reach() + Bounds::of(&[*point]).reach())
+        1e-13 * (self.reach + Bounds::of(&[*point]).reach())
     }
 
     fn from(&self, bounds: &Bounds) -> Around {
-        let reach = self.bounds.reach() + Bounds::of(&[self.origin]).reach();
+        let reach = self.reach + Bounds::of(&[self.origin]).reach();
         Around::new(bounds, &self.origin, reach)
     }
 
@@ -278,18 +278,24 @@ fn around(boxes: &[Bounds]) -> Bounds {
 }
 
 /// The entries not above a limit with their places, smaller ones first, into `near`; how many they are.
+#[inline]
 fn sorted(squares: &[f32; WIDTH], limit: f32, near: &mut [(f32, u32); WIDTH]) -> usize {
+    let mut left = 0_u32;
+    for (place, square) in squares.iter().enumerate() {
+        left |= u32::from(*square <= limit) << place;
+    }
     let mut found = 0;
-    for (place, &square) in (0..).zip(squares) {
-        if square <= limit {
-            let mut at = found;
-            while at > 0 && near[at - 1].0 > square {
-                near[at] = near[at - 1];
-                at -= 1;
-            }
-            near[at] = (square, place);
-            found += 1;
+    while left != 0 {
+        let place = left.trailing_zeros();
+        left &= left - 1;
+        let square = squares[place as usize % WIDTH];
+        let mut at = found;
+        while at > 0 && near[at - 1].0 > square {
+            near[at] = near[at - 1];
+            at -= 1;
         }
+        near[at] = (square, place);
+        found += 1;
     }
     found
 }

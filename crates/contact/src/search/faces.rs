@@ -1,5 +1,6 @@
 //! The faces of a target in a tree of boxes, and the questions that points ask of them.
 
+use carom_elements::Kind;
 use carom_mesh::{Bounds, BoxTree, Face, Projection};
 use rayon::prelude::*;
 
@@ -206,8 +207,17 @@ impl FaceTree {
         };
         let within = view.map_or(question.within, |view| view.reach().min(question.within));
         kept.begin(self.epoch);
+        let last = kept.face.and_then(|item| faces.get(item as usize));
         let found = self.tree.as_ref().and_then(|tree| {
+            // where all is seen, no face need be projected on for a bound; that found last is likely right where faces are kept
+            let bound = match (view, last) {
+                (None, Some(last)) if kept.is_open() => {
+                    Some(middle_distance(places, last, x) + tree.rounding(x))
+                }
+                _ => None,
+            };
             let query = Query {
+                bound,
                 tree,
                 moved: self.moved,
                 x: &there,
@@ -309,4 +319,23 @@ impl FaceTree {
             found.retain(|&item| hull(places, &faces[item as usize]).overlaps(bounds));
         }
     }
+}
+
+/// Distance of a place on a face from a point, with a margin for its rounding, m: of the mean of the corners, which is on a face that is
+/// straight, or of its first node.
+fn middle_distance(places: &Places, face: &Face, x: &[f64; 3]) -> f64 {
+    let corners = match face.kind {
+        Kind::Point1 | Kind::Bar2 | Kind::Tri3 | Kind::Quad4 => face.corners(),
+        _ => &face.nodes[..1],
+    };
+    let mut middle = [0.0; 3];
+    for &node in corners {
+        let place = places.of(node);
+        for i in 0..3 {
+            middle[i] += place[i];
+        }
+    }
+    let share = 1.0 / corners.len() as f64;
+    let middle = [middle[0] * share, middle[1] * share, middle[2] * share];
+    squared(&middle, x).sqrt() * (1.0 + 1e-12)
 }

@@ -13,6 +13,11 @@ pub(crate) fn foot_on<'a>(
     x: &[f64; 3],
 ) -> (Projection, &'a Face) {
     let face = &faces[item as usize];
+    if face.kind == Kind::Quad4 {
+        let [a, b, c, d, ..] = face.nodes;
+        let corners = [places.of(a), places.of(b), places.of(c), places.of(d)];
+        return (project(face, &corners, x), face);
+    }
     let positions = places.of_face(face);
     (project(face, &positions[..face.corners().len()], x), face)
 }

@@ -60,6 +60,8 @@ pub(super) struct Query<'a> {
     pub moved: f64,
     pub x: &'a [f64; 3],
     pub within: f64,
+    /// A bound of the distance of the item found last, m; none if it is to be measured.
+    pub bound: Option<f64>,
 }
 
 impl Query<'_> {
@@ -72,8 +74,12 @@ impl Query<'_> {
     ) -> Option<(u32, f64)> {
         // what was closest last bounds the distance of what is closest now
         let last = kept.face.filter(|&item| (item as usize) < count);
-        let bound = last.map_or(f64::INFINITY, &mut measure);
-        let mut measure = |item: u32| match Some(item) == last {
+        let measured = last.filter(|_| self.bound.is_none());
+        let bound = match (measured, self.bound) {
+            (Some(item), _) => measure(item),
+            (None, bound) => bound.unwrap_or(f64::INFINITY),
+        };
+        let mut measure = |item: u32| match Some(item) == measured {
             true => bound,
             false => measure(item),
         };

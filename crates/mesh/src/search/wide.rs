@@ -47,6 +47,7 @@ impl Wide {
     }
 
     /// Squares of the distances of the boxes from a box; infinite of those that do not exist.
+    #[inline]
     pub fn squares(&self, from: &Around) -> [f32; WIDTH] {
         let mut squares = [0.0; WIDTH];
         for i in 0..3 {
