@@ -9,6 +9,12 @@ use crate::Places;
 /// Points whose instants are looked at together.
 pub(crate) const BLOCK: usize = 64;
 
+/// Reach over the largest motion of a node in a step.
+const MOTIONS: f64 = 8.0;
+
+/// Least reach over the largest.
+const LEAST: f64 = 1.0 / 64.0;
+
 /// Part of a distance that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -29,6 +35,10 @@ pub(crate) struct Rest {
     travelled: f64,
     /// Most that Σ |N_a| is on a face.
     spread: f64,
+    /// Largest motion of a node in the last pairing, what all share included, m.
+    motion: f64,
+    /// Gap that points at rest are known to be beyond, m.
+    watched: f64,
     /// `travelled` from which on a point is to be looked at.
     wakes: Vec<f64>,
     /// The least of each block.
@@ -54,6 +64,8 @@ impl Rest {
             places: nodes.iter().map(|&node| places.of(node)).collect(),
             nodes,
             spread,
+            // nothing is known of the step before
+            motion: f64::INFINITY,
             target: target.unwrap_or_default(),
             wakes: vec![f64::NEG_INFINITY; points],
             least: vec![f64::NEG_INFINITY; points.div_ceil(BLOCK)],
@@ -68,18 +80,22 @@ impl Rest {
             self.target = now;
         }
         let (drift, mut largest, mut sum) = (self.drift, 0.0_f64, [0.0; 3]);
+        let mut longest = 0.0_f64;
         for (&node, before) in self.nodes.iter().zip(&mut self.places) {
             let x = places.of(node);
-            let mut square = 0.0;
+            let (mut square, mut whole) = (0.0, 0.0);
             for i in 0..3 {
                 let way = x[i] - before[i];
                 sum[i] += way;
                 square += (way - drift[i]).powi(2);
+                whole += way.powi(2);
             }
             largest = largest.max(square);
+            longest = longest.max(whole);
             *before = x;
         }
         self.travelled += self.spread * largest.sqrt();
+        self.motion = self.spread * longest.sqrt();
         for i in 0..3 {
             self.shift[i] += drift[i];
         }
@@ -96,6 +112,25 @@ impl Rest {
     pub(crate) fn wake_all(&mut self) {
         self.wakes.fill(f64::NEG_INFINITY);
         self.least.fill(f64::NEG_INFINITY);
+    }
+
+    /// Gap within which a point may touch now, where the last pairing was one step before, m; at most `most` (m).
+    ///
+    /// Nodes of both sides have moved by at most the motion m in the step, so that a gap has changed by 2 m. Laws look one step
+    /// ahead or two, by 4 m; the motion of a step is less than twice that of the step before it but for bodies that begin to
+    /// move, for which there is a least reach.
+    pub(crate) fn reach(&self, most: f64) -> f64 {
+        (MOTIONS * self.motion).clamp(LEAST * most, most)
+    }
+
+    /// The gap that points at rest are to be beyond, m: at least a reach, and more by a factor of 2 to 8, so that it stays for many steps; at
+    /// most `most`. Points are looked at again where it changes.
+    pub(crate) fn watch(&mut self, reach: f64, most: f64) -> f64 {
+        if !(reach..=8.0 * reach).contains(&self.watched) {
+            self.watched = (2.0 * reach).min(most);
+            self.wake_all();
+        }
+        self.watched
     }
 
     /// Bound of the motion so far, and the drift so far, m.

@@ -9,6 +9,7 @@ use carom_mesh::Face;
 use rayon::prelude::*;
 
 use super::found::Look;
+use super::near::Reach;
 use super::stencil::Stencil;
 use super::{Near, Pairing};
 use crate::rest::{BLOCK, Rest};
@@ -22,7 +23,7 @@ impl Contact {
     /// Looks at the points that are due and takes the near ones into a pairing.
     pub(super) fn look_at_all(
         &self,
-        (places, near): (&Places, &Near),
+        (places, near, reach): (&Places, &Near, Reach),
         (search, due): (&mut Search, &[u32]),
         rest: &mut Rest,
         pairing: &mut Pairing,
@@ -46,7 +47,7 @@ impl Contact {
         let pieces = groups.par_iter_mut().zip(&mut looks);
         pieces.for_each(|(group, looks)| {
             for &point in &due[std::mem::take(&mut group.due)] {
-                looks.push(self.look((places, near, span), faces, point, group));
+                looks.push(self.look((places, near, reach), faces, (point, span), group));
             }
         });
         for (group, looks) in groups.iter_mut().zip(&mut looks) {
@@ -58,7 +59,7 @@ impl Contact {
                     let (at, area) = (near.first + k, self.points[k].area);
                     pairing.place(places, (at, area), look.stencil);
                     pairing.rows.shift(at, self.offset(k));
-                    pairing.keep(at, area, near.reach);
+                    pairing.keep(at, area, reach.near);
                 }
             }
         }
@@ -67,9 +68,9 @@ impl Contact {
 
     fn look(
         &self,
-        (places, near, span): (&Places, &Near, [f64; 2]),
+        (places, near, reach): (&Places, &Near, Reach),
         tree: &FaceTree,
-        number: u32,
+        (number, span): (u32, [f64; 2]),
         group: &mut Group,
     ) -> Look {
         let point = &self.points[number as usize];
@@ -78,14 +79,14 @@ impl Contact {
                 let x = point.place(places);
                 let distance = obstacle.at(places.time).distance(&x);
                 let gap = distance.gap + self.offset(number as usize) - point.radius;
-                let stencil = match gap <= near.reach {
+                let stencil = match gap <= reach.near {
                     true => Stencil::on_obstacle(places, point, obstacle, span),
                     false => None,
                 };
                 let clearance = if gap == f64::INFINITY {
                     0.0
                 } else {
-                    gap - near.reach
+                    gap - reach.watched
                 };
                 (stencil, clearance)
             }
@@ -97,7 +98,9 @@ impl Contact {
                 });
                 (stencil, 0.0)
             }
-            Target::Surface(faces) => self.look_at((places, faces), tree, (near, number), group),
+            Target::Surface(faces) => {
+                self.look_at((places, faces), tree, (near, reach, number), group)
+            }
         };
         Look {
             point: number,
@@ -111,12 +114,12 @@ impl Contact {
         &self,
         target: (&Places, &[Face]),
         tree: &FaceTree,
-        (near, number): (&Near, u32),
+        (near, reach, number): (&Near, Reach, u32),
         group: &mut Group,
     ) -> (Option<Stencil>, f64) {
         let k = number as usize;
         let (point, view, inside) = (&self.points[k], self.view(k), (near.inside)(k));
-        let (x, limit) = (point.place(target.0), self.limit(k, near.reach));
+        let (x, limit) = (point.place(target.0), self.limit(k, reach.watched));
         let question = Question {
             x,
             view,
@@ -134,11 +137,15 @@ impl Contact {
         match (found, view) {
             (Some((foot, face)), _) if is_near(foot.distance) => {
                 let faces = faces_point(&foot, face);
-                let stencil = faces.then(|| Stencil::on_face(target.0, point, &x, &foot, face));
+                let near = faces && foot.gap - point.radius + self.offset(k) <= reach.near;
+                let stencil = near.then(|| Stencil::on_face(target.0, point, &x, &foot, face));
                 (stencil, 0.0)
             }
             (None, _) if inside => (None, 0.0),
-            (_, Some(view)) => (None, tree.rest_of(target, view, &x, limit)),
+            (_, Some(view)) => (
+                None,
+                tree.rest_of(target, view, &x, [limit, self.limit(k, reach.most)]),
+            ),
             // both sides move
             (Some((foot, _)), None) => (None, 0.5 * (foot.distance - limit)),
             (None, None) => (None, f64::INFINITY),

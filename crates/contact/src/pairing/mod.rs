@@ -25,7 +25,7 @@ use carom_algebra::csr::Csr;
 use self::block::Block;
 use self::found::Look;
 use self::merge::Merge;
-pub use self::near::Near;
+pub use self::near::{Near, Step};
 use self::share::{Quadrature, Share};
 use self::stencil::Stencil;
 pub use self::tie::Tie;

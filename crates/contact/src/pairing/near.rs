@@ -15,10 +15,30 @@ pub struct Near<'a> {
     pub first: usize,
     /// Largest gap that is looked at, m.
     pub reach: f64,
+    /// The step before this pairing, where no gap counts that cannot have closed since or close in the next; none where all within reach do.
+    pub step: Option<Step<'a>>,
     /// Whether a point, by its number in the contact, was inside at the last step: it may then be so at any depth.
     pub inside: &'a (dyn Fn(usize) -> bool + Sync),
     /// Points of a contact of small sliding where all nodes are at their reference places.
     pub initial: &'a Pairing,
+}
+
+/// The step before a pairing of near points, at whose end that is.
+#[derive(Clone, Copy)]
+pub struct Step<'a> {
+    /// Where nodes were at its start, if that was not the last pairing.
+    pub start: Option<&'a Places<'a>>,
+}
+
+/// Gaps that matter in a pairing, m.
+#[derive(Clone, Copy)]
+pub(super) struct Reach {
+    /// Points up to it are near.
+    pub near: f64,
+    /// Points beyond it may rest.
+    pub watched: f64,
+    /// The largest that the first two can be.
+    pub most: f64,
 }
 
 impl Pairing {
@@ -110,7 +130,20 @@ impl Contact {
             self.points.len()
         };
         search.begin();
+        if let Some(Step { start: Some(start) }) = near.step {
+            self.travel(&mut rest, units, start);
+        }
         self.travel(&mut rest, units, places);
+        let most = near.reach;
+        let reach = match near.step {
+            Some(_) if !self.moves() => rest.reach(most),
+            _ => most,
+        };
+        let reach = Reach {
+            near: reach,
+            watched: rest.watch(reach, most),
+            most,
+        };
         rest.due(&mut due);
         if !due.is_empty() {
             if let (Target::Surface(faces), false) = (&self.target, small) {
@@ -118,17 +151,18 @@ impl Contact {
             }
             match (small, mortar) {
                 (true, _) => self.move_near(
-                    (places.u, near),
+                    (places.u, near, reach),
                     &due,
                     |point, c| rest.lay(point, c),
                     pairing,
                 ),
                 (false, true) => {
-                    let clearance = self.pair_mortar_near(places, search, near, pairing);
+                    let clearance = self.pair_mortar_near(places, search, (near, reach), pairing);
                     rest.lay(0, clearance);
                 }
                 (false, false) => {
-                    self.look_at_all((places, near), (search, &due), &mut rest, pairing);
+                    let given = (places, near, reach);
+                    self.look_at_all(given, (search, &due), &mut rest, pairing);
                 }
             }
             rest.close(&due);
@@ -182,7 +216,7 @@ impl Contact {
     /// The points of a contact of small sliding, whose gaps are linear in the displacement.
     fn move_near(
         &self,
-        (u, near): (&[f64], &Near),
+        (u, near, reach): (&[f64], &Near, Reach),
         due: &[u32],
         mut lay: impl FnMut(u32, f64),
         pairing: &mut Pairing,
@@ -197,10 +231,10 @@ impl Contact {
             let clearance = match moves {
                 true => 0.0,
                 false if gap == f64::INFINITY => f64::INFINITY,
-                false => (gap - near.reach) / norm.max(1.0),
+                false => (gap - reach.watched) / norm.max(1.0),
             };
             lay(point, clearance);
-            if gap <= near.reach {
+            if gap <= reach.near {
                 pairing.rows.place_from(at, rows, k);
                 pairing.rows.set_gap(at, gap);
                 let tangents = pairing.tangents.iter_mut().zip(&near.initial.tangents);
@@ -217,7 +251,7 @@ impl Contact {
         &self,
         places: &Places,
         search: &mut Search,
-        near: &Near,
+        (near, reach): (&Near, Reach),
         pairing: &mut Pairing,
     ) -> f64 {
         let kept = pairing.near.len();
@@ -226,11 +260,11 @@ impl Contact {
         for (k, point) in self.points.iter().enumerate() {
             let at = near.first + k;
             pairing.rows.shift(at, self.offset(k));
-            pairing.keep(at, point.area, near.reach);
+            pairing.keep(at, point.area, reach.near);
         }
         match pairing.near.len() > kept || self.sight.is_some() {
             true => 0.0,
-            false => self.mortar_clearance(places, search, near.reach),
+            false => self.mortar_clearance(places, search, reach.watched),
         }
     }
 

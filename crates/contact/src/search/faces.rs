@@ -18,7 +18,7 @@ const SLOW: u32 = 3;
 /// Sides of the tree's boxes, over those when it was built, from which on it is built anew.
 const LOOSE: f64 = 2.0;
 
-/// Longest rest of a point that sees its own surface, over the limit: about as much as its normals allow.
+/// Longest rest of a point that sees its own surface, over the farthest limit: about as much as its normals allow.
 const LONGEST: f64 = 0.4;
 
 /// Faces in a tree of boxes that may be older than the faces, and what is known of their motion since.
@@ -256,19 +256,19 @@ impl FaceTree {
     }
 
     /// The most that nodes may move, m, before a face that is beyond the `limit` (m) of a place, or out of its view, may come into
-    /// view within the limit; at most a part of the limit.
+    /// view within the limit; at most a part of the `farthest` limit (m).
     pub fn rest_of(
         &self,
         (places, faces): (&Places, &[Face]),
         view: View,
         x: &[f64; 3],
-        limit: f64,
+        [limit, farthest]: [f64; 2],
     ) -> f64 {
         let Some(tree) = &self.tree else {
             return f64::INFINITY;
         };
         let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
-        let most = LONGEST * limit;
+        let most = LONGEST * farthest;
         let slack = self.moved + tree.rounding(&there);
         let measure = |item: u32| {
             // bounds that need no foot come first: they tell it of most faces

@@ -1,12 +1,12 @@
 //! The contacts of an explicit step: points that are far from what they face cost nothing.
 //!
-//! A point is near if its gap is within a quarter of the mean diagonal of the faces of its contact, more than two sides come
-//! closer by in two steps. Others face nothing in such a step. Vectors over all points change at points alone that are near, or were so in the step
+//! A point is near if its gap is within eight times the largest motion of a node in the step, more than two sides come closer by in two
+//! steps, and within a quarter of the mean diagonal of the faces of its contact. Others face nothing in such a step. Vectors over all points change at points alone that are near, or were so in the step
 //! before.
 
 use std::sync::Arc;
 
-use carom_contact::{Near, Pairing, Places, Sliding};
+use carom_contact::{Near, Pairing, Places, Sliding, Step};
 
 use super::Driver;
 use super::tangents::first_thought;
@@ -100,9 +100,19 @@ impl Driver {
             contact.pair_fully(&reference, search, initial);
         }
         let gaps = &self.state.interface.gap;
+        let start = system.places(
+            self.state.time,
+            &self.state.motion.u,
+            &self.state.motion.frames,
+        );
+        // motions of steps bound what can touch where points are paired with their ends
+        let step = (row == map.displacement).then_some(Step {
+            start: self.active.begins().then_some(&start),
+        });
         let near = Near {
             first,
             reach: self.active.reaches[number],
+            step,
             inside: &|point| gaps[first + point] < 0.0,
             initial,
         };
