@@ -14,7 +14,11 @@ impl Compliance<'_> {
     pub fn entries(&self, most: usize) -> Option<Vec<f64>> {
         match self {
             Compliance::Dense(entries) => Some(entries.to_vec()),
-            Compliance::Lumped(rows) => (rows.rows() <= most).then(|| rows.dense()),
+            Compliance::Lumped(rows) => (rows.rows() <= most).then(|| {
+                let mut entries = Vec::new();
+                rows.dense(&mut entries);
+                entries
+            }),
         }
     }
 }
@@ -156,10 +160,10 @@ impl Lumped {
         self.blocks[(i * self.width + k) * self.width + l]
     }
 
-    /// All entries of D, row-major: for few rows.
-    pub fn dense(&self) -> Vec<f64> {
+    /// Writes all entries of D, row-major: for few rows.
+    pub fn dense(&self, dense: &mut Vec<f64>) {
         let n = self.rows();
-        let mut dense = Vec::with_capacity(n * n);
+        dense.clear();
         let mut x = vec![0.0; self.count];
         for one in 0..n {
             self.add(one, 1.0, &mut x);
@@ -168,7 +172,6 @@ impl Lumped {
                 x[unknown as usize] = 0.0;
             }
         }
-        dense
     }
 }
 
@@ -193,7 +196,9 @@ mod tests {
         let dense = [
             5.0, -7.0, 0.0, 0.5, -7.0, 17.0, 0.0, 0.5, 0.0, 0.0, 5.0, -2.0, 0.5, 0.5, -2.0, 1.25,
         ];
-        assert_eq!(lumped.dense(), dense);
+        let mut entries = Vec::new();
+        lumped.dense(&mut entries);
+        assert_eq!(entries, dense);
         let block = |i: usize| [0, 1, 2, 3].map(|k| lumped.block(i, k / 2, k % 2));
         assert_eq!(block(0), [5.0, -7.0, -7.0, 17.0]);
         assert_eq!(block(1), [5.0, -2.0, -2.0, 1.25]);

@@ -29,8 +29,13 @@ const BEYOND: f64 = 1e-9;
 const SWEEPS: usize = 16;
 /// Rounds of passes and sweeps.
 const ROUNDS: usize = 9;
-/// Sweeps alone, where D is the product of sparse rows. With masses that are alike some twenty are usual.
+/// Sweeps alone, where D is the product of sparse rows. With masses that are alike some twenty are usual; in a row of n bodies pressed
+/// together n² are needed.
 const ALONE: usize = 20_000;
+/// Rows of D for which passes take over where sweeps are slow: their entries are made then, 8 MB at most.
+const FEW_ROWS: usize = 1000;
+/// Sweeps before passes take over, which cost as much as some hundred of them.
+const BEFORE_PASSES: usize = 500;
 /// Change of the forces in a sweep, over the largest, from which on defects are looked at.
 const SETTLED: f64 = 1e-12;
 
@@ -71,6 +76,8 @@ pub struct Coulomb {
     reversals: Vec<u32>,
     /// What sweeps keep: D p, or Bᵀ p of a lumped mass.
     kept: Vec<f64>,
+    /// All entries of D where passes took over from sweeps.
+    entries: Vec<f64>,
 }
 
 impl Coulomb {
@@ -85,9 +92,32 @@ impl Coulomb {
         self.best = self.trial.clone();
         self.best.merit = f64::INFINITY;
         let d = match problem.d {
-            Compliance::Dense(d) => d,
-            Compliance::Lumped(d) => return self.relax((problem, d)),
+            Compliance::Dense(d) => return self.rounds((problem, d)),
+            Compliance::Lumped(d) => d,
         };
+        let few = d.rows() <= FEW_ROWS;
+        let sweeps = if few { BEFORE_PASSES } else { ALONE };
+        let relaxed = self.relax((problem, d), sweeps);
+        if relaxed.is_ok() || !few {
+            return relaxed;
+        }
+        let mut entries = std::mem::take(&mut self.entries);
+        d.dense(&mut entries);
+        self.best.merit = f64::INFINITY;
+        let dense = Compliance::Dense(&entries);
+        let solved = self.rounds((
+            &Posed {
+                d: dense,
+                ..*problem
+            },
+            &entries,
+        ));
+        self.entries = entries;
+        solved
+    }
+
+    /// Newton passes, and sweeps where they bring nothing.
+    fn rounds(&mut self, (problem, d): (&Posed, &[f64])) -> Result<(), FrictionFailure> {
         for round in 0..ROUNDS {
             if self.newton((problem, d), MEANS[round % MEANS.len()]) {
                 self.finish(problem);
@@ -114,10 +144,14 @@ impl Coulomb {
     }
 
     /// Sweeps alone: of points of a lumped mass few are needed, and each costs no more than one product with D.
-    fn relax(&mut self, (problem, d): (&Posed, &Lumped)) -> Result<(), FrictionFailure> {
+    fn relax(
+        &mut self,
+        (problem, d): (&Posed, &Lumped),
+        most: usize,
+    ) -> Result<(), FrictionFailure> {
         d.gather(&self.trial.p, &mut self.kept);
         let mut patience = PATIENCE;
-        for _ in 0..ALONE {
+        for _ in 0..most {
             self.sweeps += 1;
             let room = (&mut self.trial, &mut self.kept);
             if sweep::sweep((problem, d), room.0, room.1) > SETTLED {
