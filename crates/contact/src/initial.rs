@@ -1,6 +1,6 @@
 //! Surfaces that overlap before anything has moved, and what is done about it.
 
-use crate::{Contact, Pairing, Places, Search};
+use crate::{Contact, Near, Pairing, Places, Search, Sliding};
 
 /// What is done about points that penetrate at the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -91,9 +91,7 @@ impl Contact {
 
     /// The points with a gap below `-slack` around which some place, or no place, is as deep.
     fn below(&self, places: &Places, slack: f64, deep: bool) -> Vec<Penetration> {
-        let mut pairing = Pairing::default();
-        pairing.clear();
-        self.pair_fully(places, &mut Search::default(), &mut pairing);
+        let pairing = self.pair_deep(places);
         let rows = &pairing.rows;
         let below = (0..rows.len()).filter(|&point| rows.gap(point) < -slack);
         let least = |point: usize| pairing.least_gap(point) + self.offset(point);
@@ -105,6 +103,31 @@ impl Contact {
             normal: rows.normal(point),
         })
         .collect()
+    }
+}
+
+impl Contact {
+    /// A pairing that has at least the points that penetrate: with a sight nothing counts that is deeper than its depth.
+    fn pair_deep(&self, places: &Places) -> Pairing {
+        let (mut pairing, mut search) = (Pairing::default(), Search::default());
+        match &self.sight {
+            Some(sight) if self.mortar.is_none() && self.sliding == Sliding::Finite => {
+                pairing.open_all(std::slice::from_ref(self), places.dim());
+                let near = Near {
+                    first: 0,
+                    reach: sight.deepest(),
+                    step: None,
+                    inside: &|_| false,
+                    initial: &Pairing::default(),
+                };
+                self.pair_near(places, &mut search, &near, &mut pairing);
+            }
+            _ => {
+                pairing.clear();
+                self.pair_fully(places, &mut search, &mut pairing);
+            }
+        }
+        pairing
     }
 }
 

@@ -77,7 +77,7 @@ impl Search {
     pub(crate) fn renew(&mut self, places: &Places, faces: &[Face], sight: Option<&Sight>) {
         self.begin();
         self.rested = None;
-        self.faces.see_all(sight, places);
+        self.faces.see_all(sight, (places, faces));
         self.faces.renew(places, faces);
     }
 

@@ -14,10 +14,15 @@
 use carom_algebra::unknowns::Unknowns;
 use carom_elements::{MAX_FACE_NODES, map};
 use carom_mesh::{Bounds, BoxTree, Face, Projection};
+use rayon::prelude::*;
 
+pub(crate) use self::turned::Corners;
 use crate::{Frames, Places, Point};
 
 mod turned;
+
+/// Faces whose corners one thread takes at a time, at least.
+const CHUNK: usize = 512;
 
 /// Cosine of the angle between the normals of a point and of a face up to which the face is in view.
 const OPPOSED: f64 = -0.5;
@@ -154,6 +159,20 @@ impl Sight {
         self.reach.is_finite()
     }
 
+    /// Largest penetration that is a contact at some point, m.
+    pub(crate) fn deepest(&self) -> f64 {
+        self.depth.iter().fold(0.0, |most, depth| most.max(*depth))
+    }
+
+    /// The corners of faces where they are, in their order; of curved faces none.
+    pub(crate) fn corners(places: &Places, faces: &[Face], corners: &mut Vec<Option<Corners>>) {
+        corners.resize_with(faces.len(), || None);
+        let pairs = corners.par_iter_mut().zip(faces);
+        pairs.with_min_len(CHUNK).for_each(|(corners, face)| {
+            *corners = Corners::of(face, places);
+        });
+    }
+
     /// The normals of the secondary faces, at their centres.
     pub(crate) fn normals(&self, places: &Places) -> impl Iterator<Item = [f64; 3]> {
         let places = *places;
@@ -264,17 +283,13 @@ impl View<'_> {
     /// that make less than 90° with those of all faces around it. Normals as in [`View::shows`].
     pub(crate) fn is_blind(
         &self,
-        (item, face): (u32, &Face),
+        (item, corners): (u32, &Corners),
         x: &[f64; 3],
-        places: &Places,
         normals: &[[f64; 3]],
     ) -> bool {
-        if self.is_beside(item) {
-            return true;
-        }
         let around = self.sight.around.of(self.point).iter();
         let normals = around.map(|&k| &normals[k as usize]);
-        turned::is_blind(face, normals, (x, self.sight.depth[self.point]), places)
+        corners.is_blind(normals, (x, self.sight.depth[self.point])) || self.is_beside(item)
     }
 
     fn opposes(&self, foot: &Projection, normals: &[[f64; 3]]) -> bool {

@@ -364,3 +364,57 @@ fn sheets_that_fly_together_are_looked_at_once() {
         assert_eq!(search.projections() > 0, step < 2, "{step}");
     }
 }
+
+/// Boxes are refitted and points looked at in chunks that do not depend on the threads.
+#[test]
+fn near_points_have_the_same_bits_on_any_number_of_threads() {
+    let mut scene = Scene::default();
+    // more faces than one thread takes at a time, and several blocks of points
+    scene.add(70, [0.0; 3], true);
+    scene.add(20, [20.4, 20.3, 0.3], false);
+    let contact = contact(Target::Surface(scene.of(0)), nodes_of(&scene, 1));
+    let unknowns = Unknowns::translations(3, scene.x.len());
+    let run = |threads: usize| {
+        let (mut search, mut near) = (Search::default(), Pairing::default());
+        near.open_all(std::slice::from_ref(&contact), 3);
+        let mut random = Random(5);
+        let mut u = vec![0.0; 3 * scene.x.len()];
+        let mut found = Vec::new();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap().install(|| {
+            for step in 0..20 {
+                displacement(
+                    &scene,
+                    scene.sheets[1],
+                    0.2 * f64::from(step),
+                    &mut random,
+                    &mut u,
+                );
+                let places = Places {
+                    unknowns: &unknowns,
+                    time: 0.0,
+                    x: &scene.x,
+                    u: &u,
+                    frames: Frames::default(),
+                };
+                near.reopen();
+                let given = Near {
+                    first: 0,
+                    reach: REACH,
+                    step: None,
+                    inside: &|_| true,
+                    initial: &Pairing::default(),
+                };
+                contact.pair_near(&places, &mut search, &given, &mut near);
+                let tangents = near.tangents.clone();
+                found.push((near.near().to_vec(), near.rows.clone(), tangents));
+            }
+        });
+        found
+    };
+    let one = run(1);
+    assert!(one.iter().map(|(near, ..)| near.len()).sum::<usize>() > 1000);
+    for threads in [2, 4] {
+        assert!(run(threads) == one, "{threads}");
+    }
+}

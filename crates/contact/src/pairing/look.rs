@@ -28,7 +28,9 @@ impl Contact {
         rest: &mut Rest,
         pairing: &mut Pairing,
     ) {
-        search.faces.begin_sight();
+        if let (Target::Surface(faces), Some(_)) = (&self.target, &self.sight) {
+            search.faces.begin_sight(due.len(), (places, faces));
+        }
         for &point in due {
             if let Some(view) = self.view(point as usize) {
                 search.faces.see(view, places);

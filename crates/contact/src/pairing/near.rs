@@ -255,7 +255,10 @@ impl Contact {
         pairing: &mut Pairing,
     ) -> f64 {
         let kept = pairing.near.len();
-        search.faces.see_all(self.sight.as_ref(), places);
+        if let Target::Surface(faces) = &self.target {
+            let given = (places, &faces[..]);
+            search.faces.see_all(self.sight.as_ref(), given);
+        }
         self.pair_points(places, search, (near.first, pairing));
         for (k, point) in self.points.iter().enumerate() {
             let at = near.first + k;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::foot::{faces_point, foot_on, hull, spread};
 use super::kept::{Kept, Query, squared};
-use crate::sight::View;
+use crate::sight::{Corners, View};
 use crate::{Places, Sight};
 
 /// Faces whose boxes one thread takes at a time.
@@ -17,6 +17,9 @@ const SLOW: u32 = 3;
 
 /// Sides of the tree's boxes, over those when it was built, from which on it is built anew.
 const LOOSE: f64 = 2.0;
+
+/// Faces over the points that look at them, below which the corners of all are taken.
+const MANY: usize = 16;
 
 /// Longest rest of a point that sees its own surface, over the farthest limit: about as much as its normals allow.
 const LONGEST: f64 = 0.4;
@@ -40,6 +43,8 @@ pub(crate) struct FaceTree {
     age: u32,
     /// Unit normals of the secondary faces, where sight asks for them.
     normals: Vec<[f64; 3]>,
+    /// Corners of the faces in this configuration, where sight asks for many of them.
+    corners: Vec<Option<Corners>>,
     /// In which call of [`FaceTree::begin_sight`] each was computed, and which call was the last.
     seen: (Vec<u32>, u32),
 }
@@ -123,6 +128,7 @@ impl FaceTree {
             + size_of_val(&self.boxes[..])
             + size_of_val(&self.taken[..])
             + size_of_val(&self.normals[..])
+            + size_of_val(&self.corners[..])
             + size_of_val(&self.seen.0[..])
     }
 
@@ -146,16 +152,22 @@ impl FaceTree {
         }
     }
 
-    /// Takes all normals that views ask for.
-    pub fn see_all(&mut self, sight: Option<&Sight>, places: &Places) {
+    /// Takes all normals and corners that views ask for.
+    pub fn see_all(&mut self, sight: Option<&Sight>, (places, faces): (&Places, &[Face])) {
         self.normals.clear();
+        self.corners.clear();
         if let Some(sight) = sight {
             self.normals.extend(sight.normals(places));
+            Sight::corners(places, faces, &mut self.corners);
         }
     }
 
-    /// Begins a configuration in which normals are taken one after the other.
-    pub fn begin_sight(&mut self) {
+    /// Begins a configuration in which normals are taken one after the other, for so many points; corners are taken all or none.
+    pub fn begin_sight(&mut self, points: usize, (places, faces): (&Places, &[Face])) {
+        self.corners.clear();
+        if points > faces.len() / MANY {
+            Sight::corners(places, faces, &mut self.corners);
+        }
         let (seen, now) = &mut self.seen;
         *now = now.wrapping_add(1);
         if *now == 0 {
@@ -186,7 +198,7 @@ impl FaceTree {
         let mut nearest: Option<(u32, Projection)> = None;
         let measure = |item: u32| {
             let face = &faces[item as usize];
-            if view.is_some_and(|view| view.is_blind((item, face), x, places, &self.normals)) {
+            if view.is_some_and(|view| self.is_blind(view, (item, face), x, places)) {
                 return f64::INFINITY;
             }
             count += 1;
@@ -290,6 +302,26 @@ impl FaceTree {
         // a distance is at most the limit and twice its measure
         let found = tree.closest(&there, most, self.moved + limit + most, measure);
         found.map_or(most, |(_, rest)| rest.max(0.0))
+    }
+
+    /// Whether a face is out of a view wherever the foot on it is.
+    fn is_blind(
+        &self,
+        view: View,
+        (item, face): (u32, &Face),
+        x: &[f64; 3],
+        places: &Places,
+    ) -> bool {
+        let made;
+        let corners = match self.corners.get(item as usize) {
+            Some(kept) => kept,
+            None => {
+                made = Corners::of(face, places);
+                &made
+            }
+        };
+        let corners = corners.as_ref();
+        corners.is_some_and(|corners| view.is_blind((item, corners), x, &self.normals))
     }
 
     /// Whether a face is in a view.

@@ -6,7 +6,7 @@
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use carom_algebra::tensor::Vec3;
-use carom_elements::{Kind, MAX_FACE_NODES};
+use carom_elements::Kind;
 use carom_mesh::Face;
 
 use crate::Places;
@@ -24,59 +24,80 @@ fn motion(height: f64, angle: f64) -> f64 {
     0.25 * height * t / (1.0 + t)
 }
 
-/// Unit normals of the corners of a straight face, and their number.
-struct Corners([Vec3; 4], usize);
+/// The corners of a straight face.
+#[derive(Clone, Debug)]
+pub(crate) struct Corners {
+    /// Unit normals there.
+    normals: [Vec3; 4],
+    /// Their places, m.
+    at: [Vec3; 4],
+    count: usize,
+    /// The least height of the triangles there, m.
+    height: f64,
+}
 
 impl Corners {
-    fn iter(&self) -> impl Iterator<Item = &Vec3> {
-        self.0[..self.1].iter()
+    /// Those of a straight face; none of a curved one.
+    pub(crate) fn of(face: &Face, places: &Places) -> Option<Corners> {
+        let n = match face.kind {
+            Kind::Tri3 => 3,
+            Kind::Quad4 => 4,
+            _ => return None,
+        };
+        let (mut at, mut normals) = ([Vec3::zeros(); 4], [Vec3::zeros(); 4]);
+        for (at, &node) in at.iter_mut().zip(&face.nodes[..n]) {
+            *at = places.of(node).into();
+        }
+        let mut height = f64::INFINITY;
+        for k in 0..n {
+            let (one, other) = (at[(k + 1) % n] - at[k], at[(k + n - 1) % n] - at[k]);
+            let cross = one.cross(&other);
+            let double = cross.norm();
+            height = height.min(double / one.norm().max(other.norm()));
+            normals[k] = cross / double;
+        }
+        Some(Corners {
+            normals,
+            at,
+            count: n,
+            height,
+        })
     }
-}
 
-/// Normals of the corners of a straight face, their places, and the least height of the triangles there, m; none of a curved one.
-fn corners(face: &Face, places: &Places) -> Option<(Corners, [Vec3; MAX_FACE_NODES], f64)> {
-    let n = match face.kind {
-        Kind::Tri3 => 3,
-        Kind::Quad4 => 4,
-        _ => return None,
-    };
-    let x = places.of_face(face).map(Vec3::from);
-    let mut least = f64::INFINITY;
-    let mut normals = [Vec3::zeros(); 4];
-    for k in 0..n {
-        let (one, other) = (x[(k + 1) % n] - x[k], x[(k + n - 1) % n] - x[k]);
-        let cross = one.cross(&other);
-        least = least.min(cross.norm() / one.norm().max(other.norm()));
-        normals[k] = cross / cross.norm();
+    fn normals(&self) -> &[Vec3] {
+        &self.normals[..self.count]
     }
-    Some((Corners(normals, n), x, least))
-}
 
-/// Whether a straight face is out of view wherever the foot on it is: its normals make less than 90° with all of these, or a place is
-/// deeper behind it than `depth` (m).
-///
-/// The normals of a face are sums of those of its corners with positive factors, since ∂y/∂ξ × ∂y/∂η of a bilinear face is linear in ξ
-/// and η. With n_j the unit normals at the corners and y = Σ N_k x_k, n · (x - y) is therefore below -d everywhere if n_j · (x - x_k) is for all
-/// j and k.
-pub(super) fn is_blind<'a>(
-    face: &Face,
-    mut around: impl Iterator<Item = &'a [f64; 3]>,
-    (x, depth): (&[f64; 3], f64),
-    places: &Places,
-) -> bool {
-    let Some((corners, at, _)) = corners(face, places) else {
-        return false;
-    };
-    around.all(|normal| corners.iter().all(|n| n.dot(&Vec3::from(*normal)) > 0.0))
-        || under(&corners, &at, x) > depth
-}
+    /// Whether the face is out of view wherever the foot on it is: its normals make less than 90° with all of these, or a place is deeper
+    /// behind it than `depth` (m).
+    ///
+    /// The normals of a face are sums of those of its corners with positive factors, since ∂y/∂ξ × ∂y/∂η of a bilinear face is linear in
+    /// ξ and η. With n_j the unit normals at the corners and y = Σ N_k x_k, n · (x - y) is therefore below -d everywhere if
+    /// n_j · (x - x_k) is for all j and k.
+    pub(super) fn is_blind<'a>(
+        &self,
+        mut around: impl Iterator<Item = &'a [f64; 3]>,
+        (x, depth): (&[f64; 3], f64),
+    ) -> bool {
+        let along = |normal: &[f64; 3]| {
+            let normal = Vec3::from(*normal);
+            self.normals().iter().all(|n| n.dot(&normal) > 0.0)
+        };
+        around.all(along) || self.under(x) > depth
+    }
 
-/// How far a place is at least behind a straight face along the normal of any place of it, m; negative if it may be before it.
-fn under(corners: &Corners, at: &[Vec3], x: &[f64; 3]) -> f64 {
-    let x = Vec3::from(*x);
-    let ways = at[..corners.1].iter().map(|corner| corner - x);
-    ways.flat_map(|way| corners.iter().map(move |n| n.dot(&way)))
-        .fold(f64::INFINITY, f64::min)
+    /// How far a place is at least behind the face along the normal of any place of it, m; negative if it may be before it.
+    fn under(&self, x: &[f64; 3]) -> f64 {
+        let x = Vec3::from(*x);
+        let mut least = f64::INFINITY;
+        for corner in &self.at[..self.count] {
+            let way = corner - x;
+            for normal in self.normals() {
+                least = least.min(normal.dot(&way));
+            }
+        }
+        least
+    }
 }
 
 fn angle(a: &Vec3, b: &Vec3) -> f64 {
@@ -90,19 +111,20 @@ pub(super) fn until_opposed<'a>(
     around: impl Iterator<Item = (&'a Face, &'a [f64; 3])>,
     (opposed, places): (f64, &Places),
 ) -> f64 {
-    let Some((normals, _, mut height)) = corners(face, places) else {
+    let Some(corners) = Corners::of(face, places) else {
         return 0.0;
     };
+    let (normals, mut height) = (corners.normals(), corners.height);
     // normals inside of a face are between those of its corners, which stay around their mean
     let mean = normals.iter().sum::<Vec3>();
     let mean = mean / mean.norm();
     let warp = normals.iter().map(|n| angle(n, &mean)).fold(0.0, f64::max);
     let mut widest = 0.0_f64;
     for (own, normal) in around {
-        let Some((.., least)) = corners(own, places) else {
+        let Some(own) = Corners::of(own, places) else {
             return 0.0;
         };
-        height = height.min(least);
+        height = height.min(own.height);
         widest = widest.max(angle(&Vec3::from(*normal), &mean));
     }
     let free = opposed.acos() - widest - warp;
@@ -111,13 +133,13 @@ pub(super) fn until_opposed<'a>(
 
 /// Until a place behind a straight face is within the depth of it, or before it; zero if it may be so now.
 pub(super) fn until_behind(face: &Face, (x, depth): (&[f64; 3], f64), places: &Places) -> f64 {
-    let Some((normals, at, height)) = corners(face, places) else {
+    let Some(corners) = Corners::of(face, places) else {
         return 0.0;
     };
     // no more than the distance of the foot
-    let distance = under(&normals, &at, x);
+    let distance = corners.under(x);
     let deep = 0.5 * (distance - SQRT_2 * depth);
-    let before = (0.5 * ASIDE * distance).min(motion(height, TILTED));
+    let before = (0.5 * ASIDE * distance).min(motion(corners.height, TILTED));
     deep.min(before).max(0.0)
 }
 
@@ -156,17 +178,18 @@ mod tests {
                 u: &[0.0; 12],
                 frames: Frames::default(),
             };
-            let (normals, at, _) = corners(&face, &places).unwrap();
+            let corners = Corners::of(&face, &places).unwrap();
+            let normals = corners.normals();
             let mean = normals.iter().sum::<Vec3>();
             let mean = mean / mean.norm();
             let most = normals.iter().map(|n| angle(n, &mean)).fold(0.0, f64::max);
             let place = point(2.0);
             let foot = project(&face, &x, &place);
             // rounding of places of size one
-            assert!(foot.gap <= -under(&normals, &at, &place) + 1e-14);
+            assert!(foot.gap <= -corners.under(&place) + 1e-14);
             // that of acos near zero
             assert!(angle(&foot.normal.into(), &mean) <= most + 1e-7);
-            deep += usize::from(under(&normals, &at, &place) > 0.1);
+            deep += usize::from(corners.under(&place) > 0.1);
         }
         assert!(deep > 200, "{deep}");
     }

@@ -63,7 +63,7 @@ impl FrictionProblem {
         })
     }
 
-    fn posed(&self) -> Posed<'_> {
+    pub(super) fn posed(&self) -> Posed<'_> {
         Posed {
             candidates: &self.candidates,
             friction: &self.friction,

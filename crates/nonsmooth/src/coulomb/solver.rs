@@ -2,6 +2,7 @@
 
 use carom_laws::Status;
 
+use super::conjugate::Conjugate;
 use super::trial::Trial;
 use super::{FrictionFailure, Posed, Slip, newton, sweep};
 use crate::{Compliance, Lumped};
@@ -78,6 +79,7 @@ pub struct Coulomb {
     kept: Vec<f64>,
     /// All entries of D where passes took over from sweeps.
     entries: Vec<f64>,
+    conjugate: Conjugate,
 }
 
 impl Coulomb {
@@ -143,7 +145,7 @@ impl Coulomb {
         Err(self.failure())
     }
 
-    /// Sweeps alone: of points of a lumped mass few are needed, and each costs no more than one product with D.
+    /// Sweeps alone, along conjugate directions: of points of a lumped mass few are needed, and each costs no more than one product with D.
     fn relax(
         &mut self,
         (problem, d): (&Posed, &Lumped),
@@ -151,10 +153,13 @@ impl Coulomb {
     ) -> Result<(), FrictionFailure> {
         d.gather(&self.trial.p, &mut self.kept);
         let mut patience = PATIENCE;
+        self.conjugate.begin(&self.trial.p, &self.kept);
         for _ in 0..most {
             self.sweeps += 1;
             let room = (&mut self.trial, &mut self.kept);
+            self.conjugate.note(&room.0.p, room.1);
             if sweep::sweep((problem, d), room.0, room.1) > SETTLED {
+                self.conjugate.go_on(&mut room.0.p, room.1);
                 continue;
             }
             self.trial.measure(problem, &self.reversals);

@@ -146,7 +146,7 @@ fn closed(
         }
         gauss(a, rhs)
     };
-    let excess = |x: &[f64; 3]| x[1].hypot(x[2]) - point.mu * x[0];
+    let excess = |x: &[f64; 3]| (x[1] * x[1] + x[2] * x[2]).sqrt() - point.mu * x[0];
     // the share of rounding keeps two equal rows apart
     let stuck = at(f64::EPSILON * scale);
     let most = excess(&stuck);
