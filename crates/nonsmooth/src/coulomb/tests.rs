@@ -561,14 +561,15 @@ fn two_rows(n: usize, shift: f64) -> Lumped {
     d
 }
 
-/// Plain sweeps damp an error of the wave length of k points in some k² sweeps, and one that both sides cancel hardly at all;
-/// conjugate directions in some k.
+/// Plain sweeps hardly damp what both sides cancel; of an error that they damp by 1 - ε, conjugate directions need some 1/√ε.
 #[test]
 fn contacts_told_from_both_sides_are_solved_in_few_sweeps() {
     let mut random = Random(13);
     for n in [20, 80] {
         let d = two_rows(n, 0.3);
-        let mut problem = problem(2 * n, 2, d.dense(), &mut random);
+        let mut entries = Vec::new();
+        d.dense(&mut entries);
+        let mut problem = problem(2 * n, 2, entries, &mut random);
         for candidate in &mut problem.candidates {
             candidate.local.gap_free = random.between(-2.0, -1.0);
         }
@@ -578,7 +579,12 @@ fn contacts_told_from_both_sides_are_solved_in_few_sweeps() {
             ..problem.posed()
         };
         coulomb.solve(&posed).unwrap();
-        assert!(coulomb.sweeps < 1000, "{n}: {}", coulomb.sweeps);
+        // plain sweeps take some 450
+        assert!(
+            coulomb.passes == 0 && coulomb.sweeps < 250,
+            "{n}: {}",
+            coulomb.sweeps
+        );
         let solution = FrictionSolution {
             forces: coulomb.forces,
             tangential: coulomb.tangential,
