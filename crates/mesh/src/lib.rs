@@ -5,6 +5,7 @@
 //! point over one face, [`BoxTree`] the faces worth asking.
 
 mod axes;
+mod bare;
 mod bounds;
 mod curved;
 mod element_id;

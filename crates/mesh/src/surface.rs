@@ -265,7 +265,7 @@ impl Piece {
 }
 
 /// Nodes of a face of a cell, as in [`Face::nodes`].
-fn nodes_of(mesh: &Mesh, cell: ElementId, face: usize) -> [u32; MAX_FACE_NODES] {
+pub(crate) fn nodes_of(mesh: &Mesh, cell: ElementId, face: usize) -> [u32; MAX_FACE_NODES] {
     let nodes = mesh.element_nodes(cell);
     let mut out = [u32::MAX; MAX_FACE_NODES];
     let corners = mesh.kind(cell).table().faces[face].nodes;
@@ -276,7 +276,7 @@ fn nodes_of(mesh: &Mesh, cell: ElementId, face: usize) -> [u32; MAX_FACE_NODES] 
 }
 
 /// What two lists of the same nodes have in common, whatever their order.
-fn key(nodes: &[u32; MAX_FACE_NODES]) -> [u32; MAX_FACE_NODES] {
+pub(crate) fn key(nodes: &[u32; MAX_FACE_NODES]) -> [u32; MAX_FACE_NODES] {
     let mut sorted = *nodes;
     sorted.sort_unstable();
     sorted
@@ -315,7 +315,7 @@ fn check_dimensions(mesh: &Mesh, facets: &Group, cells: &[ElementId]) -> Result<
 }
 
 /// Outward unit vector along a bar at one of its ends; zero for cells of other dimensions.
-fn axis(mesh: &Mesh, cell: ElementId, face: usize) -> [f64; 3] {
+pub(crate) fn axis(mesh: &Mesh, cell: ElementId, face: usize) -> [f64; 3] {
     if mesh.kind(cell).table().dim != 1 {
         return [0.0; 3];
     }

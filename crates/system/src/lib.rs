@@ -4,6 +4,7 @@
 //! system. No step is taken here.
 
 mod adaptive;
+mod bare;
 mod between;
 mod build;
 mod checks;

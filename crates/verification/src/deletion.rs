@@ -12,11 +12,17 @@
 //! Problem 3: a bar of four cubes hits a wall with one end; cells are deleted, and the nodes inside that they leave behind meet the wall in
 //! their place. Fact: all 20 nodes are points of the contact, and none passes the wall. Tolerance: a law in the gap rate holds a node where
 //! the step of its closing ends, at most the way of a step behind the wall.
+//!
+//! Problem 4: a hard hammer flies at 200 m/s against a column of four cubes. The nodes of three of them are held; the fourth
+//! is deleted under the blow. The hammer then flies on with its momentum and hits the face behind it, which was inside the
+//! column. Facts: after the step behind the deletion it keeps its momentum until the contact closes again; it closes at the
+//! bare face, within the way of a step before and behind it (the law looks half a step ahead); momentum and energy balance.
+//! Tolerance: rounding, as above.
 
 use std::sync::Arc;
 
 use carom_bodies::{BodySpec, Formulation, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, System};
 use carom_materials::{Elastic, J2Plasticity, Law, Plane};
 use carom_mesh::{Mesh, Surface, generate};
 
@@ -265,9 +271,111 @@ fn crushed() -> Result<Vec<Row>, Error> {
     ])
 }
 
+/// Problem 4.
+fn struck() -> Result<Vec<Row>, Error> {
+    let mut mesh = bar(4);
+    // its corners stay away from the rim of the column, beyond which they would face nothing
+    let (start, size) = (
+        [4.1 * EDGE, 0.25 * EDGE, 0.25 * EDGE],
+        [3.0 * EDGE, 0.5 * EDGE, 0.5 * EDGE],
+    );
+    let hammer = generate::box_("hammer", start, size, [1; 3], false);
+    mesh.merge("hammer", hammer)?;
+    let mut column = part(&mesh, "column", Formulation::Full, |_| true)?;
+    column.deletion = Some(LIMIT);
+    let held = |node: &u32| mesh.nodes[*node as usize][0] < 3.05 * EDGE;
+    let mut support = support(&mesh, "bar", [true; 3])?;
+    support.nodes.retain(held);
+    let hard = Law::J2Plasticity(J2Plasticity {
+        yield_stress: 1e12,
+        ..STEEL
+    });
+    let cells = group(&mesh, "hammer")?.elements.clone();
+    let hammer = BodySpec::new("hammer", cells, Kinematics::Solid, hard);
+    let top = Surface::new(&mesh, group(&mesh, "bar.right")?, &column.cells)?;
+    let face = Surface::new(&mesh, group(&mesh, "hammer.left")?, &hammer.cells)?;
+    let front = face.nodes.clone();
+    let hammer = ModelBody {
+        velocity: [-SPEED, 0.0, 0.0],
+        ..ModelBody::new(hammer)
+    };
+    let model = Model {
+        supports: vec![support],
+        contacts: vec![contact(face, ModelTarget::Surface(top), HALF)],
+        ..Model::new(
+            vec![ModelBody::new(column), hammer],
+            mesh,
+            CENTRAL,
+            20.0 * STEP,
+        )
+    };
+    let system = System::new(model)?;
+    let mut driver = Driver::new(Arc::clone(&system))?;
+    until_deleted(&mut driver, 5_000)?;
+    let force = |driver: &Driver| driver.state().interface.force.iter().sum::<f64>();
+    let at_deletion = force(&driver);
+    // half of the force of the step of the deletion acts in this one
+    driver.step()?;
+    let momentum = |driver: &Driver| {
+        let of_hammer = |k: &usize| system.x[*k][0] > 4.05 * EDGE;
+        let nodes = (0..system.x.len()).filter(of_hammer);
+        let v = &driver.state().motion.v;
+        nodes
+            .map(|k| system.mass.lumped[3 * k] * v[3 * k])
+            .sum::<f64>()
+    };
+    let (flying, mut change, mut steps) = (momentum(&driver), 0.0_f64, 0.0);
+    let mut before = flying;
+    while force(&driver) == 0.0 && steps < 20_000.0 {
+        change = change.max((before - flying).abs());
+        before = momentum(&driver);
+        driver.step()?;
+        steps += 1.0;
+    }
+    let state = driver.state();
+    let front = front
+        .iter()
+        .map(|&node| system.number[node as usize] as usize);
+    let least = front.fold(f64::INFINITY, |least, k| {
+        least.min(system.x[k][0] + state.motion.u[3 * k])
+    });
+    let way = SPEED * 20.0 * STEP;
+    let ledger = &state.ledger;
+    Ok(vec![
+        Row::near("struck: deleted cells", ledger.deleted as f64, 1.0, 0.0),
+        Row::at_least(
+            "struck: force on the cell when it is deleted, N",
+            at_deletion,
+            1.0,
+        ),
+        Row::at_least("struck: steps of flight behind it", steps, 100.0),
+        Row::at_most(
+            "struck: change of the momentum in flight, relative",
+            change / flying.abs(),
+            ROUNDING,
+        ),
+        Row::near(
+            "struck: place of the second blow less that of the bare face, ways of a step",
+            (least - 3.0 * EDGE) / way,
+            0.0,
+            1.0,
+        ),
+        Row::at_most(
+            "struck: momentum residual, relative",
+            ledger.largest_momentum_residual / flying.abs(),
+            ROUNDING,
+        ),
+        Row::at_most(
+            "struck: energy residual, relative",
+            ledger.largest_energy_residual / ledger.initial.energy(),
+            ROUNDING,
+        ),
+    ])
+}
+
 pub(crate) const CHECK: Check = Check {
     name: "deletion",
-    fact: "a deleted cell takes the energy that it had stored out of the balance and no momentum; the nodes behind it meet the wall",
+    fact: "a deleted cell takes the energy that it had stored out of the balance and no momentum; the nodes behind it meet the wall, and a hammer the face behind the cell that it destroyed",
     run: |_| {
         let mut rows = pulled("full integration", Formulation::Full)?;
         rows.extend(pulled("mean dilatation", Formulation::BBar)?);
@@ -277,6 +385,7 @@ pub(crate) const CHECK: Check = Check {
         )?);
         rows.extend(torn()?);
         rows.extend(crushed()?);
+        rows.extend(struck()?);
         Ok(rows)
     },
 };

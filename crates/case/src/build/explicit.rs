@@ -61,18 +61,36 @@ impl Builder<'_> {
                 ModelTarget::Surface(primary) => deletes(primary),
                 ModelTarget::Rigid(_) => None,
             };
+            let secondary = deletes(&contact.secondary);
             if let Some(body) = primary {
-                let message = format!(
-                    "cells of body `{body}` are deleted, so that its surface changes and cannot be the primary side"
-                );
-                let problem = Problem::new(path, message);
-                self.problems.push(problem.accepted([
-                    "the surface as `secondary`, whose points are then all nodes of the body",
-                    "an obstacle in its place",
-                ]));
-                continue;
+                // the default is `finite` where cells are deleted
+                let given = self.case.contact.get(&contact.name);
+                let small =
+                    |given: &schema::Contact| matches!(given.sliding, Some(schema::Sliding::Small));
+                let refused = if secondary.as_ref() == Some(&body) {
+                    Some((
+                        "cannot face itself",
+                        "a contact between two bodies or with an obstacle",
+                    ))
+                } else if contact.depth.is_some() {
+                    Some(("has no `depth`", "no `depth`"))
+                } else if given.is_some_and(small) {
+                    Some(("cannot be paired once", "sliding = \"finite\""))
+                } else if matches!(contact.integration, Integration::Mortar { .. }) {
+                    Some(("has no mortar method", "integration = \"node\""))
+                } else {
+                    None
+                };
+                if let Some((cause, accepted)) = refused {
+                    let message = format!(
+                        "cells of body `{body}` are deleted, so that its surface changes and {cause}"
+                    );
+                    let problem = Problem::new(path, message);
+                    self.problems.push(problem.accepted([accepted]));
+                    continue;
+                }
             }
-            let Some(body) = deletes(&contact.secondary) else {
+            let Some(body) = secondary else {
                 continue;
             };
             let nodes = contact.integration == Integration::Node;

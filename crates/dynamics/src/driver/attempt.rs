@@ -11,6 +11,7 @@ impl Driver {
     /// (both s).
     pub(super) fn attempt(&mut self, dt: f64, next: f64) -> Result<(), Error> {
         (self.failed, self.failed_friction) = (None, None);
+        self.renew_targets();
         self.size(dt, next);
         self.begin_stage()?;
         let outcome = self.attempt_after_jump(Driver::take_stages);

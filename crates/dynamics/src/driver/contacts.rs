@@ -5,6 +5,7 @@ use std::sync::Arc;
 use carom_contact::law::{End, Level, Local, Status};
 use carom_contact::{Balance, Contact, Sliding};
 
+use super::deletion::as_left;
 use super::paired::{Paired, append, instant, looks_ahead, part_way, told};
 use super::{Driver, Vectors};
 use crate::step_map::{Row, StepMap};
@@ -91,7 +92,7 @@ impl Driver {
         places.frames.middle = middle;
         places.frames.balance = (!end.is_empty()).then_some(Balance { end, fraction });
         let kept = (&mut self.search[number], &mut self.initial[number]);
-        let contact = &system.contacts[number];
+        let contact = as_left(&self.bared, &system, number);
         append(contact, &places, work, kept, &mut self.pairing);
     }
 

@@ -1,9 +1,11 @@
 //! Elements that are deleted at the end of a step.
 //!
 //! Their mass stays at their nodes, and their energy goes to a term of its own in the balance. The forces of the step just taken still
-//! have theirs; those of the next do not.
+//! have theirs; those of the next do not. A contact at whose primary side they were has other faces from the next step on: a point whose face is
+//! gone has no force any more, unless another face is opposite.
 
 use carom_bodies::{Body, Placement};
+use carom_contact::{Contact, Search, Target};
 
 use super::Driver;
 use crate::error::Error;
@@ -38,6 +40,37 @@ impl Driver {
         }
         Ok(())
     }
+
+    /// Brings the primary sides of contacts to the elements that are left in the state, a function of the state alone.
+    pub(super) fn renew_targets(&mut self) {
+        let deleted = self.state.ledger.deleted;
+        if self.bared_for == deleted {
+            return;
+        }
+        self.bared_for = deleted;
+        let system = &*self.system;
+        self.bared.resize(system.contacts.len(), None);
+        for (number, contact) in system.contacts.iter().enumerate() {
+            let faces = system.faces_left(number, &self.state.motion.history);
+            self.bared[number] = faces.map(|faces| Contact {
+                target: Target::Surface(faces),
+                ..contact.clone()
+            });
+            if self.bared[number].is_some() {
+                self.search[number] = Search::default();
+            }
+        }
+    }
+}
+
+/// A contact as the deletion of elements has left it.
+pub(super) fn as_left<'a>(
+    bared: &'a [Option<Contact>],
+    system: &'a System,
+    number: usize,
+) -> &'a Contact {
+    let left = bared.get(number).and_then(Option::as_ref);
+    left.unwrap_or(&system.contacts[number])
 }
 
 /// Whether all elements at the node of each contact point are deleted. Nodes without any element, as those of point masses, are not meant.

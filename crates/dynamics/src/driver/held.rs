@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Driver;
+use super::deletion::as_left;
 use crate::error::Error;
 
 /// Error of the gap of a point that stays with a face, over the face's diagonal, beyond which the step fails.
@@ -15,7 +16,7 @@ impl Driver {
     /// One that has left its face so far that it does not stand for the surface.
     pub(super) fn check_held(&mut self, passes: usize) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
-        for (k, contact) in system.contacts.iter().enumerate() {
+        for k in 0..system.contacts.len() {
             let mut u = std::mem::take(&mut self.vectors.place);
             let paired = self.paired_at(k);
             let xc = [&self.vectors.x[..], &self.vectors.push];
@@ -24,7 +25,7 @@ impl Driver {
             let time = self.state.time + self.paired_after(k);
             let mut places = system.places(time, &u, &self.state.motion.frames);
             places.frames.middle = self.between();
-            let all = contact.held(&places, &self.search[k]);
+            let all = as_left(&self.bared, &system, k).held(&places, &self.search[k]);
             self.vectors.place = u;
             for held in all {
                 let name = self.name(system.first_point[k] + held.point);

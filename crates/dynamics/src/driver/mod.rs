@@ -135,6 +135,9 @@ pub struct Driver {
     /// Contacts with small sliding where all nodes are at their reference places; empty until they are paired.
     initial: Vec<Pairing>,
     search: Vec<Search>,
+    /// Contacts whose primary sides have lost cells, and the number of deleted elements that they are for; empty as long as none has.
+    bared: Vec<Option<Contact>>,
+    bared_for: u64,
     watch: Watch,
     active: Active,
     /// Points that may carry a force, ascending.

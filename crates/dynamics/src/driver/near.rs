@@ -9,6 +9,7 @@ use std::sync::Arc;
 use carom_contact::{Near, Pairing, Places, Sliding, Step};
 
 use super::Driver;
+use super::deletion::as_left;
 use super::tangents::first_thought;
 
 impl Driver {
@@ -72,7 +73,10 @@ impl Driver {
 
     fn pair_near_of(&mut self, number: usize, pairing: &mut Pairing) {
         let system = Arc::clone(&self.system);
-        let (contact, first) = (&system.contacts[number], system.first_point[number]);
+        let (contact, first) = (
+            as_left(&self.bared, &system, number),
+            system.first_point[number],
+        );
         let time = self.state.time + self.paired_after(number);
         let (row, map) = (
             self.paired_at(number).row(self.maps.first()),

@@ -85,6 +85,8 @@ impl Driver {
             pairing: Pairing::default(),
             initial: vec![Pairing::default(); system.contacts.len()],
             search: system.contacts.iter().map(|_| Search::default()).collect(),
+            bared: Vec::new(),
+            bared_for: 0,
             watch: Watch::new(&system),
             active: Active::of(&system),
             candidates: Vec::new(),
