@@ -100,7 +100,7 @@ fn displacement(scene: &Scene, first: usize, step: f64, random: &mut Random, u: 
 struct Way {
     /// It is lost now and then.
     forgets: bool,
-    /// Steps are a tenth as long, and no gap counts that cannot close.
+    /// Steps are a quarter as long, and no gap counts that cannot close.
     short: bool,
 }
 
@@ -127,7 +127,7 @@ fn compare(scene: &Scene, contact: &Contact, first: usize, way: Way) -> Seen {
         far: 0,
         projections: [0; 2],
     };
-    let parts = if way.short { 10 } else { 1 };
+    let parts = if way.short { 4 } else { 1 };
     for step in 0..parts * STEPS {
         let before = u.clone();
         let now = step as f64 / parts as f64;
@@ -233,11 +233,9 @@ fn check(scene: &Scene, contact: &Contact, first: usize) -> Seen {
     );
     let (forgets, short) = (true, false);
     compare(scene, contact, first, Way { forgets, short });
-    for forgets in [false, true] {
-        let short = true;
-        let seen = compare(scene, contact, first, Way { forgets, short });
-        assert!(seen.near > 300, "{}", seen.near);
-    }
+    let short = true;
+    let seen = compare(scene, contact, first, Way { forgets, short });
+    assert!(seen.near > 300, "{}", seen.near);
     seen
 }
 
