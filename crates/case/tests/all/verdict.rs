@@ -28,7 +28,13 @@ fn result(text: &str) -> (Summary, Histories) {
     let mut columns: Vec<(String, Vec<f64>)> = names.map(|name| (name, Vec::new())).collect();
     for line in lines {
         for ((_, values), cell) in columns.iter_mut().zip(line.split(',')) {
-            values.push(cell.parse().unwrap());
+            // a gap of points that are far is not told
+            let number = if cell.is_empty() {
+                f64::NAN
+            } else {
+                cell.parse().unwrap()
+            };
+            values.push(number);
         }
     }
     (finished.unwrap().summary, columns.into_iter().collect())
