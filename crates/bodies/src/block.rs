@@ -188,44 +188,69 @@ impl Block {
         }
     }
 
-    /// Calls `visit` with the matrices of each element.
-    pub(crate) fn matrices(&self, dim: usize, stiffness: bool, visit: &mut Visit) {
-        by_nodes!(self.kind => self.visit(dim, stiffness, visit));
+    /// Calls `visit` with the axis and the volume (m³) of each bar.
+    pub(crate) fn bars(&self, visit: &mut dyn FnMut(&[f64; 3], f64)) {
+        let Physics::Bar(bar) = &self.physics else {
+            return;
+        };
+        for chunk in &self.chunks {
+            for element in chunk.connectivity.chunks_exact(2) {
+                let x = [element[0], element[1]].map(|place| chunk.x[place as usize]);
+                let (axis, length) = Bar::axis(&x);
+                visit(&axis, bar.area * length);
+            }
+        }
     }
 
-    fn visit<const N: usize>(&self, dim: usize, stiffness: bool, visit: &mut Visit) {
+    /// Calls `visit` with the matrices of each element.
+    pub(crate) fn matrices(&self, dim: usize, stiffness: bool, visit: &mut Visit) {
+        for chunk in &self.chunks {
+            self.matrices_of(chunk, dim, stiffness, visit);
+        }
+    }
+
+    /// The same of each element of a chunk.
+    pub(crate) fn matrices_of(
+        &self,
+        chunk: &Chunk,
+        dim: usize,
+        stiffness: bool,
+        visit: &mut Visit,
+    ) {
+        by_nodes!(self.kind => self.visit(chunk, dim, stiffness, visit));
+    }
+
+    fn visit<const N: usize>(&self, chunk: &Chunk, dim: usize, stiffness: bool, visit: &mut Visit) {
         let mut k = vec![0.0; if stiffness { (dim * N).pow(2) } else { 0 }];
         let (mut m, mut lumped) = (vec![0.0; N * N], [0.0; N]);
         let (mass_points, stiffness_points) = (&self.mass_points, &self.stiffness_points);
         let mut w = ElementWeights::<N>::ones(mass_points, stiffness_points);
-        for chunk in &self.chunks {
-            for (place, element) in chunk.connectivity.chunks_exact(N).enumerate() {
-                let x = element_nodes::<N, _>(element, |node| chunk.x[node]);
-                if let Some(weights) = &chunk.weights {
-                    w.set(mass_points, weights, place);
-                }
-                match &self.physics {
-                    Physics::Bar(bar) => bar.mass(&w.nodes, &x, &mut m),
-                    Physics::Continuum(law) => {
-                        continuum::mass(law, mass_points, &w.inertia, &x, &mut m)
-                    }
-                }
-                match &self.physics {
-                    _ if !stiffness => {}
-                    Physics::Bar(bar) => bar.stiffness(dim, w.stiffness[0], &x, &mut k),
-                    Physics::Continuum(law) => {
-                        continuum::stiffness(law, stiffness_points, &w.stiffness, &x, &mut k)
-                    }
-                }
-                self.lump(&m, &mut lumped);
-                visit(&Matrices {
-                    nodes: &element_nodes::<N, _>(element, |node| chunk.nodes[node]),
-                    first: &element_nodes::<N, _>(element, |node| chunk.first[node]),
-                    stiffness: &k,
-                    mass: &m,
-                    lumped: &lumped,
-                });
+        for (place, element) in chunk.connectivity.chunks_exact(N).enumerate() {
+            let x = element_nodes::<N, _>(element, |node| chunk.x[node]);
+            if let Some(weights) = &chunk.weights {
+                w.set(mass_points, weights, place);
             }
+            match &self.physics {
+                Physics::Bar(bar) => bar.mass(&w.nodes, &x, &mut m),
+                Physics::Continuum(law) => {
+                    continuum::mass(law, mass_points, &w.inertia, &x, &mut m)
+                }
+            }
+            match &self.physics {
+                _ if !stiffness => {}
+                Physics::Bar(bar) => bar.stiffness(dim, w.stiffness[0], &x, &mut k),
+                Physics::Continuum(law) => {
+                    continuum::stiffness(law, stiffness_points, &w.stiffness, &x, &mut k)
+                }
+            }
+            self.lump(&m, &mut lumped);
+            visit(&Matrices {
+                nodes: &element_nodes::<N, _>(element, |node| chunk.nodes[node]),
+                first: &element_nodes::<N, _>(element, |node| chunk.first[node]),
+                stiffness: &k,
+                mass: &m,
+                lumped: &lumped,
+            });
         }
     }
 

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use carom_algebra::csr::Csr;
+use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Mat3;
 use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
@@ -14,7 +15,7 @@ use crate::reduced::Reduced;
 use crate::rigid::Rigid;
 use crate::scratch::Scratch;
 use crate::solid::{BodySpec, Solid};
-use crate::{Deleted, Error, FrequencyBound, Kinematics, Placement, Stored};
+use crate::{Deleted, Error, FrequencyBound, Kinematics, Looks, Placement, Seen, Stored};
 
 /// A body: mass, forces f(u, v), their derivatives, energies.
 #[derive(Debug)]
@@ -184,16 +185,27 @@ impl Body {
     pub fn is_linear(&self) -> bool {
         match self {
             Body::Solid(solid) => solid.is_linear(),
-            Body::Beam(_) => true,
+            Body::Beam(beam) => beam.is_linear(),
             Body::Discrete(discrete) => discrete.is_linear(),
             Body::LargeBeam(_) | Body::Rigid(_) => false,
             Body::Reduced(_) => true,
         }
     }
 
+    /// Whether its forces depend on finite strains, rotations or elongations: the directions in which they act are not those of the
+    /// undeformed body. Bars and beams with small rotations whose metal flows are not linear, and have none of these.
+    pub fn has_finite_motion(&self) -> bool {
+        match self {
+            Body::Solid(solid) => solid.has_finite_strain(),
+            Body::Beam(_) | Body::Reduced(_) => false,
+            Body::Discrete(discrete) => !discrete.is_linear(),
+            Body::LargeBeam(_) | Body::Rigid(_) => true,
+        }
+    }
+
     /// Whether it deforms, by small displacements: its internal forces then have no moment about the undeformed places of its nodes.
     pub fn has_small_displacements(&self) -> bool {
-        self.is_linear() && self.as_discrete().is_none()
+        !self.has_finite_motion() && self.as_discrete().is_none()
     }
 
     /// Speed of its fastest waves, m/s: of compression, along a beam of extension. None without waves.
@@ -227,10 +239,17 @@ impl Body {
         }
     }
 
-    /// Forces and moments in the sections of each element of beams, in the order of [`Body::cells`]; none of other bodies.
-    pub fn section_forces(&self, u: &[f64]) -> Option<Vec<SectionForces>> {
+    /// Forces and moments in the sections of each element of beams, in the order of [`Body::cells`]; none of other bodies. `frames`, as in
+    /// [`Placement`], and `history`: of this body at `u`.
+    pub fn section_forces(
+        &self,
+        u: &[f64],
+        frames: &[Rotation],
+        history: &[f64],
+    ) -> Option<Vec<SectionForces>> {
         match self {
-            Body::Beam(beam) => Some(beam.section_forces(u)),
+            Body::Beam(beam) => Some(beam.section_forces(u, history)),
+            Body::LargeBeam(beam) => Some(beam.section_forces(frames, u, history)),
             Body::Reduced(reduced) => reduced.section_forces(u),
             _ => None,
         }
@@ -246,14 +265,17 @@ impl Body {
     pub fn history_len(&self) -> usize {
         match self {
             Body::Solid(solid) => solid.history_len(),
-            _ => 0,
+            Body::Beam(beam) => beam.history_len(),
+            Body::LargeBeam(beam) => beam.history_len(),
+            Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => 0,
         }
     }
 
     /// Writes the history of a body that nothing has happened to, [`Body::history_len`] numbers.
     pub fn start_history(&self, out: &mut [f64]) {
-        if let Body::Solid(solid) = self {
-            solid.start_history(out);
+        match self {
+            Body::Solid(solid) => solid.start_history(out),
+            _ => out.fill(0.0),
         }
     }
 
@@ -290,8 +312,8 @@ impl Body {
     ) -> Result<Stored, Error> {
         match self {
             Body::Solid(solid) => solid.force(at, new, scratch, f),
-            Body::Beam(beam) => Ok(beam.force(at, f)),
-            Body::LargeBeam(beam) => Ok(beam.force(at, f)),
+            Body::Beam(beam) => beam.force(at, new, f),
+            Body::LargeBeam(beam) => beam.force(at, new, f),
             Body::Discrete(discrete) => Ok(discrete.force(at, f)),
             Body::Reduced(reduced) => Ok(reduced.force(at, f)),
             Body::Rigid(rigid) => {
@@ -436,8 +458,8 @@ impl Body {
     pub fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
         match self {
             Body::Solid(solid) => solid.stresses(u, history),
-            Body::Beam(beam) => beam.stresses(u),
-            Body::LargeBeam(beam) => beam.stresses(u),
+            Body::Beam(beam) => beam.stresses(u, history),
+            Body::LargeBeam(beam) => beam.stresses(u, history),
             // neither volume nor stress
             Body::Discrete(discrete) => vec![(0.0, Mat3::zeros()); discrete.cells().len()],
             Body::Rigid(rigid) => vec![(0.0, Mat3::zeros()); rigid.cells().len()],
@@ -445,11 +467,13 @@ impl Body {
         }
     }
 
-    /// Mean equivalent plastic strain of each element in the `history` of this body, in the order of [`Body::cells`]; none of
-    /// a body without plasticity.
+    /// Mean equivalent plastic strain of each element in the `history` of this body, of bars and beams the largest of their fibres, in the
+    /// order of [`Body::cells`]; none of a body without plasticity.
     pub fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
         match self {
             Body::Solid(solid) => solid.plastic_strains(history),
+            Body::Beam(beam) => beam.plastic_strains(history),
+            Body::LargeBeam(beam) => beam.plastic_strains(history),
             _ => None,
         }
     }
@@ -473,6 +497,17 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.frequency_bound_at(at),
             _ => Ok(FrequencyBound::of(self.frequency_bound())),
+        }
+    }
+
+    /// The same chunk by chunk as elements deform; see [`Solid::look`].
+    ///
+    /// # Errors
+    /// As [`Body::force`].
+    pub fn look(&self, at: &Placement, looks: &mut Looks, worth: f64) -> Result<Seen, Error> {
+        match self {
+            Body::Solid(solid) => solid.look(at, looks, worth),
+            _ => Ok(looks.constant(|| self.frequency_bound())),
         }
     }
 

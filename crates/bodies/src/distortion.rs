@@ -136,7 +136,7 @@ impl Solid {
     /// they are larger; none at finite strain. `point`: which integration point of each element is looked at, in rounds.
     /// Allocates nothing, and gives the same for any number of threads.
     pub fn distortion(&self, u: &[f64], point: usize, before: &Distortion) -> Option<Distortion> {
-        if !self.is_linear() {
+        if self.has_finite_strain() {
             return None;
         }
         let (mut largest, mut first) = (*before, 0);

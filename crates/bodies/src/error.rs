@@ -73,6 +73,22 @@ pub enum Error {
         /// What it is.
         what: &'static str,
     },
+    /// Beams of metal that flows in a section of which only properties are known.
+    #[error(
+        "body '{body}': a section that flows is divided into fibres, for which its shape is needed: circle, tube, rectangle or i"
+    )]
+    NoShape {
+        /// Name of the body.
+        body: String,
+    },
+    /// Beams of metal that flows with hinges.
+    #[error(
+        "body '{body}': hinges are those of elastic elements, and this material flows; take a body of its own for the elastic end"
+    )]
+    FlowingHinges {
+        /// Name of the body.
+        body: String,
+    },
     /// A beam element that has no axes.
     #[error("body '{body}': element {} {why}", cell.index)]
     BeamAxes {
@@ -149,7 +165,8 @@ pub enum Error {
     },
     /// Finite strain where a stress outside the model's dimensions would have to vanish.
     #[error(
-        "body '{body}': a law at finite strain cannot be {kinematics}; take plane-strain, axisymmetric or solid"
+        "body '{body}': a law at finite strain cannot be {kinematics}; take plane-strain, axisymmetric or solid{}",
+        one_stress(kinematics)
     )]
     FiniteKinematics {
         /// Name of the body.
@@ -195,6 +212,14 @@ pub enum Error {
     },
 }
 
+/// What else goes with one stress along an axis.
+fn one_stress(kinematics: &str) -> &'static str {
+    match kinematics {
+        "bar" | "beam" => ", or elastic, j2, j2-table or johnson-cook for the material",
+        _ => "",
+    }
+}
+
 impl Error {
     /// Name of the body.
     pub fn body(&self) -> &str {
@@ -208,6 +233,8 @@ impl Error {
             | Error::BeamAxes { body, .. }
             | Error::Mechanism { body, .. }
             | Error::LargeBeam { body, .. }
+            | Error::NoShape { body }
+            | Error::FlowingHinges { body }
             | Error::BeamWeights { body }
             | Error::NotSolid { body, .. }
             | Error::NegativeRadius { body, .. }

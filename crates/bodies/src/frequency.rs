@@ -5,7 +5,10 @@ use std::collections::BTreeSet;
 use carom_materials::Plane;
 use carom_mesh::Mesh;
 
+use rayon::prelude::*;
+
 use crate::block::Block;
+use crate::chunk::Chunk;
 use crate::scaling::MassScaling;
 use crate::solid::Solid;
 use crate::together::Together;
@@ -36,15 +39,30 @@ impl Solid {
 
     /// The mass of each element over that of its material.
     pub(crate) fn mass_factors(&self, scaling: &MassScaling) -> Vec<f64> {
-        let mut factors = Vec::with_capacity(self.cells().len());
-        let mut scaled = Vec::new();
         let dim = self.dim();
-        self.each_matrix(true, &mut |element| {
-            stability::scale(dim, element.stiffness, element.lumped, &mut scaled);
-            let square = stability::largest_eigenvalue(&mut scaled);
-            factors.push(scaling.factor(self.damped_frequency(factors.len(), square)));
+        let factors = self.by_chunk(|block, chunk, first| {
+            let (mut factors, mut scaled) = (Vec::new(), Vec::new());
+            block.matrices_of(chunk, dim, true, &mut |element| {
+                stability::scale(dim, element.stiffness, element.lumped, &mut scaled);
+                let square = stability::largest_eigenvalue(&mut scaled);
+                let frequency = self.damped_frequency(first + factors.len(), square);
+                factors.push(scaling.factor(frequency));
+            });
+            factors
         });
-        factors
+        factors.concat()
+    }
+
+    /// What `of` gives for each chunk, in their order; it gets the place of its first element in [`Solid::cells`].
+    fn by_chunk<T: Send>(&self, of: impl Fn(&Block, &Chunk, usize) -> T + Sync) -> Vec<T> {
+        let (mut out, mut first) = (Vec::new(), 0);
+        for block in &self.blocks {
+            let length = block.chunk_length();
+            let chunks = block.chunks.par_iter().enumerate();
+            out.par_extend(chunks.map(|(k, chunk)| of(block, chunk, first + k * length)));
+            first += block.len();
+        }
+        out
     }
 
     /// Upper bound of the angular frequencies (rad/s) with lumped mass: the largest eigenvalue of M_e⁻¹ K_e over parts of
@@ -60,21 +78,21 @@ impl Solid {
     /// viscosity it is 2 over the stable step of an element, which is smaller ([`BulkViscosity`](crate::BulkViscosity)).
     pub fn frequency_bound(&self) -> f64 {
         let varying: Vec<bool> = self.blocks.iter().flat_map(Block::varying).collect();
-        let (mut place, mut even, mut uneven): (_, f64, f64) = (0, 0.0, 0.0);
         let dim = self.dim();
-        let mut scaled = Vec::new();
-        self.each_matrix(true, &mut |element| {
-            stability::scale(dim, element.stiffness, element.lumped, &mut scaled);
-            let value = stability::largest_eigenvalue(&mut scaled);
-            let value = self.damped_frequency(place, value).powi(2);
-            let largest = if varying[place] {
-                &mut uneven
-            } else {
-                &mut even
-            };
-            *largest = f64::max(*largest, value);
-            place += 1;
+        let largest = self.by_chunk(|block, chunk, first| {
+            let (mut place, mut largest, mut scaled) = (first, [0.0_f64; 2], Vec::new());
+            block.matrices_of(chunk, dim, true, &mut |element| {
+                stability::scale(dim, element.stiffness, element.lumped, &mut scaled);
+                let value = stability::largest_eigenvalue(&mut scaled);
+                let value = self.damped_frequency(place, value).powi(2);
+                let of = &mut largest[usize::from(varying[place])];
+                *of = of.max(value);
+                place += 1;
+            });
+            largest
         });
+        let most = |which: usize| largest.iter().map(|of| of[which]).fold(0.0, f64::max);
+        let [even, mut uneven] = [0, 1].map(most);
         if uneven > even {
             uneven = uneven.min(self.together(varying));
         }

@@ -13,6 +13,7 @@ mod discrete;
 mod distortion;
 mod error;
 mod finite;
+mod flowing;
 mod force;
 mod frequency;
 mod gather;
@@ -33,7 +34,7 @@ mod together;
 mod weights;
 
 pub use beam::{
-    Beam, BeamSection, BeamTheory, LargeBeam, Rotations, SectionForces, SectionProperties,
+    Beam, BeamSection, BeamTheory, LAYERS, LargeBeam, Rotations, SectionForces, SectionProperties,
     SectionShape,
 };
 pub use body::Body;
@@ -43,8 +44,10 @@ pub use discrete::{
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
 pub use finite::{
-    BulkViscosity, Deleted, FollowerPressure, Formulation, FrequencyBound, Placement, Stored,
+    BulkViscosity, Deleted, FollowerPressure, Formulation, FrequencyBound, Looks, Placement, Seen,
+    Stored,
 };
+pub use flowing::Fibre;
 pub use kinematics::{Kinematics, MassKind};
 pub use reduced::{Reduced, ReducedMass, ReducedMatrices, Reduction};
 pub use reducible::Reducible;

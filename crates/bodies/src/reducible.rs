@@ -8,7 +8,7 @@ use crate::beam::{Beam, SectionForces};
 use crate::solid::{BodySpec, Solid};
 use crate::{Error, Kinematics};
 
-/// A body that can be reduced: small strain and small rotations.
+/// A body that can be reduced: small strain and small rotations, and nothing flows.
 #[derive(Debug)]
 // A system has few bodies.
 #[allow(clippy::large_enum_variant)]
@@ -69,14 +69,14 @@ impl Reducible {
     pub(crate) fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
         match self {
             Reducible::Solid(solid) => solid.stresses(u, &[]),
-            Reducible::Beam(beam) => beam.stresses(u),
+            Reducible::Beam(beam) => beam.stresses(u, &[]),
         }
     }
 
     pub(crate) fn section_forces(&self, u: &[f64]) -> Option<Vec<SectionForces>> {
         match self {
             Reducible::Solid(_) => None,
-            Reducible::Beam(beam) => Some(beam.section_forces(u)),
+            Reducible::Beam(beam) => Some(beam.section_forces(u, &[])),
         }
     }
 }

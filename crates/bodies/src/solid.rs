@@ -14,6 +14,7 @@ use crate::bar::Bar;
 use crate::block::{Block, Physics, Visit};
 use crate::continuum;
 use crate::finite::{BulkViscosity, Finite, Formulation, Shape};
+use crate::flowing::{Fibre, FibreSection, Flowing, Point};
 use crate::gather::Gather;
 use crate::nodes::Nodes;
 use crate::release::Release;
@@ -81,6 +82,8 @@ pub struct Solid {
     pub(crate) blocks: Vec<Block>,
     /// Law and formulation at finite strain; none at small strain.
     pub(crate) finite: Option<Finite>,
+    /// Bars of metal that flows.
+    pub(crate) flowing: Option<Flowing>,
     dim: usize,
     smallest: f64,
     pub(crate) viscosity: Option<BulkViscosity>,
@@ -148,7 +151,8 @@ impl Solid {
             gather: Gather::new(mesh.dim, &blocks),
             cells,
             blocks,
-            finite: (spec.material.finite().is_some()).then(|| finite(spec.material)),
+            finite: is_finite(&spec).then(|| finite(spec.material)),
+            flowing: None,
             dim: mesh.dim,
         };
         body.set_viscosity(mesh, None);
@@ -157,6 +161,15 @@ impl Solid {
             (body.cells, body.blocks) = parts.blocks(Some(&factors));
             body.set_viscosity(mesh, Some(&factors));
             body.added_mass = body.mass() - before;
+        }
+        if let Kinematics::Bar { area } = spec.kinematics
+            && let Some(law) = spec.material.uniaxial()
+        {
+            let fibre = Fibre {
+                place: [0.0; 2],
+                area,
+            };
+            body.flowing = Some(parts.bars(FibreSection::new(law, vec![fibre])));
         }
         if spec.weights.is_some() {
             body.check_mass(mesh)?;
@@ -350,6 +363,9 @@ impl Solid {
         if let Some(finite) = &self.finite {
             return finite.stresses(&self.blocks, u, history);
         }
+        if let Some(flowing) = &self.flowing {
+            return self.stresses_of_bars(flowing, (u, history));
+        }
         let mut out = Vec::with_capacity(self.cells.len());
         for block in &self.blocks {
             block.stresses(self.dim, u, &mut out);
@@ -357,9 +373,24 @@ impl Solid {
         out
     }
 
+    /// The same of bars that flow.
+    fn stresses_of_bars(&self, flowing: &Flowing, at: (&[f64], &[f64])) -> Vec<(f64, Mat3)> {
+        let mut out = Vec::with_capacity(self.cells.len());
+        for block in &self.blocks {
+            block.bars(&mut |axis, volume| {
+                let stress = flowing.mean_stress(out.len(), at);
+                out.push((volume, Mat3::from_fn(|i, j| stress * axis[i] * axis[j])));
+            });
+        }
+        out
+    }
+
     /// Mean equivalent plastic strain of each element in the `history` of this body, in the order of [`Solid::cells`]; none of
     /// a law without plasticity.
     pub fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
+        if let Some(flowing) = &self.flowing {
+            return Some(flowing.plastic_strains(history));
+        }
         let finite = self.finite.as_ref()?;
         finite.plastic_strains(&self.blocks, history)
     }
@@ -414,9 +445,16 @@ fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
     Ok(())
 }
 
+/// Whether the law of a body is one at finite strain; bars of metal that flows take that under uniaxial stress.
+fn is_finite(spec: &BodySpec) -> bool {
+    let flows =
+        matches!(spec.kinematics, Kinematics::Bar { .. }) && spec.material.uniaxial().is_some();
+    spec.material.finite().is_some() && !flows
+}
+
 fn check_formulation(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
     let body = || spec.name.clone();
-    if spec.material.finite().is_none() {
+    if !is_finite(spec) {
         return match spec.formulation {
             Formulation::Full => Ok(()),
             _ => Err(Error::LinearFormulation { body: body() }),
@@ -454,6 +492,36 @@ struct Parts<'a> {
 }
 
 impl Parts<'_> {
+    /// Bars of this section, all of which flow: one point each, with the mean of the weights of its nodes.
+    fn bars(&self, section: FibreSection) -> Flowing {
+        let (mesh, spec) = (self.mesh, self.spec);
+        let mut flowing = Flowing::new(section, 2 * mesh.dim, 1);
+        for (place, &cell) in spec.cells.iter().enumerate() {
+            let nodes = mesh.element_nodes(cell);
+            let x = [nodes[0], nodes[1]].map(|node| mesh.nodes[node as usize]);
+            let (axis, length) = Bar::axis(&x);
+            let weight = spec.weights.as_ref().map_or(1.0, |weights| {
+                0.5 * (weights.stiffness[2 * place] + weights.stiffness[2 * place + 1])
+            });
+            let mut rows = [[0.0; 12]; 3];
+            for i in 0..mesh.dim {
+                rows[0][i] = -axis[i] / length;
+                rows[0][mesh.dim + i] = axis[i] / length;
+            }
+            let own = nodes.iter().map(|&node| self.number[node as usize]);
+            let unknowns = own.flat_map(|node| {
+                let first = self.unknowns.first(node);
+                first..first + mesh.dim
+            });
+            let point = Point {
+                length: weight * length,
+                rows,
+            };
+            flowing.push(unknowns, std::iter::once(point), &[]);
+        }
+        flowing
+    }
+
     /// The cells by kind, and their blocks. `factors`: of their masses.
     fn blocks(&self, factors: Option<&[f64]>) -> (Vec<ElementId>, Vec<Block>) {
         let (mesh, spec) = (self.mesh, self.spec);

@@ -90,10 +90,12 @@ pub fn facts(built: &Built) -> Vec<Fact> {
         "{} steps of {:.6e} s{}",
         step_count(built.end - begin, system.dt),
         system.dt,
-        system.adaptive.map_or(String::new(), |rules| format!(
-            " or less, down to {:.2e} s",
-            rules.smallest
-        )),
+        match system.adaptive {
+            Some(rules) => format!(" or less, down to {:.2e} s", rules.smallest),
+            None if system.critical_fraction.is_some() && system.is_nonlinear() =>
+                " at first".to_string(),
+            None => String::new(),
+        }
     );
     let scheme = system.scheme.get();
     let time = match built.zoned {
@@ -196,10 +198,13 @@ fn beam_fact(system: &System, body: usize, beam: &Beam) -> Fact {
         2 => format!("I_z {z:.6e} m^4"),
         _ => format!("I_y {y:.6e} m^4, I_z {z:.6e} m^4, torsion {torsion:.6e} m^4"),
     };
+    let fibres = beam.fibres().map_or(String::new(), |count| {
+        format!("{count} fibres in a section, ")
+    });
     fact(
         format!("body {}", beam.name()),
         format!(
-            "{theory} beam, area {area:.6e} m^2, {bending}, {:.6} kg, waves of extension at {speed:.5} m/s, smallest element {:.4e} m",
+            "{theory} beam, area {area:.6e} m^2, {bending}, {fibres}{:.6} kg, waves of extension at {speed:.5} m/s, smallest element {:.4e} m",
             system.body_mass(body),
             beam.smallest_size()
         ),

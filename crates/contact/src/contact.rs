@@ -1,7 +1,8 @@
 //! One contact: secondary points that carry the forces, what they face, and the law between them.
 
-use carom_mesh::{Face, Projection};
+use carom_mesh::{Face, Projection, QUADS};
 
+use crate::crossing::Opposite;
 use crate::sight::View;
 use crate::{Basis, Held, Law, Mortar, Obstacle, Places, Point, Search, Shape, Sight};
 
@@ -87,9 +88,23 @@ impl Contact {
             return;
         };
         search.begin();
-        for (k, point) in self.points.iter().enumerate() {
-            let found = search.opposite(places, faces, (point, self.view(k)));
+        self.each_opposite((places, faces), search, |_, found| {
             feet.push(found.map(|found| found.foot));
+        });
+    }
+
+    /// Calls `visit` with each point and what is opposite to it on a surface.
+    pub(crate) fn each_opposite<'a>(
+        &self,
+        (places, faces): (&Places, &'a [Face]),
+        search: &mut Search,
+        mut visit: impl FnMut(usize, Option<Opposite<'a>>),
+    ) {
+        for (k, point) in self.points.iter().enumerate() {
+            if k % QUADS == 0 && self.sight.is_none() {
+                search.look_ahead(places, faces, &self.points[k..]);
+            }
+            visit(k, search.opposite(places, faces, (point, self.view(k))));
         }
     }
 

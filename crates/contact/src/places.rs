@@ -44,7 +44,7 @@ pub struct Places<'a> {
 
 impl Places<'_> {
     /// Current position of a node in m.
-    #[inline]
+    #[inline(always)]
     pub fn of(&self, node: u32) -> [f64; 3] {
         // nearly all nodes have three translations of their own
         let own = self.unknowns.translations_of(node);
@@ -57,6 +57,7 @@ impl Places<'_> {
         }
     }
 
+    #[cold]
     fn of_any(&self, node: u32) -> [f64; 3] {
         let own = self.unknowns.moved_by(node);
         let mut place = self.x[own as usize];

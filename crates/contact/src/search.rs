@@ -8,19 +8,21 @@
 //! None of this changes results, bit for bit: the closest face is always the first of those whose projection is
 //! closest, as if all had been asked.
 
-use carom_mesh::{Face, Projection};
+use carom_mesh::{Face, Projection, QUADS};
 
 use self::faces::{FaceTree, Question, Scratch};
 pub(crate) use self::foot::{faces_point, foot_on, hull, spread};
 use self::group::Group;
+use self::guess::Guesses;
 use self::kept::{Kept, squared};
 use crate::rest::Rest;
 use crate::sight::View;
-use crate::{Places, Sight};
+use crate::{Places, Point, Sight};
 
 pub(crate) mod faces;
 mod foot;
 pub(crate) mod group;
+pub(crate) mod guess;
 pub(crate) mod kept;
 
 /// Returns of a point, within one step, to a face that it has left in it, after which it stays with that face.
@@ -38,6 +40,7 @@ pub struct Search {
     /// The memory of each query since the renewal, in their order.
     kept: Vec<Kept>,
     next: usize,
+    guesses: Guesses,
     /// What the queries share, with the projections since the last renewal.
     pub(crate) scratch: Scratch,
     /// For each query its way over the faces in the step; empty where none is looked at.
@@ -104,6 +107,18 @@ impl Search {
     /// Counts queries and projections from here on.
     pub(crate) fn begin(&mut self) {
         (self.next, self.scratch.projections) = (0, 0);
+        self.guesses.clear();
+    }
+
+    /// Guesses what the next points face that see all, at most [`QUADS`] of them.
+    pub(crate) fn look_ahead(&mut self, places: &Places, faces: &[Face], points: &[Point]) {
+        let points = &points[..points.len().min(QUADS)];
+        let from = self.next.min(self.kept.len());
+        let own = (from, &self.kept[from..]);
+        let places_of = points.iter().filter(|point| !point.crosses());
+        let xs = places_of.map(|point| point.place(places));
+        let target = (&self.faces, places, faces);
+        self.guesses.make(target, own, xs, &mut self.scratch);
     }
 
     /// Memory in bytes.
@@ -193,6 +208,7 @@ impl Search {
             x: *x,
             view,
             within,
+            guess: self.guesses.take(slot),
         };
         self.faces
             .closest(target, &question, &mut self.kept[slot], &mut self.scratch)

@@ -32,6 +32,8 @@ pub(crate) struct Block {
     pub(crate) part: usize,
     /// Whether any of their unknowns is held.
     pub(crate) held: bool,
+    /// Whether there may be contact forces on them at the start and at the end of the step.
+    pub(crate) touched: [bool; 2],
 }
 
 /// The blocks of a system whose nodes have translations alone.
@@ -45,6 +47,7 @@ pub(crate) fn blocks(system: &System) -> Vec<Block> {
                 nodes: [first, last],
                 part,
                 held: system.fixed[dim * first..dim * last].contains(&true),
+                touched: [true; 2],
             }
         })
     };

@@ -128,12 +128,6 @@ impl InterfaceState {
         }
     }
 
-    /// Whether a point carries a force.
-    pub(crate) fn carries(&self, point: usize) -> bool {
-        let rubs = |friction: &[f64; 2]| *friction != [0.0; 2];
-        self.force[point] != 0.0 || self.friction.get(point).is_some_and(rubs)
-    }
-
     /// Takes the force of a point.
     pub(crate) fn release(&mut self, point: usize) {
         self.force[point] = 0.0;

@@ -87,9 +87,10 @@ pub(crate) struct Update<'a> {
     /// Velocity, m/s, and acceleration, m/s², at the start.
     pub(crate) v: &'a [f64],
     pub(crate) a: &'a [f64],
-    /// Loads and contact forces; none where there are none.
+    /// Loads; none where there are none.
     pub(crate) load: Option<Ends<'a>>,
-    pub(crate) contact: Option<Ends<'a>>,
+    /// Contact forces at start and end, N; read in the blocks that they touch.
+    pub(crate) contact: [&'a [f64]; 2],
     /// Δu by v and a.
     pub(crate) way: Row,
     /// v₊ by v, a and the acceleration a₊ of the end.
@@ -163,11 +164,15 @@ impl WithSimd for Panel<'_> {
             ];
             *sums = Sums::default();
             let (update, buffers) = (&self.update, &mut buffers);
-            match (&update.load, &update.contact) {
-                (None, None) => update.block::<false, false>((block, buffers), sums, out),
-                (Some(_), None) => update.block::<true, false>((block, buffers), sums, out),
-                (None, Some(_)) => update.block::<false, true>((block, buffers), sums, out),
-                (Some(_), Some(_)) => update.block::<true, true>((block, buffers), sums, out),
+            match (&update.load, block.touched) {
+                (None, [false, false]) => {
+                    update.block::<false, false>((block, buffers), sums, out);
+                }
+                (Some(_), [false, false]) => {
+                    update.block::<true, false>((block, buffers), sums, out);
+                }
+                (None, _) => update.block::<false, true>((block, buffers), sums, out),
+                (Some(_), _) => update.block::<true, true>((block, buffers), sums, out),
             }
         }
     }
@@ -293,7 +298,7 @@ impl Update<'_> {
             a: &self.a[range.clone()],
             fixed: &self.system.fixed[range.clone()],
             load: within(&self.load, &range),
-            contact: within(&self.contact, &range),
+            contact: self.contact.map(|forces| (&forces[range.clone()], 1.0)),
         };
         buffers.end(range.len());
         buffers.mass.spread(dim, &self.mass[first..last]);

@@ -14,35 +14,17 @@
 use carom_algebra::number::Number;
 use carom_algebra::tensor::Mat3;
 
+use crate::hardening::Hardening;
 use crate::lagrange::positive;
 use crate::spectral::spectral;
 use crate::tensor::{
     Tensor, cofactor, determinant, entries, pack, plus_unit, product, product_transposed, rows,
     scaled, symmetric_entries, transposed_product, unpack,
 };
-use crate::{Answer, Elastic, Failure, Plane, Response, Tangent, Want};
+use crate::{Answer, Failure, Plane, Response, Tangent, Want};
 
 /// Place of ε_p in the history.
 pub(crate) const PLASTIC: usize = 6;
-
-/// How the yield stress grows.
-pub(crate) trait Hardening {
-    /// The law at small elastic strain.
-    fn elastic(&self) -> &Elastic;
-
-    /// Numbers of the history beyond ε_p.
-    fn further(&self) -> usize {
-        0
-    }
-
-    /// Δε_p ≥ 0 of a step of `dt` (s) from the history `old` with the trial stress `q`, with q - 3μ Δε_p = σ_y(Δε_p) where it is
-    /// positive, and the slope dσ_y/dΔε_p there.
-    fn slip<T: Number>(&self, q: T, old: &[T], dt: f64) -> [T; 2];
-
-    /// Energy that hardening stores at the end of the step and energy dissipated in it, J/m³, with the stress `q` at its end; writes
-    /// the history beyond ε_p.
-    fn spent<T: Number>(&self, slip: T, q: T, history: (&[T], &mut [T])) -> [T; 2];
-}
 
 /// The state at the end of a step, in the principal axes of the trial b_e.
 struct Return<T> {
@@ -115,7 +97,7 @@ impl<H: Hardening> Flow<'_, H> {
         let norm = square.sqrt();
         let q = norm.scale(6_f64.sqrt() * mu);
         let tiny = q.like(f64::MIN_POSITIVE);
-        let [slip, slope] = self.0.slip(q, old, dt);
+        let [slip, slope] = self.0.slip(q, 3.0 * mu, &old[PLASTIC..], dt);
         let left = one - slip.scale(3.0 * mu) / q.most(tiny);
         let pressure = sum.scale(self.bulk_modulus());
         let kept = left.scale(2.0 * mu);
@@ -226,7 +208,8 @@ impl<H: Hardening> Flow<'_, H> {
         let updated = entries!(|i: usize, j: usize| metric[i][j] + pulled[i][j]);
         pack(&updated, new);
         new[PLASTIC] = old[PLASTIC] + at.slip;
-        let [hardening, dissipated] = self.0.spent(at.slip, at.stress, (old, new));
+        let kept = (&old[PLASTIC..], &mut new[PLASTIC..]);
+        let [hardening, dissipated] = self.0.spent(at.slip, at.stress, kept);
         let sum = at.epsilon[0] + at.epsilon[1] + at.epsilon[2];
         let deviator = at.left * at.norm;
         let stored = (sum * sum).scale(0.5 * self.bulk_modulus())
@@ -271,7 +254,7 @@ impl<H: Hardening> Flow<'_, H> {
     }
 }
 
-/// The laws at finite strain of parameters with a hardening; they have no stored energy alone.
+/// The laws of parameters with a hardening, at finite strain and under uniaxial stress; they have no stored energy alone.
 macro_rules! flows {
     ($law:ident) => {
         impl $crate::Pointwise for $law {
@@ -289,7 +272,7 @@ macro_rules! flows {
 
         impl $crate::Material for $law {
             fn history_len(&self) -> usize {
-                $crate::flow::PLASTIC + 1 + $crate::flow::Hardening::further(self)
+                $crate::flow::PLASTIC + 1 + $crate::hardening::Hardening::further(self)
             }
 
             fn start(&self, history: &mut [f64]) {
@@ -326,6 +309,25 @@ macro_rules! flows {
 
             fn initial(&self) -> $crate::Elastic {
                 self.initial
+            }
+        }
+
+        impl $crate::Uniaxial for $law {
+            fn history_len(&self) -> usize {
+                $crate::uniaxial::PLASTIC + 1 + $crate::hardening::Hardening::further(self)
+            }
+
+            fn young(&self) -> f64 {
+                self.initial.young
+            }
+
+            fn update(
+                &self,
+                strain: f64,
+                dt: f64,
+                history: (&[f64], &mut [f64]),
+            ) -> $crate::UniaxialResponse {
+                $crate::uniaxial::update(self, strain, dt, history)
             }
         }
     };

@@ -5,9 +5,10 @@ use carom_quantities::{Modulus, Stress};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::flow::{Hardening, PLASTIC, flows};
+use crate::flow::{PLASTIC, flows};
+use crate::hardening::Hardening;
 use crate::range::{OutOfRange, require};
-use crate::{Elastic, Material, Parameters};
+use crate::{Elastic, Material, Parameters, Uniaxial};
 
 /// J2 (von Mises) plasticity with linear isotropic hardening, in logarithmic strain: σ_y + H ε_p.
 ///
@@ -62,6 +63,10 @@ impl Parameters for J2Plasticity {
         true
     }
 
+    fn uniaxial(&self) -> Option<Box<dyn Uniaxial>> {
+        Some(Box::new(*self))
+    }
+
     fn plastic_strain(&self, history: &[f64]) -> Option<f64> {
         Some(J2Plasticity::plastic_strain(history))
     }
@@ -80,17 +85,17 @@ impl Hardening for J2Plasticity {
     }
 
     #[inline(always)]
-    fn slip<T: Number>(&self, q: T, old: &[T], _dt: f64) -> [T; 2] {
-        let plastic = old[PLASTIC];
+    fn slip<T: Number>(&self, q: T, stiffness: f64, old: &[T], _dt: f64) -> [T; 2] {
+        let plastic = old[0];
         let beyond_yield = q - plastic.mul_add(q.like(self.hardening), q.like(self.yield_stress));
-        let stiffness = 3.0 * self.initial.shear_modulus() + self.hardening;
+        let stiffness = stiffness + self.hardening;
         let slip = beyond_yield.most(q.like(0.0)).scale(1.0 / stiffness);
         [slip, q.like(self.hardening)]
     }
 
     #[inline(always)]
     fn spent<T: Number>(&self, slip: T, _q: T, (_, new): (&[T], &mut [T])) -> [T; 2] {
-        let hardening = (new[PLASTIC] * new[PLASTIC]).scale(0.5 * self.hardening);
+        let hardening = (new[0] * new[0]).scale(0.5 * self.hardening);
         [hardening, slip.scale(self.yield_stress)]
     }
 }

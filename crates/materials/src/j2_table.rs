@@ -6,9 +6,10 @@ use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::flow::{Hardening, PLASTIC, flows};
+use crate::flow::{PLASTIC, flows};
+use crate::hardening::Hardening;
 use crate::range::{OutOfRange, require};
-use crate::{Elastic, Material, Parameters};
+use crate::{Elastic, Material, Parameters, Uniaxial};
 
 /// Most points of a [`J2Table`].
 pub const MAX_HARDENING_POINTS: usize = 16;
@@ -152,6 +153,10 @@ impl Parameters for J2Table {
         true
     }
 
+    fn uniaxial(&self) -> Option<Box<dyn Uniaxial>> {
+        Some(Box::new(*self))
+    }
+
     fn plastic_strain(&self, history: &[f64]) -> Option<f64> {
         Some(history[PLASTIC])
     }
@@ -163,9 +168,8 @@ impl Hardening for J2Table {
     }
 
     #[inline(always)]
-    fn slip<T: Number>(&self, q: T, old: &[T], _dt: f64) -> [T; 2] {
-        let (zero, plastic) = (q.like(0.0), old[PLASTIC]);
-        let stiffness = 3.0 * self.initial.shear_modulus();
+    fn slip<T: Number>(&self, q: T, stiffness: f64, old: &[T], _dt: f64) -> [T; 2] {
+        let (zero, plastic) = (q.like(0.0), old[0]);
         let mut over = q - q.like(self.first());
         for piece in self.pieces() {
             let gained = plastic - q.like(piece.strain);
@@ -189,7 +193,7 @@ impl Hardening for J2Table {
 
     #[inline(always)]
     fn spent<T: Number>(&self, slip: T, _q: T, (_, new): (&[T], &mut [T])) -> [T; 2] {
-        let (zero, plastic) = (slip.like(0.0), new[PLASTIC]);
+        let (zero, plastic) = (slip.like(0.0), new[0]);
         let mut stored = zero;
         for piece in self.pieces() {
             let gained = plastic - slip.like(piece.strain);

@@ -5,12 +5,13 @@ use carom_quantities::{Modulus, Rate, Stress};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::flow::{Hardening, PLASTIC, flows};
+use crate::flow::{PLASTIC, flows};
+use crate::hardening::Hardening;
 use crate::range::{OutOfRange, require};
-use crate::{Elastic, Material, Parameters};
+use crate::{Elastic, Material, Parameters, Uniaxial};
 
-/// Place of the rise of the temperature in the history.
-const RISE: usize = PLASTIC + 1;
+/// Place of the rise of the temperature in the history, behind ε_p.
+const RISE: usize = 1;
 
 /// Most iterations of a return; a bisection alone needs fewer for the last digit of the slip.
 const MOST: usize = 100;
@@ -88,7 +89,7 @@ pub struct JohnsonCook {
 impl JohnsonCook {
     /// Rise of the temperature in the history of a point, K.
     pub fn temperature_rise(history: &[f64]) -> f64 {
-        history[RISE]
+        history[PLASTIC + RISE]
     }
 
     /// Yield stress (Pa) at a plastic strain that was reached by `slip` in `dt` (s), with what heat leaves of it; and its slope over
@@ -120,8 +121,8 @@ impl JohnsonCook {
     }
 
     /// Δε_p and the slope of the yield stress there.
-    fn returned(&self, q: f64, [plastic, rise]: [f64; 2], dt: f64) -> [f64; 2] {
-        let (stiffness, left) = (3.0 * self.initial.shear_modulus(), self.left(rise));
+    fn returned(&self, (q, stiffness): (f64, f64), [plastic, rise]: [f64; 2], dt: f64) -> [f64; 2] {
+        let left = self.left(rise);
         let [start, _] = self.stress_at([plastic, 0.0], dt, left);
         if q <= start {
             return [0.0, 0.0];
@@ -186,6 +187,10 @@ impl Parameters for JohnsonCook {
         true
     }
 
+    fn uniaxial(&self) -> Option<Box<dyn Uniaxial>> {
+        Some(Box::new(*self))
+    }
+
     fn plastic_strain(&self, history: &[f64]) -> Option<f64> {
         Some(history[PLASTIC])
     }
@@ -202,12 +207,13 @@ impl Hardening for JohnsonCook {
 
     /// Lane by lane: only points that flow cost iterations, and none takes those of its neighbours.
     #[inline(always)]
-    fn slip<T: Number>(&self, q: T, old: &[T], dt: f64) -> [T; 2] {
+    fn slip<T: Number>(&self, q: T, stiffness: f64, old: &[T], dt: f64) -> [T; 2] {
         let [mut slip, mut slope] = [q.like(0.0); 2];
-        let [plastic, rise] = [old[PLASTIC], old[RISE]];
+        let [plastic, rise] = [old[0], old[RISE]];
         for lane in 0..q.lanes().len() {
             let before = [plastic.lanes()[lane], rise.lanes()[lane]];
-            let [found, steep] = self.returned(q.lanes()[lane], before, dt);
+            let trial = (q.lanes()[lane], stiffness);
+            let [found, steep] = self.returned(trial, before, dt);
             slip.lanes_mut()[lane] = found;
             slope.lanes_mut()[lane] = steep;
         }

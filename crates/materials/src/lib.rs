@@ -35,6 +35,7 @@ macro_rules! materials {
 mod conserving;
 mod elastic;
 mod flow;
+mod hardening;
 mod hyperelastic;
 mod j2_plasticity;
 mod j2_table;
@@ -51,6 +52,7 @@ mod range;
 mod spectral;
 mod st_venant_kirchhoff;
 pub mod tensor;
+mod uniaxial;
 
 pub use elastic::{Elastic, Plane};
 pub use j2_plasticity::J2Plasticity;
@@ -66,3 +68,4 @@ pub use pointwise::{Answer, MAX_KEPT, Pointwise};
 pub use range::OutOfRange;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use tensor::Tensor;
+pub use uniaxial::{Uniaxial, UniaxialResponse};

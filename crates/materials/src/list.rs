@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{Elastic, Material, OutOfRange, Parameters, Plane};
+use crate::{Elastic, Material, OutOfRange, Parameters, Plane, Uniaxial};
 
 macro_rules! declare {
     ([] $($(#[$doc:meta])* $law:ident $key:literal,)*) => {
@@ -46,6 +46,11 @@ impl Law {
     /// The law at finite strain behind the choice; none for small strain.
     pub fn finite(&self) -> Option<&dyn Material> {
         self.parameters().finite()
+    }
+
+    /// The law under uniaxial stress at small strain where it is not linear elasticity alone: of a metal that flows.
+    pub fn uniaxial(&self) -> Option<Box<dyn Uniaxial>> {
+        self.parameters().uniaxial()
     }
 
     /// Linear elasticity of the undeformed material.

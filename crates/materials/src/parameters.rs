@@ -1,11 +1,15 @@
 //! What the parameters of any material answer.
 
-use crate::{Elastic, Material, OutOfRange};
+use crate::{Elastic, Material, OutOfRange, Uniaxial};
 
 /// The parameters of a material, as the case file gives them.
 pub trait Parameters {
     /// The law at finite strain; none for small strain.
     fn finite(&self) -> Option<&dyn Material>;
+    /// The law under uniaxial stress at small strain, of bars and of the fibres of beams; none of a law that has none but elasticity.
+    fn uniaxial(&self) -> Option<Box<dyn Uniaxial>> {
+        None
+    }
     /// Linear elasticity of the undeformed material.
     fn undeformed(&self) -> Elastic;
     /// Names a parameter outside its range.

@@ -26,8 +26,8 @@ impl Bounds {
         let mut bounds = Bounds::EMPTY;
         for x in points {
             for (i, &x) in x.iter().enumerate() {
-                bounds.min[i] = bounds.min[i].min(x);
-                bounds.max[i] = bounds.max[i].max(x);
+                bounds.min[i] = smaller(bounds.min[i], x);
+                bounds.max[i] = larger(bounds.max[i], x);
             }
         }
         bounds
@@ -62,8 +62,8 @@ impl Bounds {
     pub fn union(&self, other: &Bounds) -> Bounds {
         let mut both = *self;
         for i in 0..3 {
-            both.min[i] = both.min[i].min(other.min[i]);
-            both.max[i] = both.max[i].max(other.max[i]);
+            both.min[i] = smaller(both.min[i], other.min[i]);
+            both.max[i] = larger(both.max[i], other.max[i]);
         }
         both
     }
@@ -92,7 +92,24 @@ impl Bounds {
             .sum()
     }
 
+    /// Square of the largest distance of a place of the box from another one, m².
+    #[inline]
+    pub(crate) fn beyond_squared(&self, other: &Bounds) -> f64 {
+        let beyond = |i: usize| {
+            let out = larger(other.min[i] - self.min[i], self.max[i] - other.max[i]);
+            larger(0.0, out).powi(2)
+        };
+        beyond(0) + beyond(1) + beyond(2)
+    }
+
+    /// Length of the diagonal, m.
+    pub(crate) fn diagonal(&self) -> f64 {
+        let side = |i: usize| (self.max[i] - self.min[i]).powi(2);
+        (side(0) + side(1) + side(2)).sqrt()
+    }
+
     /// The largest absolute value of a coordinate, m; zero for the empty box.
+    #[inline]
     pub(crate) fn reach(&self) -> f64 {
         let ends = self.min.iter().chain(&self.max);
         ends.filter(|x| x.is_finite())
@@ -102,6 +119,24 @@ impl Bounds {
     pub(crate) fn centre(&self, axis: usize) -> f64 {
         0.5 * (self.min[axis] + self.max[axis])
     }
+}
+
+/// The smaller of two numbers, the first where the second is none, in one operation: [`f64::min`] looks at both.
+#[inline(always)]
+pub(crate) fn smaller<T: PartialOrd>(a: T, b: T) -> T {
+    if b < a { b } else { a }
+}
+
+/// The larger of two numbers, the first where the second is none, in one operation.
+#[inline(always)]
+pub(crate) fn larger<T: PartialOrd>(a: T, b: T) -> T {
+    if b > a { b } else { a }
+}
+
+/// The largest absolute value of a coordinate, m.
+#[inline]
+pub(crate) fn size(x: &[f64; 3]) -> f64 {
+    x[0].abs().max(x[1].abs()).max(x[2].abs())
 }
 
 /// Replaces the nodes between the corners of a quadratic face by the coefficients of its Bernstein polynomials.

@@ -32,7 +32,7 @@ pub use element_id::ElementId;
 pub use error::Error;
 pub use mesh::{Block, Defect, Group, Mesh, gather};
 pub use parts::Parts;
-pub use project::{Projection, project};
+pub use project::{Projection, QUADS, project, project_quads};
 pub use raise::raise;
 pub use refine::refine;
 pub use search::BoxTree;

@@ -4,9 +4,12 @@
 //! the normal m of a face points away from its own body, and the gap of a point x over its projection y is
 //! g = m·(x - y), positive when open. Around an axis with a radius R it is g = |x - y| - R, with m = (x - y)/|x - y|.
 
+use carom_algebra::lanes::{Lanes, Vector};
+use carom_algebra::number::Number;
 use carom_elements::{Kind, MAX_FACE_NODES, MAX_NODES, map};
+use pulp::{Arch, Simd, WithSimd};
 
-use crate::patch::Foot;
+use crate::patch::{self, Foot};
 use crate::vector::{difference, dot};
 use crate::{Face, curved};
 
@@ -41,10 +44,7 @@ pub struct Projection {
 /// radius of curvature. For the end of a bar the normal is the face's axis.
 pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Projection {
     if let (Kind::Quad4, Some(corners)) = (face.kind, positions.first_chunk()) {
-        let foot = Foot::new(corners, point);
-        let inside = foot.free.iter().all(|free| free.abs() <= 1.0 + SLACK);
-        let xi = [foot.xi[0], foot.xi[1], 0.0];
-        return placed(face, point, (xi, foot.point, foot.normal), inside);
+        return of_quad(face, point, &Foot::new(corners, point), 0);
     }
     let element = face.kind.table();
     // Seen from the point: far from the origin the rounding of places would keep iterations from their end.
@@ -71,6 +71,53 @@ pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Project
     };
     let inside = (element.contains)(&free, SLACK);
     placed(face, point, (xi, foot, normal), inside)
+}
+
+/// Quadrilaterals that [`project_quads`] takes side by side.
+pub const QUADS: usize = patch::MOST;
+
+/// The closest points of quadrilaterals of four nodes to as many points, those of [`project`] bit for bit. `corners`: of each face its corners,
+/// in m.
+pub fn project_quads(
+    faces: &[&Face; QUADS],
+    corners: &[[[f64; 3]; 4]; QUADS],
+    points: &[[f64; 3]; QUADS],
+) -> [Projection; QUADS] {
+    let zero = Lanes::<QUADS>::ZERO;
+    let (mut own, mut seen) = ([[zero; 3]; 4], [zero; 3]);
+    for k in 0..QUADS {
+        for i in 0..3 {
+            seen[i].0[k] = points[k][i];
+            for a in 0..4 {
+                own[a][i].0[k] = corners[k][a][i];
+            }
+        }
+    }
+    let foot = Arch::new().dispatch(Quads(&own, &seen));
+    std::array::from_fn(|k| of_quad(faces[k], &points[k], &foot, k))
+}
+
+/// Corners and points side by side.
+struct Quads<'a>(&'a [Vector<QUADS, 3>; 4], &'a Vector<QUADS, 3>);
+
+impl WithSimd for Quads<'_> {
+    type Output = Foot<Lanes<QUADS>>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let Quads(corners, points) = self;
+        Foot::new(corners, points)
+    }
+}
+
+/// The foot of lane `k`.
+#[inline]
+fn of_quad<N: Number>(face: &Face, point: &[f64; 3], foot: &Foot<N>, k: usize) -> Projection {
+    let of = |n: &N| n.lanes()[k];
+    let inside = foot.free.iter().all(|free| of(free).abs() <= 1.0 + SLACK);
+    let [x, y] = &foot.xi;
+    let [at, normal] = [&foot.point, &foot.normal].map(|v| [of(&v[0]), of(&v[1]), of(&v[2])]);
+    placed(face, point, ([of(x), of(y), 0.0], at, normal), inside)
 }
 
 /// What is known of a foot, from its reference coordinates, place and normal; `inside` as in [`Projection`].
@@ -256,6 +303,31 @@ mod tests {
             }
             assert!((5..195).contains(&inside), "{kind:?} {inside}");
         }
+    }
+
+    /// Some of them converge at once, others along edges or in many passes: none changes what is beside it.
+    #[test]
+    fn quadrilaterals_side_by_side_have_the_bits_of_each_alone() {
+        let mut random = Random::new(8);
+        let mut inside = 0;
+        for _ in 0..200 {
+            let faces = [face(Kind::Quad4, [0.0; 3]); QUADS];
+            let corners = std::array::from_fn(|k| {
+                let mut x = random_face(Kind::Quad4, &mut random);
+                if k % 3 == 0 {
+                    // strongly warped
+                    x[2] = random.point(3.0);
+                }
+                [x[0], x[1], x[2], x[3]]
+            });
+            let points = std::array::from_fn(|_| random.point(1.5));
+            let found = project_quads(&faces.each_ref(), &corners, &points);
+            for k in 0..QUADS {
+                assert_eq!(found[k], project(&faces[k], &corners[k], &points[k]));
+                inside += usize::from(found[k].inside);
+            }
+        }
+        assert!((100..1500).contains(&inside), "{inside}");
     }
 
     #[test]

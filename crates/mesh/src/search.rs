@@ -1,6 +1,6 @@
 //! Which boxes are near a point or a box: a tree of bounding boxes that can be refitted.
 //!
-//! Every node has eight children, in single precision rounded outwards, side by side so that one pass of vector operations
+//! Every node has eight children, in single precision, side by side so that one pass of vector operations
 //! looks at all of them. Items are in an order in which each aligned group of 8, 64, 512 ... is compact, from splits of
 //! the centres along the longest side; a node is known by its place, so that there are no links. When the items move,
 //! [`BoxTree::refit`] keeps the order and recomputes the boxes from the items up: answers stay right whatever the motion, only speed
@@ -9,9 +9,14 @@
 
 use rayon::prelude::*;
 
-use self::wide::{Around, WIDTH, Wide};
+use self::scan::Scan;
+use self::wide::{Around, WIDTH, Wide, sorted};
 use crate::Bounds;
+use crate::bounds::size;
 
+mod scan;
+#[cfg(test)]
+mod tests;
 mod wide;
 
 /// The most levels: 8¹¹ items are more than numbers of 32 bits.
@@ -25,6 +30,8 @@ const CHUNK: usize = 512;
 pub struct BoxTree {
     /// Items in the order of the leaves.
     items: Vec<u32>,
+    /// Place of each item in `items`.
+    places: Vec<u32>,
     /// Box of each entry of `items`.
     boxes: Vec<Bounds>,
     /// Nodes by level: those of the first have the items, eight each; node k of the next has nodes 8 k to 8 k + 7.
@@ -49,8 +56,13 @@ impl BoxTree {
             levels.push(vec![Wide::EMPTY; nodes]);
         }
         let bounds = around(boxes);
+        let mut places = vec![0; items.len()];
+        for (place, &item) in (0..).zip(&items) {
+            places[item as usize] = place;
+        }
         let mut tree = BoxTree {
             items,
+            places,
             boxes: boxes.to_vec(),
             levels,
             origin: [0, 1, 2].map(|i| match bounds.centre(i) {
@@ -60,7 +72,7 @@ impl BoxTree {
             reach: 0.0,
             built: 0.0,
         };
-        tree.refit(boxes);
+        tree.refit(|item| boxes[item as usize]);
         tree.built = tree.sides();
         tree
     }
@@ -75,10 +87,19 @@ impl BoxTree {
         self.items.is_empty()
     }
 
-    /// Takes new boxes of the same items, as many as before, and recomputes the tree's boxes in linear time.
-    pub fn refit(&mut self, boxes: &[Bounds]) {
-        debug_assert_eq!(boxes.len(), self.items.len());
-        self.reach = around(boxes).reach();
+    /// The box of an item.
+    pub fn bounds(&self, item: u32) -> &Bounds {
+        &self.boxes[self.places[item as usize] as usize]
+    }
+
+    /// Mean diagonal of the boxes of the items, m; zero without any.
+    pub fn mean_diagonal(&self) -> f64 {
+        let diagonals = self.boxes.iter().map(Bounds::diagonal);
+        diagonals.sum::<f64>() / self.len().max(1) as f64
+    }
+
+    /// Takes new boxes of the same items, and recomputes the tree's boxes in linear time. `bounds`: the box of an item.
+    pub fn refit(&mut self, bounds: impl Fn(u32) -> Bounds + Sync) {
         let origin = self.origin;
         let Some((leaves, upper)) = self.levels.split_first_mut() else {
             return;
@@ -88,16 +109,21 @@ impl BoxTree {
             .par_chunks_mut(CHUNK)
             .zip(own)
             .zip(self.items.par_chunks(WIDTH * CHUNK));
-        chunks.for_each(|((nodes, own), items)| {
-            for (own, &item) in own.iter_mut().zip(items) {
-                *own = boxes[item as usize];
-            }
-            for (node, own) in nodes.iter_mut().zip(own.chunks(WIDTH)) {
-                for (at, bounds) in own.iter().enumerate() {
-                    node.set(at, bounds, &origin);
+        let around = chunks.map(|((nodes, own), items)| {
+            let mut all = Bounds::EMPTY;
+            let groups = own.chunks_mut(WIDTH).zip(items.chunks(WIDTH));
+            for (node, (own, items)) in nodes.iter_mut().zip(groups) {
+                for (at, (own, &item)) in own.iter_mut().zip(items).enumerate() {
+                    *own = bounds(item);
+                    all = all.union(own);
+                    node.set(at, own, &origin);
                 }
             }
+            all
         });
+        // least and largest values do not depend on the order
+        let around = around.reduce(|| Bounds::EMPTY, |a, b| a.union(&b));
+        self.reach = around.reach();
         let mut below = &leaves[..];
         for level in upper {
             for (node, children) in level.iter_mut().zip(below.chunks(WIDTH)) {
@@ -107,6 +133,22 @@ impl BoxTree {
             }
             below = level;
         }
+    }
+
+    /// How far a place of an item in its new box may be from the box that the tree has of it, m; none where that is more than `most`.
+    /// `bounds`: the new box of an item.
+    pub fn motion(&self, most: f64, bounds: impl Fn(u32) -> Bounds + Sync) -> Option<f64> {
+        let pairs = self
+            .boxes
+            .par_chunks(CHUNK)
+            .zip(self.items.par_chunks(CHUNK));
+        let largest = pairs.map(|(boxes, items)| {
+            let pairs = boxes.iter().zip(items);
+            let beyond = pairs.map(|(old, &item)| bounds(item).beyond_squared(old));
+            let largest = beyond.fold(0.0, f64::max).sqrt();
+            (largest <= most).then_some(largest)
+        });
+        largest.try_reduce(|| 0.0, |a, b| Some(f64::max(a, b)))
     }
 
     /// Sides of the boxes of all nodes over what they were when the tree was built: 1 then, larger where items that were
@@ -121,7 +163,8 @@ impl BoxTree {
     /// Memory of the tree, bytes.
     pub fn bytes(&self) -> usize {
         let nodes = self.levels.iter().map(|level| size_of_val(&level[..]));
-        nodes.sum::<usize>() + size_of_val(&self.items[..]) + size_of_val(&self.boxes[..])
+        let own = size_of_val(&self.items[..]) + size_of_val(&self.places[..]);
+        nodes.sum::<usize>() + own + size_of_val(&self.boxes[..])
     }
 
     /// Sides of the boxes around the nodes.
@@ -144,11 +187,15 @@ impl BoxTree {
         moved: f64,
         mut measure: impl FnMut(u32) -> f64,
     ) -> Option<(u32, f64)> {
+        let top = self.levels.len().checked_sub(1)?;
         let slack = moved + self.rounding(point);
-        let from = self.from(&Bounds::of(&[*point]));
+        let from = self.from(&Bounds {
+            min: *point,
+            max: *point,
+        });
         let mut best: Option<(u32, f64)> = None;
         let mut limit = from.limit(within + slack);
-        self.descend(&from, &mut limit, |item| {
+        let mut visit = |item| {
             let distance = measure(item);
             let better =
                 |(first, least): (u32, f64)| distance < least || distance == least && item < first;
@@ -157,64 +204,73 @@ impl BoxTree {
                 return Some(from.limit(distance + slack));
             }
             None
-        });
+        };
+        self.descend(&from, &mut limit, (top, 0), &mut visit);
         best
+    }
+
+    /// Whether the boxes of others than its own item are within a distance (m) of each of some points; told of all points where these are
+    /// so far from each other that one look for all does not pay.
+    pub fn others(
+        &self,
+        points: &[[f64; 3]; WIDTH],
+        distances: &[f64; WIDTH],
+        own: &[u32; WIDTH],
+    ) -> [bool; WIDTH] {
+        let from = self.from(&Bounds::of(points));
+        let mut scan = Scan::new((&from, &self.origin), points, distances);
+        match self.levels.len().checked_sub(1) {
+            Some(top) if scan.goes_through((&self.levels, &self.items), (top, 0), own) => {
+                scan.others
+            }
+            Some(_) => [true; WIDTH],
+            None => [false; WIDTH],
+        }
     }
 
     /// Bound of the rounding of distances between a point and places in the tree, m.
     pub fn rounding(&self, point: &[f64; 3]) -> f64 {
         // a foot is a sum of some ten products: this is a hundred times what it can err
-        1e-13 * (self.reach + Bounds::of(&[*point]).reach())
+        1e-13 * (self.reach + size(point))
     }
 
     fn from(&self, bounds: &Bounds) -> Around {
-        let reach = self.reach + Bounds::of(&[self.origin]).reach();
-        Around::new(bounds, &self.origin, reach)
+        Around::new(bounds, &self.origin, self.reach + size(&self.origin))
     }
 
-    /// Visits the items whose box is not farther than the limit, a square in m², nearer ones first; a visit may lower it. Returns how
-    /// many nodes were looked at.
+    /// Visits the items below a node whose box is not farther than the limit, a square in m², nearer ones first; a visit may lower it.
+    /// Returns how many nodes were looked at.
     fn descend(
         &self,
         from: &Around,
         limit: &mut f32,
-        mut visit: impl FnMut(u32) -> Option<f32>,
+        (mut level, mut node): (usize, u32),
+        visit: &mut impl FnMut(u32) -> Option<f32>,
     ) -> usize {
-        // the children of a node replace it: seven more at most on each level
-        let mut waiting = [(0.0_f32, 0_u32, 0_u32); WIDTH * LEVELS];
-        let mut count = 0;
-        if let Some(top) = self.levels.len().checked_sub(1) {
-            (waiting[0], count) = ((0.0, top as u32, 0), 1);
-        }
         let mut looks = 0;
-        while count > 0 {
-            count -= 1;
-            let (square, level, node) = waiting[count];
-            if square > *limit {
-                continue;
-            }
+        loop {
             looks += 1;
-            let squares = self.levels[level as usize][node as usize].squares(from);
+            let squares = self.levels[level][node as usize].squares(from);
             let mut near = [(0.0_f32, 0_u32); WIDTH];
             let found = sorted(&squares, *limit, &mut near);
             let first = node * WIDTH as u32;
-            if level > 0 {
-                for &(square, child) in near[..found].iter().rev() {
-                    waiting[count] = (square, level - 1, first + child);
-                    count += 1;
-                }
+            if let (&[(_, child)], 1..) = (&near[..found], level) {
+                (level, node) = (level - 1, first + child);
                 continue;
             }
             for &(square, child) in &near[..found] {
                 if square > *limit {
                     break;
                 }
-                if let Some(less) = visit(self.items[(first + child) as usize]) {
+                if level > 0 {
+                    let below = (level - 1, first + child);
+                    looks += self.descend(from, limit, below, visit);
+                } else if let Some(less) = visit(self.items[(first + child) as usize]) {
                     *limit = less;
                 }
             }
+            return looks;
         }
-        looks
     }
 
     /// Items whose box is within a distance (in m, boundary included) of a point, sorted, into `found`, which is
@@ -277,29 +333,6 @@ fn around(boxes: &[Bounds]) -> Bounds {
         .reduce(|| Bounds::EMPTY, |a, b| a.union(&b))
 }
 
-/// The entries not above a limit with their places, smaller ones first, into `near`; how many they are.
-#[inline]
-fn sorted(squares: &[f32; WIDTH], limit: f32, near: &mut [(f32, u32); WIDTH]) -> usize {
-    let mut left = 0_u32;
-    for (place, square) in squares.iter().enumerate() {
-        left |= u32::from(*square <= limit) << place;
-    }
-    let mut found = 0;
-    while left != 0 {
-        let place = left.trailing_zeros();
-        left &= left - 1;
-        let square = squares[place as usize % WIDTH];
-        let mut at = found;
-        while at > 0 && near[at - 1].0 > square {
-            near[at] = near[at - 1];
-            at -= 1;
-        }
-        near[at] = (square, place);
-        found += 1;
-    }
-    found
-}
-
 /// Orders items so that each aligned group of 8, 64, 512 ... of them is compact.
 fn split(boxes: &[Bounds], items: &mut [u32]) {
     if items.len() <= WIDTH {
@@ -330,158 +363,4 @@ fn longest_side(boxes: &[Bounds], items: &[u32]) -> usize {
     });
     let side = |i: usize| centres.max[i] - centres.min[i];
     (1..3).fold(0, |best, i| if side(i) > side(best) { i } else { best })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::random::Random;
-
-    fn random_boxes(random: &mut Random, n: usize) -> Vec<Bounds> {
-        let boxes = (0..n).map(|_| Bounds::of(&[random.point(1.0)]).widened(0.1 * random.unit()));
-        boxes.collect()
-    }
-
-    fn assert_equals_brute_force(tree: &BoxTree, boxes: &[Bounds], random: &mut Random) {
-        let mut found = vec![7];
-        for _ in 0..50 {
-            let (point, distance) = (random.point(1.5), random.unit());
-            tree.near(&point, distance, &mut found);
-            let near = |b: &Bounds| b.distance_squared(&point) <= distance * distance;
-            assert_eq!(found, brute_force(boxes, near));
-            // items are the corners of their boxes, but every third does not count
-            let corner = |i: u32| match i % 3 {
-                0 => f64::INFINITY,
-                _ => Bounds::of(&[boxes[i as usize].min])
-                    .distance_squared(&point)
-                    .sqrt(),
-            };
-            let all = (0..boxes.len() as u32).map(|i| (i, corner(i)));
-            let closest = all
-                .filter(|(_, d)| *d <= distance)
-                .min_by(|a, b| a.1.total_cmp(&b.1));
-            assert_eq!(tree.closest(&point, distance, 0.0, corner), closest);
-            let query = Bounds::of(&[random.point(1.0), random.point(1.0)]);
-            tree.overlapping(&query, &mut found);
-            assert_eq!(found, brute_force(boxes, |b| b.overlaps(&query)));
-        }
-    }
-
-    fn brute_force(boxes: &[Bounds], test: impl Fn(&Bounds) -> bool) -> Vec<u32> {
-        (0..boxes.len() as u32)
-            .filter(|&i| test(&boxes[i as usize]))
-            .collect()
-    }
-
-    #[test]
-    fn answers_equal_brute_force_before_and_after_motion() {
-        let mut random = Random::new(1);
-        for n in [0, 1, 3, 4, 5, 9, 64, 333] {
-            let boxes = random_boxes(&mut random, n);
-            let mut tree = BoxTree::new(&boxes);
-            assert_eq!((tree.len(), tree.is_empty()), (n, n == 0));
-            assert_equals_brute_force(&tree, &boxes, &mut random);
-            let moved = random_boxes(&mut random, n);
-            tree.refit(&moved);
-            assert_equals_brute_force(&tree, &moved, &mut random);
-        }
-    }
-
-    #[test]
-    fn boxes_with_one_centre_are_all_found() {
-        let boxes = vec![Bounds::of(&[[1.0; 3]]); 100];
-        let tree = BoxTree::new(&boxes);
-        let mut found = Vec::new();
-        tree.near(&[1.0, 1.0, 3.0], 2.0, &mut found);
-        assert_eq!(found, (0..100).collect::<Vec<u32>>());
-        tree.near(&[1.0, 1.0, 3.0], 1.999, &mut found);
-        assert!(found.is_empty());
-    }
-
-    #[test]
-    fn a_search_looks_at_a_small_part_of_the_boxes() {
-        // 32 x 32 unit squares; a point sees the four around it, and the nodes it takes grow with the depth of the
-        // tree, not with the number of boxes.
-        let boxes: Vec<Bounds> = (0..1024)
-            .map(|i| [(i % 32) as f64, (i / 32) as f64, 0.0])
-            .map(|x| Bounds::of(&[x, [x[0] + 1.0, x[1] + 1.0, 0.0]]))
-            .collect();
-        let tree = BoxTree::new(&boxes);
-        let mut found = Vec::new();
-        let place = [16.0, 16.0, 0.0];
-        let test = |b: &Bounds| b.distance_squared(&place) <= 0.25;
-        let looks = tree.collect(&Bounds::of(&[place]), 0.5, test, &mut found);
-        assert_eq!(found, [495, 496, 527, 528]);
-        // on each of four levels the four squares are in four nodes at most
-        assert_eq!(tree.levels.len(), 4);
-        assert!(looks <= 16, "{looks}");
-    }
-
-    #[test]
-    fn boxes_of_before_serve_items_that_moved_by_less_than_the_slack() {
-        let mut random = Random::new(5);
-        let boxes = random_boxes(&mut random, 200);
-        let tree = BoxTree::new(&boxes);
-        let step = random.point(0.1);
-        let moved = 0.1 * 3.0_f64.sqrt();
-        let place = |i: u32| [0, 1, 2].map(|k| boxes[i as usize].max[k] + step[k]);
-        for _ in 0..100 {
-            let point = random.point(1.5);
-            let measure = |i: u32| Bounds::of(&[place(i)]).distance_squared(&point).sqrt();
-            let all = (0..200).map(|i| (i, measure(i)));
-            let closest = all.min_by(|a, b| a.1.total_cmp(&b.1));
-            assert_eq!(tree.closest(&point, f64::INFINITY, moved, measure), closest);
-        }
-    }
-
-    #[test]
-    fn the_first_of_equals_is_the_closest() {
-        let boxes = vec![Bounds::of(&[[1.0; 3]]); 100];
-        let tree = BoxTree::new(&boxes);
-        let far = |i: u32| if i < 37 { 2.5 } else { 2.0 };
-        let from = [1.0, 1.0, 3.0];
-        assert_eq!(tree.closest(&from, 5.0, 0.0, far), Some((37, 2.0)));
-        assert_eq!(tree.closest(&from, 1.9, 0.0, far), None);
-    }
-
-    #[test]
-    fn looks_for_the_closest_grow_with_the_logarithm_of_the_number_of_boxes() {
-        let looks = |side: usize| {
-            let boxes: Vec<Bounds> = (0..side * side)
-                .map(|i| [(i % side) as f64, (i / side) as f64, 0.0])
-                .map(|x| Bounds::of(&[x, [x[0] + 1.0, x[1] + 1.0, 0.0]]))
-                .collect();
-            let tree = BoxTree::new(&boxes);
-            let mut random = Random::new(6);
-            let (mut looks, queries) = (0, 200);
-            for _ in 0..queries {
-                let p = random.point(0.5 * side as f64);
-                let p = [p[0] + 0.5 * side as f64, p[1] + 0.5 * side as f64, 0.3];
-                let from = tree.from(&Bounds::of(&[p]));
-                let (mut limit, mut least) = (f32::MAX, f64::INFINITY);
-                looks += tree.descend(&from, &mut limit, |i| {
-                    least = least.min(boxes[i as usize].distance_squared(&p).sqrt());
-                    Some(from.limit(least))
-                });
-                assert!(least < f64::INFINITY);
-            }
-            looks as f64 / f64::from(queries)
-        };
-        // 3 levels and 6: a place is in one node of each, and now and then near a few others
-        let (few, many) = (looks(16), looks(256));
-        assert!(many - few < 3.0 * 3.0, "{few} {many}");
-        assert!(many < 3.0 * 6.0, "{many}");
-    }
-
-    #[test]
-    fn a_tree_whose_items_part_gets_loose() {
-        let mut random = Random::new(7);
-        let boxes = random_boxes(&mut random, 300);
-        let mut tree = BoxTree::new(&boxes);
-        assert_eq!(tree.looseness(), 1.0);
-        let turned: Vec<Bounds> = (0..300).map(|i| boxes[(i * 7) % 300]).collect();
-        tree.refit(&turned);
-        assert!(tree.looseness() > 2.0, "{}", tree.looseness());
-        assert_eq!(tree.bytes(), BoxTree::new(&turned).bytes());
-    }
 }

@@ -81,12 +81,15 @@ impl<B: Send + 'static> Writer<B> {
     /// Sends a filled buffer.
     ///
     /// # Errors
-    /// [`Error::Writer`] if the thread is gone.
+    /// The error of an earlier buffer that ended the thread; [`Error::Writer`] if the thread is gone without one.
     pub(crate) fn send(&mut self, buffer: B) -> Result<(), Error> {
-        match &self.to {
-            Some(to) => to.send(buffer).map_err(|_| Error::Writer),
-            None => Err(Error::Writer),
+        let sent = self.to.as_ref().is_some_and(|to| to.send(buffer).is_ok());
+        if sent {
+            return Ok(());
         }
+        // the thread is gone, so everything that it told has arrived
+        self.back.try_iter().try_for_each(|(_, outcome)| outcome)?;
+        Err(Error::Writer)
     }
 
     /// Waits until everything sent is written. `all`: the number of buffers.
@@ -187,6 +190,19 @@ mod tests {
         assert!(matches!(failed, Error::Thread(_)), "{failed}");
         assert!(matches!(writer.finish(), Ok(())), "told once");
         assert!(writer.buffer().is_ok() || writer.send(0).is_err());
+    }
+
+    #[test]
+    fn a_buffer_sent_after_the_thread_ended_brings_the_error_that_ended_it() {
+        let full = || Error::Thread(io::Error::from(io::ErrorKind::StorageFull));
+        let mut writer = Writer::start(vec![0, 0], move |_: &i32| Err(full())).unwrap();
+        let (first, second) = (writer.buffer().unwrap(), writer.buffer().unwrap());
+        writer.send(first).unwrap();
+        while !writer.thread.as_ref().unwrap().is_finished() {
+            std::thread::yield_now();
+        }
+        let failed = writer.send(second).unwrap_err();
+        assert!(matches!(failed, Error::Thread(_)), "{failed}");
     }
 
     #[test]

@@ -67,9 +67,10 @@ impl Full {
             ..Model::new(vec![own], model.mesh.clone(), model.scheme, 1.0)
         })?;
         if !system.bodies[0].is_linear() {
-            return Err(refused(
-                "it is at finite strain; its modes are those of small strain",
-            ));
+            return Err(refused(match system.bodies[0].has_finite_motion() {
+                true => "it is at finite strain; its modes are those of small strain",
+                false => "its material flows; modes are those of an elastic body",
+            }));
         }
         let of_node = |&node: &u32| system.unknowns.of(system.number[node as usize]);
         let border: Vec<usize> = retained.iter().flat_map(of_node).collect();

@@ -234,6 +234,7 @@ impl System {
             spans,
             dt: model.dt,
             adaptive: model.adaptive,
+            critical_fraction: model.critical_fraction,
             nonlinear,
             friction: model.contacts.iter().map(|c| c.friction).collect(),
             initial_frames,

@@ -174,10 +174,15 @@ impl System {
         }
         for (damping, body) in self.nonlinear.damping.iter().zip(&self.bodies) {
             if damping.stiffness != 0.0 && !body.is_linear() {
-                return refuse(
-                    Refused::Damping(body.name().to_string()),
-                    "damping proportional to the stiffness would brake rotations at finite strain; take a viscoelastic material",
-                );
+                let why = match body.has_finite_motion() {
+                    true => {
+                        "damping proportional to the stiffness would brake rotations at finite strain; take a viscoelastic material"
+                    }
+                    false => {
+                        "damping proportional to the elastic stiffness would resist the flow of the metal; take `damping.mass`"
+                    }
+                };
+                return refuse(Refused::Damping(body.name().to_string()), why);
             }
         }
         Ok(())
@@ -196,8 +201,8 @@ impl System {
             .any(|body| nonlinear(&body))
         {
             return Some(
-                "it shares nodes with a body at finite strain, a spring with a curve or a pressure that turns with it, whose matrix is made anew \
-                 in each iteration; take `damping.mass` and `damping.stiffness`",
+                "it flows, or shares nodes with a body that flows or is at finite strain, a spring with a curve or a pressure that turns with it, whose \
+                 matrix is made anew in each iteration; take `damping.mass` and `damping.stiffness`",
             );
         }
         follows.any(|f| range.contains(&(f.unknown as usize))).then_some(

@@ -28,7 +28,7 @@ impl System {
         let (secondary, primary) = self.sides[contact];
         let sides = [Some(secondary), primary];
         let mut sides = sides.into_iter().flatten();
-        let finite = sides.any(|body| !self.bodies[body].is_linear());
+        let finite = sides.any(|body| self.bodies[body].has_finite_motion());
         let contact = (&self.contacts[contact], self.friction[contact]);
         let mortar = matches!(contact.0.integration, Integration::Mortar { .. });
         let compliant = contact.0.law.get().level() == Level::GapAndRate;

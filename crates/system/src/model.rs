@@ -40,6 +40,8 @@ pub struct Model {
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
     pub adaptive: Option<Adaptive>,
+    /// The fraction of the critical step that the step is; see [`System::critical_fraction`](crate::System::critical_fraction).
+    pub critical_fraction: Option<f64>,
     /// Loads and motions in time, damping, a static stage, and how the iterations of a step are solved.
     pub nonlinear: Nonlinear,
 }
@@ -60,6 +62,7 @@ impl Model {
             constraints: Vec::new(),
             dt,
             adaptive: None,
+            critical_fraction: None,
             nonlinear: Nonlinear::default(),
         }
     }

@@ -27,7 +27,7 @@ pub enum NumberedForce {
     /// Unknowns and forces, N.
     Dead(Vec<(u32, f64)>),
     /// A pressure in Pa.
-    Follower(FollowerPressure, f64),
+    Follower(Box<FollowerPressure>, f64),
 }
 
 /// All loads of a model in the numbers of its system.
@@ -163,7 +163,7 @@ fn numbered_force(
             let kinematics = model.bodies[body].spec.kinematics;
             let (faces, x) = (&load.surface.faces, &model.mesh.nodes);
             let load = FollowerPressure::new(faces, x, number, unknowns, kinematics);
-            NumberedForce::Follower(load, pressure)
+            NumberedForce::Follower(Box::new(load), pressure)
         }
         LoadKind::Traction(traction) => {
             let kinematics = model.bodies[body].spec.kinematics;

@@ -39,20 +39,28 @@ impl System {
         motion: &Motion,
     ) -> Result<(f64, FrequencyBound), carom_bodies::Error> {
         let mut bound = FrequencyBound::default();
-        let all = self.bodies.iter().zip(&self.nonlinear.histories);
-        let all = all.zip(&self.zone_of_body);
-        for ((body, history), _) in all.filter(|(_, zone)| self.is_explicit(**zone)) {
-            let at = Placement {
-                u: &motion.u,
-                v: &motion.v,
-                from: None,
-                frames: &motion.frames,
-                dt: self.dt,
-                old: &motion.history[history.clone()],
-            };
-            bound = bound.most(&body.frequency_bound_at(&at)?);
+        for body in (0..self.bodies.len()).filter(|&body| self.is_bound_by(body)) {
+            let at = self.placement(body, motion);
+            bound = bound.most(&self.bodies[body].frequency_bound_at(&at)?);
         }
         Ok((self.critical_with(bound.frequency), bound))
+    }
+
+    /// Where a body is in a motion.
+    pub fn placement<'a>(&self, body: usize, motion: &'a Motion) -> Placement<'a> {
+        Placement {
+            u: &motion.u,
+            v: &motion.v,
+            from: None,
+            frames: &motion.frames,
+            dt: self.dt,
+            old: &motion.history[self.nonlinear.histories[body].clone()],
+        }
+    }
+
+    /// Whether the elements of a body bound the step.
+    pub fn is_bound_by(&self, body: usize) -> bool {
+        self.is_explicit(self.zone_of_body[body])
     }
 
     /// Whether the elements of a zone bound the step: those of all where no scheme is explicit.
@@ -61,8 +69,8 @@ impl System {
         explicit(&self.schemes[zone]) || !self.schemes.iter().any(explicit)
     }
 
-    /// `bodies`: bound of the frequencies of the bodies, rad/s.
-    fn critical_with(&self, bodies: f64) -> f64 {
+    /// The same, s, of bodies with this bound of their frequencies, rad/s.
+    pub fn critical_with(&self, bodies: f64) -> f64 {
         let (springs, dashpots) = self.discrete_bounds();
         let explicit = |body: usize| self.is_explicit(self.zone_of_body[body]);
         let touching = self.contacts.iter().zip(&self.sides);

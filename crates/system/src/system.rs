@@ -100,6 +100,9 @@ pub struct System {
     pub dt: f64,
     /// Rules of an adaptive step; `None` for equal steps.
     pub adaptive: Option<Adaptive>,
+    /// The fraction of the critical step that explicit steps at finite strain are to be at most, as elements deform; none where the size
+    /// is that of the model as long as it is stable.
+    pub critical_fraction: Option<f64>,
     /// Loads and motions in time, damping, the static stage, and the rules of the iterations.
     pub nonlinear: NumberedNonlinear,
     /// Coefficient of friction by contact.

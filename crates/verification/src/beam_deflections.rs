@@ -59,7 +59,9 @@ fn at_rest(
         let own = system.number[node as usize];
         system.unknowns.vector(own, u)
     });
-    let forces = system.bodies[0].section_forces(u).unwrap_or_default();
+    let forces = system.bodies[0]
+        .section_forces(u, &[], &[])
+        .unwrap_or_default();
     Ok((moved.collect(), forces))
 }
 

@@ -77,6 +77,7 @@ impl Tube {
             links: Vec::new(),
             constraints: Vec::new(),
             adaptive: None,
+            critical_fraction: None,
             nonlinear: Nonlinear::default(),
             mesh,
         };

@@ -72,6 +72,7 @@ fn newton(mesh: &str, facing_itself: bool) -> Result<Driver, Error> {
         links: Vec::new(),
         constraints: Vec::new(),
         adaptive: None,
+        critical_fraction: None,
         nonlinear: Nonlinear::default(),
         mesh,
     })?;

@@ -16,13 +16,14 @@
 //! Problem 4: a hard hammer flies at 200 m/s against a column of four cubes. The nodes of three of them are held; the fourth
 //! is deleted under the blow. The hammer then flies on with its momentum and hits the face behind it, which was inside the
 //! column. Facts: after the step behind the deletion it keeps its momentum until the contact closes again; it closes at the
-//! bare face, within the way of a step before and behind it (the law looks half a step ahead); momentum and energy balance.
+//! bare face, within the way of a step before and behind it (the law looks half a step ahead); momentum and energy balance; a run that
+//! is resumed from the bytes of the flight meets the same face, with the same bytes.
 //! Tolerance: rounding, as above.
 
 use std::sync::Arc;
 
 use carom_bodies::{BodySpec, Formulation, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, State, Stepper, System};
 use carom_materials::{Elastic, J2Plasticity, Law, Plane};
 use carom_mesh::{Mesh, Surface, generate};
 
@@ -316,6 +317,7 @@ fn struck() -> Result<Vec<Row>, Error> {
     let at_deletion = force(&driver);
     // half of the force of the step of the deletion acts in this one
     driver.step()?;
+    let saved = driver.saved()?;
     let momentum = |driver: &Driver| {
         let of_hammer = |k: &usize| system.x[*k][0] > 4.05 * EDGE;
         let nodes = (0..system.x.len()).filter(of_hammer);
@@ -332,6 +334,11 @@ fn struck() -> Result<Vec<Row>, Error> {
         driver.step()?;
         steps += 1.0;
     }
+    let mut resumed = Driver::resume(Arc::clone(&system), State::from_bytes(&system, &saved)?)?;
+    while resumed.state().step < driver.state().step {
+        resumed.step()?;
+    }
+    let is_same = resumed.saved()? == driver.saved()?;
     let state = driver.state();
     let front = front
         .iter()
@@ -358,6 +365,11 @@ fn struck() -> Result<Vec<Row>, Error> {
             "struck: place of the second blow less that of the bare face, ways of a step",
             (least - 3.0 * EDGE) / way,
             0.0,
+            1.0,
+        ),
+        Row::at_least(
+            "struck: whether a run that is cut in the flight ends in the same bytes",
+            f64::from(u8::from(is_same)),
             1.0,
         ),
         Row::at_most(

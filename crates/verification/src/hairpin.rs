@@ -106,6 +106,7 @@ impl Hairpin {
             links: Vec::new(),
             constraints: Vec::new(),
             adaptive: None,
+            critical_fraction: None,
             nonlinear,
             mesh,
         })

@@ -74,6 +74,8 @@ mod coulomb_oscillator;
 mod crushed_stop;
 mod crushed_tube;
 mod deletion;
+mod elastic_plastic_bars;
+mod elastic_plastic_beams;
 mod energy_identity;
 mod energy_identity_features;
 mod first_force;
@@ -207,6 +209,8 @@ registry! {
     crushed_stop
     crushed_tube
     deletion
+    elastic_plastic_bars
+    elastic_plastic_beams
     energy_identity
     energy_identity_features
     explicit_implicit

@@ -137,6 +137,8 @@ impl Zoned {
                 smallest: rules.smallest / f64::from(part.substeps),
                 ..rules
             }),
+            // zones end together
+            critical_fraction: None,
             nonlinear: self.nonlinear(part),
         }
     }

@@ -93,6 +93,35 @@ impl Element<'_> {
         k
     }
 
+    /// Strain of the axis, κ_y and κ_z (1/m) at ξ by the unknowns: `κ = N_θ'/L`, linear in ξ. Two points of Gauss give K of
+    /// extension and bending.
+    pub(super) fn strain_rows(&self, xi: f64) -> [[f64; 12]; 3] {
+        let l = self.length;
+        let mut rows = [[0.0; 12]; 3];
+        (rows[0][0], rows[0][6]) = (-1.0 / l, 1.0 / l);
+        let [about_z, about_y] = self.planes();
+        // the plane x z turns by -θ_y
+        for (row, plane, turn) in [(2, &about_z, 1.0), (1, &about_y, -1.0)] {
+            for ((place, sign), slope) in plane.unknowns.iter().zip(plane.curvature(l, xi)) {
+                rows[row][*place] = turn * sign * slope;
+            }
+        }
+        rows
+    }
+
+    /// K of what extension and bending leave: shear and torsion. `κ G A L (Φ/(1 + Φ))² g gᵀ` of the shear strain Φ/(1 + Φ) g.
+    pub(super) fn shear_and_torsion(&self) -> Matrix {
+        let (l, mut k) = (self.length, [[0.0; 12]; 12]);
+        let about = self.material.shear_modulus() * self.section.properties.torsion / l;
+        (k[3][3], k[3][9], k[9][3], k[9][9]) = (about, -about, -about, about);
+        let g = [-1.0 / l, -0.5, 1.0 / l, -0.5];
+        for plane in self.planes() {
+            let factor = 12.0 * plane.stiffness * plane.shear / (l * (1.0 + plane.shear).powi(2));
+            plane.add(factor, &g.map(|a| g.map(|b| a * b)), &mut k);
+        }
+        k
+    }
+
     /// Consistent mass in kg, kg m and kg m².
     pub(super) fn mass(&self) -> Matrix {
         let mut m = [[0.0; 12]; 12];
@@ -351,6 +380,18 @@ impl Bending {
         .map(|n| n / (1.0 + phi))
     }
 
+    /// N_θ'/L at ξ, 1/m for translations.
+    fn curvature(&self, l: f64, xi: f64) -> [f64; 4] {
+        let phi = self.shear;
+        [
+            6.0 * (2.0 * xi - 1.0) / l,
+            6.0 * xi - (4.0 + phi),
+            -6.0 * (2.0 * xi - 1.0) / l,
+            6.0 * xi - (2.0 - phi),
+        ]
+        .map(|n| n / (l * (1.0 + phi)))
+    }
+
     fn add(&self, factor: f64, own: &[[f64; 4]; 4], to: &mut Matrix) {
         for (row, &(a, sign)) in own.iter().zip(&self.unknowns) {
             for (value, &(b, other)) in row.iter().zip(&self.unknowns) {
@@ -380,6 +421,46 @@ mod tests {
             }
         }
         true
+    }
+
+    #[test]
+    fn extension_and_bending_at_two_points_with_shear_and_torsion_are_the_stiffness() {
+        let material = Elastic {
+            density: 1.0,
+            young: 3.0,
+            poisson: 0.3,
+        };
+        let shape = SectionShape::Rectangle {
+            height: 0.3,
+            width: 0.2,
+        };
+        for theory in [BeamTheory::EulerBernoulli, BeamTheory::Timoshenko] {
+            let section = BeamSection::new(theory, shape.properties(0.3));
+            let properties = section.properties;
+            let [about_y, about_z] = properties.second_moments;
+            let element = Element {
+                length: 0.7,
+                section: &section,
+                material: &material,
+            };
+            let (whole, mut k) = (element.stiffness(), element.shear_and_torsion());
+            let moduli = [properties.area, about_y, about_z].map(|i| 3.0 * i);
+            for xi in super::super::fibres::GAUSS {
+                for (row, modulus) in element.strain_rows(xi).iter().zip(moduli) {
+                    for (i, k) in k.iter_mut().enumerate() {
+                        for (j, k) in k.iter_mut().enumerate() {
+                            *k += 0.5 * 0.7 * modulus * row[i] * row[j];
+                        }
+                    }
+                }
+            }
+            for i in 0..12 {
+                for j in 0..12 {
+                    let scale = (whole[i][i] * whole[j][j]).sqrt();
+                    assert!((k[i][j] - whole[i][j]).abs() < 1e-13 * scale, "{i} {j}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -12,6 +12,9 @@
 //! moments m in space are T = A Rᵀ m in the equation `J Ẇ + W × J W = T`, A = I - θ̂/2: that keeps the angular momentum R J W, and
 //! θ·T = (R θ)·m the energy. D is found with four points of Gauss's rule: its error is of the order Δs⁹.
 //!
+//! Metal that flows: extension and bending are those of the fibres of one section of the element, which takes the strains of the small ones.
+//! Shear and torsion stay elastic. There is no stress between two configurations then.
+//!
 //! Mass: of translations linear between the nodes (consistent) or half at each (lumped); of rotations at both half of ρ L I about the axes
 //! of the section, also with Euler-Bernoulli: a constant tensor J about the axes of the node.
 
@@ -23,8 +26,9 @@ use carom_algebra::tensor::{Mat3, Vec3};
 use carom_algebra::unknowns::Unknowns;
 
 use super::section::BeamTheory;
-use super::strain::{Elastic, Invariants, Pair};
+use super::strain::{Elastic, Invariants, Matrix6, Pair};
 use super::{Beam, SectionForces};
+use crate::flowing::{FibreSection, Flowing};
 use crate::{Error, Placement, Stored};
 
 /// Beams on nodes with finite rotations.
@@ -33,6 +37,8 @@ pub struct LargeBeam {
     /// Cells, nodes, axes and section.
     small: Beam,
     elements: Vec<Elastic>,
+    /// Extension and bending of metal that flows.
+    section: Option<FibreSection>,
     /// Reference way between the nodes of each element, m.
     ways: Vec<Vec3>,
     /// Frames of the nodes of each element.
@@ -55,10 +61,11 @@ impl LargeBeam {
     /// # Errors
     /// An eccentric axis, hinges, a foundation.
     pub(crate) fn new(
-        small: Beam,
+        mut small: Beam,
         x: &dyn Fn(u32) -> [f64; 3],
         unknowns: &Unknowns,
     ) -> Result<LargeBeam, Error> {
+        let section = small.flowing.take().map(Flowing::into_section);
         let refused = |what| Error::LargeBeam {
             body: small.name.clone(),
             what,
@@ -108,6 +115,7 @@ impl LargeBeam {
         let frames =
             |nodes: &[u32; 2]| nodes.map(|node| unknowns.frame(node).unwrap_or(usize::MAX));
         Ok(LargeBeam {
+            section,
             elements: small.lengths.iter().map(element).collect(),
             inertia: small.axes.iter().zip(&small.lengths).map(half).collect(),
             ways: small.nodes.iter().map(way).collect(),
@@ -173,13 +181,32 @@ impl LargeBeam {
         }
     }
 
-    /// Adds internal forces and W × J W; see [`Body::force`](crate::Body::force).
-    pub(crate) fn force(&self, at: &Placement, f: &mut [f64]) -> Stored {
+    /// Adds internal forces and W × J W, writes the history; see [`Body::force`](crate::Body::force).
+    pub(crate) fn force(
+        &self,
+        at: &Placement,
+        new: &mut [f64],
+        f: &mut [f64],
+    ) -> Result<Stored, Error> {
+        if self.section.is_some() && at.from.is_some() {
+            return Err(self.small.no_between());
+        }
         let mut stored = Stored::default();
         for element in 0..self.elements.len() {
             let length = self.elements[element].length;
-            let (end, pair, d) = self.acting(element, at);
-            stored.strain += self.elements[element].energy(&self.invariants(element, &end));
+            let (end, pair, d) = match &self.section {
+                None => {
+                    let (end, pair, d) = self.acting(element, at);
+                    let s = self.invariants(element, &end);
+                    stored.strain += self.elements[element].energy(&s);
+                    (end, pair, d)
+                }
+                Some(section) => {
+                    let range = self.history_of(section, element);
+                    let history = (&at.old[range.clone()], &mut new[range]);
+                    self.flow(section, (element, at), history, &mut stored)
+                }
+            };
             let rows = pair.derivatives(length);
             let own: [f64; 12] = std::array::from_fn(|k| (0..6).map(|i| rows[i][k] * d[i]).sum());
             for (node, own) in own.chunks_exact(6).enumerate() {
@@ -190,7 +217,65 @@ impl LargeBeam {
             }
             self.add_gyroscopic(element, at.v, f);
         }
-        stored
+        Ok(stored)
+    }
+
+    /// Place of the history of an element in that of all.
+    fn history_of(&self, section: &FibreSection, element: usize) -> Range<usize> {
+        let kept = section.history_len();
+        kept * element..kept * (element + 1)
+    }
+
+    /// [`LargeBeam::acting`] at the end of a step in which the section flows; adds its energies.
+    fn flow(
+        &self,
+        section: &FibreSection,
+        (element, at): (usize, &Placement),
+        history: (&[f64], &mut [f64]),
+        stored: &mut Stored,
+    ) -> (Ends, Pair, Invariants) {
+        let elastic = &self.elements[element];
+        let end = self.ends(element, at.frames, at.u);
+        let s = self.invariants(element, &end);
+        let strains = elastic.strains(&s);
+        let (forces, own) = section.update(&Elastic::flowing(&strains), at.dt, history);
+        stored.strain += elastic.energy_beside(&strains) + elastic.length * own.strain;
+        stored.hardening += elastic.length * own.hardening;
+        stored.dissipated += elastic.length * own.dissipated;
+        let d = elastic.gradient_of(&s, &elastic.stresses_with(&strains, &forces));
+        let pair = end.pair;
+        (end, pair, d)
+    }
+
+    /// [`LargeBeam::acting`], and ∂D/∂s there.
+    fn linearised(&self, element: usize, at: &Placement) -> (Ends, Pair, Invariants, Matrix6) {
+        let elastic = &self.elements[element];
+        let Some(section) = &self.section else {
+            let (end, pair, d) = self.acting(element, at);
+            let inner = elastic.tangent(&pair.invariants(elastic.length));
+            return (end, pair, d, inner);
+        };
+        let end = self.ends(element, at.frames, at.u);
+        let s = self.invariants(element, &end);
+        let strains = elastic.strains(&s);
+        let old = &at.old[self.history_of(section, element)];
+        let (forces, tangent) = section.tangent(&Elastic::flowing(&strains), at.dt, old);
+        let d = elastic.gradient_of(&s, &elastic.stresses_with(&strains, &forces));
+        let pair = end.pair;
+        (end, pair, d, elastic.tangent_with(&s, &tangent))
+    }
+
+    /// Numbers that its fibres keep from one step to the next.
+    pub(crate) fn history_len(&self) -> usize {
+        let kept = |section: &FibreSection| section.history_len();
+        self.elements.len() * self.section.as_ref().map_or(0, kept)
+    }
+
+    /// Largest equivalent plastic strain of the fibres of each element; none where nothing flows.
+    pub(crate) fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
+        let section = self.section.as_ref()?;
+        let of = |element| section.plastic_strain(&history[self.history_of(section, element)]);
+        Some((0..self.elements.len()).map(of).collect())
     }
 
     /// Adds a force and a moment to the entries of a node.
@@ -220,11 +305,10 @@ impl LargeBeam {
     pub(crate) fn add_tangent(&self, at: &Placement, [by_u, by_v]: [f64; 2], matrix: &mut Csr) {
         let share = if at.from.is_some() { 0.5 } else { 1.0 };
         for element in 0..self.elements.len() {
-            let elastic = &self.elements[element];
-            let (end, pair, d) = self.acting(element, at);
-            let rows = pair.derivatives(elastic.length);
-            let inner = elastic.tangent(&pair.invariants(elastic.length));
-            let mut k = pair.curvature(elastic.length, &d);
+            let length = self.elements[element].length;
+            let (end, pair, d, inner) = self.linearised(element, at);
+            let rows = pair.derivatives(length);
+            let mut k = pair.curvature(length, &d);
             for a in 0..12 {
                 for i in 0..6 {
                     let left: f64 = (0..6).map(|j| rows[j][a] * inner[j][i]).sum();
@@ -352,7 +436,7 @@ impl LargeBeam {
     }
 
     /// Volume (m³) and mean stress (Pa) of each element: the normal force along the line between its nodes, over the area.
-    pub(crate) fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
+    pub(crate) fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
         let of = |element: usize| {
             let [from, to] = self.small.first[element].map(|first| self.of_node(first, u)[0]);
             let (way, length) = (
@@ -360,18 +444,39 @@ impl LargeBeam {
                 self.elements[element].length,
             );
             let (now, along) = (way.norm(), way.normalize());
-            let stress = self.small.material.young * (now / length - 1.0);
+            let strain = now / length - 1.0;
+            let stress = match &self.section {
+                None => self.small.material.young * strain,
+                Some(section) => {
+                    section.mean_stress(strain, &history[self.history_of(section, element)])
+                }
+            };
             let volume = self.small.section.properties.area * length;
             (volume, along * along.transpose() * stress)
         };
         (0..self.elements.len()).map(of).collect()
     }
 
-    /// Forces and moments in the sections at these rotations and displacements, in the axes in the middle of each element.
-    pub fn section_forces(&self, frames: &[Rotation], u: &[f64]) -> Vec<SectionForces> {
+    /// Forces and moments in the sections at these rotations and displacements, in the axes in the middle of each element. `history`: of
+    /// this body there.
+    pub(crate) fn section_forces(
+        &self,
+        frames: &[Rotation],
+        u: &[f64],
+        history: &[f64],
+    ) -> Vec<SectionForces> {
         let of = |element: usize| {
             let s = self.invariants(element, &self.ends(element, frames, u));
-            let f = self.elements[element].stresses(&s);
+            let elastic = &self.elements[element];
+            let f = match &self.section {
+                None => elastic.stresses(&s),
+                Some(section) => {
+                    let strains = elastic.strains(&s);
+                    let history = &history[self.history_of(section, element)];
+                    let flowing = section.forces(&Elastic::flowing(&strains), history);
+                    elastic.stresses_with(&strains, &flowing)
+                }
+            };
             let moment = [f[3], f[4], f[5]];
             SectionForces {
                 force: [f[0], f[1], f[2]],

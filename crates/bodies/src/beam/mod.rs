@@ -1,10 +1,13 @@
 //! Beams: straight elements of two nodes with translations and small rotations, after Euler and Bernoulli or Timoshenko.
 //!
 //! The axis of an element runs through the centroids of its ends; a node may stand beside it, at a distance that is fixed in the
-//! section: `u_centroid = u + θ × e`. Forces are `f = K u` with one constant matrix for each element.
+//! section: `u_centroid = u + θ × e`. Forces are `f = K u` with one constant matrix for each element; of metal that flows they are those of
+//! the fibres of its sections.
 
 mod condensation;
 mod element;
+mod fibres;
+mod flow;
 mod large;
 mod results;
 mod section;
@@ -20,10 +23,13 @@ use carom_materials::{Elastic, Plane};
 use carom_mesh::{ElementId, Mesh};
 
 pub use self::large::LargeBeam;
-pub use self::section::{BeamSection, BeamTheory, Rotations, SectionProperties, SectionShape};
+pub use self::section::{
+    BeamSection, BeamTheory, LAYERS, Rotations, SectionProperties, SectionShape,
+};
 
 use self::element::{Element, Matrix};
 use crate::discrete::VisitRow;
+use crate::flowing::Flowing;
 use crate::release::Release;
 use crate::solid::BodySpec;
 use crate::stability::largest_eigenvalue;
@@ -67,6 +73,8 @@ pub struct Beam {
     condensed: Vec<Option<Box<Matrix>>>,
     /// Released rotations of these.
     released: Vec<[bool; 12]>,
+    /// Extension and bending of metal that flows.
+    flowing: Option<Flowing>,
 }
 
 impl Beam {
@@ -75,7 +83,7 @@ impl Beam {
     ///
     /// # Errors
     /// Cells that are no bars of two nodes, or on a line; one without length, or whose orientation is missing or along it; a
-    /// law at finite strain; weights.
+    /// law at finite strain without a uniaxial one; weights; metal that flows in a section without a shape, or with hinges.
     pub(crate) fn new(
         mesh: &Mesh,
         spec: BodySpec,
@@ -95,6 +103,7 @@ impl Beam {
             stiffness: Vec::new(),
             condensed: Vec::new(),
             released: Vec::new(),
+            flowing: None,
             name: spec.name,
             cells: spec.cells,
         };
@@ -137,6 +146,10 @@ impl Beam {
             let own = beam.turned(element, &local);
             beam.stiffness.extend(own);
         }
+        beam.flowing = match spec.material.uniaxial() {
+            Some(law) => Some(beam.fibred(law)?),
+            None => None,
+        };
         Ok(beam)
     }
 
@@ -358,8 +371,26 @@ impl Beam {
         }
     }
 
+    /// Whether forces are linear in the displacement: nothing flows.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.flowing.is_none()
+    }
+
     /// Adds the internal forces; see [`Body::force`](crate::Body::force).
-    pub(crate) fn force(&self, at: &Placement, f: &mut [f64]) -> Stored {
+    pub(crate) fn force(
+        &self,
+        at: &Placement,
+        new: &mut [f64],
+        f: &mut [f64],
+    ) -> Result<Stored, Error> {
+        match &self.flowing {
+            None => Ok(self.linear_force(at, f)),
+            Some(_) if at.from.is_some() => Err(self.no_between()),
+            Some(flowing) => Ok(flowing.force(at, new, f)),
+        }
+    }
+
+    fn linear_force(&self, at: &Placement, f: &mut [f64]) -> Stored {
         let strain = match at.from {
             None => self.internal_force(at.u, f),
             Some(from) => {
@@ -379,6 +410,9 @@ impl Beam {
 
     /// Adds `by_u` ∂f/∂u to a matrix over all unknowns; see [`Body::add_tangent`](crate::Body::add_tangent).
     pub(crate) fn add_tangent(&self, at: &Placement, by_u: f64, matrix: &mut Csr) {
+        if let Some(flowing) = &self.flowing {
+            return flowing.add_tangent(at, by_u, matrix);
+        }
         let share = if at.from.is_some() { 0.5 } else { 1.0 };
         self.add_stiffness(share * by_u, &(0..usize::MAX), matrix);
     }
@@ -529,7 +563,7 @@ fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
     if spec.weights.is_some() {
         return Err(Error::BeamWeights { body: body() });
     }
-    if spec.material.finite().is_some() {
+    if spec.material.finite().is_some() && spec.material.uniaxial().is_none() {
         return Err(Error::FiniteKinematics {
             body: body(),
             kinematics: spec.kinematics.name(),

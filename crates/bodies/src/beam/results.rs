@@ -7,7 +7,7 @@ use crate::distortion::{Distortion, Extreme};
 
 impl Beam {
     /// Volume (m³) and mean stress (Pa) of each element: normal and shear forces over the area. Bending and torsion have no mean.
-    pub(crate) fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
+    pub(crate) fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
         let area = self.section.properties.area;
         let of = |(element, forces): (usize, SectionForces)| {
             let axes = &self.axes[element];
@@ -20,19 +20,24 @@ impl Beam {
                 axes.transpose() * local * axes,
             )
         };
-        self.section_forces(u)
+        self.section_forces(u, history)
             .into_iter()
             .enumerate()
             .map(of)
             .collect()
     }
 
-    /// Forces and moments in the sections of each element.
-    pub fn section_forces(&self, u: &[f64]) -> Vec<SectionForces> {
+    /// Forces and moments in the sections of each element. `history`: of this body at `u`.
+    pub fn section_forces(&self, u: &[f64], history: &[f64]) -> Vec<SectionForces> {
         let of = |element: usize| {
             let local = self.local(element, u);
-            let k = self.element(element).stiffness();
-            let f = k.map(|row| row.iter().zip(&local).map(|(k, u)| k * u).sum::<f64>());
+            let f = match &self.flowing {
+                None => {
+                    let k = self.element(element).stiffness();
+                    k.map(|row| row.iter().zip(&local).map(|(k, u)| k * u).sum::<f64>())
+                }
+                Some(flowing) => self.flowed(flowing, (element, &local), (u, history)),
+            };
             SectionForces {
                 force: [f[6], f[7], f[8]],
                 moment_first: [-f[3], -f[4], -f[5]],

@@ -2,6 +2,9 @@
 
 use std::f64::consts::PI;
 
+/// Layers of fibres where nothing else is said.
+pub const LAYERS: u32 = 8;
+
 /// What bends: how a section stands to its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BeamTheory {
@@ -148,6 +151,10 @@ pub struct BeamSection {
     pub theory: BeamTheory,
     /// Its properties.
     pub properties: SectionProperties,
+    /// Its shape, where it is known: what flows is divided into fibres.
+    pub shape: Option<SectionShape>,
+    /// Layers of fibres over the height and over the width, an even number.
+    pub layers: u32,
     /// A vector whose part normal to the axis is the local y, in space; none where it does not matter. In the plane y is z × x.
     pub orientation: Option<[f64; 3]>,
     /// From the node to the centroid along y and z, m.
@@ -173,11 +180,13 @@ pub enum Rotations {
 }
 
 impl BeamSection {
-    /// A section in its nodes, without a surface, a foundation or a fluid around it.
+    /// A section in its nodes, without a shape, a surface, a foundation or a fluid around it.
     pub fn new(theory: BeamTheory, properties: SectionProperties) -> BeamSection {
         BeamSection {
             theory,
             properties,
+            shape: None,
+            layers: LAYERS,
             orientation: None,
             offset: [0.0; 2],
             radius: None,

@@ -11,6 +11,8 @@
 
 use carom_algebra::tensor::{Mat3, Vec3};
 
+use crate::flowing::Strains;
+
 /// The invariants g and a.
 pub(super) type Invariants = [f64; 6];
 
@@ -220,7 +222,12 @@ impl Elastic {
 
     /// ∂U/∂s.
     pub(super) fn gradient(&self, s: &Invariants) -> Invariants {
-        let (stresses, slopes) = (self.stresses(s), self.slopes(s));
+        self.gradient_of(s, &self.stresses(s))
+    }
+
+    /// Forces over the invariants, of these forces and moments in the section: L ∂(Γ, κ)/∂s transposed, times them.
+    pub(super) fn gradient_of(&self, s: &Invariants, stresses: &[f64; 6]) -> Invariants {
+        let slopes = self.slopes(s);
         [0, 1, 2, 3, 4, 5]
             .map(|j| self.length * (0..6).map(|i| stresses[i] * slopes[i][j]).sum::<f64>())
     }
@@ -245,6 +252,58 @@ impl Elastic {
             for i in 0..6 {
                 for j in 0..6 {
                     k[i][j] += self.length * c * row[i] * row[j];
+                }
+            }
+        }
+        k
+    }
+}
+
+/// Places of ε, κ_y and κ_z among the strains.
+const FLOWING: [usize; 3] = [0, 4, 5];
+
+/// Elements in which extension and bending flow, at one section; the rest is elastic.
+impl Elastic {
+    /// Strain of the axis, and curvatures.
+    pub(super) fn flowing(strains: &[f64; 6]) -> Strains {
+        FLOWING.map(|i| strains[i])
+    }
+
+    /// Forces and moments in the section, with these of extension and bending.
+    pub(super) fn stresses_with(&self, strains: &[f64; 6], flowing: &Strains) -> [f64; 6] {
+        let mut stresses = [0, 1, 2, 3, 4, 5].map(|i| self.stiffness[i] * strains[i]);
+        for (place, force) in FLOWING.into_iter().zip(flowing) {
+            stresses[place] = *force;
+        }
+        stresses
+    }
+
+    /// Energy of what stays elastic, J.
+    pub(super) fn energy_beside(&self, strains: &[f64; 6]) -> f64 {
+        let beside = (0..6).filter(|i| !FLOWING.contains(i));
+        let parts = beside.map(|i| self.stiffness[i] * strains[i] * strains[i]);
+        0.5 * self.length * parts.sum::<f64>()
+    }
+
+    /// [`Elastic::tangent`] with this tangent of extension and bending.
+    pub(super) fn tangent_with(&self, s: &Invariants, flowing: &[Strains; 3]) -> Matrix6 {
+        let slopes = self.slopes(s);
+        let mut moduli = [[0.0; 6]; 6];
+        for (i, c) in self.stiffness.into_iter().enumerate() {
+            moduli[i][i] = c;
+        }
+        for (&i, row) in FLOWING.iter().zip(flowing) {
+            for (&j, value) in FLOWING.iter().zip(row) {
+                moduli[i][j] = *value;
+            }
+        }
+        let mut k = [[0.0; 6]; 6];
+        for (row, moduli) in slopes.iter().zip(&moduli) {
+            for (other, modulus) in slopes.iter().zip(moduli).filter(|(_, c)| **c != 0.0) {
+                for i in 0..6 {
+                    for j in 0..6 {
+                        k[i][j] += self.length * modulus * row[i] * other[j];
+                    }
                 }
             }
         }

@@ -15,6 +15,7 @@ mod gradient;
 mod hourglass;
 mod kernel;
 mod linear;
+mod looks;
 mod mean;
 mod passes;
 mod path;
@@ -28,9 +29,9 @@ pub(crate) use body::{Finite, Outcome};
 pub(crate) use cell::Shape;
 pub use deletion::Deleted;
 pub use formulation::Formulation;
+pub use looks::{FrequencyBound, Looks, Seen};
 pub use placement::{Placement, Stored};
 pub use pressure::FollowerPressure;
-pub use solid::FrequencyBound;
 pub use viscosity::BulkViscosity;
 
 #[cfg(test)]

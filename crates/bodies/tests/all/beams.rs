@@ -33,7 +33,7 @@ fn section(theory: BeamTheory, orientation: Option<[f64; 3]>, offset: [f64; 2]) 
 }
 
 /// Two elements with a corner.
-fn mesh(dim: usize) -> (Mesh, Vec<ElementId>) {
+pub fn mesh(dim: usize) -> (Mesh, Vec<ElementId>) {
     let mut mesh = Mesh::new(dim);
     mesh.nodes = vec![[0.5, 0.1, 0.0], [1.3, 0.4, 0.0], [1.5, 1.2, 0.0]];
     if dim == 3 {

@@ -11,6 +11,7 @@ mod derivatives;
 mod discrete;
 mod distortion;
 mod finite;
+mod flowing;
 mod mass;
 mod patch;
 mod quadratic;

@@ -1,7 +1,8 @@
 //! Beams: sections from shapes and properties, and what beams refuse.
 
 use carom_bodies::{
-    BeamSection, BeamTheory, BodySpec, Kinematics, Rotations, SectionProperties, SectionShape,
+    BeamSection, BeamTheory, BodySpec, Kinematics, LAYERS, Rotations, SectionProperties,
+    SectionShape,
 };
 use carom_materials::Law;
 use carom_mesh::Mesh;
@@ -57,6 +58,7 @@ impl Builder<'_> {
                 })
             }
         };
+        let layers = self.layers(&path, given, material)?;
         let properties = match shape {
             Ok(shape) => shape.properties(material.initial().poisson),
             Err(given) => self.properties(mesh, &path, given, theory)?,
@@ -89,6 +91,8 @@ impl Builder<'_> {
         };
         let round = shape.ok().and_then(|shape| shape.radius(mesh.dim));
         Some(Kinematics::Beam(BeamSection {
+            shape: shape.ok(),
+            layers,
             orientation,
             offset,
             radius: given.radius.map(|radius| radius.0).or(round),
@@ -100,6 +104,40 @@ impl Builder<'_> {
             },
             ..BeamSection::new(theory, properties)
         }))
+    }
+
+    /// Layers of fibres of a section that flows. Refuses sections without a shape there, and layers where nothing flows.
+    fn layers(&mut self, path: &str, given: &schema::BeamSection, material: Law) -> Option<u32> {
+        let flows = material.uniaxial().is_some();
+        if let (true, BeamShape::Properties(_)) = (flows, &given.shape) {
+            let message =
+                "a section that flows is divided into fibres, for which its shape is needed";
+            let problem = Problem::new(format!("{path}.shape.properties"), message);
+            let problem =
+                problem.found(format!("properties, with the material {}", material.key()));
+            self.problems
+                .push(problem.accepted(["circle", "tube", "rectangle", "i"]));
+            return None;
+        }
+        let Some(layers) = given.layers else {
+            return Some(LAYERS);
+        };
+        let (message, found, accepted) = match (flows, layers % 2) {
+            (true, 0) => return Some(layers),
+            (true, _) => (
+                "no layer of fibres may lie across the middle of the section",
+                layers.to_string(),
+                "an even number",
+            ),
+            (false, _) => (
+                "the section of an elastic beam has no fibres",
+                material.key().to_owned(),
+                "a material that flows: j2, j2-table, johnson-cook",
+            ),
+        };
+        let problem = Problem::new(format!("{path}.layers"), message).found(found);
+        self.problems.push(problem.accepted([accepted]));
+        None
     }
 
     /// Refuses a size that is not below another.

@@ -115,6 +115,7 @@ impl Builder<'_> {
             let spec = &body.spec;
             let solid = body.rigid.is_none() && body.reduced.is_none();
             let beam = matches!(spec.kinematics, Kinematics::Beam(_));
+            let line = spec.kinematics.dim() == 1;
             let path = format!("body.{}", spec.name);
             for (key, given) in [
                 ("bulk-viscosity", spec.viscosity.is_some()),
@@ -127,6 +128,11 @@ impl Builder<'_> {
                     let problem = problem.found(format!("the scheme {}", scheme.get().name()));
                     self.problems
                         .push(problem.accepted(["time.scheme = { central-difference = {} }"]));
+                } else if given && line && key != "mass-scaling" {
+                    let problem = Problem::new(path, "only solids and plane cells have it");
+                    let problem = problem.found(format!("section.{}", spec.kinematics.name()));
+                    self.problems
+                        .push(problem.accepted(["solid or plane cells", "no such key"]));
                 } else if given && (!solid || beam) {
                     let problem = Problem::new(path, "only solids, plane cells and bars have it");
                     self.problems.push(
@@ -134,6 +140,9 @@ impl Builder<'_> {
                             .accepted(["a body without `section.beam`, `rigid` and `reduction`"]),
                     );
                 }
+            }
+            if line {
+                continue;
             }
             if spec.deletion.is_some() {
                 self.deletes(&format!("{path}.deletion"), &spec.material);

@@ -55,6 +55,7 @@ use builder::{Builder, dimensions, plural};
 use course::Signals;
 use plan::Plan;
 pub use reference::ExactReference;
+use time::Size;
 
 /// What a case amounts to.
 #[derive(Debug)]
@@ -184,6 +185,7 @@ impl Builder<'_> {
             links: Vec::new(),
             constraints,
             adaptive: None,
+            critical_fraction: None,
             nonlinear: Nonlinear {
                 nodal,
                 base,
@@ -204,6 +206,10 @@ impl Builder<'_> {
                 Ok(vec![System::new(model.clone())?])
             })?;
             model.adaptive = self.adaptive(model.dt);
+            model.critical_fraction = match self.size() {
+                (_, Size::Critical(fraction)) => Some(fraction),
+                _ => None,
+            };
         } else {
             let mut parts = Zoned {
                 model: model.clone(),

@@ -86,11 +86,11 @@ impl Builder<'_> {
             let name = scheme.get().name();
             if body.spec.material.dissipates() {
                 let problem = Problem::new(format!("{path}.material"), message);
-                self.problems.push(
-                    problem
-                        .found(format!("{name} with a material that dissipates"))
-                        .accepted(["st-venant-kirchhoff", "neo-hooke", "mooney-rivlin"]),
-                );
+                let problem = problem.found(format!("{name} with a material that dissipates"));
+                self.problems.push(match body.spec.kinematics.dim() {
+                    1 => problem.accepted(["elastic", "another scheme, such as newmark"]),
+                    _ => problem.accepted(["st-venant-kirchhoff", "neo-hooke", "mooney-rivlin"]),
+                });
             }
         }
     }

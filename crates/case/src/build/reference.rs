@@ -168,7 +168,8 @@ fn solve(
         }
     };
     // unequal steps end within one step of the end time
-    let extra = u64::from(system.adaptive.is_some());
+    let unequal = system.adaptive.is_some() || system.critical_fraction.is_some();
+    let extra = u64::from(unequal);
     let last = (step_count(end, system.dt) + extra) as f64 * system.dt;
     let solution =
         carom_exact::solve(&impact, last * (1.0 + 1e-9)).map_err(|error| error.to_string())?;
@@ -196,6 +197,13 @@ fn bar(
     let Some(material) = solid(indices[0]).map(Solid::material) else {
         return Err(format!("body `{}` is not a bar", body.name()));
     };
+    if material.dissipates() {
+        return Err(format!(
+            "body `{}` has the material {}, and the exact bars are elastic",
+            body.name(),
+            material.key()
+        ));
+    }
     let alike = |&index: &usize| solid(index).map(Solid::material) == Some(material);
     if !indices.iter().all(alike) {
         return Err(format!(

@@ -200,8 +200,9 @@ fn key(error: &carom_bodies::Error) -> &'static str {
         Error::LinearFormulation { .. } | Error::NotReduced { .. } => "formulation",
         Error::NoBetween { .. } => "material",
         Error::BeamAxes { .. } => "section.beam",
+        Error::NoShape { .. } => "section.beam.shape",
         Error::LargeBeam { .. } => "section.beam.rotations",
-        Error::Mechanism { .. } => "hinges",
+        Error::Mechanism { .. } | Error::FlowingHinges { .. } => "hinges",
         _ => "region",
     }
 }

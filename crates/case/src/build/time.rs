@@ -16,7 +16,7 @@ const MOST_STEPS: u64 = 1_000_000_000;
 
 /// A step as the case says it.
 #[derive(Clone, Copy)]
-enum Size {
+pub(super) enum Size {
     /// In s.
     Fixed(f64),
     /// Fraction of the time in which a wave crosses an element.
@@ -143,7 +143,7 @@ impl Builder<'_> {
     }
 
     /// The step, or the largest, as the case says it, and its key.
-    fn size(&self) -> (&'static str, Size) {
+    pub(super) fn size(&self) -> (&'static str, Size) {
         match self.case.time.step() {
             Step::Fixed(step) => ("time.step", Size::Fixed(step.0)),
             Step::Rule(StepRule::Courant(courant)) => ("time.step.courant", Size::Courant(courant)),

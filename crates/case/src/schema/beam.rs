@@ -19,6 +19,9 @@ pub struct BeamSection {
     /// Theory of bending.
     #[serde(default)]
     pub theory: BeamTheory,
+    /// Layers of fibres over the height of the section, and in space over its width, of a metal that flows; an even number. Default: 8.
+    #[schemars(extend("minimum" = 2, "maximum" = 100))]
+    pub layers: Option<u32>,
     /// Direction of y, in space: a vector whose part normal to the axis is y. Required unless the section is round and without
     /// offset.
     pub orientation: Option<NormalVector>,

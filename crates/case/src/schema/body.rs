@@ -166,9 +166,10 @@ pub struct ModalDamping {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Section {
-    /// Bars: axial force only.
+    /// Bars: axial force only, of an elastic material or of a metal: `j2`, `j2-table`, `johnson-cook`.
     Bar(BarSection),
-    /// Beams: extension, shear, bending and torsion, with rotations of the nodes.
+    /// Beams: extension, shear, bending and torsion, with rotations of the nodes, of an elastic material or of a metal: `j2`, `j2-table`,
+    /// `johnson-cook`. Metal flows in extension and bending; shear and torsion stay elastic.
     Beam(Box<BeamSection>),
     /// Plane cells whose strain across the plane is zero.
     PlaneStrain(PlaneSection),

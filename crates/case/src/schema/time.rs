@@ -105,7 +105,8 @@ pub enum Step {
 pub enum StepRule {
     /// This fraction of the shortest time in which a wave crosses an element.
     Courant(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
-    /// This fraction of the critical step of an explicit scheme, which comes from the eigenvalues of the elements.
+    /// This fraction of the critical step of an explicit scheme, which comes from the eigenvalues of the elements. At finite strain
+    /// steps become shorter as elements deform, so that they stay this fraction of it.
     Critical(#[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))] f64),
     /// A step that is cut where a contact closes, and halved where energy grows or no solution is found.
     Adaptive(Adaptive),

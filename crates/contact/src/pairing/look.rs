@@ -94,10 +94,7 @@ impl Contact {
             }
             Target::Surface(faces) if point.crosses() => {
                 let found = tree.crossed(places, faces, point);
-                let stencil = found.map(|found| {
-                    let x = found.point.place(places);
-                    Stencil::on_face(places, &found.point, &x, &found.foot, found.face)
-                });
+                let stencil = found.map(|found| Stencil::opposite_to(places, &found));
                 (stencil, 0.0)
             }
             Target::Surface(faces) => {
@@ -129,6 +126,7 @@ impl Contact {
                 true => limit,
                 false => f64::INFINITY,
             },
+            guess: None,
         };
         let slot = k % BLOCK;
         if group.kept.len() <= slot {

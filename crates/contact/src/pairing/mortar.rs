@@ -27,7 +27,7 @@ use super::overlap::{Cell, Sample, cells};
 use super::share::{Quadrature, Share};
 use super::stencil::Stencil;
 use crate::mortar::{Basis, CORNERS, Mortar, linear};
-use crate::{Contact, Places, Point, Search, Target};
+use crate::{Contact, Obstacle, Places, Point, Search, Target};
 
 /// Part of its area that a multiplier must have opposite it to face anything.
 const LEAST: f64 = 1e-6;
@@ -61,7 +61,7 @@ impl Mortar {
                 Target::Surface(faces) => {
                     sweep.over_faces((contact, faces), search, &mut work.found)
                 }
-                Target::Rigid(_) => sweep.over_obstacle(contact, search),
+                Target::Rigid(obstacle) => sweep.over_obstacle(obstacle),
             }
             self.share(index, basis, &work.quadrature, &mut work.shares);
         }
@@ -124,13 +124,11 @@ impl<'a> Sweep<'a> {
     }
 
     /// All of the face, by its own rule.
-    fn over_obstacle(&mut self, contact: &Contact, search: &mut Search) {
+    fn over_obstacle(&mut self, obstacle: &Obstacle) {
         let rule = self.face().kind.table().mass_rule;
         for (xi, &weight) in rule.points.iter().zip(rule.weights) {
             let point = self.point(xi);
-            if let Some(stencil) =
-                Stencil::new(contact, self.places, search, (&point, None, self.span))
-            {
+            if let Some(stencil) = Stencil::on_obstacle(self.places, &point, obstacle, self.span) {
                 self.push(&Sample { xi: *xi, weight }, stencil);
             }
         }

@@ -25,25 +25,26 @@ impl Contact {
             return;
         }
         self.renew(places, search);
-        for (k, point) in self.points.iter().enumerate() {
-            let offset = self.offset(k) - point.radius;
-            match &self.target {
-                Target::Rigid(obstacle) => {
-                    let (x, placed) = (point.place(places), obstacle.at(places.time));
+        let offset = |k: usize| self.offset(k) - self.points[k].radius;
+        match &self.target {
+            Target::Rigid(obstacle) => {
+                let placed = obstacle.at(places.time);
+                for (k, point) in self.points.iter().enumerate() {
+                    let x = point.place(places);
                     let Distance { gap, normal, .. } = placed.distance(&x);
-                    rows.push(gap + offset, normal);
+                    rows.push(gap + offset(k), normal);
                     rows.set_rate(placed.gap_rate(&x, &normal));
                     add_point(places, point, &normal, rows);
                 }
-                Target::Surface(faces) => {
-                    match search.opposite(places, faces, (point, self.view(k))) {
-                        Some(Opposite { point, foot, face }) => {
-                            rows.push(foot.gap + offset, foot.normal);
-                            add_row(places, &point, &foot, face, rows);
-                        }
-                        None => rows.push(f64::INFINITY, [0.0; 3]),
+            }
+            Target::Surface(faces) => {
+                self.each_opposite((places, faces), search, |k, found| match found {
+                    Some(Opposite { point, foot, face }) => {
+                        rows.push(foot.gap + offset(k), foot.normal);
+                        add_row(places, &point, &foot, face, rows);
                     }
-                }
+                    None => rows.push(f64::INFINITY, [0.0; 3]),
+                });
             }
         }
     }
@@ -74,9 +75,19 @@ impl Contact {
         {
             return mortar.pair((self, basis), places, search, (first, pairing));
         }
-        for (k, point) in self.points.iter().enumerate() {
-            let stencil = Stencil::new(self, places, search, (point, self.view(k), pairing.span));
-            pairing.place(places, (first + k, point.area), stencil);
+        let span = pairing.span;
+        let mut place = |k: usize, stencil| {
+            pairing.place(places, (first + k, self.points[k].area), stencil);
+        };
+        match &self.target {
+            Target::Rigid(obstacle) => {
+                for (k, point) in self.points.iter().enumerate() {
+                    place(k, Stencil::on_obstacle(places, point, obstacle, span));
+                }
+            }
+            Target::Surface(faces) => self.each_opposite((places, faces), search, |k, found| {
+                place(k, found.map(|found| Stencil::opposite_to(places, &found)));
+            }),
         }
     }
 }

@@ -9,8 +9,7 @@ use super::curvature::Shape;
 use super::foothold::Foothold;
 use super::round;
 use crate::crossing::Opposite;
-use crate::sight::View;
-use crate::{Contact, Obstacle, Places, Point, Rows, Search, Target};
+use crate::{Obstacle, Places, Point, Rows};
 
 /// A point, its gap, and what is at the other end of it.
 #[derive(Clone, Debug)]
@@ -43,26 +42,13 @@ enum Foot {
 }
 
 impl Stencil {
-    /// The stencil of a point of a contact, `None` where it faces nothing. `search` is that of these places; `view`:
-    /// what it sees of a surface; `span`: [`Pairing::span`](super::Pairing::span).
-    pub fn new(
-        contact: &Contact,
-        places: &Places,
-        search: &mut Search,
-        (point, view, span): (&Point, Option<View>, [f64; 2]),
-    ) -> Option<Stencil> {
-        match &contact.target {
-            Target::Rigid(obstacle) => Stencil::on_obstacle(places, point, obstacle, span),
-            Target::Surface(faces) => {
-                let Opposite { point, foot, face } =
-                    search.opposite(places, faces, (point, view))?;
-                let x = point.place(places);
-                Some(Stencil::on_face(places, &point, &x, &foot, face))
-            }
-        }
+    /// The stencil of a point and what is opposite to it on a surface.
+    pub fn opposite_to(places: &Places, found: &Opposite) -> Stencil {
+        let x = found.point.place(places);
+        Stencil::on_face(places, &found.point, &x, &found.foot, found.face)
     }
 
-    /// The stencil of a point against an obstacle, `None` where it faces nothing. `span` as in [`Stencil::new`].
+    /// The stencil of a point against an obstacle, `None` where it faces nothing. `span`: [`Pairing::span`](super::Pairing::span).
     pub fn on_obstacle(
         places: &Places,
         point: &Point,

@@ -1,22 +1,22 @@
 //! The faces of a target in a tree of boxes, and the questions that points ask of them.
 
 use carom_elements::Kind;
-use carom_mesh::{Bounds, BoxTree, Face, Projection};
-use rayon::prelude::*;
+use carom_mesh::{Bounds, BoxTree, Face, Projection, QUADS};
 
-use super::foot::{faces_point, foot_on, hull, spread};
-use super::kept::{Kept, Query, squared};
+use super::foot::{faces_point, foot_on, hull};
+use super::kept::{Guess, Kept, Query, squared};
 use crate::sight::{Corners, View};
 use crate::{Places, Sight};
-
-/// Faces whose boxes one thread takes at a time.
-const CHUNK: usize = 4096;
 
 /// Renewals of an unmoved tree from which on points keep their faces.
 const SLOW: u32 = 3;
 
 /// Sides of the tree's boxes, over those when it was built, from which on it is built anew.
 const LOOSE: f64 = 2.0;
+
+/// Size of a block of points, over half the mean diagonal of the faces, beyond which one look for all does not pay: points over faces in
+/// a row are within twelve.
+const SPREAD: f64 = 32.0;
 
 /// Faces over the points that look at them, below which the corners of all are taken.
 const MANY: usize = 16;
@@ -28,16 +28,13 @@ const LONGEST: f64 = 0.4;
 #[derive(Debug, Default)]
 pub(crate) struct FaceTree {
     tree: Option<BoxTree>,
-    boxes: Vec<Bounds>,
     /// Counts how often boxes were taken.
     epoch: u32,
-    /// Places of the nodes of all faces when the boxes were taken, face after face, m; none where nobody asks.
-    taken: Vec<[f64; 3]>,
     /// The most that a place on a face can have moved since, m.
     moved: f64,
     /// Translation of all since then that `moved` leaves out, m.
     shift: [f64; 3],
-    /// Half the mean diagonal of the boxes, m.
+    /// Half the mean diagonal of the boxes when the tree was built, m.
     skin: f64,
     /// Renewals since the boxes were taken.
     age: u32,
@@ -58,6 +55,8 @@ pub(crate) struct Question<'a> {
     pub view: Option<View<'a>>,
     /// Distance beyond which nothing is looked for, m.
     pub within: f64,
+    /// A face that is likely the closest, projected on.
+    pub guess: Option<Guess>,
 }
 
 /// What questions that follow each other share.
@@ -66,28 +65,28 @@ pub(crate) struct Scratch {
     near: Vec<u32>,
     /// Projections that they made.
     pub projections: usize,
+    /// The number of the face of the last one that had another before, less the number of that.
+    pub step: i64,
 }
 
 impl FaceTree {
     /// Brings the boxes to a configuration of the faces, unless they have moved by less than the skin allows.
     pub fn renew(&mut self, places: &Places, faces: &[Face]) {
-        self.shift = [0.0; 3];
-        self.moved = self.motion(places, faces);
-        if self.tree.is_some() && self.moved <= 0.5 * self.skin {
-            self.age = self.age.saturating_add(1);
-            return;
-        }
-        self.take_boxes(places, faces);
-        self.taken.clear();
-        for face in faces {
-            let nodes = face.corners().iter();
-            self.taken.extend(nodes.map(|&node| places.of(node)));
+        let tree = self.tree.as_ref().filter(|tree| tree.len() == faces.len());
+        let bounds = |item: u32| hull(places, &faces[item as usize]);
+        match tree.and_then(|tree| tree.motion(0.5 * self.skin, bounds)) {
+            Some(moved) => {
+                (self.moved, self.shift) = (moved, [0.0; 3]);
+                self.age = self.age.saturating_add(1);
+            }
+            None => self.take_boxes(places, faces),
         }
     }
 
     /// Tells how far faces may have moved since the boxes were taken, over a translation of all; whether the boxes still serve.
     pub fn has_moved(&mut self, faces: usize, moved: f64, shift: [f64; 3]) -> bool {
-        let serves = self.boxes.len() == faces && (0.0..=0.5 * self.skin).contains(&moved);
+        let count = self.tree.as_ref().map_or(0, BoxTree::len);
+        let serves = count == faces && (0.0..=0.5 * self.skin).contains(&moved);
         if serves {
             (self.moved, self.shift) = (moved, shift);
             self.age = self.age.saturating_add(1);
@@ -99,57 +98,25 @@ impl FaceTree {
     pub fn take_boxes(&mut self, places: &Places, faces: &[Face]) {
         (self.moved, self.shift, self.age) = (0.0, [0.0; 3], 0);
         self.epoch = self.epoch.wrapping_add(1);
-        self.boxes.resize(faces.len(), Bounds::EMPTY);
-        let chunks = self.boxes.par_chunks_mut(CHUNK);
-        chunks
-            .zip(faces.par_chunks(CHUNK))
-            .for_each(|(boxes, faces)| {
-                for (bounds, face) in boxes.iter_mut().zip(faces) {
-                    *bounds = hull(places, face);
-                }
-            });
-        self.taken.clear();
-        let diagonals = self.boxes.iter().map(|b| squared(&b.min, &b.max).sqrt());
-        self.skin = 0.5 * diagonals.sum::<f64>() / self.boxes.len().max(1) as f64;
-        match &mut self.tree {
-            Some(tree) if tree.len() == faces.len() => {
-                tree.refit(&self.boxes);
-                if tree.looseness() > LOOSE {
-                    *tree = BoxTree::new(&self.boxes);
-                }
+        let bounds = |item: u32| hull(places, &faces[item as usize]);
+        if let Some(tree) = self.tree.as_mut().filter(|tree| tree.len() == faces.len()) {
+            tree.refit(bounds);
+            if tree.looseness() <= LOOSE {
+                return;
             }
-            tree => *tree = Some(BoxTree::new(&self.boxes)),
         }
+        let boxes: Vec<Bounds> = (0..faces.len() as u32).map(bounds).collect();
+        let tree = BoxTree::new(&boxes);
+        self.skin = 0.5 * tree.mean_diagonal();
+        self.tree = Some(tree);
     }
 
     /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         self.tree.as_ref().map_or(0, BoxTree::bytes)
-            + size_of_val(&self.boxes[..])
-            + size_of_val(&self.taken[..])
             + size_of_val(&self.normals[..])
             + size_of_val(&self.corners[..])
             + size_of_val(&self.seen.0[..])
-    }
-
-    /// The most that a place on a face can have moved since the boxes were taken, m; infinite if that is not known.
-    fn motion(&self, places: &Places, faces: &[Face]) -> f64 {
-        let mut taken = self.taken.iter();
-        let mut largest = 0.0_f64;
-        for face in faces {
-            let mut of_face = 0.0_f64;
-            for &node in face.corners() {
-                let Some(before) = taken.next() else {
-                    return f64::INFINITY;
-                };
-                of_face = of_face.max(squared(&places.of(node), before));
-            }
-            largest = largest.max(of_face.sqrt() * spread(face.kind));
-        }
-        match taken.next() {
-            Some(_) => f64::INFINITY,
-            None => largest,
-        }
     }
 
     /// Takes all normals and corners that views ask for.
@@ -195,7 +162,8 @@ impl FaceTree {
         // where the place was when the boxes were taken, but for what `moved` bounds
         let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
         let mut count = 0;
-        let mut nearest: Option<(u32, Projection)> = None;
+        let mut nearest = question.guess.map(|guess| (guess.item, guess.foot));
+        let known = nearest.map(|(item, foot)| (item, foot.distance));
         let measure = |item: u32| {
             let face = &faces[item as usize];
             if view.is_some_and(|view| self.is_blind(view, (item, face), x, places)) {
@@ -220,15 +188,21 @@ impl FaceTree {
         let within = view.map_or(question.within, |view| view.reach().min(question.within));
         kept.begin(self.epoch);
         let last = kept.face.and_then(|item| faces.get(item as usize));
+        let sure = question.guess.is_some_and(|guess| guess.sure)
+            && known.is_some_and(|(_, distance)| distance <= within);
         let found = self.tree.as_ref().and_then(|tree| {
+            if sure {
+                return known;
+            }
             // where all is seen, no face need be projected on for a bound; that found last is likely right where faces are kept
             let bound = match (view, last) {
-                (None, Some(last)) if kept.is_open() => {
-                    Some(middle_distance(places, last, x) + tree.rounding(x))
+                (None, Some(last)) if known.is_none() && kept.is_open() => {
+                    Some(some_distance(places, last, x) + tree.rounding(x))
                 }
                 _ => None,
             };
             let query = Query {
+                known,
                 bound,
                 tree,
                 moved: self.moved,
@@ -244,7 +218,10 @@ impl FaceTree {
             let distance = found.map_or(within, |(_, distance)| distance);
             let reach = distance + self.moved + self.skin;
             tree.near(&there, reach, &mut scratch.near);
-            kept.list(&there, reach, &scratch.near, &self.boxes);
+            kept.list(&there, reach, &scratch.near, tree);
+        }
+        if let (Some(before), Some((item, _))) = (kept.face, found) {
+            scratch.step = i64::from(item) - i64::from(before);
         }
         kept.face = found.map(|(item, _)| item);
         scratch.projections += count;
@@ -252,6 +229,38 @@ impl FaceTree {
         // what was found is the nearest of those that were measured
         let (_, foot) = nearest.filter(|(nearest, _)| *nearest == item)?;
         Some((foot, &faces[item as usize]))
+    }
+
+    /// Whether others than its own face may be as near to each of some places as the foot on that is.
+    pub fn others(
+        &self,
+        xs: &[[f64; 3]; QUADS],
+        feet: &[Projection; QUADS],
+        own: &[u32; QUADS],
+    ) -> [bool; QUADS] {
+        let around = Bounds::of(xs);
+        let apart = squared(&around.min, &around.max).sqrt() > SPREAD * self.skin;
+        let Some(tree) = self.tree.as_ref().filter(|_| !apart) else {
+            return [true; QUADS];
+        };
+        let there = xs.map(|x| [0, 1, 2].map(|i| x[i] - self.shift[i]));
+        let (mut distances, mut rounding) = ([0.0; QUADS], 0.0);
+        for x in &there {
+            rounding = f64::max(rounding, tree.rounding(x));
+        }
+        for (distance, foot) in distances.iter_mut().zip(feet) {
+            *distance = foot.distance + self.moved + rounding;
+        }
+        tree.others(&there, &distances, own)
+    }
+
+    /// A box where it was when the boxes of the faces were taken, but for what `moved` bounds.
+    fn back(&self, bounds: &Bounds) -> Bounds {
+        let back = |x: &[f64; 3]| [0, 1, 2].map(|i| x[i] - self.shift[i]);
+        Bounds {
+            min: back(&bounds.min),
+            max: back(&bounds.max),
+        }
     }
 
     /// The first of the items that are closest to a place, or to what is at most `beside` (m) from it, by their distances.
@@ -285,7 +294,7 @@ impl FaceTree {
         let measure = |item: u32| {
             // bounds that need no foot come first: they tell it of most faces
             let face = &faces[item as usize];
-            let apart = self.boxes[item as usize].distance_squared(&there).sqrt() - slack;
+            let apart = tree.bounds(item).distance_squared(&there).sqrt() - slack;
             let mut rest = 0.5 * (apart - limit);
             if rest < most {
                 rest = rest.max(view.hidden((item, face), places, &self.normals));
@@ -340,11 +349,7 @@ impl FaceTree {
         let Some(tree) = &self.tree else {
             return;
         };
-        let back = |x: [f64; 3]| [0, 1, 2].map(|i| x[i] - self.shift[i]);
-        let there = Bounds {
-            min: back(bounds.min),
-            max: back(bounds.max),
-        };
+        let there = self.back(bounds);
         tree.overlapping(&there.widened(self.moved), found);
         // widened, the box may meet faces that it does not meet where they are now
         if self.moved > 0.0 || self.shift != [0.0; 3] {
@@ -355,14 +360,21 @@ impl FaceTree {
 
 /// Distance of a place on a face from a point, with a margin for its rounding, m: of the mean of the corners, which is on a face that is
 /// straight, or of its first node.
-fn middle_distance(places: &Places, face: &Face, x: &[f64; 3]) -> f64 {
-    let corners = match face.kind {
-        Kind::Point1 | Kind::Bar2 | Kind::Tri3 | Kind::Quad4 => face.corners(),
-        _ => &face.nodes[..1],
-    };
+fn some_distance(places: &Places, face: &Face, x: &[f64; 3]) -> f64 {
+    let of_face = places.of_face(face);
+    match face.kind {
+        Kind::Point1 | Kind::Bar2 | Kind::Tri3 | Kind::Quad4 => {
+            middle_distance(&of_face[..face.corners().len()], x)
+        }
+        _ => middle_distance(&of_face[..1], x),
+    }
+}
+
+/// Distance of the mean of some places from a point, with a margin for its rounding, m.
+#[inline]
+pub(super) fn middle_distance(corners: &[[f64; 3]], x: &[f64; 3]) -> f64 {
     let mut middle = [0.0; 3];
-    for &node in corners {
-        let place = places.of(node);
+    for place in corners {
         for i in 0..3 {
             middle[i] += place[i];
         }

@@ -14,16 +14,24 @@ pub(crate) fn foot_on<'a>(
 ) -> (Projection, &'a Face) {
     let face = &faces[item as usize];
     if face.kind == Kind::Quad4 {
-        let [a, b, c, d, ..] = face.nodes;
-        let corners = [places.of(a), places.of(b), places.of(c), places.of(d)];
-        return (project(face, &corners, x), face);
+        return (project(face, &corners(places, face), x), face);
     }
     let positions = places.of_face(face);
     (project(face, &positions[..face.corners().len()], x), face)
 }
 
+/// The corners of a quadrilateral, m.
+#[inline]
+pub(super) fn corners(places: &Places, face: &Face) -> [[f64; 3]; 4] {
+    let [a, b, c, d, ..] = face.nodes;
+    [places.of(a), places.of(b), places.of(c), places.of(d)]
+}
+
 /// A box that holds a face.
 pub(crate) fn hull(places: &Places, face: &Face) -> Bounds {
+    if face.kind == Kind::Quad4 {
+        return Bounds::of(&corners(places, face));
+    }
     Bounds::of_face(face.kind, &places.of_face(face)[..face.corners().len()])
 }
 

@@ -1,9 +1,18 @@
 //! What a query remembers of its last answers, so that the next one asks few faces.
 
-use carom_mesh::{Bounds, BoxTree};
+use carom_mesh::{BoxTree, Projection};
 
 /// The most faces that a point keeps.
 const MANY: usize = 32;
+
+/// A face that a query is likely closest to, and the closest point on it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Guess {
+    pub item: u32,
+    pub foot: Projection,
+    /// Whether no other face is as near.
+    pub sure: bool,
+}
 
 /// What one query remembers.
 #[derive(Clone, Debug, Default)]
@@ -35,13 +44,13 @@ impl Kept {
     }
 
     /// Lists the faces `near` a place, those within a reach, unless they are too many.
-    pub fn list(&mut self, x: &[f64; 3], reach: f64, near: &[u32], boxes: &[Bounds]) {
+    pub fn list(&mut self, x: &[f64; 3], reach: f64, near: &[u32], tree: &BoxTree) {
         self.crowded = near.len() > MANY;
         if self.crowded {
             return;
         }
         self.faces.clear();
-        let distance = |&item: &u32| (item, boxes[item as usize].distance_squared(x).sqrt());
+        let distance = |&item: &u32| (item, tree.bounds(item).distance_squared(x).sqrt());
         self.faces.extend(near.iter().map(distance));
         self.faces
             .sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
@@ -60,7 +69,9 @@ pub(super) struct Query<'a> {
     pub moved: f64,
     pub x: &'a [f64; 3],
     pub within: f64,
-    /// A bound of the distance of the item found last, m; none if it is to be measured.
+    /// An item and its distance, m, if one has been measured.
+    pub known: Option<(u32, f64)>,
+    /// A bound of the distance of the item found last, m; none if it is to be measured unless one has been.
     pub bound: Option<f64>,
 }
 
@@ -74,14 +85,17 @@ impl Query<'_> {
     ) -> Option<(u32, f64)> {
         // what was closest last bounds the distance of what is closest now
         let last = kept.face.filter(|&item| (item as usize) < count);
-        let measured = last.filter(|_| self.bound.is_none());
-        let bound = match (measured, self.bound) {
-            (Some(item), _) => measure(item),
-            (None, bound) => bound.unwrap_or(f64::INFINITY),
+        let last = last.filter(|_| self.bound.is_none());
+        let measured = self
+            .known
+            .or_else(|| last.map(|item| (item, measure(item))));
+        let bound = match measured {
+            Some((_, distance)) => distance,
+            None => self.bound.unwrap_or(f64::INFINITY),
         };
-        let mut measure = |item: u32| match Some(item) == measured {
-            true => bound,
-            false => measure(item),
+        let mut measure = |item: u32| match measured {
+            Some((known, distance)) if known == item => distance,
+            _ => measure(item),
         };
         let within = self.within.min(bound);
         if let Some(answer) = self.among_kept(kept, within, &mut measure) {

@@ -1,16 +1,17 @@
-//! The contact problem of a diagonal matrix: groups of points that share no unknown are solved apart, in their order. Of a large
+//! The contact problem of a diagonal matrix: groups of points that share no unknown are solved apart, on all threads. Of a large
 //! group the compliance is the product of its sparse rows, and nothing is dense.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use carom_contact::Rows;
+use rayon::prelude::*;
 
 use super::Driver;
 use super::leapfrog::Apart;
-use crate::coulomb::{Posed, Tangential};
+use super::span::{Candidates, Span, Unsolved};
+use crate::coulomb::Tangential;
 use crate::error::Error;
-use crate::groups::OfGroup;
 
 /// Rows of the largest group whose problem is kept where it is not solved.
 const KEPT: usize = 1000;
@@ -53,32 +54,94 @@ impl Driver {
             .points
             .extend(points.map(|&place| self.candidates[place as usize]));
         std::mem::swap(&mut self.candidates, &mut apart.points);
-        let friction = self.describe_apart(&mut apart.free, free);
+        let mut friction = std::mem::take(&mut apart.friction);
+        self.describe_apart((&mut apart.free, &mut friction), free);
         // what the laws see of the state is in their data now
         self.release();
-        let mut passes = 0;
-        for group in apart.groups.ranges() {
-            apart.version += 1;
-            let d = &mut apart.of_group;
-            match friction[..].get(group.clone()) {
-                Some(own) if own.iter().any(|own| own.mu > 0.0) => {
-                    self.solve_rubbing(group.clone(), own, d)
-                }
-                _ => self.solve_normal(group.clone(), (d, apart.version)),
-            }?;
-            passes = passes.max(self.interface.passes);
+        let candidates = std::mem::take(&mut self.candidates);
+        let data = std::mem::take(&mut self.candidate_data);
+        apart.share();
+        let (system, map) = (Arc::clone(&self.system), self.maps.first());
+        let of = Candidates {
+            points: &candidates,
+            data: &data,
+            friction: &friction,
+            rows: self.rows_of_points(),
+            mass: (&system.mass.lumped, &system.fixed),
+            factors: [map.gap.x, map.rate.x, self.sliding().0(map).x],
+            tolerance: system.nonlinear.iteration.tolerance,
+        };
+        match &mut apart.spans[..] {
+            [one] => one.solve(&of),
+            spans => spans.par_iter_mut().for_each(|span| span.solve(&of)),
         }
-        self.interface.passes = passes;
+        let mut failed = None;
+        if let Some(span) = apart.spans.iter_mut().find(|span| span.unsolved.is_some()) {
+            failed = span.unsolved.take().map(|(group, failure)| {
+                let rubs = matches!(failure, Unsolved::Friction(_));
+                let entries = span.entries(&of, group.clone(), (rubs, KEPT));
+                (group, failure, entries, of.factors)
+            });
+        }
+        (self.candidates, self.candidate_data) = (candidates, data);
+        if let Some((group, failure, entries, factors)) = failed {
+            let own = friction.get(group.clone()).unwrap_or_default();
+            return Err(self.unsolved((group, own), failure, (entries, factors)));
+        }
+        self.take_found(&apart.spans);
+        apart.friction = friction;
         std::mem::swap(&mut self.candidates, &mut apart.points);
         Ok(())
+    }
+
+    /// The error of a group without solution, whose problem is kept.
+    fn unsolved(
+        &mut self,
+        (group, friction): (Range<usize>, &[Tangential]),
+        failure: Unsolved,
+        (entries, factors): (Option<Vec<f64>>, [f64; 3]),
+    ) -> Error {
+        self.keep_places(&group.map(|place| place as u32).collect::<Vec<_>>());
+        match (failure, entries) {
+            (Unsolved::Normal(failure), Some(entries)) => {
+                self.keep_problem(failure, entries, [factors[0], factors[1]])
+            }
+            (Unsolved::Normal(failure), None) => self.interface_error(failure, &self.candidates),
+            (Unsolved::Friction(failure), entries) => {
+                if let Some(entries) = entries {
+                    self.keep_failed(friction.to_vec(), entries, factors);
+                }
+                self.friction_error(failure)
+            }
+        }
+    }
+
+    /// Takes the forces and statuses of the candidates.
+    fn take_found(&mut self, spans: &[Span]) {
+        let interface = &mut self.next.interface;
+        let found = spans.iter().flat_map(|span| &span.found);
+        for (&point, found) in self.candidates.iter().zip(found) {
+            let at = point as usize;
+            interface.force[at] = found.force;
+            interface.status[at] = found.status;
+            if let Some(friction) = interface.friction.get_mut(at) {
+                *friction = found.tangential;
+                self.slips[at] = found.slip;
+            }
+        }
+        let passes = spans.iter().map(|span| span.passes);
+        self.interface.passes = passes.max().unwrap_or(0);
+        for &candidate in spans.iter().flat_map(|span| &span.circled) {
+            self.warn_of_circle(candidate);
+        }
     }
 
     /// What the laws of the candidates know, and what friction adds to each; nothing without friction. `room`: a system vector.
     fn describe_apart(
         &mut self,
-        room: &mut Vec<f64>,
+        (room, friction): (&mut Vec<f64>, &mut Vec<Tangential>),
         free: impl Fn(usize) -> f64,
-    ) -> Vec<Tangential> {
+    ) {
         room.resize(self.system.unknowns(), 0.0);
         let mut data = std::mem::take(&mut self.candidate_data);
         data.clear();
@@ -91,82 +154,10 @@ impl Driver {
         let along = |number: u32| rows.product(number as usize, room);
         let points = self.candidates.iter();
         data.extend(points.map(|&point| self.candidate(point as usize, along(point * width))));
-        let friction = match width {
-            1 => Vec::new(),
-            _ => self.tangential(along),
-        };
+        friction.clear();
+        if width > 1 {
+            self.tangential(along, friction);
+        }
         self.candidate_data = data;
-        friction
-    }
-
-    /// One group without friction.
-    fn solve_normal(
-        &mut self,
-        group: Range<usize>,
-        (d, version): (&mut OfGroup, u64),
-    ) -> Result<(), Error> {
-        let (system, map) = (Arc::clone(&self.system), self.maps.first());
-        let factors = [map.gap.x, map.rate.x];
-        let (rows, width) = self.rows_of_points();
-        let normals = self.candidates[group.clone()].iter();
-        let normals = normals.map(|point| point * width);
-        let mass = (&system.mass.lumped[..], &system.fixed[..]);
-        let compliance = d.over(normals, 1, rows, mass);
-        let candidates = &self.candidate_data[group.clone()];
-        let problem = (compliance, version);
-        if let Err(failure) = self.interface.solve(candidates, problem, factors) {
-            self.keep_places(&group.map(|place| place as u32).collect::<Vec<_>>());
-            return Err(match compliance.entries(KEPT) {
-                Some(entries) => self.keep_problem(failure, entries, factors),
-                None => self.interface_error(failure, &self.candidates),
-            });
-        }
-        let interface = &mut self.next.interface;
-        for (k, &point) in self.candidates[group].iter().enumerate() {
-            interface.force[point as usize] = self.interface.forces[k];
-            interface.status[point as usize] = self.interface.statuses[k];
-        }
-        self.warn_of_circles();
-        Ok(())
-    }
-
-    /// One group with friction.
-    fn solve_rubbing(
-        &mut self,
-        group: Range<usize>,
-        friction: &[Tangential],
-        d: &mut OfGroup,
-    ) -> Result<(), Error> {
-        let (system, map) = (Arc::clone(&self.system), self.maps.first());
-        let factors = [map.gap.x, map.rate.x, self.sliding().0(map).x];
-        let (rows, width) = self.rows_of_points();
-        let numbers = self.candidates[group.clone()].iter();
-        let numbers = numbers.flat_map(|point| point * width..(point + 1) * width);
-        let mass = (&system.mass.lumped[..], &system.fixed[..]);
-        let compliance = d.over(numbers, width as usize, rows, mass);
-        let posed = Posed {
-            candidates: &self.candidate_data[group.clone()],
-            friction,
-            tangents: system.tangents(),
-            d: compliance,
-            s: factors,
-            tolerance: system.nonlinear.iteration.tolerance,
-        };
-        if let Err(failure) = self.coulomb.solve(&posed) {
-            self.keep_places(&group.map(|place| place as u32).collect::<Vec<_>>());
-            if let Some(entries) = compliance.entries(KEPT) {
-                self.keep_failed(friction.to_vec(), entries, factors);
-            }
-            return Err(self.friction_error(failure));
-        }
-        let interface = &mut self.next.interface;
-        for (k, &point) in self.candidates[group].iter().enumerate() {
-            let at = point as usize;
-            interface.force[at] = self.coulomb.forces[k];
-            interface.friction[at] = self.coulomb.tangential[k];
-            interface.status[at] = self.coulomb.statuses[k];
-            self.slips[at] = self.coulomb.slips[k];
-        }
-        Ok(())
     }
 }

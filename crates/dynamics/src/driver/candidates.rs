@@ -200,7 +200,9 @@ impl Driver {
             linking.answer(&system, operators, forces, (&mut self.vectors.half, pushed));
         }
         self.part_links();
-        self.warn_of_circles();
+        if let Some(candidate) = self.interface.circled {
+            self.warn_of_circle(candidate);
+        }
         self.take_weak();
         Ok(())
     }
@@ -261,14 +263,13 @@ impl Driver {
         (self.candidates, self.candidate_data) = (points, data);
     }
 
-    pub(super) fn warn_of_circles(&self) {
-        if let Some(candidate) = self.interface.circled {
-            let name = self.name(self.candidates[candidate] as usize);
-            tracing::warn!(
-                "step {}: contact statuses cycle at {name}; they now change one at a time",
-                self.state.step + 1
-            );
-        }
+    /// Warns that statuses of contact points went in circles from this candidate on.
+    pub(super) fn warn_of_circle(&self, candidate: usize) {
+        let name = self.name(self.candidates[candidate] as usize);
+        tracing::warn!(
+            "step {}: contact statuses cycle at {name}; they now change one at a time",
+            self.state.step + 1
+        );
     }
 
     /// No contact force at all.

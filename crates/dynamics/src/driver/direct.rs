@@ -7,11 +7,12 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use carom_contact::Rows;
 use rayon::prelude::*;
 
 use super::Driver;
 use super::forces::{Bodies, add_up};
-use super::leapfrog::{Apart, Direct, is_leapfrog};
+use super::leapfrog::{Direct, is_leapfrog};
 use crate::error::Error;
 use crate::ledger::{Beyond, Energies, Squares, Tolerated};
 use crate::resultant::Resultant;
@@ -67,20 +68,20 @@ impl Driver {
         self.residuals.clear();
         self.residuals.push(0.0);
         (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
+        direct.clear(clean, self.system.dim, &mut self.next.motion.contact_force);
         if !clean {
-            self.next.motion.contact_force.fill(0.0);
             self.vectors.x.fill(0.0);
         }
         self.place_end(direct);
         self.forces_of_end()?;
         let loads = self.loads_of_end(direct.loaded);
-        let before_it = self.follow_interface();
-        let touched = [before_it, self.touch(&mut direct.apart, loads)?];
+        self.follow_interface();
+        self.touch(direct, loads)?;
         self.count_contact(begin, before);
         let begin = Instant::now();
-        let sums = self.end_motion(direct, loads, touched.contains(&true));
+        let sums = self.end_motion(direct, loads);
         direct.finite = (sums.velocity + sums.acceleration[1] + sums.way).is_finite();
-        direct.clean = touched == [false; 2];
+        direct.clean = true;
         self.end_points();
         self.balance_directly(&sums, &direct.parts);
         self.record_contacts();
@@ -145,19 +146,19 @@ impl Driver {
         }
     }
 
-    /// Forces of the contacts; whether there are any.
-    fn touch(&mut self, apart: &mut Apart, loads: Loads) -> Result<bool, Error> {
+    /// Forces of the contacts.
+    fn touch(&mut self, direct: &mut Direct, loads: Loads) -> Result<(), Error> {
         self.vectors.jumps = false;
         if self.system.contacts.is_empty() {
             self.candidates.clear();
-            return Ok(false);
+            return Ok(());
         }
         self.vectors.ahead.clear();
         self.pair_near();
         self.choose_candidates();
         if self.candidates.is_empty() {
             self.release();
-            return Ok(false);
+            return Ok(());
         }
         let system = Arc::clone(&self.system);
         let internal = std::mem::take(&mut self.next.motion.internal_force);
@@ -169,7 +170,7 @@ impl Driver {
             Loads::Varying => load[i] - internal[i],
         };
         let solved = match self.weak.none() {
-            true => self.solve_apart(apart, |i| left(i) / system.mass.lumped[i]),
+            true => self.solve_apart(&mut direct.apart, |i| left(i) / system.mass.lumped[i]),
             false => {
                 let residual = self.vectors.residual.iter_mut().enumerate();
                 residual.for_each(|(i, residual)| *residual = left(i));
@@ -178,16 +179,39 @@ impl Driver {
         };
         (self.next.motion.internal_force, self.vectors.load) = (internal, load);
         solved?;
-        self.spread();
-        let forces = &self.vectors.contact;
-        self.next.motion.contact_force.copy_from_slice(forces);
-        let interface = &self.next.interface;
-        let mut points = self.active.within(0..system.points());
-        Ok(points.any(|point| interface.carries(point)))
+        self.spread_directly(direct);
+        Ok(())
+    }
+
+    /// Adds the forces of the points to those of the nodes.
+    fn spread_directly(&mut self, direct: &mut Direct) {
+        let (system, interface) = (&*self.system, &self.next.interface);
+        let forces = &mut self.next.motion.contact_force;
+        let mut add = |rows: &Rows, point: usize, force: f64| {
+            if force == 0.0 {
+                return;
+            }
+            rows.add_force(point, force, forces);
+            let mut last = usize::MAX;
+            for &unknown in rows.row(point).0 {
+                let node = unknown as usize / system.dim;
+                if node != last {
+                    direct.touch(node);
+                }
+                last = node;
+            }
+        };
+        for point in self.active.within(0..system.points()) {
+            add(&self.pairing.rows, point, interface.force[point]);
+            let tangential = interface.friction.get(point).into_iter().flatten();
+            for (rows, &t) in self.pairing.tangents.iter().zip(tangential) {
+                add(rows, point, t);
+            }
+        }
     }
 
     /// Accelerations and velocities of the end, and the sums of the step.
-    fn end_motion(&mut self, direct: &mut Direct, loads: Loads, touched: bool) -> Sums {
+    fn end_motion(&mut self, direct: &mut Direct, loads: Loads) -> Sums {
         let system = Arc::clone(&self.system);
         let map = self.maps.first();
         let means = [map.impulse.old, map.impulse.new];
@@ -211,8 +235,7 @@ impl Driver {
                 Loads::Dead(factors) => Some(factors.map(|factor| (&system.load[..], factor))),
                 Loads::Varying => Some([(before, 1.0), (varying, 1.0)]),
             },
-            contact: touched
-                .then(|| [&old.contact_force, &new.contact_force].map(|f| (&f[..], 1.0))),
+            contact: [&old.contact_force, &new.contact_force],
             way: map.displacement.since(&Row::START),
             velocity: map.velocity,
             weights: [means, if moves { means } else { [0.0, 1.0] }],

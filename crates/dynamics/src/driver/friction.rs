@@ -14,9 +14,9 @@ use crate::interface::Candidate;
 use crate::step_map::{Row, StepMap};
 
 impl Driver {
-    /// What friction adds to each candidate.
+    /// Writes what friction adds to each candidate.
     /// `free`: product of a stacked row with the motion of the iteration without contact forces.
-    pub(super) fn tangential(&self, free: impl Fn(u32) -> f64) -> Vec<Tangential> {
+    pub(super) fn tangential(&self, free: impl Fn(u32) -> f64, out: &mut Vec<Tangential>) {
         let (row, time) = self.sliding();
         // what the forces of the iteration give by themselves is in the matrix
         let without = move |map: &StepMap| Row { c: 0.0, ..row(map) };
@@ -36,9 +36,11 @@ impl Driver {
                 free: q,
                 slip: self.slips[at],
                 force: self.next.interface.friction[at],
+                pressed: self.next.interface.force[at],
             }
         };
-        self.candidates.iter().map(of).collect()
+        out.clear();
+        out.extend(self.candidates.iter().map(of));
     }
 
     /// The interface problem of the candidates with friction.
@@ -58,7 +60,9 @@ impl Driver {
         compliance.update(points, &self.stacked, &system.fixed, operators);
         let several = compliance.groups().several();
         self.describe_candidates(Some(tangents as u32));
-        let friction = self.tangential(|number| self.free_along(number, &self.stacked));
+        let mut friction = Vec::new();
+        let free = |number| self.free_along(number, &self.stacked);
+        self.tangential(free, &mut friction);
         if several {
             let solved = self.solve_groups_with_friction(&friction, s);
             self.phases.friction += begin.elapsed();

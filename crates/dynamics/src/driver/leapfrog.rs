@@ -2,8 +2,10 @@
 
 use carom_algebra::unknowns::Kind;
 
+use super::span::Span;
 use crate::blocks::{Block, blocks};
-use crate::groups::{Groups, OfGroup};
+use crate::coulomb::Tangential;
+use crate::groups::Groups;
 use crate::scheme::EnergyIdentity;
 use crate::step_map::{Impulse, Row, StepMap};
 use crate::system::System;
@@ -20,13 +22,15 @@ pub(super) struct Direct {
     /// The same once the attempt is the state.
     pub(super) ready: Option<Row>,
     pub(super) blocks: Vec<Block>,
+    /// The block of the node that was last told to be touched.
+    last: usize,
     /// Sums of each block.
     pub(super) sums: Vec<Sums>,
     /// Sums of each connected part.
     pub(super) parts: Vec<Sums>,
     /// Whether there are loads that are always the same.
     pub(super) loaded: bool,
-    /// Whether neither the state nor the state before it has contact forces, and the unknown of the iterations is zero.
+    /// Whether it is known which blocks have contact forces, and the unknown of the iterations is zero.
     pub(super) clean: bool,
     /// Whether the motion of the attempt is known to be finite.
     pub(super) finite: bool,
@@ -34,26 +38,40 @@ pub(super) struct Direct {
 }
 
 /// What the contact problem of such steps needs.
+#[derive(Default)]
 pub(super) struct Apart {
     pub(super) groups: Groups,
     /// The candidates, group after group.
     pub(super) points: Vec<u32>,
     /// Acceleration without contact forces of their unknowns, m/s²; other entries have no meaning.
     pub(super) free: Vec<f64>,
-    /// D of one group, and a number that no other has.
-    pub(super) of_group: OfGroup,
-    pub(super) version: u64,
+    /// What friction adds to each.
+    pub(super) friction: Vec<Tangential>,
+    /// The groups in as many parts as there are threads, or fewer.
+    pub(super) spans: Vec<Span>,
 }
 
-impl Default for Apart {
-    fn default() -> Apart {
-        Apart {
-            groups: Groups::default(),
-            points: Vec::new(),
-            free: Vec::new(),
-            of_group: OfGroup::default(),
-            // those of kept columns count from zero
-            version: 1 << 63,
+/// Candidates that are worth a thread.
+const WORTH: usize = 128;
+
+impl Apart {
+    /// Bytes of the largest D so far.
+    pub(super) fn bytes(&self) -> usize {
+        self.spans.iter().map(Span::bytes).max().unwrap_or(0)
+    }
+
+    /// Shares the groups out: to each thread some that follow each other, with about as many candidates. What is found does not depend on
+    /// who solves it.
+    pub(super) fn share(&mut self) {
+        let candidates = self.groups.order().len();
+        let most = rayon::current_num_threads().min(candidates / WORTH).max(1);
+        self.spans.resize_with(most, Span::default);
+        for span in &mut self.spans {
+            span.groups.clear();
+        }
+        for group in self.groups.ranges() {
+            let span = group.start * most / candidates.max(1);
+            self.spans[span.min(most - 1)].groups.push(group);
         }
     }
 }
@@ -85,12 +103,46 @@ impl Direct {
                 sums: vec![Sums::default(); blocks.len()],
                 parts: vec![Sums::default(); system.parts.len()],
                 blocks,
+                last: 0,
                 loaded: system.load.iter().any(|load| *load != 0.0),
                 clean: false,
                 finite: false,
                 apart: Apart::default(),
             }
         })
+    }
+
+    /// Leaves no contact forces at the end of the step, `forces`, where there may be some of an earlier one. `known`: whether the blocks tell
+    /// where.
+    pub(super) fn clear(&mut self, known: bool, dim: usize, forces: &mut [f64]) {
+        for block in &mut self.blocks {
+            if !known {
+                block.touched = [true; 2];
+            }
+            if std::mem::take(&mut block.touched[1]) {
+                forces[dim * block.nodes[0]..dim * block.nodes[1]].fill(0.0);
+            }
+        }
+    }
+
+    /// Tells that there is a contact force on a node at the end of the step.
+    pub(super) fn touch(&mut self, node: usize) {
+        let holds = |block: &Block| (block.nodes[0]..block.nodes[1]).contains(&node);
+        if !self.blocks.get(self.last).is_some_and(holds) {
+            let behind = self.blocks.partition_point(|block| block.nodes[0] <= node);
+            self.last = behind.saturating_sub(1);
+        }
+        if let Some(block) = self.blocks.get_mut(self.last) {
+            block.touched[1] = true;
+        }
+    }
+
+    /// Makes the end of the step the start of the next, whose end has the room of the start before.
+    pub(super) fn go_on(&mut self) {
+        self.ready = self.pending.take();
+        for block in &mut self.blocks {
+            block.touched.swap(0, 1);
+        }
     }
 
     /// The sums of the whole system; leaves those of the parts.

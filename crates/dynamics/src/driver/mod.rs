@@ -55,6 +55,7 @@ mod restoring;
 mod rigid;
 mod scratch;
 mod solve;
+mod span;
 mod springs;
 mod stable;
 mod start;
@@ -212,7 +213,7 @@ impl Driver {
                 + self
                     .direct
                     .as_ref()
-                    .map_or(0, |direct| direct.apart.of_group.bytes),
+                    .map_or(0, |direct| direct.apart.bytes()),
             force_sweeps: self.force_sweeps,
             element_updates: (self.force_sweeps * elements) as u64,
             phases: self.phases,

@@ -13,8 +13,8 @@ use super::deletion::as_left;
 use super::tangents::first_thought;
 
 impl Driver {
-    /// Takes the contact of the state before into that of the end; whether any point carries a force there.
-    pub(super) fn follow_interface(&mut self) -> bool {
+    /// Takes the contact of the state before into that of the end.
+    pub(super) fn follow_interface(&mut self) {
         let points = 0..self.system.points();
         let (before, next) = (&self.state.interface, &mut self.next.interface);
         if !self.active.begin() {
@@ -29,9 +29,6 @@ impl Driver {
             }
         }
         self.take_weak();
-        let before = &self.state.interface;
-        let carries = |point: usize| before.carries(point);
-        self.active.within(points).any(carries)
     }
 
     /// Pairs the near points, in the configurations that are known.

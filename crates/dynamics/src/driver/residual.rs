@@ -168,10 +168,10 @@ impl Driver {
         self.rounding_with(1.0)
     }
 
-    /// The same of forces alone, without gaps: those of linear bodies are of displacements, and places do not count.
+    /// The same of forces alone, without gaps: those of bodies at small strain are of displacements, and places do not count.
     pub fn rounding_of_forces(&self) -> f64 {
-        let linear = self.system.bodies.iter().all(Body::is_linear);
-        self.rounding_with(if linear { 0.0 } else { 1.0 })
+        let finite = self.system.bodies.iter().any(Body::has_finite_motion);
+        self.rounding_with(if finite { 1.0 } else { 0.0 })
     }
 
     /// `places`: factor of the distances from the origin.

@@ -32,12 +32,12 @@ struct Frame {
     unit: f64,
     /// Σ r_j² over its unknowns, motion by motion.
     squares: Vec<f64>,
-    /// Whether it turns by finite angles: a linear body does not, and one with supports turns about them.
+    /// Whether it turns by finite angles: a body at small strain does not, and one with supports turns about them.
     spins: bool,
 }
 
 impl<'a> Rigid<'a> {
-    /// `u`: displacement of the nodes, m, of bodies at finite strain; a linear body has the rigid motions of its reference
+    /// `u`: displacement of the nodes, m, of bodies at finite strain; one at small strain has the rigid motions of its reference
     /// places.
     pub(super) fn new(
         system: &'a System,
@@ -47,7 +47,7 @@ impl<'a> Rigid<'a> {
         let dim = system.dim;
         let mut places = system.x.clone();
         for (body, masses) in system.bodies.iter().zip(&system.body_masses) {
-            let Some(u) = u.filter(|_| !body.is_linear()) else {
+            let Some(u) = u.filter(|_| body.has_finite_motion()) else {
                 continue;
             };
             for &(node, _) in masses {
@@ -249,7 +249,7 @@ fn spins(system: &System, part: &Range<usize>) -> bool {
     let mut bodies = system.bodies.iter().zip(&system.body_masses);
     let inside = |node: u32| part.contains(&system.unknowns.first(node));
     let stiff = bodies.any(|(body, masses)| {
-        body.is_linear() && masses.first().is_some_and(|&(node, _)| inside(node))
+        !body.has_finite_motion() && masses.first().is_some_and(|&(node, _)| inside(node))
     });
     !stiff && !part.clone().any(|unknown| system.fixed[unknown])
 }

@@ -2,9 +2,10 @@
 //!
 //! To find the frequencies of all elements costs many steps, so it is done anew where a length in an element may have changed by
 //! [`CHANGE`]. That no length has is known without a look at the elements as long as `Σ dt 2 max |v_a - w| / l` is below it, with any
-//! velocity w and the shortest length l; otherwise lengths are compared with those of the last look.
+//! velocity w and the shortest length l; otherwise lengths are compared with those that had these frequencies, and frequencies found anew where
+//! they differ by more than a part of it.
 
-use carom_bodies::Body;
+use carom_bodies::{Body, Looks, Seen};
 use rayon::prelude::*;
 
 use super::Driver;
@@ -18,8 +19,11 @@ const PART: f64 = 0.9;
 /// Largest change of the lengths in an element, relative, between looks at its frequencies.
 const CHANGE: f64 = 0.1;
 
-/// Part of this change from which on they are looked at whenever lengths are compared.
+/// Part of this change from which on frequencies are found anew where lengths are compared.
 const WORTH: f64 = 0.5;
+
+/// Steps that are fractions of the critical step have so many sizes from one to its half: equal steps know the displacement ahead.
+const RUNGS: f64 = 16.0;
 
 /// Nodes whose velocities are compared at a time.
 const NODES: usize = 4096;
@@ -40,7 +44,7 @@ impl Driver {
             return Ok(());
         }
         let (motion, shapes) = (&self.state.motion, &mut self.state.shapes);
-        let known = !shapes.u.is_empty();
+        let known = !shapes.looks.is_empty();
         if known {
             let fastest = |part: usize, w: &[f64; 3]| match &self.direct {
                 // the last pass has found them
@@ -52,25 +56,30 @@ impl Driver {
             if shapes.changed <= CHANGE {
                 return Ok(());
             }
-            shapes.changed = largest_change(system, &motion.history, [&shapes.u, &motion.u]);
         }
-        if !known || shapes.changed > WORTH * CHANGE {
-            let (critical, bound) = system.critical_step_at(motion)?;
-            self.state.control.stable = PART * critical;
-            shapes.by_compression = bound.by_compression;
-            shapes.u.clone_from(&motion.u);
-            shapes.changed = 0.0;
-        }
-        let at = &shapes.u;
-        let shape = |(k, body): (usize, &Body)| {
-            changes(body).then(|| Shape {
-                velocity: system.mean_velocity(k, &motion.v),
-                shortest: shortest(system, (k, &motion.history), at),
-            })
-        };
+        shapes
+            .looks
+            .resize_with(system.bodies.len(), Looks::default);
         shapes.bodies.clear();
-        let bodies = system.bodies.iter().enumerate();
-        shapes.bodies.extend(bodies.map(shape));
+        let mut all = Seen::default();
+        for (k, looks) in shapes.looks.iter_mut().enumerate() {
+            let body = &system.bodies[k];
+            let mut shape = None;
+            if system.is_bound_by(k) {
+                let seen = body.look(&system.placement(k, motion), looks, WORTH * CHANGE)?;
+                all = all.with(&seen);
+                shape = changes(body).then(|| Shape {
+                    velocity: system.mean_velocity(k, &motion.v),
+                    shortest: seen.shortest,
+                });
+            }
+            shapes.bodies.push(shape);
+        }
+        if all.is_renewed {
+            self.state.control.stable = PART * system.critical_with(all.bound.frequency);
+            shapes.by_compression = all.bound.by_compression;
+        }
+        shapes.changed = all.changed;
         Ok(())
     }
 
@@ -84,6 +93,33 @@ impl Driver {
         let mut levels = 0..=halvings;
         let level = levels.find(|&level| dt <= stable * (1u64 << level) as f64);
         level.ok_or_else(|| self.shortened(dt / (1u64 << halvings) as f64))
+    }
+
+    /// The step of the model, or where it is a fraction of the critical step and elements have changed, the largest of the ladder
+    /// `dt 2^(-k/RUNGS)` that is no larger a fraction of the present one, s.
+    ///
+    /// # Errors
+    /// A critical step below the smallest part.
+    pub(super) fn followed_step(&self) -> Result<f64, Error> {
+        let dt = self.system.dt;
+        let Some(fraction) = self.system.critical_fraction else {
+            return Ok(dt);
+        };
+        let most = f64::min(1.0, fraction / PART) * self.stable_step();
+        // a step much larger than the last feeds energy to the fastest waves: one rung at a time
+        let last = (RUNGS * (dt / self.state.control.taken).log2()).round();
+        // equal but for rounding
+        let rungs = (RUNGS * (dt / most).log2() - 1e-9)
+            .ceil()
+            .max(last - 1.0)
+            .max(0.0);
+        if rungs > RUNGS * f64::from(self.system.nonlinear.iteration.halvings) {
+            return Err(self.shortened(dt * f64::exp2(-rungs / RUNGS)));
+        }
+        Ok(match rungs > 0.0 {
+            true => f64::min(most, dt * f64::exp2(-rungs / RUNGS)),
+            false => f64::min(most, dt),
+        })
     }
 
     /// That the smallest part of a step, `dt` (s), is beyond what an element has for critical step.
@@ -148,14 +184,15 @@ impl Driver {
         std::mem::swap(&mut self.state, &mut self.next);
         self.active.accept();
         if let Some(direct) = &mut self.direct {
-            direct.ready = direct.pending.take();
+            direct.go_on();
         }
     }
 }
 
-/// Whether the critical step of a body changes with its shape; the bound of springs holds for all elongations.
+/// Whether the critical step of a body changes with its shape; the bound of springs holds for all elongations, and that of bars and beams
+/// whose metal flows is the elastic one.
 fn changes(body: &Body) -> bool {
-    body.as_solid().is_some() && !body.is_linear()
+    body.as_solid().is_some() && body.has_finite_motion()
 }
 
 /// Largest square of |v - w| over the nodes of a part, m²/s².
@@ -170,54 +207,4 @@ fn fastest(system: &System, part: usize, (w, v): (&[f64; 3], &[f64])) -> f64 {
     let nodes = system.nodes_of(&system.parts[part]).into_par_iter();
     let squares = nodes.with_min_len(NODES).map(square);
     squares.reduce(|| 0.0, f64::max)
-}
-
-/// Calls `visit` with the nodes of each pair of an element of a body, those of deleted elements left out. `histories`: of all.
-fn each_pair(
-    system: &System,
-    (number, histories): (usize, &[f64]),
-    visit: &mut impl FnMut(u32, u32),
-) {
-    let history = system.history(number, histories);
-    system.bodies[number].each_element_left(history, &mut |nodes| {
-        for (k, &a) in nodes.iter().enumerate() {
-            for &b in &nodes[..k] {
-                visit(a, b);
-            }
-        }
-    });
-}
-
-/// Square of the distance of two nodes, m².
-fn square(system: &System, [a, b]: [u32; 2], u: &[f64]) -> f64 {
-    let place = |node: u32| {
-        let (x, u) = (system.x[node as usize], system.unknowns.vector(node, u));
-        [0, 1, 2].map(|i| x[i] + u[i])
-    };
-    let (a, b) = (place(a), place(b));
-    (0..system.dim).map(|i| (a[i] - b[i]).powi(2)).sum()
-}
-
-/// Shortest distance of two nodes of an element of a body, m.
-fn shortest(system: &System, of: (usize, &[f64]), u: &[f64]) -> f64 {
-    let mut least = f64::INFINITY;
-    each_pair(system, of, &mut |a, b| {
-        least = least.min(square(system, [a, b], u))
-    });
-    least.sqrt()
-}
-
-/// Largest change of the distance of two nodes of an element from one motion to another, relative.
-fn largest_change(system: &System, histories: &[f64], places: [&[f64]; 2]) -> f64 {
-    let mut range: [f64; 2] = [1.0; 2];
-    let bodies = system.bodies.iter().enumerate();
-    for (number, _) in bodies.filter(|(_, body)| changes(body)) {
-        each_pair(system, (number, histories), &mut |a, b| {
-            let [before, now] = places.map(|u| square(system, [a, b], u));
-            let ratio = now / before;
-            range = [range[0].min(ratio), range[1].max(ratio)];
-        });
-    }
-    let [least, most] = range.map(f64::sqrt);
-    f64::max(1.0 - least, most - 1.0)
 }

@@ -15,7 +15,7 @@ use crate::system::{Adaptive, System};
 impl Driver {
     /// Takes one step. With an adaptive step, attempts in which a contact closes, energy grows, or no solution is found are
     /// dropped, and a smaller one is tried. Another step is taken whole, or in halves of halves where it finds no equilibrium, and
-    /// of an explicit scheme where elements have become too small for it.
+    /// of an explicit scheme where elements have become too small for it; a step that is a fraction of the critical one is shorter then.
     ///
     /// # Errors
     /// A contact problem without solution, no equilibrium, a motion that is not finite, or energy that grows, with steps that are fixed
@@ -50,9 +50,10 @@ impl Driver {
 
     fn step_in_parts(&mut self) -> Result<(), Error> {
         let (taken, first) = (self.state.step, self.state.time);
-        let size = self.size_of_step();
+        let planned = self.unplanned.take();
+        self.renew_stable(planned.unwrap_or(self.state.control.taken))?;
+        let size = self.size_of_step(planned)?;
         let end = self.end_of_step(size);
-        self.renew_stable(end - first)?;
         let whole = self.stable_level(end - first)?;
         let mut control = self.state.control;
         let (mut done, mut level) = (0u64, whole);
@@ -144,10 +145,13 @@ impl Driver {
     }
 
     /// Size of the next step, s: the same bits for equal steps, so that a constant matrix is.
-    fn size_of_step(&mut self) -> f64 {
+    ///
+    /// # Errors
+    /// A critical step below the smallest part.
+    fn size_of_step(&self, planned: Option<f64>) -> Result<f64, Error> {
         match self.system.nonlinear.preload {
-            Some(preload) if self.is_static() => preload.end / preload.steps as f64,
-            _ => self.unplanned.take().unwrap_or(self.system.dt),
+            Some(preload) if self.is_static() => Ok(preload.end / preload.steps as f64),
+            _ => planned.map_or_else(|| self.followed_step(), Ok),
         }
     }
 

@@ -86,6 +86,7 @@ fn sheared(secondary: usize) -> Driver {
         links: Vec::new(),
         constraints: Vec::new(),
         adaptive: None,
+        critical_fraction: None,
         nonlinear: Nonlinear {
             motions: vec![Prescribed {
                 nodes: mesh.group_nodes(&mesh.groups["upper.top"]),

@@ -89,6 +89,7 @@ fn pressed(depth: f64, way: f64) -> Driver {
         links: Vec::new(),
         constraints: Vec::new(),
         adaptive: None,
+        critical_fraction: None,
         nonlinear: Nonlinear {
             motions: vec![Prescribed {
                 nodes: mesh.group_nodes(&mesh.groups["a.top"]),

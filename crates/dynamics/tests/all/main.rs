@@ -10,6 +10,7 @@ mod discrete;
 mod edges;
 mod explicit;
 mod floating;
+mod flowing;
 mod fold;
 mod friction;
 mod impacts;

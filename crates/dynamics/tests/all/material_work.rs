@@ -260,7 +260,7 @@ fn pressure_that_follows_does_p_dv() {
 }
 
 /// A block that is squeezed between its speed and a wall, a step just below its first critical one.
-fn squeezed(halvings: u32) -> (Result<(), Error>, u32, Driver) {
+fn squeezed_model(halvings: u32) -> Model {
     let central = Scheme::CentralDifference(scheme::CentralDifference {});
     let soft = Material::NeoHooke(NeoHooke {
         initial: Elastic {
@@ -273,7 +273,11 @@ fn squeezed(halvings: u32) -> (Result<(), Error>, u32, Driver) {
     model.bodies[0].velocity = [0.0, -0.6, 0.0];
     model.dt = 0.88 * System::new(model.clone()).unwrap().critical_step();
     model.nonlinear.iteration.halvings = halvings;
-    let mut newton = newton(model);
+    model
+}
+
+fn squeezed(halvings: u32) -> (Result<(), Error>, u32, Driver) {
+    let mut newton = newton(squeezed_model(halvings));
     let (mut most, mut sum) = (0, 0.0);
     for _ in 0..60 {
         if let Err(error) = newton.step() {
@@ -310,4 +314,35 @@ fn an_explicit_step_is_split_where_elements_have_shortened() {
         }
         other => panic!("{other:?}"),
     }
+}
+
+/// A step that is a fraction of the critical one is never split: it gets shorter. It is below the critical step of the present shape,
+/// and no lower than what is not known of that step: lengths to a tenth when they are looked at, so much of the stiffness
+/// of the least of them, and a rung.
+#[test]
+fn a_fraction_of_the_critical_step_follows_the_shape() {
+    let mut model = squeezed_model(0);
+    model.critical_fraction = Some(0.88);
+    model.nonlinear.iteration.halvings = 6;
+    let mut newton = newton(model);
+    let (largest, mut least, mut times) = (newton.system().dt, f64::INFINITY, 0.0);
+    let end = 60.0 * largest;
+    while newton.state().time < end {
+        let before = newton.state().time;
+        let (critical, _) = newton
+            .system()
+            .critical_step_at(&newton.state().motion)
+            .unwrap();
+        newton.step().unwrap();
+        let dt = newton.state().time - before;
+        times += dt;
+        assert_eq!(newton.report().attempts, 1);
+        assert!((0.6..1.0).contains(&(dt / critical)), "{}", dt / critical);
+        least = f64::min(least, dt);
+    }
+    assert!(least < 0.75 * largest, "{least:e} of {largest:e}");
+    // instants of equal steps are products
+    assert!((times / newton.state().time - 1.0).abs() < 1e-12);
+    let ledger = &newton.state().ledger;
+    assert!(ledger.largest_energy_residual < 1e-13 * ledger.initial.energy());
 }

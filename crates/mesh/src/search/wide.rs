@@ -1,15 +1,18 @@
-//! Eight boxes at once, in single precision, a little larger than the boxes that they stand for.
+//! Eight boxes at once, in single precision. What coordinates lose there is added to the distances that are asked for.
 
 use crate::Bounds;
+use crate::bounds::{larger, smaller};
 
 /// Boxes side by side.
 pub(super) const WIDTH: usize = 8;
 
-/// Relative rounding of coordinates in single precision, with a margin for the few operations of a test.
+/// What a distance may lose, over the largest coordinates of box and place: ε/2 in each of them and in their difference, along three
+/// axes √3 ε, and as much again for the margin.
 const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 
 /// Boxes relative to a place; those that do not exist are empty.
 #[derive(Clone, Debug, PartialEq)]
+#[repr(align(64))]
 pub(super) struct Wide {
     min: [[f32; WIDTH]; 3],
     max: [[f32; WIDTH]; 3],
@@ -21,11 +24,12 @@ impl Wide {
         max: [[f32::NEG_INFINITY; WIDTH]; 3],
     };
 
-    /// Takes a box, rounded outwards.
+    /// Takes a box.
+    #[inline]
     pub fn set(&mut self, at: usize, bounds: &Bounds, origin: &[f64; 3]) {
         for i in 0..3 {
-            self.min[i][at] = ((bounds.min[i] - origin[i]) as f32).next_down();
-            self.max[i][at] = ((bounds.max[i] - origin[i]) as f32).next_up();
+            self.min[i][at] = (bounds.min[i] - origin[i]) as f32;
+            self.max[i][at] = (bounds.max[i] - origin[i]) as f32;
         }
     }
 
@@ -33,8 +37,8 @@ impl Wide {
     pub fn set_around(&mut self, at: usize, other: &Wide) {
         for i in 0..3 {
             let (min, max) = (other.min[i].iter(), other.max[i].iter());
-            self.min[i][at] = min.fold(f32::INFINITY, |least, x| least.min(*x));
-            self.max[i][at] = max.fold(f32::NEG_INFINITY, |most, x| most.max(*x));
+            self.min[i][at] = min.fold(f32::INFINITY, |least, x| smaller(least, *x));
+            self.max[i][at] = max.fold(f32::NEG_INFINITY, |most, x| larger(most, *x));
         }
     }
 
@@ -47,18 +51,57 @@ impl Wide {
     }
 
     /// Squares of the distances of the boxes from a box; infinite of those that do not exist.
-    #[inline]
+    #[inline(always)]
     pub fn squares(&self, from: &Around) -> [f32; WIDTH] {
         let mut squares = [0.0; WIDTH];
         for i in 0..3 {
             for (at, square) in squares.iter_mut().enumerate() {
-                let out = (self.min[i][at] - from.max[i]).max(from.min[i] - self.max[i][at]);
-                let out = out.max(0.0);
+                let (before, after) =
+                    (self.min[i][at] - from.max[i], from.min[i] - self.max[i][at]);
+                let out = larger(0.0, larger(before, after));
                 *square += out * out;
             }
         }
         squares
     }
+
+    /// Squares of the distances of points from one of the boxes.
+    #[inline(always)]
+    pub fn squares_of(&self, at: usize, points: &[[f32; WIDTH]; 3]) -> [f32; WIDTH] {
+        let mut squares = [0.0; WIDTH];
+        for (i, x) in points.iter().enumerate() {
+            let (min, max) = (self.min[i][at], self.max[i][at]);
+            for (x, square) in x.iter().zip(&mut squares) {
+                let out = larger(0.0, larger(min - x, x - max));
+                *square += out * out;
+            }
+        }
+        squares
+    }
+}
+
+/// The entries not above a limit with their places, smaller ones first, into `near`; how many they are.
+#[inline(always)]
+pub(super) fn sorted(squares: &[f32; WIDTH], limit: f32, near: &mut [(f32, u32); WIDTH]) -> usize {
+    let mut bits = [0_u32; WIDTH];
+    for (place, (bit, square)) in bits.iter_mut().zip(squares).enumerate() {
+        *bit = if *square <= limit { 1 << place } else { 0 };
+    }
+    let mut left: u32 = bits.iter().sum();
+    let mut found = 0;
+    while left != 0 {
+        let place = left.trailing_zeros();
+        left &= left - 1;
+        let square = squares[place as usize % WIDTH];
+        let mut at = found;
+        while at > 0 && near[at - 1].0 > square {
+            near[at] = near[at - 1];
+            at -= 1;
+        }
+        near[at] = (square, place);
+        found += 1;
+    }
+    found
 }
 
 /// The place, or the box, from which distances are asked.

@@ -82,7 +82,7 @@ fn equation((problem, d): (&Posed, &[f64]), trial: &Trial, row: usize, line: &mu
         return trial.defects[row];
     }
     let factor = problem.weight(i) * problem.s[2];
-    let (normal, mobile) = (problem.normal(i), trial.mobile[i]);
+    let (normal, mobile) = (problem.normal(i), trial.alone[i].mobile);
     let (e, mu) = (trial.directions[i], problem.friction[i].mu);
     let sticks = trial.slips[i] == Slip::Stick;
     line.fill(0.0);

@@ -10,6 +10,9 @@ use crate::interface::Candidate;
 /// sliding that may be along it.
 const HELD: f64 = 1e-9;
 
+/// Entries of the block of a candidate, over the smaller of those on the diagonal, that are rounding.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// A problem with friction over n candidates. Row `i w` of D belongs to the normal of candidate i, the `tangents` rows
 /// after it to its tangents, w = 1 + `tangents`.
 #[derive(Clone, Copy)]
@@ -26,6 +29,26 @@ pub struct Posed<'a> {
     pub s: [f64; 3],
     /// Defect over the largest force with which forces are taken where no nearer ones are found.
     pub tolerance: f64,
+}
+
+/// What a problem says of a candidate by itself.
+#[derive(Clone, Copy)]
+pub(super) struct Alone {
+    /// Projector on the tangents along which its forces move it; see [`Posed::mobile`].
+    pub(super) mobile: [[f64; 2]; 2],
+    /// Where its block of D is diagonal.
+    pub(super) diagonal: Option<Diagonal>,
+}
+
+/// A candidate whose block of D is diagonal, with equal tangents.
+#[derive(Clone, Copy)]
+pub(super) struct Diagonal {
+    /// Entries of its normal and its tangents.
+    pub(super) own: [f64; 2],
+    /// In the relation of its closure the factor of D p, that of its own force, and what it says before the forces.
+    pub(super) factor: f64,
+    pub(super) slope: f64,
+    pub(super) free: f64,
 }
 
 impl<'a> Posed<'a> {
@@ -95,6 +118,27 @@ impl<'a> Posed<'a> {
         if slope > 0.0 { 1.0 / slope } else { 1.0 }
     }
 
+    /// What the problem says of candidate `i` by itself.
+    pub(super) fn alone(&self, i: usize) -> Alone {
+        let Some(own) = self.diagonal(i) else {
+            return Alone {
+                mobile: self.mobile(i),
+                diagonal: None,
+            };
+        };
+        let relation = self.relation(i, Status::Closed);
+        let factor = self.factor(i, &relation);
+        Alone {
+            mobile: [[1.0, 0.0], [0.0, 1.0]],
+            diagonal: Some(Diagonal {
+                own,
+                factor,
+                slope: factor * own[0] + relation.compliance,
+                free: self.free(i, &relation),
+            }),
+        }
+    }
+
     /// Projector on the tangents along which forces of candidate `i` move it while its normal relation holds.
     ///
     /// A node on a plane of symmetry moves in that plane alone. Its rows of D are then dependent, but for what rounding of
@@ -102,7 +146,7 @@ impl<'a> Posed<'a> {
     /// are zero here. With S the tangential block of D less what the normal force takes back,
     /// `S = D_tt - f D_tn D_nt / (f D_nn + compliance)`, held are eigenvectors of S of (nearly) no mobility along which
     /// there is no sliding either: a surface whose motion is prescribed slides, and has friction.
-    pub(super) fn mobile(&self, i: usize) -> [[f64; 2]; 2] {
+    fn mobile(&self, i: usize) -> [[f64; 2]; 2] {
         let relation = self.relation(i, Status::Closed);
         let back = self.factor(i, &relation) / self.slope(i, &relation);
         let pressed = self.s[2] * self.free(i, &relation) / self.slope(i, &relation);
@@ -137,6 +181,26 @@ impl<'a> Posed<'a> {
         mobile
     }
 
+    /// Entries of the block of D of candidate `i` along its normal and its tangents, where it is diagonal with equal tangents but for
+    /// rounding and supports hold nothing of it: that of a node with equal masses in all directions.
+    fn diagonal(&self, i: usize) -> Option<[f64; 2]> {
+        // of few points passes find the forces, and sweeps are not what takes time
+        if matches!(self.d, Compliance::Dense(_)) {
+            return None;
+        }
+        let entry = |k: usize, l: usize| self.entry(i, k, l);
+        let own = [entry(0, 0), entry(1, 1)];
+        let least = ROUNDING * own[0].min(own[1]);
+        let mut apart = entry(0, 1).abs().max(entry(1, 0).abs());
+        if self.tangents == 2 {
+            let across = [(0, 2), (2, 0), (1, 2), (2, 1)].map(|(k, l)| entry(k, l).abs());
+            apart = across.into_iter().fold(apart, f64::max);
+            apart = apart.max((entry(2, 2) - own[1]).abs());
+        }
+        let is_mobile = own[1] > HELD * (own[0] + self.tangents as f64 * own[1]);
+        (least > 0.0 && apart <= least && is_mobile).then_some(own)
+    }
+
     /// End of the step in candidate `i` with the force `force`, with (D p)_n in all, and without its own forces.
     pub(super) fn end(&self, i: usize, force: f64, product: f64, others: f64) -> End {
         let candidate = &self.candidates[i];
@@ -150,8 +214,11 @@ impl<'a> Posed<'a> {
     }
 
     /// (D p)_k of the forces of candidate `i` alone, k one of its rows, 0 its normal.
-    pub(super) fn own(&self, i: usize, k: usize, p: &[f64]) -> f64 {
+    pub(super) fn own(&self, (i, alone): (usize, &Alone), k: usize, p: &[f64]) -> f64 {
         let first = self.normal(i);
+        if let Some(Diagonal { own, .. }) = &alone.diagonal {
+            return own[k.min(1)] * p[first + k];
+        }
         (0..=self.tangents)
             .map(|l| self.entry(i, k, l) * p[first + l])
             .sum()

@@ -37,8 +37,8 @@ const ALONE: usize = 20_000;
 const FEW_ROWS: usize = 1000;
 /// Sweeps before passes take over, which cost as much as some hundred of them.
 const BEFORE_PASSES: usize = 500;
-/// Change of the forces in a sweep, over the largest, from which on defects are looked at.
-const SETTLED: f64 = 1e-12;
+/// Change of the forces in a sweep, over the largest and what is asked for, from which on defects are looked at.
+const SETTLED: f64 = 0.1;
 
 /// How far a pass goes along the change of the forces.
 #[derive(Clone, Copy, PartialEq)]
@@ -91,7 +91,7 @@ impl Coulomb {
         self.change.clear();
         self.change.resize(problem.rows(), 0.0);
         self.trial.start(problem);
-        self.best = self.trial.clone();
+        self.best.copy_from(&self.trial);
         self.best.merit = f64::INFINITY;
         let d = match problem.d {
             Compliance::Dense(d) => return self.rounds((problem, d)),
@@ -125,7 +125,7 @@ impl Coulomb {
                 self.finish(problem);
                 return Ok(());
             }
-            self.trial = self.best.clone();
+            self.trial.copy_from(&self.best);
             if self.trial.is_near(problem) {
                 self.finish(problem);
                 return Ok(());
@@ -136,7 +136,7 @@ impl Coulomb {
             }
             self.sweeps += SWEEPS << round;
             self.trial.measure(problem, &self.reversals);
-            self.best = self.trial.clone();
+            self.best.copy_from(&self.trial);
         }
         if self.trial.worst.0 <= TOLERANCE || self.trial.is_near(problem) {
             self.finish(problem);
@@ -151,24 +151,25 @@ impl Coulomb {
         (problem, d): (&Posed, &Lumped),
         most: usize,
     ) -> Result<(), FrictionFailure> {
+        self.trial.go_on_from_last(problem);
         d.gather(&self.trial.p, &mut self.kept);
-        let mut patience = PATIENCE;
+        let (mut patience, settled) = (PATIENCE, SETTLED * problem.tolerance.max(10.0 * TOLERANCE));
         self.conjugate.begin(&self.trial.p, &self.kept);
         for _ in 0..most {
             self.sweeps += 1;
             let room = (&mut self.trial, &mut self.kept);
             self.conjugate.note(&room.0.p, room.1);
-            if sweep::sweep((problem, d), room.0, room.1) > SETTLED {
+            if sweep::sweep((problem, d), room.0, room.1) > settled {
                 self.conjugate.go_on(&mut room.0.p, room.1);
                 continue;
             }
             self.trial.measure(problem, &self.reversals);
-            if self.trial.worst.0 <= TOLERANCE {
+            if self.trial.worst.0 <= TOLERANCE || self.trial.is_near(problem) {
                 self.finish(problem);
                 return Ok(());
             }
             if self.trial.merit < self.best.merit {
-                self.best.clone_from(&self.trial);
+                self.best.copy_from(&self.trial);
                 patience = PATIENCE;
             } else if patience > 0 {
                 patience -= 1;
@@ -177,7 +178,7 @@ impl Coulomb {
             }
         }
         self.trial.measure(problem, &self.reversals);
-        self.best.clone_from(&self.trial);
+        self.best.copy_from(&self.trial);
         if self.trial.is_near(problem) {
             self.finish(problem);
             return Ok(());
@@ -217,7 +218,7 @@ impl Coulomb {
             }
             self.advance((problem, d), means.1);
             if self.trial.merit < 0.999 * self.best.merit {
-                self.best.clone_from(&self.trial);
+                self.best.copy_from(&self.trial);
                 patience = most;
             } else {
                 patience -= 1;
@@ -228,7 +229,7 @@ impl Coulomb {
 
     /// Goes along the change.
     fn advance(&mut self, (problem, d): (&Posed, &[f64]), length: Length) {
-        self.start.clone_from(&self.trial);
+        self.start.copy_from(&self.trial);
         match length {
             Length::Whole => self.go(problem, 1.0),
             Length::UpToChange => {
@@ -253,7 +254,7 @@ impl Coulomb {
 
     /// The trial this share of the change away from the start.
     fn go(&mut self, problem: &Posed, share: f64) {
-        self.trial.clone_from(&self.start);
+        self.trial.copy_from(&self.start);
         for (p, change) in self.trial.p.iter_mut().zip(&self.change) {
             *p += share * change;
         }

@@ -3,6 +3,7 @@
 use carom_laws::{Relation, Status};
 
 use super::Posed;
+use super::posed::{Alone, Diagonal};
 use super::trial::Trial;
 use crate::Lumped;
 
@@ -59,14 +60,11 @@ pub(super) fn sweep<D: Product + ?Sized>(
         let (row, width) = (problem.normal(i), 1 + problem.tangents);
         let mut others = [0.0; 3];
         for (k, others) in others.iter_mut().enumerate().take(width) {
-            *others = d.at(row + k, kept) - problem.own(i, k, &trial.p);
+            let own = problem.own((i, &trial.alone[i]), k, &trial.p);
+            *others = d.at(row + k, kept) - own;
         }
-        let forces = solve(
-            (problem, &trial.mobile[i]),
-            i,
-            &mut trial.statuses[i],
-            &others,
-        );
+        let of = (problem, &trial.alone[i]);
+        let forces = solve(of, i, &mut trial.statuses[i], &others);
         for k in 0..width {
             let moved = forces[k] - trial.p[row + k];
             if moved != 0.0 {
@@ -82,7 +80,7 @@ pub(super) fn sweep<D: Product + ?Sized>(
 
 /// The forces [P, t] of one candidate, with `others` = D p of all other candidates in its rows.
 fn solve(
-    (problem, mobile): (&Posed, &[[f64; 2]; 2]),
+    (problem, alone): (&Posed, &Alone),
     i: usize,
     status: &mut Status,
     others: &[f64; 3],
@@ -91,14 +89,17 @@ fn solve(
     let law = candidate.law.get();
     let mut forces = [0.0; 3];
     for turn in 0..TURNS {
-        forces = match *status {
-            Status::Open => [0.0; 3],
-            status => closed((problem, mobile), i, &problem.relation(i, status), others),
+        forces = match (*status, &alone.diagonal) {
+            (Status::Open, _) => [0.0; 3],
+            (Status::Closed, Some(diagonal)) => uncoupled((problem, i), diagonal, others),
+            (status, _) => closed((problem, alone), i, &problem.relation(i, status), others),
         };
-        let product = others[0]
-            + (0..=problem.tangents)
-                .map(|k| problem.entry(i, 0, k) * forces[k])
-                .sum::<f64>();
+        let row = |k: usize| problem.entry(i, 0, k) * forces[k];
+        let own = match &alone.diagonal {
+            Some(Diagonal { own, .. }) => own[0] * forces[0],
+            None => (0..=problem.tangents).map(row).sum::<f64>(),
+        };
+        let product = others[0] + own;
         let end = problem.end(i, forces[0], product, others[0]);
         let asked = law.status(*status, &end, &candidate.local, turn);
         if asked == *status {
@@ -112,7 +113,7 @@ fn solve(
 /// The forces of a closed candidate: those that stick, if the bound lets them, else those of the slip q = -λ t with the
 /// λ > 0 at which |t| = μ P. The equations are linear for a given λ; λ = 0 sticks, λ → ∞ is frictionless.
 fn closed(
-    (problem, mobile): (&Posed, &[[f64; 2]; 2]),
+    (problem, alone): (&Posed, &Alone),
     i: usize,
     relation: &Relation,
     others: &[f64; 3],
@@ -133,7 +134,7 @@ fn closed(
                 _ => point.free[k - 1],
             };
     }
-    hold(mobile, scale, (&mut a, &mut rhs));
+    hold(&alone.mobile, scale, (&mut a, &mut rhs));
     a[0][0] += relation.compliance;
     let frictionless = [rhs[0] / problem.slope(i, relation), 0.0, 0.0];
     if point.mu == 0.0 {
@@ -184,6 +185,25 @@ fn closed(
         }
     }
     slipping
+}
+
+/// The forces of a closed candidate whose block of D is diagonal, with equal tangents: the slip is along the tangential force that
+/// sticks, and the normal force does not depend on it.
+fn uncoupled((problem, i): (&Posed, usize), of: &Diagonal, others: &[f64; 3]) -> [f64; 3] {
+    let point = &problem.friction[i];
+    let pressed = -(of.factor * others[0] + of.free) / of.slope;
+    let mut forces = [pressed, 0.0, 0.0];
+    let slope = problem.s[2] * of.own[1];
+    for k in 0..problem.tangents {
+        forces[k + 1] = -(problem.s[2] * others[k + 1] + point.free[k]) / slope;
+    }
+    let square = forces[1] * forces[1] + forces[2] * forces[2];
+    let bound = point.mu * pressed.max(0.0);
+    if square > bound * bound {
+        let share = bound / square.sqrt();
+        (forces[1], forces[2]) = (share * forces[1], share * forces[2]);
+    }
+    forces
 }
 
 /// Replaces the equations of tangents that supports hold by those of no force there.

@@ -26,6 +26,9 @@ pub struct Tangential {
     pub slip: Slip,
     /// Tangential force of the last step, N: a point that slipped is first tried in this direction.
     pub force: [f64; 2],
+    /// Normal force of the last step, N: sweeps begin with it.
+    #[serde(default)]
+    pub pressed: f64,
 }
 
 /// A problem with friction was not solved.

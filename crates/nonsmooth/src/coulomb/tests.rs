@@ -493,6 +493,7 @@ fn disc_in_a_corner(mu: f64, free: [f64; 3], offsets: [f64; 2]) -> FrictionProbl
         free: [along(&rows[2 * k + 1]), 0.0],
         slip: Slip::Stick,
         force: [0.0; 2],
+        pressed: 0.0,
     };
     FrictionProblem {
         step: 0,

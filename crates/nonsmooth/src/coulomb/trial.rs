@@ -2,6 +2,7 @@
 
 use carom_laws::Status;
 
+use super::posed::Alone;
 use super::{Posed, Slip};
 use crate::Compliance;
 
@@ -16,14 +17,14 @@ use crate::Compliance;
 /// of which the second is t less the projection of t - ρ q on the disc of radius b. Where supports hold a tangent
 /// ([`Posed::mobile`]), t - ρ q is its part along the others. For laws that are complementarity of
 /// the force and one quantity the defects are continuous in the forces.
-#[derive(Clone, Default)]
+#[derive(Default)]
 pub(super) struct Trial {
     /// Forces of all rows, N.
     pub(super) p: Vec<f64>,
     /// D p.
     pub(super) product: Vec<f64>,
-    /// Of each candidate, [`Posed::mobile`].
-    pub(super) mobile: Vec<[[f64; 2]; 2]>,
+    /// What is known of each candidate by itself.
+    pub(super) alone: Vec<Alone>,
     /// Σ |D_ij p_j|, or a bound of it.
     sizes: Vec<f64>,
     /// Scratch.
@@ -45,6 +46,25 @@ pub(super) struct Trial {
 }
 
 impl Trial {
+    /// Becomes like another one, in the room that it has.
+    pub(super) fn copy_from(&mut self, other: &Trial) {
+        let numbers = [
+            (&mut self.p, &other.p),
+            (&mut self.product, &other.product),
+            (&mut self.sizes, &other.sizes),
+            (&mut self.curvatures, &other.curvatures),
+            (&mut self.defects, &other.defects),
+        ];
+        for (own, of_other) in numbers {
+            own.clone_from(of_other);
+        }
+        self.alone.clone_from(&other.alone);
+        self.statuses.clone_from(&other.statuses);
+        self.slips.clone_from(&other.slips);
+        self.directions.clone_from(&other.directions);
+        (self.worst, self.merit) = (other.worst, other.merit);
+    }
+
     /// The trial of no force, with the statuses at the end of the last step.
     pub(super) fn start(&mut self, problem: &Posed) {
         let (n, rows) = (problem.len(), problem.rows());
@@ -52,8 +72,8 @@ impl Trial {
             values.clear();
             values.resize(rows, 0.0);
         }
-        self.mobile.clear();
-        self.mobile.extend((0..n).map(|i| problem.mobile(i)));
+        self.alone.clear();
+        self.alone.extend((0..n).map(|i| problem.alone(i)));
         self.statuses.clear();
         // a corner is found anew in each step, from a closed point that opens
         let last = problem.candidates.iter().map(|c| match c.status {
@@ -79,11 +99,24 @@ impl Trial {
             }
             let row = problem.normal(i);
             self.defects[row] = self.relation_defect(problem, i, &mut 0.0);
-            let (weight, mobile) = (problem.weight(i), self.mobile[i]);
+            let (weight, mobile) = (problem.weight(i), self.alone[i].mobile);
             for k in 0..problem.tangents {
                 let slid = mobile[k][0] * point.free[0] + mobile[k][1] * point.free[1];
                 self.defects[row + 1 + k] = weight * slid;
             }
+        }
+    }
+
+    /// Takes the forces of the last step.
+    pub(super) fn go_on_from_last(&mut self, problem: &Posed) {
+        for (i, point) in problem.friction.iter().enumerate() {
+            if self.statuses[i] == Status::Open {
+                continue;
+            }
+            let row = problem.normal(i);
+            self.p[row] = point.pressed;
+            self.p[row + 1..=row + problem.tangents]
+                .copy_from_slice(&point.force[..problem.tangents]);
         }
     }
 
@@ -155,7 +188,7 @@ impl Trial {
                 y[k] = self.p[row] - weight * slid;
                 turn[k] = change[row] - weight * problem.s[2] * moved(row);
             }
-            let mobile = self.mobile[i];
+            let mobile = self.alone[i].mobile;
             let [y, turn] = [y, turn].map(|y| mobile.map(|row| row[0] * y[0] + row[1] * y[1]));
             let (bound, growth) = (point.mu * pressed, point.mu * pressing);
             let a = turn[0].powi(2) + turn[1].powi(2) - growth.powi(2);
@@ -206,7 +239,7 @@ impl Trial {
         let row = problem.normal(i);
         let candidate = &problem.candidates[i];
         let (force, product) = (self.p[row], self.product[row]);
-        let others = product - problem.own(i, 0, &self.p);
+        let others = product - problem.own((i, &self.alone[i]), 0, &self.p);
         // The signs are those of P - R, whichever status the point has: of the force where R = 0, of the gap or rate
         // where P = 0.
         let end = match self.statuses[i] {
@@ -247,7 +280,9 @@ impl Trial {
             y[k] = t[k] - weight * (point.free[k] + problem.s[2] * self.product[row + k]);
             sizes[k] = t[k].abs() + weight * (point.free[k].abs() + problem.s[2] * sizes[k]);
         }
-        let y = self.mobile[i].map(|row| row[0] * y[0] + row[1] * y[1]);
+        let y = self.alone[i]
+            .mobile
+            .map(|row| row[0] * y[0] + row[1] * y[1]);
         let (bound, size) = (point.mu * pressed.max(0.0), y[0].hypot(y[1]));
         self.curvatures[i] = 0.0;
         self.slips[i] = if self.statuses[i] == Status::Open {

@@ -66,6 +66,7 @@ fn sliding(count: usize, random: &mut Random) -> Vec<Tangential> {
         free: [random.between(-0.5, 0.5), random.between(-0.5, 0.5)],
         slip: Slip::Open,
         force: [0.0; 2],
+        pressed: 0.0,
     };
     (0..count).map(one).collect()
 }

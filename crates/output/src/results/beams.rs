@@ -1,6 +1,6 @@
 //! Fields of beams: rotations of nodes, forces and moments in sections.
 
-use carom_dynamics::System;
+use carom_dynamics::{Motion, System};
 
 /// Small rotations of the nodes, rad; zero where a node has none.
 pub(crate) fn rotations(system: &System, u: &[f64]) -> Vec<[f64; 3]> {
@@ -21,10 +21,11 @@ pub(crate) const SECTION_FORCES: [&str; 3] = [
 
 /// Force (N), and moments at the first and at the second node (N m), of each cell in the axes of its section; zero in other bodies
 /// than beams.
-pub(crate) fn section_forces(system: &System, u: &[f64]) -> [Vec<[f64; 3]>; 3] {
+pub(crate) fn section_forces(system: &System, motion: &Motion) -> [Vec<[f64; 3]>; 3] {
     let mut fields = [Vec::new(), Vec::new(), Vec::new()];
-    for body in &system.bodies {
-        match body.section_forces(u) {
+    for (k, body) in system.bodies.iter().enumerate() {
+        let history = system.history(k, &motion.history);
+        match body.section_forces(&motion.u, &motion.frames, history) {
             Some(forces) => {
                 for own in forces {
                     fields[0].push(own.force);

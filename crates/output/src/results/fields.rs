@@ -280,7 +280,7 @@ impl Volume {
             });
         }
         let forces = match fields.section_forces {
-            true => section_forces(system, &snapshot.motion.u),
+            true => section_forces(system, &snapshot.motion),
             false => Default::default(),
         };
         let stress = match fields.stress {

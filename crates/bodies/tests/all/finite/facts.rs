@@ -1,7 +1,7 @@
 //! Limits, refusals, threads.
 
 use carom_algebra::unknowns::Unknowns;
-use carom_bodies::{BodySpec, Error, Formulation, Kinematics, Placement, Scratch, Solid};
+use carom_bodies::{BodySpec, Error, Formulation, Kinematics, Looks, Placement, Scratch, Solid};
 use carom_elements::Kind;
 use carom_materials::Failure;
 use carom_mesh::{Mesh, generate};
@@ -217,6 +217,38 @@ fn the_frequency_bound_rises_as_the_body_shortens() {
     };
     let ratio = bound(0.5) / bound(0.0);
     assert!((ratio * ratio - 2.5).abs() < 0.1, "{}", ratio * ratio);
+}
+
+/// A bar of 256 hexahedra is eight chunks. Where its last quarter is compressed by a fifth, the frequencies of that quarter are found
+/// anew and are the largest: those of the rest, which is only carried along, stand.
+#[test]
+fn a_look_finds_frequencies_anew_where_elements_have_changed() {
+    let (name, law) = elastic()[0];
+    let bar = generate::box_("b", [0.0; 3], [256.0, 1.0, 1.0], [256, 1, 1], false);
+    let full = Formulation::Full;
+    let sample = Sample::of(name, bar, Kinematics::Solid, law, full);
+    let (mut looks, step) = (Looks::default(), Step::new(&sample));
+    let mut look = |shortening: f64, worth: f64| {
+        let u = sample.field(|x| [-shortening * (x[0] - 192.0).max(0.0), 0.0, 0.0]);
+        let seen = sample.body.look(&step.at(&u), &mut looks, worth).unwrap();
+        let whole = sample.body.frequency_bound_at(&step.at(&u)).unwrap();
+        (seen, whole.frequency)
+    };
+    let (seen, whole) = look(0.0, 0.05);
+    assert!(seen.is_renewed && seen.bound.frequency == whole && seen.changed == 0.0);
+    assert!((seen.shortest - 1.0).abs() < 1e-12);
+    // places have an error of 256 roundings
+    let (seen, _) = look(0.04, 0.05);
+    assert!(!seen.is_renewed && (seen.changed - 0.04).abs() < 1e-12);
+    assert_eq!(seen.bound.frequency, whole);
+    let (seen, pressed) = look(0.2, 0.05);
+    assert!(seen.is_renewed && seen.changed < 1e-12 && pressed > whole);
+    assert_eq!(seen.bound.frequency, pressed);
+    assert!((seen.shortest - 0.8).abs() < 1e-12);
+    // back again, and not asked to find them anew
+    let (seen, _) = look(0.0, 1.0);
+    assert!(!seen.is_renewed && (seen.changed - 0.25).abs() < 1e-12);
+    assert_eq!(seen.bound.frequency, pressed);
 }
 
 /// Compression of the least edge h, with 4 (λ + 2μ)/(ρ h²), is the highest frequency of a brick in each formulation; hourglass

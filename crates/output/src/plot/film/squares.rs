@@ -28,24 +28,23 @@ pub(super) fn draw(flats: &[Flat], window: &Window, svg: &mut String) {
                 i += 1;
             }
             if let Some(tone) = tone {
-                let x = window.corner[0] + first as f64 * side;
-                let y = window.corner[1] + (j as f64 + 0.5) * side;
-                let length = (i - first) as f64 * side;
                 // writing to a String cannot fail
                 let path = paths.entry(tone).or_default();
-                let _ = write!(path, "M{x:.1},{y:.1}h{length:.1}");
+                let _ = write!(path, "M{first},{j}.5h{}", i - first);
             }
         }
     }
+    // in squares, whose borders are then the same numbers from both sides
+    let [x, y] = window.corner;
+    let _ = writeln!(
+        svg,
+        "<g transform=\"translate({x:.1},{y:.1}) scale({side:.4})\" fill=\"none\" stroke-width=\"1.1\" \
+         shape-rendering=\"crispEdges\">"
+    );
     for (tone, path) in paths {
-        let _ = writeln!(
-            svg,
-            "<path d=\"{path}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:.2}\" \
-             shape-rendering=\"crispEdges\"/>",
-            colour(tone),
-            1.1 * side
-        );
+        let _ = writeln!(svg, "<path d=\"{path}\" stroke=\"{}\"/>", colour(tone));
     }
+    svg.push_str("</g>\n");
 }
 
 /// Sets the squares whose middles lie in a polygon (in squares, downward).

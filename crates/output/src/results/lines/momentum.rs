@@ -89,7 +89,8 @@ const MISSED: f64 = 0.05;
 
 /// What the sum of force times step misses of the impulse because the step changed its size in contact.
 pub(super) fn resizing(evidence: &Evidence) -> Finding {
-    if evidence.system.adaptive.is_none() {
+    let system = evidence.system;
+    if system.adaptive.is_none() && system.critical_fraction.is_none() {
         return Finding::Absent;
     }
     let records = evidence.last.records.contacts.iter();

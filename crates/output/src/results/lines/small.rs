@@ -132,15 +132,22 @@ fn of_bodies(
 /// Whether a body has elements at small strain that the driver looks at.
 fn is_watched(system: &System, body: usize) -> bool {
     let body = &system.bodies[body];
-    body.as_beam().is_some() || body.as_solid().is_some_and(|solid| solid.is_linear())
+    body.as_beam().is_some()
+        || body
+            .as_solid()
+            .is_some_and(|solid| !solid.has_finite_strain())
 }
 
 /// What to write for a body that turns or stretches.
 fn instead(system: &System, body: usize) -> String {
     if let Some(beam) = system.bodies[body].as_beam() {
         return format!(
-            "model `{}` with solid cells of neo-hooke: rotations of beams are small here",
-            beam.name()
+            "model `{}` with {}: rotations of beams are small here",
+            beam.name(),
+            match beam.fibres() {
+                None => "solid cells of neo-hooke",
+                Some(_) => "solid cells of the same material",
+            }
         );
     }
     let Some(body) = system.bodies[body].as_solid() else {
@@ -152,11 +159,13 @@ fn instead(system: &System, body: usize) -> String {
             "use neo-hooke = {{ young = {:e}, poisson = {:?} }} in place of elastic in the material of `{name}`",
             elastic.young, elastic.poisson
         ),
-        (false, 1) => {
-            format!(
-                "model `{name}` with plane or solid cells of neo-hooke: bars support small strain only"
-            )
-        }
+        (false, 1) => format!(
+            "model `{name}` with plane or solid cells of {}: bars support small strain only",
+            match body.is_linear() {
+                true => "neo-hooke",
+                false => "the same material",
+            }
+        ),
         (false, _) => format!(
             "model `{name}` with section.plane-strain or solid cells, and neo-hooke: plane stress supports small strain only"
         ),
