@@ -14,6 +14,7 @@ use crate::distortion::Distortion;
 use crate::reduced::Reduced;
 use crate::rigid::Rigid;
 use crate::scratch::Scratch;
+use crate::shell::Shell;
 use crate::solid::{BodySpec, Solid};
 use crate::{Deleted, Error, FrequencyBound, Kinematics, Looks, Placement, Seen, Stored};
 
@@ -28,6 +29,8 @@ pub enum Body {
     Beam(Beam),
     /// Beams with finite rotations.
     LargeBeam(LargeBeam),
+    /// Plates and shells.
+    Shell(Shell),
     /// A rigid body.
     Rigid(Rigid),
     /// Point masses, springs or dashpots.
@@ -37,7 +40,7 @@ pub enum Body {
 }
 
 impl Body {
-    /// Builds a solid, a bar or beams on a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the
+    /// Builds a solid, a bar, beams or shells on a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the
     /// system.
     ///
     /// # Errors
@@ -64,6 +67,9 @@ impl Body {
                         LargeBeam::new(beam, &place, unknowns).map(Body::LargeBeam)
                     }
                 }
+            }
+            Kinematics::Shell(section) => {
+                Shell::new(mesh, spec, section, number, unknowns).map(Body::Shell)
             }
             _ => Solid::new(mesh, spec, number, unknowns).map(Body::Solid),
         }
@@ -95,6 +101,14 @@ impl Body {
     pub fn as_beam(&self) -> Option<&Beam> {
         match self {
             Body::Beam(beam) => Some(beam),
+            _ => None,
+        }
+    }
+
+    /// The shell that it is, if it is one.
+    pub fn as_shell(&self) -> Option<&Shell> {
+        match self {
+            Body::Shell(shell) => Some(shell),
             _ => None,
         }
     }
@@ -141,7 +155,7 @@ impl Body {
     /// may have both: on the ground, and across their nodes; so may those of a reduced body that supports hold.
     pub fn balances_itself(&self) -> bool {
         match self {
-            Body::Solid(_) | Body::LargeBeam(_) | Body::Rigid(_) => true,
+            Body::Solid(_) | Body::LargeBeam(_) | Body::Shell(_) | Body::Rigid(_) => true,
             Body::Beam(beam) => !beam.has_foundation(),
             Body::Discrete(discrete) => !discrete.has_stiffness(),
             Body::Reduced(reduced) => !reduced.reduction().is_grounded,
@@ -151,7 +165,11 @@ impl Body {
     /// Whether it has dashpots ([`Body::add_damping_force`]).
     pub fn has_damping(&self) -> bool {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) => false,
+            Body::Solid(_)
+            | Body::Beam(_)
+            | Body::LargeBeam(_)
+            | Body::Shell(_)
+            | Body::Rigid(_) => false,
             Body::Discrete(discrete) => discrete.has_damping(),
             Body::Reduced(reduced) => reduced.reduction().matrices.damping.is_some(),
         }
@@ -163,6 +181,7 @@ impl Body {
             Body::Solid(solid) => solid.name(),
             Body::Beam(beam) => beam.name(),
             Body::LargeBeam(beam) => beam.small().name(),
+            Body::Shell(shell) => shell.name(),
             Body::Discrete(discrete) => discrete.name(),
             Body::Rigid(rigid) => rigid.name(),
             Body::Reduced(reduced) => reduced.name(),
@@ -175,6 +194,7 @@ impl Body {
             Body::Solid(solid) => solid.cells(),
             Body::Beam(beam) => beam.cells(),
             Body::LargeBeam(beam) => beam.small().cells(),
+            Body::Shell(shell) => shell.cells(),
             Body::Discrete(discrete) => discrete.cells(),
             Body::Rigid(rigid) => rigid.cells(),
             Body::Reduced(reduced) => reduced.cells(),
@@ -187,6 +207,7 @@ impl Body {
             Body::Solid(solid) => solid.is_linear(),
             Body::Beam(beam) => beam.is_linear(),
             Body::Discrete(discrete) => discrete.is_linear(),
+            Body::Shell(shell) => shell.is_linear(),
             Body::LargeBeam(_) | Body::Rigid(_) => false,
             Body::Reduced(_) => true,
         }
@@ -199,7 +220,17 @@ impl Body {
             Body::Solid(solid) => solid.has_finite_strain(),
             Body::Beam(_) | Body::Reduced(_) => false,
             Body::Discrete(discrete) => !discrete.is_linear(),
+            Body::Shell(shell) => shell.turns(),
             Body::LargeBeam(_) | Body::Rigid(_) => true,
+        }
+    }
+
+    /// Whether it bends, with nodes that turn by any angle.
+    pub fn bends_finitely(&self) -> bool {
+        match self {
+            Body::LargeBeam(_) => true,
+            Body::Shell(shell) => shell.turns(),
+            _ => false,
         }
     }
 
@@ -214,6 +245,7 @@ impl Body {
             Body::Solid(solid) => Some(solid.wave_speed()),
             Body::Beam(beam) => Some(beam.wave_speed()),
             Body::LargeBeam(beam) => Some(beam.small().wave_speed()),
+            Body::Shell(shell) => Some(shell.wave_speed()),
             Body::Rigid(_) | Body::Discrete(_) => None,
             Body::Reduced(reduced) => Some(reduced.reduction().full.wave_speed()),
         }
@@ -225,6 +257,7 @@ impl Body {
             Body::Solid(solid) => solid.smallest_size(),
             Body::Beam(beam) => beam.smallest_size(),
             Body::LargeBeam(beam) => beam.small().smallest_size(),
+            Body::Shell(shell) => shell.smallest_size(),
             Body::Rigid(_) | Body::Discrete(_) => f64::INFINITY,
             Body::Reduced(reduced) => reduced.reduction().full.smallest_size(),
         }
@@ -235,6 +268,7 @@ impl Body {
         match self {
             Body::Beam(beam) => beam.lumps(),
             Body::LargeBeam(beam) => beam.lumps(),
+            Body::Shell(shell) => shell.lumps(),
             Body::Solid(_) | Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => true,
         }
     }
@@ -267,7 +301,7 @@ impl Body {
             Body::Solid(solid) => solid.history_len(),
             Body::Beam(beam) => beam.history_len(),
             Body::LargeBeam(beam) => beam.history_len(),
-            Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => 0,
+            Body::Shell(_) | Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => 0,
         }
     }
 
@@ -288,7 +322,8 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.internal_force(u, scratch, f),
             Body::Beam(beam) => beam.internal_force(u, f),
-            Body::LargeBeam(_) => 0.0,
+            Body::Shell(shell) if !shell.turns() => shell.internal_force(u, f),
+            Body::Shell(_) | Body::LargeBeam(_) => 0.0,
             Body::Discrete(discrete) => discrete.internal_force(u, f),
             Body::Rigid(_) => 0.0,
             Body::Reduced(reduced) => reduced.internal_force(u, f),
@@ -314,6 +349,7 @@ impl Body {
             Body::Solid(solid) => solid.force(at, new, scratch, f),
             Body::Beam(beam) => beam.force(at, new, f),
             Body::LargeBeam(beam) => beam.force(at, new, f),
+            Body::Shell(shell) => shell.force(at, f),
             Body::Discrete(discrete) => Ok(discrete.force(at, f)),
             Body::Reduced(reduced) => Ok(reduced.force(at, f)),
             Body::Rigid(rigid) => {
@@ -346,6 +382,10 @@ impl Body {
                 beam.add_tangent(at, [by_u, by_v], matrix);
                 Ok(())
             }
+            Body::Shell(shell) => {
+                shell.add_tangent(at, by_u, matrix);
+                Ok(())
+            }
             Body::Rigid(rigid) => {
                 rigid.add_tangent(at, by_v, matrix);
                 Ok(())
@@ -365,9 +405,9 @@ impl Body {
     /// [`Body::force`], since all their work is dissipated; their derivative is a part of [`Body::add_tangent`].
     pub fn add_damping_force(&self, v: &[f64], f: &mut [f64]) {
         match self {
-            Body::Solid(_) | Body::Beam(_) | Body::LargeBeam(_) | Body::Rigid(_) => {}
             Body::Discrete(discrete) => discrete.add_damping_force(v, f),
             Body::Reduced(reduced) => reduced.add_damping_force(v, f),
+            _ => {}
         }
     }
 
@@ -377,6 +417,7 @@ impl Body {
             Body::Solid(solid) => solid.add_lumped_mass(mass),
             Body::Beam(beam) => beam.add_lumped_mass(mass),
             Body::LargeBeam(beam) => beam.add_lumped_mass(mass),
+            Body::Shell(shell) => shell.add_lumped_mass(mass),
             Body::Discrete(discrete) => discrete.add_lumped_mass(mass),
             Body::Rigid(rigid) => rigid.add_mass(mass),
             // its mass is not diagonal
@@ -393,6 +434,7 @@ impl Body {
             Body::Beam(beam) => beam.assemble([factors[0], factors[2]], part, matrix),
             Body::LargeBeam(beam) if factors[2] != 0.0 => beam.add_mass(factors[2], part, matrix),
             Body::LargeBeam(_) => {}
+            Body::Shell(shell) => shell.assemble([factors[0], factors[2]], part, matrix),
             Body::Discrete(discrete) => discrete.assemble(factors, part, matrix),
             Body::Rigid(_) => {}
             Body::Reduced(reduced) => reduced.assemble(factors, part, matrix),
@@ -419,6 +461,7 @@ impl Body {
             Body::Solid(solid) => solid.each_element(visit),
             Body::Beam(beam) => beam.each_element(visit),
             Body::LargeBeam(beam) => beam.small().each_element(visit),
+            Body::Shell(shell) => shell.each_element(visit),
             Body::Discrete(discrete) => discrete.each_element(visit),
             Body::Rigid(rigid) => visit(&[rigid.node()]),
             Body::Reduced(reduced) => reduced.each_element(visit),
@@ -460,6 +503,7 @@ impl Body {
             Body::Solid(solid) => solid.stresses(u, history),
             Body::Beam(beam) => beam.stresses(u, history),
             Body::LargeBeam(beam) => beam.stresses(u, history),
+            Body::Shell(shell) => shell.stresses(u),
             // neither volume nor stress
             Body::Discrete(discrete) => vec![(0.0, Mat3::zeros()); discrete.cells().len()],
             Body::Rigid(rigid) => vec![(0.0, Mat3::zeros()); rigid.cells().len()],
@@ -485,6 +529,7 @@ impl Body {
             Body::Solid(solid) => solid.frequency_bound(),
             Body::Beam(beam) => beam.frequency_bound(),
             Body::LargeBeam(beam) => beam.small().frequency_bound(),
+            Body::Shell(shell) => shell.frequency_bound(),
             Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => 0.0,
         }
     }
@@ -539,6 +584,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.distortion(u, point, before),
             Body::Beam(beam) => Some(beam.distortion(u, before)),
+            Body::Shell(shell) => shell.distortion(u, before),
             Body::LargeBeam(_) | Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => None,
         }
     }

@@ -67,6 +67,7 @@ impl Law {
             }
             Kinematics::Bar { .. }
             | Kinematics::Beam(_)
+            | Kinematics::Shell(_)
             | Kinematics::Axisymmetric
             | Kinematics::Solid => 1.0,
         };

@@ -105,6 +105,24 @@ pub enum Error {
         /// Name of the body.
         body: String,
     },
+    /// A cell that no shell can be on.
+    #[error("body '{body}': cell {} {why}", cell.index)]
+    ShellCell {
+        /// Name of the body.
+        body: String,
+        /// The cell.
+        cell: ElementId,
+        /// What is wrong with it.
+        why: &'static str,
+    },
+    /// What shells do not have.
+    #[error("body '{body}': shells do not have {what}")]
+    ShellRefused {
+        /// Name of the body.
+        body: String,
+        /// What it is.
+        what: &'static str,
+    },
     /// Kinematics without solid cells.
     #[error("body '{body}': {kinematics} elements are no cells of a solid or a rigid body")]
     NotSolid {
@@ -236,6 +254,8 @@ impl Error {
             | Error::NoShape { body }
             | Error::FlowingHinges { body }
             | Error::BeamWeights { body }
+            | Error::ShellCell { body, .. }
+            | Error::ShellRefused { body, .. }
             | Error::NotSolid { body, .. }
             | Error::NegativeRadius { body, .. }
             | Error::WeightCount { body, .. }

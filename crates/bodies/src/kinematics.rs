@@ -2,7 +2,8 @@
 
 use carom_materials::Plane;
 
-use crate::beam::BeamSection;
+use crate::beam::{BeamSection, Rotations};
+use crate::shell::ShellSection;
 
 /// How the displacement of an element is restricted, and what its missing dimensions are.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +15,8 @@ pub enum Kinematics {
     },
     /// A beam: extension, shear, bending and torsion, with rotations of the nodes.
     Beam(BeamSection),
+    /// A plate or shell: membrane, bending and shear, with rotations of the nodes.
+    Shell(ShellSection),
     /// No strain out of the plane.
     PlaneStrain {
         /// Thickness in m.
@@ -31,11 +34,21 @@ pub enum Kinematics {
 }
 
 impl Kinematics {
+    /// How far its nodes turn, if they have rotations.
+    pub fn rotations(self) -> Option<Rotations> {
+        match self {
+            Kinematics::Beam(section) => Some(section.rotations),
+            Kinematics::Shell(section) => Some(section.rotations),
+            _ => None,
+        }
+    }
+
     /// Dimension of the elements that this kinematics takes.
     pub fn dim(self) -> usize {
         match self {
             Kinematics::Bar { .. } | Kinematics::Beam(_) => 1,
-            Kinematics::PlaneStrain { .. }
+            Kinematics::Shell(_)
+            | Kinematics::PlaneStrain { .. }
             | Kinematics::PlaneStress { .. }
             | Kinematics::Axisymmetric => 2,
             Kinematics::Solid => 3,
@@ -46,7 +59,7 @@ impl Kinematics {
     pub fn plane(self) -> Plane {
         match self {
             Kinematics::Bar { .. } | Kinematics::Beam(_) => Plane::Uniaxial,
-            Kinematics::PlaneStress { .. } => Plane::Stress,
+            Kinematics::Shell(_) | Kinematics::PlaneStress { .. } => Plane::Stress,
             Kinematics::PlaneStrain { .. } | Kinematics::Axisymmetric | Kinematics::Solid => {
                 Plane::Full
             }
@@ -58,6 +71,7 @@ impl Kinematics {
         match self {
             Kinematics::Bar { .. } => "bar",
             Kinematics::Beam(_) => "beam",
+            Kinematics::Shell(_) => "shell",
             Kinematics::PlaneStrain { .. } => "plane-strain",
             Kinematics::PlaneStress { .. } => "plane-stress",
             Kinematics::Axisymmetric => "axisymmetric",
@@ -75,7 +89,8 @@ impl Kinematics {
                 thickness
             }
             Kinematics::Axisymmetric => std::f64::consts::TAU * x[0],
-            Kinematics::Solid => 1.0,
+            // a facet of a shell is one of its cells
+            Kinematics::Shell(_) | Kinematics::Solid => 1.0,
         }
     }
 }

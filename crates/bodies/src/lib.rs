@@ -26,11 +26,13 @@ mod release;
 mod rigid;
 mod scaling;
 mod scratch;
+mod shell;
 mod single;
 mod size;
 mod solid;
 mod stability;
 mod together;
+mod turning;
 mod weights;
 
 pub use beam::{
@@ -55,6 +57,7 @@ pub use release::Release;
 pub use rigid::{Inertia, Rigid};
 pub use scaling::{MARGIN, MassScaling};
 pub use scratch::Scratch;
+pub use shell::{Resultants, Shell, ShellSection};
 pub use size::{height, smallest as smallest_size};
 pub use solid::{BodySpec, Solid};
 pub use weights::CellWeights;

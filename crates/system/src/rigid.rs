@@ -56,10 +56,7 @@ pub(crate) fn unknowns(
     let mut frames = Vec::new();
     for rotations in [Rotations::Small, Rotations::Finite] {
         for body in &model.bodies {
-            let Kinematics::Beam(section) = body.spec.kinematics else {
-                continue;
-            };
-            if section.rotations != rotations {
+            if body.spec.kinematics.rotations() != Some(rotations) {
                 continue;
             }
             for node in nodes_of(model, body) {
@@ -74,7 +71,7 @@ pub(crate) fn unknowns(
                     (Rotations::Finite, _) => {
                         return Err(Error::Nonlinear {
                             what: Refused::LargeBeam(body.spec.name.clone()),
-                            why: "it shares a node with beams of small rotations; give both finite ones",
+                            why: "it shares a node with beams or shells of small rotations; give both finite ones",
                         });
                     }
                 }
@@ -280,10 +277,10 @@ impl System {
         moved.into()
     }
 
-    /// Whether a node is one of beams with finite rotations.
+    /// Whether a node is one of beams or shells with finite rotations.
     pub fn bends_at(&self, node: u32) -> bool {
         let bodies = self.bodies.iter().zip(&self.body_masses);
-        let mut large = bodies.filter(|(body, _)| matches!(body, Body::LargeBeam(_)));
+        let mut large = bodies.filter(|(body, _)| body.bends_finitely());
         large.any(|(_, masses)| masses.binary_search_by_key(&node, |(own, _)| *own).is_ok())
     }
 

@@ -29,6 +29,7 @@ use super::section::BeamTheory;
 use super::strain::{Elastic, Invariants, Matrix6, Pair};
 use super::{Beam, SectionForces};
 use crate::flowing::{FibreSection, Flowing};
+use crate::turning::{balanced, spatial};
 use crate::{Error, Placement, Stored};
 
 /// Beams on nodes with finite rotations.
@@ -486,18 +487,4 @@ impl LargeBeam {
         };
         (0..self.elements.len()).map(of).collect()
     }
-}
-
-/// Moments about the axes at the start of a step in those in which they balance: A z of forces over the step, `cay(θ)ᵀ z` of others.
-fn balanced(moment: &Vec3, increment: &Vec3, between: bool) -> Vec3 {
-    match between {
-        true => moment - (increment * 0.5).cross(moment),
-        false => Rotation::cayley(increment).matrix().tr_mul(moment),
-    }
-}
-
-/// What a change of the increment θ turns in space: R (I + θ̂/2)/(1 + θ²/4).
-fn spatial(start: &Mat3, increment: &Vec3) -> Mat3 {
-    let half = increment * 0.5;
-    start * (Mat3::identity() + half.cross_matrix()) / (1.0 + half.norm_squared())
 }

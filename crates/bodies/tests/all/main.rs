@@ -17,6 +17,7 @@ mod patch;
 mod quadratic;
 mod refusals;
 mod sample;
+mod shells;
 mod sizes;
 mod stiffness;
 mod threads;

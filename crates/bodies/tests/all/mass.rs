@@ -12,8 +12,8 @@ use crate::sample::{
 /// Volume of the samples of `sample.rs`, whose sides are not distorted.
 fn volume(sample: &Sample) -> f64 {
     match sample.body.kinematics() {
-        // beams have samples of their own
-        Kinematics::Beam(_) => f64::NAN,
+        // beams and shells have samples of their own
+        Kinematics::Beam(_) | Kinematics::Shell(_) => f64::NAN,
         Kinematics::Bar { area } => {
             let nodes = sample.x.windows(2).map(|x| {
                 let d = [0, 1, 2].map(|i| x[1][i] - x[0][i]);

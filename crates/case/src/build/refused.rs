@@ -200,6 +200,7 @@ fn key(error: &carom_bodies::Error) -> &'static str {
         Error::LinearFormulation { .. } | Error::NotReduced { .. } => "formulation",
         Error::NoBetween { .. } => "material",
         Error::BeamAxes { .. } => "section.beam",
+        Error::ShellRefused { .. } => "section.shell",
         Error::NoShape { .. } => "section.beam.shape",
         Error::LargeBeam { .. } => "section.beam.rotations",
         Error::Mechanism { .. } | Error::FlowingHinges { .. } => "hinges",

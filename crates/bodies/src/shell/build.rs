@@ -1,0 +1,238 @@
+//! Building shells: what cells they take, their normals and directors.
+
+use carom_algebra::tensor::Vec3;
+use carom_algebra::unknowns::Unknowns;
+use carom_elements::Kind;
+use carom_mesh::{ElementId, Mesh};
+
+use super::section::ElasticSection;
+use super::strain::{Configuration, Form, MOST};
+use super::{Element, Shell, ShellSection};
+use crate::solid::BodySpec;
+use crate::{Error, Formulation, Kinematics, Rotations};
+
+/// Cosine of the angle between the normals of two elements from which on the edge between them is a fold: 40°. Directors are means of
+/// the normals on one side of a fold.
+const FOLD: f64 = 0.766;
+
+/// Resistance of triangles to shear: h² over h² and this part of the square of the longest edge.
+const TRIANGLE: f64 = 0.1;
+
+/// Part of the largest edge by which a node may lie beside the plane of the others.
+const WARPED: f64 = 0.3;
+
+/// A corner of an element: its normal.
+struct Corner {
+    element: usize,
+    normal: Vec3,
+}
+
+impl Shell {
+    /// Builds the elements on the cells of a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the system, with
+    /// rotations.
+    ///
+    /// # Errors
+    /// No cell, cells that are neither tri3 nor quad4, a mesh that is not one of space; a cell without area or that is not convex, or too warped;
+    /// neighbours whose normals disagree; a material at finite strain, weights, a formulation; an offset with finite rotations.
+    pub(crate) fn new(
+        mesh: &Mesh,
+        spec: BodySpec,
+        section: ShellSection,
+        number: &[u32],
+        unknowns: &Unknowns,
+    ) -> Result<Shell, Error> {
+        check(mesh, &spec, &section)?;
+        let material = spec.material.initial();
+        let corners = corners(mesh, &spec)?;
+        agree(mesh, &spec)?;
+        let mut shell = Shell {
+            name: spec.name,
+            section,
+            material,
+            cells: spec.cells,
+            elements: Vec::new(),
+            stiffness: Vec::new(),
+            starts: vec![0],
+            smallest: f64::INFINITY,
+        };
+        let elastic = ElasticSection::new(&material, section.thickness);
+        for (place, &cell) in shell.cells.iter().enumerate() {
+            let nodes = mesh.element_nodes(cell);
+            let x: Vec<Vec3> = nodes
+                .iter()
+                .map(|&node| mesh.nodes[node as usize].into())
+                .collect();
+            let directors: Vec<Vec3> = nodes
+                .iter()
+                .map(|&node| director(&corners[node as usize], place))
+                .collect();
+            let reference = configuration(&x, &directors);
+            let along = reference.axes[0][0];
+            let mut element = Element {
+                count: nodes.len(),
+                nodes: [0; MOST],
+                first: [0; MOST],
+                frames: [usize::MAX; MOST],
+                form: Form::new(nodes.len(), &reference.beside(section.offset), &along),
+                reference,
+                elastic,
+            };
+            for (a, &node) in nodes.iter().enumerate() {
+                let own = number[node as usize];
+                element.nodes[a] = own;
+                element.first[a] = unknowns.first(own);
+                element.frames[a] = unknowns.frame(own).unwrap_or(usize::MAX);
+            }
+            let longest = longest(&x);
+            if element.count == 3 {
+                let square = section.thickness.powi(2);
+                let factor = square / (square + TRIANGLE * longest * longest);
+                element.elastic = elastic.with_shear(factor);
+            }
+            shell.smallest = shell.smallest.min(element.area() / longest);
+            if section.rotations == Rotations::Small {
+                shell.stiffness.extend(element.stiffness(section.offset));
+                shell.starts.push(shell.stiffness.len());
+            }
+            shell.elements.push(element);
+        }
+        Ok(shell)
+    }
+}
+
+/// Places and axes of the nodes: the first axis is the part of the first edge normal to the director.
+fn configuration(x: &[Vec3], directors: &[Vec3]) -> Configuration {
+    let mut configuration = Configuration {
+        x: [Vec3::zeros(); MOST],
+        axes: [[Vec3::x(), Vec3::y(), Vec3::z()]; MOST],
+    };
+    let along = x[1] - x[0];
+    for (a, (x, d)) in x.iter().zip(directors).enumerate() {
+        let first = (along - d * d.dot(&along)).normalize();
+        configuration.x[a] = *x;
+        configuration.axes[a] = [first, d.cross(&first), *d];
+    }
+    configuration
+}
+
+/// The mean of the normals at a node that lie on the same side of folds as that of an element.
+fn director(corners: &[Corner], element: usize) -> Vec3 {
+    let own = corners.iter().find(|corner| corner.element == element);
+    let own = own.map_or(Vec3::zeros(), |corner| corner.normal);
+    let same = corners
+        .iter()
+        .filter(|corner| corner.normal.dot(&own) > FOLD);
+    same.map(|corner| corner.normal).sum::<Vec3>().normalize()
+}
+
+/// Length of the longest edge or diagonal.
+fn longest(x: &[Vec3]) -> f64 {
+    let pairs = (0..x.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+    pairs.map(|(a, b)| (x[a] - x[b]).norm()).fold(0.0, f64::max)
+}
+
+/// The corners at each node of the mesh.
+fn corners(mesh: &Mesh, spec: &BodySpec) -> Result<Vec<Vec<Corner>>, Error> {
+    let mut corners: Vec<Vec<Corner>> = Vec::new();
+    corners.resize_with(mesh.nodes.len(), Vec::new);
+    for (element, &cell) in spec.cells.iter().enumerate() {
+        let nodes = mesh.element_nodes(cell);
+        let refused = |why| Error::ShellCell {
+            body: spec.name.clone(),
+            cell,
+            why,
+        };
+        let x = |a: usize| Vec3::from(mesh.nodes[nodes[a % nodes.len()] as usize]);
+        let (count, mut whole) = (nodes.len(), Vec3::zeros());
+        let size = longest(&(0..count).map(x).collect::<Vec<_>>());
+        let normal = |a: usize| (x(a + 1) - x(a)).cross(&(x(a + count - 1) - x(a)));
+        (0..count).for_each(|a| whole += normal(a));
+        let whole = whole / count as f64;
+        if whole.norm() <= 1e-9 * size * size {
+            return Err(refused("has no area"));
+        }
+        let (flat, across) = (whole.norm(), whole.normalize());
+        if (0..count).any(|a| normal(a).dot(&across) <= 1e-3 * flat) {
+            return Err(refused("is not convex: an angle of it is 180° or more"));
+        }
+        let beside = (x(0) - x(1) + x(2) - x(count - 1)).dot(&across).abs();
+        if count == 4 && beside > WARPED * size {
+            return Err(refused(
+                "is warped: its nodes lie too far beside a plane; divide it into triangles",
+            ));
+        }
+        for (a, &node) in nodes.iter().enumerate() {
+            corners[node as usize].push(Corner {
+                element,
+                normal: normal(a).normalize(),
+            });
+        }
+    }
+    Ok(corners)
+}
+
+/// Refuses neighbours that run along their common edge in the same direction: their normals are opposite. More than two elements at
+/// an edge have no common side.
+fn agree(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
+    let mut edges: Vec<([u32; 2], bool, ElementId)> = Vec::new();
+    for &cell in &spec.cells {
+        let nodes = mesh.element_nodes(cell);
+        for (a, &from) in nodes.iter().enumerate() {
+            let to = nodes[(a + 1) % nodes.len()];
+            edges.push(([from.min(to), from.max(to)], from < to, cell));
+        }
+    }
+    edges.sort_unstable_by_key(|(edge, _, cell)| (*edge, cell.index));
+    for same in edges.chunk_by(|a, b| a.0 == b.0) {
+        if let [(_, first, _), (_, second, cell)] = same
+            && first == second
+        {
+            return Err(Error::ShellCell {
+                body: spec.name.clone(),
+                cell: *cell,
+                why: "has its normal against that of its neighbour; orient all cells of a shell alike",
+            });
+        }
+    }
+    Ok(())
+}
+
+fn check(mesh: &Mesh, spec: &BodySpec, section: &ShellSection) -> Result<(), Error> {
+    let body = || spec.name.clone();
+    if spec.cells.is_empty() {
+        return Err(Error::Empty { body: body() });
+    }
+    if spec.weights.is_some() {
+        return Err(Error::ShellRefused {
+            body: body(),
+            what: "a share of its volume with another model",
+        });
+    }
+    if spec.material.finite().is_some() {
+        return Err(Error::FiniteKinematics {
+            body: body(),
+            kinematics: spec.kinematics.name(),
+        });
+    }
+    if spec.formulation != Formulation::Full {
+        return Err(Error::LinearFormulation { body: body() });
+    }
+    if section.rotations == Rotations::Finite && section.offset != 0.0 {
+        return Err(Error::ShellRefused {
+            body: body(),
+            what: "an offset with finite rotations",
+        });
+    }
+    for &cell in &spec.cells {
+        let kind = mesh.kind(cell);
+        if mesh.dim != 3 || !matches!(kind, Kind::Tri3 | Kind::Quad4) {
+            return Err(Error::WrongElement {
+                body: body(),
+                found: kind.table().name,
+                kinematics: spec.kinematics.name(),
+                dim: Kinematics::dim(spec.kinematics),
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,125 @@
+//! Mass of shells.
+
+use std::ops::Range;
+
+use carom_algebra::csr::Csr;
+use carom_algebra::tensor::Mat3;
+
+use super::{Element, PER_NODE, Shell};
+use crate::stability::largest_eigenvalue;
+
+/// Least square of the radius of gyration of lumped rotations over the area of an element: no rotation is then faster than the fastest
+/// bending (Hughes, Cohen and Haroun 1978, Nucl. Eng. Des. 46, 203).
+const GYRATION: f64 = 1.0 / 8.0;
+
+impl Element {
+    /// ∫ ρ h N_a dA of each node, kg.
+    fn shares(&self, density: f64) -> [f64; 4] {
+        let mut shares = [0.0; 4];
+        for (shapes, area) in self.form.shapes.iter().zip(&self.form.areas) {
+            for (share, n) in shares.iter_mut().zip(shapes) {
+                *share += density * area * n;
+            }
+        }
+        shares
+    }
+
+    /// ∫ ρ h N_a N_b dA, kg.
+    fn shared(&self, density: f64, a: usize, b: usize) -> f64 {
+        let points = self.form.shapes.iter().zip(&self.form.areas);
+        points.map(|(n, area)| density * area * n[a] * n[b]).sum()
+    }
+}
+
+impl Shell {
+    /// ρ h, kg/m².
+    fn density(&self) -> f64 {
+        self.material.density * self.section.thickness
+    }
+
+    /// Square of the radius of gyration of a section, m².
+    fn gyration(&self) -> f64 {
+        self.section.thickness.powi(2) / 12.0
+    }
+
+    /// Adds `mass` M: translations and small rotations with the shape functions, finite rotations at each node, h²/12 of its mass.
+    pub(super) fn add_mass(&self, mass: f64, part: &Range<usize>, matrix: &mut Csr) {
+        let (density, offset) = (mass * self.density(), self.section.offset);
+        for (number, element) in self.elements.iter().enumerate() {
+            let n = PER_NODE * element.count;
+            let mut own = vec![0.0; n * n];
+            let mut add = |(row, column): (usize, usize), block: &Mat3| {
+                for i in 0..3 {
+                    for j in 0..3 {
+                        own[(row + i) * n + column + j] += block[(i, j)];
+                    }
+                }
+            };
+            let shares = element.shares(density);
+            for a in 0..element.count {
+                for b in 0..element.count {
+                    let m = element.shared(density, a, b);
+                    let (row, column) = (PER_NODE * a, PER_NODE * b);
+                    add((row, column), &(Mat3::identity() * m));
+                    let turning = match self.turns() {
+                        true if a != b => 0.0,
+                        true => shares[a],
+                        false => m,
+                    };
+                    let turning = Mat3::identity() * (turning * self.gyration());
+                    add((row + 3, column + 3), &turning);
+                    if offset != 0.0 {
+                        // the middle moves by u + θ × e D
+                        let [left, right] = [a, b].map(|node| element.reference.axes[node][2]);
+                        let (left, right) = (left * offset, right * offset);
+                        add((row, column + 3), &(right.cross_matrix() * -m));
+                        add((row + 3, column), &(left.cross_matrix() * m));
+                        let both = Mat3::identity() * left.dot(&right) - right * left.transpose();
+                        add((row + 3, column + 3), &(both * m));
+                    }
+                }
+            }
+            self.add(number, 1.0, &own, part, matrix);
+        }
+    }
+
+    /// Lumped mass of a translation and of a rotation of each node of an element.
+    fn lumped(&self, element: &Element) -> [[f64; 2]; 4] {
+        let gyration = self.gyration().max(GYRATION * element.area());
+        let shares = element.shares(self.density());
+        shares.map(|m| [m, m * gyration])
+    }
+
+    /// Adds the diagonal of the lumped mass.
+    pub(crate) fn add_lumped_mass(&self, mass: &mut [f64]) {
+        for element in &self.elements {
+            let lumped = self.lumped(element);
+            for ([moves, turns], &first) in lumped.iter().zip(&element.first[..element.count]) {
+                mass[first..first + 3].iter_mut().for_each(|m| *m += moves);
+                mass[first + 3..first + 6]
+                    .iter_mut()
+                    .for_each(|m| *m += turns);
+            }
+        }
+    }
+
+    /// Whether the lumped mass is diagonal: the middle surface is in the nodes.
+    pub(crate) fn lumps(&self) -> bool {
+        self.section.offset == 0.0
+    }
+
+    /// Upper bound of the angular frequencies (rad/s) with lumped mass: the largest of an element in the reference configuration.
+    pub(crate) fn frequency_bound(&self) -> f64 {
+        let of = |element: &Element| {
+            let mut k = element.stiffness(self.section.offset);
+            let n = PER_NODE * element.count;
+            let lumped = self.lumped(element);
+            let root = |i: usize| lumped[i / PER_NODE][i % PER_NODE / 3].sqrt();
+            for (entry, k) in k.iter_mut().enumerate() {
+                *k /= root(entry / n) * root(entry % n);
+            }
+            largest_eigenvalue(&mut k)
+        };
+        self.elements.iter().map(of).fold(0.0, f64::max).sqrt()
+    }
+}

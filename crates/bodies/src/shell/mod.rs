@@ -1,0 +1,189 @@
+//! Plates and shells: triangles of three nodes and quadrilaterals of four, with shear and membrane strains that do not lock.
+//!
+//! A node has a place and three rotations. A director at each node of an element is the mean normal there; it turns with the node. Strains are
+//! those of Reissner and Mindlin, with finite rotations of Green and Lagrange, from [`strain`]; forces and moments per length are linear in
+//! them, of metals those of points through the thickness. Rotations about the normal are held by a weak form of the condition that they
+//! are those of the middle surface (Hughes and Brezzi 1989, Comput. Methods Appl. Mech. Eng. 72, 105).
+//!
+//! Triangles resist shear by κ G h L̄²: with h² / (h² + 0.1 L²), L the longest edge, after Lyly, Stenberg and Vihinen (1993, Comput.
+//! Methods Appl. Mech. Eng. 110, 343); the error of this factor is of the order of that of the element.
+
+mod build;
+mod finite;
+mod mass;
+mod results;
+mod section;
+mod small;
+mod strain;
+
+use std::ops::Range;
+
+use carom_algebra::csr::Csr;
+use carom_materials::Elastic;
+use carom_mesh::ElementId;
+
+pub use self::results::Resultants;
+pub use self::section::ShellSection;
+
+use self::section::ElasticSection;
+use self::strain::{Configuration, Form, MOST, Strains};
+use crate::{Error, Placement, Rotations, Stored};
+
+/// Points through the thickness where nothing else is said.
+const LAYERS: u32 = 5;
+
+/// Unknowns of a node.
+const PER_NODE: usize = 6;
+
+/// An element.
+#[derive(Debug)]
+struct Element {
+    /// Nodes: three or four.
+    count: usize,
+    /// Their numbers in the system, first unknowns and frames.
+    nodes: [u32; MOST],
+    first: [usize; MOST],
+    frames: [usize; MOST],
+    /// Places of the nodes and the axes that turn with them.
+    reference: Configuration,
+    form: Form,
+    elastic: ElasticSection,
+}
+
+impl Element {
+    /// The unknowns in a system vector.
+    fn unknowns(&self) -> impl Iterator<Item = usize> + '_ {
+        let first = self.first[..self.count].iter();
+        first.flat_map(|&first| first..first + PER_NODE)
+    }
+
+    fn area(&self) -> f64 {
+        self.form.areas.iter().sum()
+    }
+
+    /// Forces and moments per length at all points, times their areas.
+    fn weighted(&self, strains: &Strains) -> Strains {
+        let mut forces = Strains::default();
+        let points = forces.iter_mut().zip(strains).zip(&self.form.areas);
+        for ((forces, strains), area) in points {
+            *forces = self.elastic.forces(strains).map(|force| force * area);
+        }
+        forces
+    }
+
+    /// Strain energy, J.
+    fn energy(&self, strains: &Strains) -> f64 {
+        let points = strains.iter().zip(&self.form.areas);
+        points
+            .map(|(strains, area)| area * self.elastic.energy(strains))
+            .sum()
+    }
+}
+
+/// A body of shell elements on a system.
+#[derive(Debug)]
+pub struct Shell {
+    name: String,
+    section: ShellSection,
+    material: Elastic,
+    cells: Vec<ElementId>,
+    elements: Vec<Element>,
+    /// K of each element over its unknowns, row-major, with small rotations; and where each begins.
+    stiffness: Vec<f64>,
+    starts: Vec<usize>,
+    smallest: f64,
+}
+
+impl Shell {
+    /// Name as in the case file.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its section.
+    pub fn section(&self) -> &ShellSection {
+        &self.section
+    }
+
+    /// Cells of the mesh.
+    pub fn cells(&self) -> &[ElementId] {
+        &self.cells
+    }
+
+    /// Speed of waves that stretch a plate, m/s.
+    pub fn wave_speed(&self) -> f64 {
+        self.material.wave_speed(carom_materials::Plane::Stress)
+    }
+
+    /// Smallest size of an element, m: its area over its longest edge or diagonal.
+    pub fn smallest_size(&self) -> f64 {
+        self.smallest
+    }
+
+    /// System numbers of the nodes of each element.
+    pub(crate) fn each_element(&self, visit: &mut dyn FnMut(&[u32])) {
+        for element in &self.elements {
+            visit(&element.nodes[..element.count]);
+        }
+    }
+
+    /// Whether forces are linear in the displacement.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.section.rotations == Rotations::Small
+    }
+
+    /// Whether its nodes turn by any angle.
+    pub fn turns(&self) -> bool {
+        self.section.rotations == Rotations::Finite
+    }
+
+    /// Adds the internal forces; see [`Body::force`](crate::Body::force).
+    pub(crate) fn force(&self, at: &Placement, f: &mut [f64]) -> Result<Stored, Error> {
+        let strain = match self.turns() {
+            true => self.finite_force(at, f),
+            false => self.small_force(at, f),
+        };
+        Ok(Stored {
+            strain,
+            ..Stored::default()
+        })
+    }
+
+    /// Adds `by_u` ∂f/∂u to a matrix over all unknowns; see [`Body::add_tangent`](crate::Body::add_tangent).
+    pub(crate) fn add_tangent(&self, at: &Placement, by_u: f64, matrix: &mut Csr) {
+        let share = if at.from.is_some() { 0.5 } else { 1.0 };
+        match self.turns() {
+            true => self.add_finite_tangent(at, share * by_u, matrix),
+            false => self.add_stiffness(share * by_u, &(0..usize::MAX), matrix),
+        }
+    }
+
+    /// Adds `stiffness` K + `mass` M (consistent); see [`Body::assemble`](crate::Body::assemble).
+    pub(crate) fn assemble(
+        &self,
+        [stiffness, mass]: [f64; 2],
+        part: &Range<usize>,
+        matrix: &mut Csr,
+    ) {
+        if stiffness != 0.0 && !self.turns() {
+            self.add_stiffness(stiffness, part, matrix);
+        }
+        if mass != 0.0 {
+            self.add_mass(mass, part, matrix);
+        }
+    }
+
+    /// Adds a matrix of an element over its unknowns, row-major.
+    fn add(&self, element: usize, factor: f64, own: &[f64], part: &Range<usize>, to: &mut Csr) {
+        let element = &self.elements[element];
+        if !part.contains(&element.first[0]) {
+            return;
+        }
+        let n = PER_NODE * element.count;
+        for (i, row) in element.unknowns().zip(own.chunks_exact(n)) {
+            for (j, value) in element.unknowns().zip(row) {
+                to.add(i - part.start, j - part.start, factor * value);
+            }
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! What shells tell of a displacement.
+
+use carom_algebra::rotation::Rotation;
+use carom_algebra::tensor::{Mat3, Vec3};
+
+use super::section::AtPoint;
+use super::strain::Strains;
+use super::{Element, Shell};
+use crate::distortion::{Distortion, Extreme};
+
+/// Forces and moments per length in the middle of an element, as tensors over the axes of coordinates, per length and area of the
+/// reference configuration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resultants {
+    /// Membrane forces N, N/m.
+    pub membrane: Mat3,
+    /// Bending moments M, N: positive where the side to which the normal points is in tension.
+    pub bending: Mat3,
+    /// Shear forces q·n, N/m: the force along the normal on a section is q·ν, ν its outward normal.
+    pub shear: [f64; 3],
+}
+
+impl Shell {
+    /// Strains at the points of each element.
+    fn each_strain(
+        &self,
+        frames: &[Rotation],
+        u: &[f64],
+        visit: &mut dyn FnMut(&Element, &Strains),
+    ) {
+        for element in &self.elements {
+            let strains = match self.turns() {
+                true => element.form.strains(&element.now(frames, u).configuration),
+                false => self.small_strains(element, u),
+            };
+            visit(element, &strains);
+        }
+    }
+
+    fn small_strains(&self, element: &Element, u: &[f64]) -> Strains {
+        let mut strains = Strains::default();
+        for (point, strains) in strains
+            .iter_mut()
+            .enumerate()
+            .take(element.form.areas.len())
+        {
+            for (strain, row) in strains
+                .iter_mut()
+                .zip(element.rows(point, self.section.offset))
+            {
+                *strain = row
+                    .iter()
+                    .zip(element.unknowns())
+                    .map(|(b, i)| b * u[i])
+                    .sum();
+            }
+        }
+        strains
+    }
+
+    /// Forces and moments in the middle of each element. `frames`: of the nodes, with finite rotations.
+    pub fn resultants(&self, frames: &[Rotation], u: &[f64]) -> Vec<Resultants> {
+        let mut all = Vec::with_capacity(self.elements.len());
+        self.each_strain(frames, u, &mut |element, strains| {
+            let now = match self.turns() {
+                true => element.now(frames, u).configuration,
+                false => element.reference,
+            };
+            let mut mean = Resultants {
+                membrane: Mat3::zeros(),
+                bending: Mat3::zeros(),
+                shear: [0.0; 3],
+            };
+            let (form, whole) = (&element.form, element.area());
+            for (point, area) in form.areas.iter().enumerate() {
+                let forces = element.elastic.forces(&strains[point]);
+                let (tangents, part) = (form.tangents(&now, point), area / whole);
+                mean.membrane += in_space(&tangents, &forces, 0) * part;
+                mean.bending += in_space(&tangents, &forces, 3) * part;
+                let shear = (tangents[0] * forces[6] + tangents[1] * forces[7]) * part;
+                (0..3).for_each(|i| mean.shear[i] += shear[i]);
+            }
+            all.push(mean);
+        });
+        all
+    }
+
+    /// Volume (m³) and mean stress (Pa) of each element: the membrane forces over the thickness. Bending has no mean.
+    pub(crate) fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
+        let thickness = self.section.thickness;
+        // membrane strains do not depend on rotations
+        let found = self.resultants(&[], u);
+        let elements = self.elements.iter().zip(found);
+        elements
+            .map(|(element, found)| (element.area() * thickness, found.membrane / thickness))
+            .collect()
+    }
+
+    /// The largest rotation of a node, and the largest strain of a face, of shells with small rotations.
+    pub(crate) fn distortion(&self, u: &[f64], before: &Distortion) -> Option<Distortion> {
+        if self.turns() {
+            return None;
+        }
+        let (mut found, mut cell) = (*before, 0);
+        let half = 0.5 * self.section.thickness;
+        self.each_strain(&[], u, &mut |element, strains| {
+            for &first in &element.first[..element.count] {
+                let value = Vec3::new(u[first + 3], u[first + 4], u[first + 5]).norm();
+                found.rotation = found.rotation.or(Extreme { value, cell });
+            }
+            for s in &strains[..element.form.areas.len()] {
+                let of = |face: f64| largest([0, 1, 2].map(|i| s[i] + face * s[3 + i]));
+                let value = of(half).max(of(-half));
+                found.strain = found.strain.or(Extreme { value, cell });
+            }
+            cell += 1;
+        });
+        Some(found)
+    }
+}
+
+/// Σ f_ij g_i ⊗ g_j of the three numbers of a point from `from` on.
+fn in_space(tangents: &[Vec3; 2], of: &AtPoint, from: usize) -> Mat3 {
+    let [x, y, xy] = [of[from], of[from + 1], of[from + 2]];
+    let [first, second] = tangents;
+    let mixed = first * second.transpose();
+    first * first.transpose() * x
+        + second * second.transpose() * y
+        + (mixed + mixed.transpose()) * xy
+}
+
+/// Largest principal value, by magnitude, of a plane strain ε₁₁, ε₂₂, 2ε₁₂.
+fn largest([x, y, xy]: [f64; 3]) -> f64 {
+    0.5 * (x + y).abs() + 0.5 * (x - y).hypot(xy)
+}
