@@ -349,7 +349,7 @@ impl Body {
             Body::Solid(solid) => solid.force(at, new, scratch, f),
             Body::Beam(beam) => beam.force(at, new, f),
             Body::LargeBeam(beam) => beam.force(at, new, f),
-            Body::Shell(shell) => shell.force(at, f),
+            Body::Shell(shell) => Ok(shell.force(at, scratch, f)),
             Body::Discrete(discrete) => Ok(discrete.force(at, f)),
             Body::Reduced(reduced) => Ok(reduced.force(at, f)),
             Body::Rigid(rigid) => {

@@ -2,6 +2,7 @@
 
 use crate::block::Block;
 use crate::finite::Outcome;
+use crate::shell::ShellForces;
 
 /// Buffers of the internal-force sweep: one list of nodal forces and one energy per chunk.
 #[derive(Debug, Default)]
@@ -12,6 +13,8 @@ pub struct Scratch {
     pub(crate) middle: Vec<f64>,
     /// At finite strain, one of each chunk.
     pub(crate) outcomes: Vec<Outcome>,
+    /// Of shells with finite rotations, one of each element.
+    pub(crate) shells: Vec<ShellForces>,
 }
 
 impl Scratch {

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use carom_bodies::{Beam, BeamTheory, Body, Discrete, DiscreteKind, Link, SectionProperties};
+use carom_bodies::{
+    Beam, BeamTheory, Body, Discrete, DiscreteKind, Link, SectionProperties, Shell,
+};
 use carom_contact::{Contact, Integration, Rows, Search, Sliding, Target};
 use carom_dynamics::{ModelLink, System, step_count};
 use carom_zones::{LinkKind, ModelZone, Zoned};
@@ -49,6 +51,7 @@ pub fn facts(built: &Built) -> Vec<Fact> {
                     .map(|reduced| reduced_fact(built, k, reduced)),
             );
             facts.extend(body.as_beam().map(|beam| beam_fact(system, k, beam)));
+            facts.extend(body.as_shell().map(|shell| shell_fact(system, k, shell)));
             continue;
         };
         let (speed, size) = (body.wave_speed(), extent(system, k));
@@ -207,6 +210,26 @@ fn beam_fact(system: &System, body: usize, beam: &Beam) -> Fact {
             "{theory} beam, area {area:.6e} m^2, {bending}, {fibres}{:.6} kg, waves of extension at {speed:.5} m/s, smallest element {:.4e} m",
             system.body_mass(body),
             beam.smallest_size()
+        ),
+    )
+}
+
+/// A line for shells: section, mass, waves.
+fn shell_fact(system: &System, body: usize, shell: &Shell) -> Fact {
+    let section = shell.section();
+    let rotations = match shell.turns() {
+        true => "finite",
+        false => "small",
+    };
+    fact(
+        format!("body {}", shell.name()),
+        format!(
+            "shell of {} elements, thickness {:.6e} m, {rotations} rotations, {:.6} kg, membrane waves at {:.5} m/s, smallest element {:.4e} m",
+            shell.cells().len(),
+            section.thickness,
+            system.body_mass(body),
+            shell.wave_speed(),
+            shell.smallest_size()
         ),
     )
 }

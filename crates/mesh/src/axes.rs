@@ -1,4 +1,4 @@
-//! Surfaces around the axes of beams: lines and points that are cells, or nodes of cells, not sides of them.
+//! Surfaces around the axes of beams and the middles of shells: cells, or nodes of cells, not sides of them.
 
 use std::collections::BTreeMap;
 
@@ -7,24 +7,41 @@ use carom_elements::Kind;
 use crate::{ElementId, Error, Face, Group, Mesh, Surface, face_nodes};
 
 impl Surface {
-    /// The round surface around the axes of cells that are lines: around the lines of a group, or around its points, which may
-    /// be ends of cells or nodes between them. The parent of a face is the cell that it is, or the first that has the point.
+    /// The surface around cells at a distance: around the lines or plane cells of a group, or around its points, which may
+    /// be ends of lines or nodes between them. The parent of a face is the cell that it is, or the first that has the point.
     ///
     /// `radius`: of a cell, m.
     ///
     /// # Errors
-    /// [`Error::FacetOnNoCell`] for a line that is no cell, or a point that no cell has; [`Error::FacetDimension`] for facets
-    /// that are neither lines nor points.
+    /// [`Error::FacetOnNoCell`] for a facet that is no cell, or a point that no cell has; [`Error::FacetDimension`] for facets
+    /// of three dimensions.
     pub fn of_axes(
         mesh: &Mesh,
         facets: &Group,
         cells: &[ElementId],
         radius: impl Fn(ElementId) -> f64,
     ) -> Result<Surface, Error> {
-        if facets.dim > 1 {
+        Surface::of_cells(mesh, facets, cells, &|cell| Some(radius(cell)))
+    }
+
+    /// The middle surface of shells: the cells of a group, with the normals of the shells.
+    ///
+    /// # Errors
+    /// As [`Surface::of_axes`].
+    pub fn of_shells(mesh: &Mesh, facets: &Group, cells: &[ElementId]) -> Result<Surface, Error> {
+        Surface::of_cells(mesh, facets, cells, &|_| None)
+    }
+
+    fn of_cells(
+        mesh: &Mesh,
+        facets: &Group,
+        cells: &[ElementId],
+        radius: &dyn Fn(ElementId) -> Option<f64>,
+    ) -> Result<Surface, Error> {
+        if facets.dim > 2 {
             return Err(Error::FacetDimension {
                 facets: facets.dim,
-                cells: 1,
+                cells: 2,
             });
         }
         let (mut by_ends, mut by_node) = (BTreeMap::new(), BTreeMap::new());
@@ -49,10 +66,13 @@ impl Surface {
                 } else {
                     mesh.kind(id)
                 },
-                nodes: face_nodes(nodes),
+                nodes: match facets.dim {
+                    0 => face_nodes(nodes),
+                    _ => face_nodes(mesh.element_nodes(parent)),
+                },
                 parent,
                 axis: [0.0; 3],
-                radius: Some(radius(parent)),
+                radius: radius(parent),
             })
         };
         Ok(Surface {

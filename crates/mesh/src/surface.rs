@@ -32,8 +32,8 @@ pub struct Face {
     /// For a point, the end of a bar: unit vector along the bar, outward, in the reference position. Zero for
     /// other kinds, whose normal follows from their nodes.
     pub axis: [f64; 3],
-    /// Distance of the surface from the face, m: of the axis of a beam, or of a point of it, all around it, of a point with an
-    /// axis along that. `None` where the face is the surface itself.
+    /// Distance of the surface from the face, m: of the axis of a beam, of a point of it, or of the middle of a shell all around it, of a
+    /// point with an axis along that. `None` where the face is the surface itself.
     pub radius: Option<f64>,
 }
 

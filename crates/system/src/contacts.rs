@@ -74,9 +74,11 @@ fn unfit_around_axes(contact: &Contact, secondary: &[Face]) -> Option<&'static s
         return None;
     }
     match contact.integration {
-        Integration::Mortar { .. } => Some("surfaces around axes of beams have no mortar method"),
+        Integration::Mortar { .. } => {
+            Some("surfaces around axes of beams and middles of shells have no mortar method")
+        }
         _ if contact.sight.is_some() => {
-            Some("beams do not face themselves, and a depth means nothing to them")
+            Some("beams and shells do not face themselves, and a depth means nothing to them")
         }
         _ if target
             .iter()

@@ -8,9 +8,9 @@ pub enum Refused {
     /// Where the law of a contact, by its name, holds.
     #[error("integration of contact '{0}'")]
     Integration(String),
-    /// A body of beams with finite rotations, by its name.
-    #[error("body '{0}' of beams with finite rotations")]
-    LargeBeam(String),
+    /// A body of beams or shells with finite rotations, by its name.
+    #[error("body '{0}' with finite rotations")]
+    FiniteRotations(String),
     /// The damping of a body, by its name.
     #[error("damping of body '{0}'")]
     Damping(String),

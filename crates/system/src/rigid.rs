@@ -70,7 +70,7 @@ pub(crate) fn unknowns(
                     }
                     (Rotations::Finite, _) => {
                         return Err(Error::Nonlinear {
-                            what: Refused::LargeBeam(body.spec.name.clone()),
+                            what: Refused::FiniteRotations(body.spec.name.clone()),
                             why: "it shares a node with beams or shells of small rotations; give both finite ones",
                         });
                     }
@@ -312,7 +312,7 @@ impl System {
         let explicit = self.schemes.iter().any(|scheme| scheme.get().is_explicit());
         match self.bodies.iter().find(large) {
             Some(body) if explicit => Err(Error::Nonlinear {
-                what: Refused::LargeBeam(body.name().to_owned()),
+                what: Refused::FiniteRotations(body.name().to_owned()),
                 why: "an explicit step would take the moment W × J W at the velocity before it and keep neither energy nor \
                       angular momentum; take energy-momentum, theta, newmark, generalised-alpha or hht",
             }),

@@ -23,6 +23,7 @@ mod hertz;
 mod kept;
 mod kind;
 mod plastic_wave;
+mod plates;
 mod points;
 mod pounding;
 mod repeated;
@@ -88,6 +89,7 @@ mod invariance;
 mod ironing;
 mod knocking_oscillators;
 mod large_beams;
+mod large_shells;
 pub mod long_run;
 mod mass_on_stop;
 mod modal_damping;
@@ -116,6 +118,8 @@ mod sdnl111;
 mod sdnl111_bars;
 mod self_contact;
 mod shapes;
+mod shell_benchmarks;
+mod shells;
 mod shock_front;
 mod sliding_block;
 mod sliding_work;
@@ -193,6 +197,7 @@ registry! {
     beam_frequencies
     beam_joints
     large_beams
+    large_shells
     beam_on_stop
     beam_pulse
     block_drop
@@ -232,6 +237,7 @@ registry! {
     order
     order_features
     plastic_wave
+    plates
     pounding
     quadrature
     random_field
@@ -253,6 +259,7 @@ registry! {
     sdnl111_bars
     self_contact
     shapes
+    shell_benchmarks
     shock_front
     sliding_block
     sliding_work

@@ -7,12 +7,23 @@
 use carom_algebra::csr::Csr;
 use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::{Mat3, Vec3};
+use rayon::prelude::*;
 
 use super::section::STRAINS;
 use super::strain::{Configuration, MOST, Strains};
 use super::{Element, PER_NODE, Shell};
 use crate::Placement;
 use crate::turning::{balanced, spatial};
+
+/// Elements that one thread takes, at least.
+const ELEMENTS: usize = 256;
+
+/// Forces and moments on the nodes of an element, N and N m, and its strain energy, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ShellForces {
+    nodes: [[f64; PER_NODE]; MOST],
+    energy: f64,
+}
 
 /// The state of the nodes of an element.
 pub(super) struct Now {
@@ -60,6 +71,22 @@ impl Element {
         let place = start.configuration.mean(&end.configuration);
         let forces = self.weighted(&mean);
         (end, strains, place, forces)
+    }
+
+    fn forces(&self, at: &Placement) -> ShellForces {
+        let (end, strains, place, forces) = self.acting(at);
+        let mut out = ShellForces {
+            energy: self.energy(&strains),
+            ..ShellForces::default()
+        };
+        let found = self.form.gradient(&place, &forces);
+        for (node, [force, moment]) in found.iter().enumerate().take(self.count) {
+            let moment = end.starts[node].tr_mul(moment);
+            let moment = balanced(&moment, &end.increments[node], at.from.is_some());
+            out.nodes[node][..3].copy_from_slice(force.as_slice());
+            out.nodes[node][3..].copy_from_slice(moment.as_slice());
+        }
+        out
     }
 
     /// The symmetric part of ∂f/∂u, row-major.
@@ -114,19 +141,24 @@ impl Element {
 }
 
 impl Shell {
-    pub(super) fn finite_force(&self, at: &Placement, f: &mut [f64]) -> f64 {
+    /// Forces are found side by side and added in the order of the elements.
+    pub(super) fn finite_force(
+        &self,
+        at: &Placement,
+        scratch: &mut Vec<ShellForces>,
+        f: &mut [f64],
+    ) -> f64 {
+        scratch.resize_with(self.elements.len(), ShellForces::default);
+        let elements = self.elements.par_iter().with_min_len(ELEMENTS);
+        elements
+            .zip(&mut scratch[..])
+            .for_each(|(element, out)| *out = element.forces(at));
         let mut energy = 0.0;
-        for element in &self.elements {
-            let (end, strains, place, forces) = element.acting(at);
-            energy += element.energy(&strains);
-            let found = element.form.gradient(&place, &forces);
-            for (node, [force, moment]) in found.iter().enumerate().take(element.count) {
-                let moment = end.starts[node].tr_mul(moment);
-                let moment = balanced(&moment, &end.increments[node], at.from.is_some());
-                let own = &mut f[element.first[node]..element.first[node] + PER_NODE];
-                for i in 0..3 {
-                    own[i] += force[i];
-                    own[3 + i] += moment[i];
+        for (element, found) in self.elements.iter().zip(scratch.iter()) {
+            energy += found.energy;
+            for (force, &first) in found.nodes.iter().zip(&element.first[..element.count]) {
+                for (f, force) in f[first..first + PER_NODE].iter_mut().zip(force) {
+                    *f += force;
                 }
             }
         }

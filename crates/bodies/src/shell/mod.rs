@@ -15,6 +15,7 @@ mod results;
 mod section;
 mod small;
 mod strain;
+mod tying;
 
 use std::ops::Range;
 
@@ -22,12 +23,14 @@ use carom_algebra::csr::Csr;
 use carom_materials::Elastic;
 use carom_mesh::ElementId;
 
+pub(crate) use self::finite::ShellForces;
 pub use self::results::Resultants;
 pub use self::section::ShellSection;
 
 use self::section::ElasticSection;
 use self::strain::{Configuration, Form, MOST, Strains};
-use crate::{Error, Placement, Rotations, Stored};
+use crate::scratch::Scratch;
+use crate::{Placement, Rotations, Stored};
 
 /// Points through the thickness where nothing else is said.
 const LAYERS: u32 = 5;
@@ -138,15 +141,15 @@ impl Shell {
     }
 
     /// Adds the internal forces; see [`Body::force`](crate::Body::force).
-    pub(crate) fn force(&self, at: &Placement, f: &mut [f64]) -> Result<Stored, Error> {
+    pub(crate) fn force(&self, at: &Placement, scratch: &mut Scratch, f: &mut [f64]) -> Stored {
         let strain = match self.turns() {
-            true => self.finite_force(at, f),
+            true => self.finite_force(at, &mut scratch.shells, f),
             false => self.small_force(at, f),
         };
-        Ok(Stored {
+        Stored {
             strain,
             ..Stored::default()
-        })
+        }
     }
 
     /// Adds `by_u` ∂f/∂u to a matrix over all unknowns; see [`Body::add_tangent`](crate::Body::add_tangent).

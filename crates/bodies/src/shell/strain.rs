@@ -5,20 +5,15 @@
 //! e_αβ = ½ (x,α·x,β - X,α·X,β), κ_αβ = ½ (x,α·d,β + x,β·d,α - …), γ_α = x,α·d - X,α·D,
 //!
 //! and the drilling strain is ½ (x,₁·t₂ - x,₂·t₁) less its value at the start, with the axes t₁, t₂ that turn with the nodes. All are bilinear in
-//! places and axes, as are the values that replace them:
-//!
-//! * shear of quadrilaterals: constant along an edge direction, linear across (MITC4; Dvorkin and Bathe 1984, Eng. Comput. 1, 77);
-//! * membrane strains of quadrilaterals: from five points, so that a warped element that bends does not stretch (MITC4+; Ko, Lee and
-//!   Bathe 2017, Comput. Struct. 182, 404). With X_r, X_s, X_d the vectors of x = x₀ + r x_r + s x_s + rs x_d, and X_d = c_r X_r +
-//!   c_s X_s in the plane of both, the strain ½ |x_d|² is replaced by c_r x_r·x_d + c_s x_s·x_d - ½ |c_r x_r + c_s x_s|²: equal in a
-//!   flat element, and without the part of x_d across it;
-//! * shear of triangles: MITC3 (Lee and Bathe 2004, Comput. Struct. 82, 945).
+//! places and axes, as are the ones that replace them:
+//! shear and membrane strains that do not lock, from [`tying`](super::tying).
 //!
 //! A strain is therefore Σ c v_i·v_j + Σ c' v_i·a_j, with v_i = x_(i+1) - x_0 and the axes a. The element keeps c and c'.
 
 use carom_algebra::tensor::{Mat3, Vec3};
 
 use super::section::{AtPoint, STRAINS};
+use super::tying;
 
 /// Most nodes, and points of integration, of an element.
 pub(super) const MOST: usize = 4;
@@ -62,11 +57,71 @@ pub(super) type Strains = [AtPoint; MOST];
 /// Derivatives of a strain by the place and by the rotation of each node.
 pub(super) type Gradient = [[Vec3; 2]; MOST];
 
+/// Takes the block of two unknowns of nodes: the node, and 0 for its place or 1 for its rotation.
+pub(super) type AddBlock<'a> = dyn FnMut([(usize, usize); 2], &Mat3) + 'a;
+
 /// What is summed for one strain.
 #[derive(Clone, Debug, Default)]
-struct Row {
+pub(super) struct Row {
     pairs: [f64; PAIRS],
     axes: [[f64; WITH_AXIS]; 3],
+}
+
+/// The rows of a point without their zeros: membrane strains are sums of pairs, curvatures and shear of products with directors, the drilling
+/// strain of products with both other axes.
+#[derive(Clone, Debug)]
+struct Rows {
+    membrane: [[f64; PAIRS]; 3],
+    director: [[f64; WITH_AXIS]; 5],
+    drilling: [[f64; WITH_AXIS]; 2],
+}
+
+impl Rows {
+    fn new(rows: &[Row; STRAINS]) -> Rows {
+        let [first, second, _] = rows[STRAINS - 1].axes;
+        Rows {
+            membrane: std::array::from_fn(|k| rows[k].pairs),
+            director: std::array::from_fn(|k| rows[3 + k].axes[DIRECTOR]),
+            drilling: [first, second],
+        }
+    }
+
+    fn values(&self, of: &Products) -> AtPoint {
+        let mut values = [0.0; STRAINS];
+        for (value, row) in values.iter_mut().zip(&self.membrane) {
+            *value = sum(row, &of.pairs);
+        }
+        for (value, row) in values[3..].iter_mut().zip(&self.director) {
+            *value = sum(row, &of.axes[DIRECTOR]);
+        }
+        for (row, axis) in self.drilling.iter().zip(&of.axes) {
+            values[STRAINS - 1] += sum(row, axis);
+        }
+        values
+    }
+
+    /// Adds what acts on the products where these act on the strains.
+    fn add(&self, forces: &AtPoint, to: &mut Products) {
+        for (force, row) in forces.iter().zip(&self.membrane) {
+            add(*force, row, &mut to.pairs);
+        }
+        for (force, row) in forces[3..].iter().zip(&self.director) {
+            add(*force, row, &mut to.axes[DIRECTOR]);
+        }
+        for (row, axis) in self.drilling.iter().zip(&mut to.axes) {
+            add(forces[STRAINS - 1], row, axis);
+        }
+    }
+}
+
+fn sum<const N: usize>(row: &[f64; N], of: &[f64; N]) -> f64 {
+    row.iter().zip(of).map(|(c, y)| c * y).sum()
+}
+
+fn add<const N: usize>(force: f64, row: &[f64; N], to: &mut [f64; N]) {
+    for (to, c) in to.iter_mut().zip(row) {
+        *to += force * c;
+    }
 }
 
 /// Products of the vectors of an element, or what acts on them.
@@ -80,7 +135,7 @@ struct Products {
 #[derive(Debug)]
 pub(super) struct Form {
     nodes: usize,
-    rows: Vec<[Row; STRAINS]>,
+    rows: Vec<Rows>,
     /// Area of each point, m².
     pub areas: Vec<f64>,
     /// Derivatives of the shape functions at each point by the lengths along its two axes in the reference configuration.
@@ -97,43 +152,8 @@ fn pair(i: usize, j: usize) -> usize {
     [[0, 1, 2], [1, 3, 4], [2, 4, 5]][i][j]
 }
 
-/// Shape functions and their derivatives by r and s.
-struct Shapes {
-    n: [f64; MOST],
-    by: [[f64; MOST]; 2],
-}
-
-fn shapes(nodes: usize, [r, s]: [f64; 2]) -> Shapes {
-    if nodes == 3 {
-        return Shapes {
-            n: [1.0 - r - s, r, s, 0.0],
-            by: [[-1.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 1.0, 0.0]],
-        };
-    }
-    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    let of = |f: &dyn Fn(f64, f64) -> f64| corners.map(|[a, b]| 0.25 * f(a, b));
-    Shapes {
-        n: of(&|a, b| (1.0 + a * r) * (1.0 + b * s)),
-        by: [of(&|a, b| a * (1.0 + b * s)), of(&|a, b| b * (1.0 + a * r))],
-    }
-}
-
-/// Points of integration and their weights.
-fn rule(nodes: usize) -> Vec<([f64; 2], f64)> {
-    if nodes == 3 {
-        let (near, far) = (1.0 / 6.0, 2.0 / 3.0);
-        return [[near, near], [far, near], [near, far]]
-            .map(|point| (point, 1.0 / 6.0))
-            .to_vec();
-    }
-    let g = 1.0 / 3.0_f64.sqrt();
-    [[-g, -g], [g, -g], [g, g], [-g, g]]
-        .map(|point| (point, 1.0))
-        .to_vec()
-}
-
 impl Row {
-    fn add(&mut self, factor: f64, other: &Row) {
+    pub(super) fn add(&mut self, factor: f64, other: &Row) {
         for (own, other) in self.pairs.iter_mut().zip(&other.pairs) {
             *own += factor * other;
         }
@@ -147,14 +167,14 @@ impl Row {
         }
     }
 
-    fn sum(rows: &[(f64, &Row)]) -> Row {
+    pub(super) fn sum(rows: &[(f64, &Row)]) -> Row {
         let mut sum = Row::default();
         rows.iter().for_each(|(factor, row)| sum.add(*factor, row));
         sum
     }
 
     /// ½ (Σ a_i x_i)·(Σ b_j x_j), sums of coefficients zero.
-    fn half_metric(nodes: usize, a: &[f64; MOST], b: &[f64; MOST]) -> Row {
+    pub(super) fn half_metric(nodes: usize, a: &[f64; MOST], b: &[f64; MOST]) -> Row {
         let mut row = Row::default();
         for i in 1..nodes {
             for j in 1..nodes {
@@ -165,7 +185,11 @@ impl Row {
     }
 
     /// (Σ a_i x_i)·(Σ b_j axis_j), the sum of the first coefficients zero.
-    fn with_axis(nodes: usize, a: &[f64; MOST], (axis, b): (usize, &[f64; MOST])) -> Row {
+    pub(super) fn with_axis(
+        nodes: usize,
+        a: &[f64; MOST],
+        (axis, b): (usize, &[f64; MOST]),
+    ) -> Row {
         let mut row = Row::default();
         for i in 1..nodes {
             for j in 0..nodes {
@@ -174,21 +198,10 @@ impl Row {
         }
         row
     }
-
-    fn value(&self, of: &Products) -> f64 {
-        let pairs: f64 = self.pairs.iter().zip(&of.pairs).map(|(c, y)| c * y).sum();
-        let axes = self.axes.iter().flatten().zip(of.axes.iter().flatten());
-        pairs + axes.map(|(c, y)| c * y).sum::<f64>()
-    }
 }
 
-const DIRECTOR: usize = 2;
-
-/// The covariant strains at a point: membrane rr, ss, rs; shear r, s.
-struct Covariant {
-    membrane: [Row; 3],
-    shear: [Row; 2],
-}
+/// The director among the axes.
+pub(super) const DIRECTOR: usize = 2;
 
 impl Form {
     /// The strains of an element in its reference configuration; `along`: the direction of the first axis.
@@ -201,27 +214,11 @@ impl Form {
             shapes: Vec::new(),
             start: Strains::default(),
         };
-        for (point, weight) in rule(nodes) {
-            let at = shapes(nodes, point);
-            let tangents = at.by.map(|by| gradient(reference, nodes, &by));
-            let normal = tangents[0].cross(&tangents[1]);
-            let (area, normal) = (normal.norm(), normal.normalize());
-            let first = (along - normal * normal.dot(along)).normalize();
-            let second = normal.cross(&first);
-            // derivatives by the lengths along both axes, from those by r and s
-            let [r, s] = tangents.map(|tangent| [tangent.dot(&first), tangent.dot(&second)]);
-            let to = [[s[1] / area, -r[1] / area], [-s[0] / area, r[0] / area]];
-            let covariant = match nodes {
-                3 => triangle(point),
-                _ => quadrilateral(reference, point),
-            };
-            let by = [0, 1].map(|i: usize| {
-                std::array::from_fn(|a| to[i][0] * at.by[0][a] + to[i][1] * at.by[1][a])
-            });
-            form.rows.push(local(nodes, (&at.n, &by), &covariant, &to));
-            form.areas.push(area * weight);
-            form.by.push(by);
-            form.shapes.push(at.n);
+        for point in tying::points(nodes, reference, along) {
+            form.rows.push(Rows::new(&point.rows));
+            form.areas.push(point.area);
+            form.by.push(point.by);
+            form.shapes.push(point.shapes);
         }
         form.start = form.sums(reference);
         form
@@ -249,9 +246,7 @@ impl Form {
         let products = self.products(of);
         let mut sums = Strains::default();
         for (sums, rows) in sums.iter_mut().zip(&self.rows) {
-            for (sum, row) in sums.iter_mut().zip(rows) {
-                *sum = row.value(&products);
-            }
+            *sums = rows.values(&products);
         }
         sums
     }
@@ -278,16 +273,11 @@ impl Form {
 
     /// What acts on the products where these act on the strains of the points.
     fn on_products(&self, forces: &Strains) -> Products {
-        let mut sum = Row::default();
+        let mut sum = Products::default();
         for (forces, rows) in forces.iter().zip(&self.rows) {
-            for (force, row) in forces.iter().zip(rows) {
-                sum.add(*force, row);
-            }
+            rows.add(forces, &mut sum);
         }
-        Products {
-            pairs: sum.pairs,
-            axes: sum.axes,
-        }
+        sum
     }
 
     /// Derivative by places and rotations of Σ forces · strains.
@@ -326,23 +316,16 @@ impl Form {
     /// Derivatives of the strains of a point.
     pub(super) fn derivatives(&self, of: &Configuration, point: usize) -> [Gradient; STRAINS] {
         std::array::from_fn(|k| {
-            let row = &self.rows[point][k];
-            let by = Products {
-                pairs: row.pairs,
-                axes: row.axes,
-            };
+            let (mut unit, mut by) = ([0.0; STRAINS], Products::default());
+            unit[k] = 1.0;
+            self.rows[point].add(&unit, &mut by);
             self.gradient_of(of, &by)
         })
     }
 
     /// Symmetric second derivative by places and rotations of Σ forces · strains: calls `add` with the nodes, the parts (0 place, 1
     /// rotation) and the block.
-    pub(super) fn curvature(
-        &self,
-        of: &Configuration,
-        forces: &Strains,
-        add: &mut dyn FnMut([(usize, usize); 2], &Mat3),
-    ) {
+    pub(super) fn curvature(&self, of: &Configuration, forces: &Strains, add: &mut AddBlock) {
         let (v, n, by) = (self.ways(of), self.nodes, self.on_products(forces));
         // a way is the difference of two places
         let mut on_ways = |i: usize, other: (usize, usize), block: &Mat3| {
@@ -379,141 +362,6 @@ impl Form {
     }
 }
 
-fn gradient(of: &Configuration, nodes: usize, by: &[f64; MOST]) -> Vec3 {
+pub(super) fn gradient(of: &Configuration, nodes: usize, by: &[f64; MOST]) -> Vec3 {
     (0..nodes).map(|a| of.x[a] * by[a]).sum()
-}
-
-/// Strains in the axes of a point from covariant ones; `to`: derivatives along both axes from those by r and s.
-fn local(
-    nodes: usize,
-    (n, by): (&[f64; MOST], &[[f64; MOST]; 2]),
-    covariant: &Covariant,
-    to: &[[f64; 2]; 2],
-) -> [Row; STRAINS] {
-    let membrane = |i: usize, j: usize, factor: f64| {
-        let [rr, ss, rs] = &covariant.membrane;
-        let both = to[i][0] * to[j][1] + to[i][1] * to[j][0];
-        Row::sum(&[
-            (factor * to[i][0] * to[j][0], rr),
-            (factor * to[i][1] * to[j][1], ss),
-            (factor * both, rs),
-        ])
-    };
-    let curvature = |i: usize, j: usize| Row::with_axis(nodes, &by[i], (DIRECTOR, &by[j]));
-    let shear = |i: usize| {
-        let [r, s] = &covariant.shear;
-        Row::sum(&[(to[i][0], r), (to[i][1], s)])
-    };
-    let skew = [
-        Row::with_axis(nodes, &by[0], (1, n)),
-        Row::with_axis(nodes, &by[1], (0, n)),
-    ];
-    [
-        membrane(0, 0, 1.0),
-        membrane(1, 1, 1.0),
-        membrane(0, 1, 2.0),
-        curvature(0, 0),
-        curvature(1, 1),
-        Row::sum(&[(1.0, &curvature(0, 1)), (1.0, &curvature(1, 0))]),
-        shear(0),
-        shear(1),
-        Row::sum(&[(0.5, &skew[0]), (-0.5, &skew[1])]),
-    ]
-}
-
-/// x,α·d at a place of the parent cell.
-fn shear_at(nodes: usize, place: [f64; 2], along: usize) -> Row {
-    let at = shapes(nodes, place);
-    Row::with_axis(nodes, &at.by[along], (DIRECTOR, &at.n))
-}
-
-fn triangle([r, s]: [f64; 2]) -> Covariant {
-    let by = shapes(3, [0.0; 2]).by;
-    let edge = |place: [f64; 2], along: usize| shear_at(3, place, along);
-    let (first, second) = (edge([0.5, 0.0], 0), edge([0.0, 0.5], 1));
-    let third = [0, 1].map(|along| edge([0.5, 0.5], along));
-    let slope = [
-        (1.0, &second),
-        (-1.0, &first),
-        (-1.0, &third[1]),
-        (1.0, &third[0]),
-    ];
-    let slope = Row::sum(&slope);
-    Covariant {
-        membrane: [
-            Row::half_metric(3, &by[0], &by[0]),
-            Row::half_metric(3, &by[1], &by[1]),
-            Row::half_metric(3, &by[0], &by[1]),
-        ],
-        shear: [
-            Row::sum(&[(1.0, &first), (s, &slope)]),
-            Row::sum(&[(1.0, &second), (-r, &slope)]),
-        ],
-    }
-}
-
-fn quadrilateral(reference: &Configuration, [r, s]: [f64; 2]) -> Covariant {
-    let metric = |place: [f64; 2], i: usize, j: usize| {
-        let by = shapes(4, place).by;
-        Row::half_metric(4, &by[i], &by[j])
-    };
-    let (a, b) = (metric([0.0, 1.0], 0, 0), metric([0.0, -1.0], 0, 0));
-    let (c, d) = (metric([1.0, 0.0], 1, 1), metric([-1.0, 0.0], 1, 1));
-    let e = metric([0.0, 0.0], 0, 1);
-    let [c_r, c_s] = twist(reference);
-    let whole = c_r * c_r + c_s * c_s - 1.0;
-    // the strain ½ |x_d|² from those of the five points
-    let half = |c: f64| (0.5 * c * (c - 1.0) / whole, 0.5 * c * (c + 1.0) / whole);
-    let ((at_a, at_b), (at_c, at_d)) = (half(c_r), half(c_s));
-    let of_twist = Row::sum(&[
-        (at_a, &a),
-        (at_b, &b),
-        (at_c, &c),
-        (at_d, &d),
-        (2.0 * c_r * c_s / whole, &e),
-    ]);
-    let across = |x: f64, plus: &Row, minus: &Row| {
-        Row::sum(&[
-            (0.5 * (1.0 + x), plus),
-            (0.5 * (1.0 - x), minus),
-            (x * x - 1.0, &of_twist),
-        ])
-    };
-    let both = Row::sum(&[
-        (1.0, &e),
-        (0.25 * r, &a),
-        (-0.25 * r, &b),
-        (0.25 * s, &c),
-        (-0.25 * s, &d),
-        (r * s, &of_twist),
-    ]);
-    let shear = |x: f64, plus: Row, minus: Row| {
-        Row::sum(&[(0.5 * (1.0 + x), &plus), (0.5 * (1.0 - x), &minus)])
-    };
-    Covariant {
-        membrane: [across(s, &a, &b), across(r, &c, &d), both],
-        shear: [
-            shear(s, shear_at(4, [0.0, 1.0], 0), shear_at(4, [0.0, -1.0], 0)),
-            shear(r, shear_at(4, [1.0, 0.0], 1), shear_at(4, [-1.0, 0.0], 1)),
-        ],
-    }
-}
-
-/// c_r and c_s of X_d = c_r X_r + c_s X_s + its part across both.
-fn twist(reference: &Configuration) -> [f64; 2] {
-    let sum = |signs: [f64; MOST]| gradient(reference, 4, &signs.map(|sign| 0.25 * sign));
-    let along_r = sum([-1.0, 1.0, 1.0, -1.0]);
-    let along_s = sum([-1.0, -1.0, 1.0, 1.0]);
-    let twist = sum([1.0, -1.0, 1.0, -1.0]);
-    let (rr, ss, rs) = (
-        along_r.norm_squared(),
-        along_s.norm_squared(),
-        along_r.dot(&along_s),
-    );
-    let (r, s) = (twist.dot(&along_r), twist.dot(&along_s));
-    let determinant = rr * ss - rs * rs;
-    [
-        (ss * r - rs * s) / determinant,
-        (rr * s - rs * r) / determinant,
-    ]
 }

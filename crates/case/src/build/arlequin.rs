@@ -113,6 +113,13 @@ impl Builder<'_> {
                 .push(problem.accepted(["bars, plane bodies, solids"]));
             return None;
         }
+        if let Kinematics::Shell(_) = bodies[inner].spec.kinematics {
+            let message = "shells cannot be glued in volume";
+            let problem = Problem::new(format!("{path}.inner"), message).found(&given.inner);
+            self.problems
+                .push(problem.accepted(["bars, plane bodies, solids"]));
+            return None;
+        }
         if bodies[inner].spec.kinematics == Kinematics::Axisymmetric {
             let message =
                 "axisymmetric bodies cannot be glued: the products of the link carry no radius";

@@ -8,6 +8,7 @@ use carom_materials::Law;
 use carom_mesh::Mesh;
 
 use super::Builder;
+use super::shells::is_shell;
 use crate::error::Problem;
 use crate::schema::{self, BeamShape, Body, Mass, Section};
 
@@ -251,6 +252,11 @@ impl Builder<'_> {
                 "beams with small rotations do not spin",
                 "rotations = \"finite\"",
             ),
+            Kinematics::Shell(section) => (
+                section.rotations == Rotations::Finite,
+                "shells with small rotations do not spin",
+                "rotations = \"finite\"",
+            ),
             Kinematics::Axisymmetric | Kinematics::Bar { .. } => {
                 (false, "here a body does not turn", "no spin")
             }
@@ -274,26 +280,35 @@ impl Builder<'_> {
         [0.0; 3]
     }
 
-    /// The mass of a body: that of beams is consistent where nothing else is said and its scheme takes it.
+    /// The mass of a body: that of beams and shells is consistent where nothing else is said and its scheme takes it.
     pub(super) fn mass_of(&self, number: usize, body: &Body) -> Mass {
         let zone = self.plan.zone_of(number);
         let scheme = || zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
         match body.mass {
             Some(mass) => mass,
-            None if is_beam(body) && !scheme().get().needs_lumped_mass() => Mass::Consistent,
+            None if has_rotations(body) && !scheme().get().needs_lumped_mass() => Mass::Consistent,
             None => Mass::Lumped,
         }
     }
 
-    /// Nodes of all beams, sorted.
-    pub(super) fn nodes_of_beams(&self, mesh: &Mesh) -> Vec<u32> {
-        let bodies = self.case.body.iter().filter(|(_, body)| is_beam(body));
+    /// Nodes of all beams and shells, sorted.
+    pub(super) fn nodes_with_rotations(&self, mesh: &Mesh) -> Vec<u32> {
+        let bodies = self
+            .case
+            .body
+            .iter()
+            .filter(|(_, body)| has_rotations(body));
         let groups = bodies.filter_map(|(_, body)| mesh.groups.get(&body.region));
         let mut nodes: Vec<u32> = groups.flat_map(|group| mesh.group_nodes(group)).collect();
         nodes.sort_unstable();
         nodes.dedup();
         nodes
     }
+}
+
+/// Whether the nodes of a body have rotations.
+fn has_rotations(body: &Body) -> bool {
+    is_beam(body) || is_shell(body)
 }
 
 /// Whether a body is one of beams.

@@ -7,7 +7,7 @@ use carom_dynamics::ModelBody;
 use carom_materials::Law;
 use carom_mesh::{ElementId, Mesh};
 
-use super::{Builder, beams};
+use super::{Builder, beams, shells};
 use crate::error::Problem;
 use crate::schema::{self, Body, FormulationName, FormulationWith, Mass, Section};
 
@@ -36,10 +36,14 @@ impl Builder<'_> {
                 (Some(Section::Beam(section)), Some(material)) => {
                     self.beam(mesh, &path, section, material)
                 }
-                (Some(Section::Beam(_)), None) => None,
+                (Some(Section::Shell(section)), Some(material)) => {
+                    self.shell(&path, section, material)
+                }
+                (Some(Section::Beam(_) | Section::Shell(_)), None) => None,
                 (section, _) => Some(kinematics(section.as_ref())),
             };
             self.suits_beams(&path, body);
+            self.suits_shells(&path, body);
             let Some(kinematics) = kinematics else {
                 continue;
             };
@@ -75,7 +79,7 @@ impl Builder<'_> {
             let spec = self.hinged(mesh, (&path, body), spec);
             let spin = self.initial_spin(mesh, (&path, body), &spec);
             let rigid = match kinematics {
-                Kinematics::Beam(_) => None,
+                Kinematics::Beam(_) | Kinematics::Shell(_) => None,
                 _ => self.rigid(mesh, &path, body, &spec),
             };
             bodies.push(ModelBody {
@@ -129,6 +133,12 @@ impl Builder<'_> {
         let takes: &[&str] = match dim {
             1 if mesh.dim == 1 => &["section.bar"],
             1 => &["section.bar", "section.beam"],
+            2 if mesh.dim == 3 => &["section.shell"],
+            2 if shells::is_shell(body) => &[
+                "section.shell with mesh.dimension = 3, since all nodes of the file lie in a plane",
+                "section.plane-strain",
+                "section.plane-stress",
+            ],
             2 => &[
                 "section.plane-strain",
                 "section.plane-stress",
@@ -136,7 +146,7 @@ impl Builder<'_> {
             ],
             _ => &["no section"],
         };
-        let problem = if dim == 0 || (dim == 2 && mesh.dim == 3) {
+        let problem = if dim == 0 {
             let problem = Problem::new(
                 format!("{path}.region"),
                 format!("a body cannot be made of {} here", kind(dim)),
@@ -145,7 +155,10 @@ impl Builder<'_> {
                 "a group of cells of a mesh of {}",
                 super::dimensions(mesh.dim)
             )]))
-        } else if kinematics.dim() == dim && !(mesh.dim == 1 && beams::is_beam(body)) {
+        } else if kinematics.dim() == dim
+            && !(mesh.dim == 1 && beams::is_beam(body))
+            && (dim != 2 || shells::is_shell(body) == (mesh.dim == 3))
+        {
             None
         } else if body.section.is_none() {
             let message = format!(
@@ -227,10 +240,10 @@ impl Builder<'_> {
     }
 }
 
-/// The kinematics of a section that is not one of beams.
+/// The kinematics of a section that is neither one of beams nor one of shells.
 fn kinematics(section: Option<&Section>) -> Kinematics {
     match section {
-        None | Some(Section::Beam(_)) => Kinematics::Solid,
+        None | Some(Section::Beam(_) | Section::Shell(_)) => Kinematics::Solid,
         Some(Section::Bar(bar)) => Kinematics::Bar { area: bar.area.0 },
         Some(Section::PlaneStrain(plane)) => Kinematics::PlaneStrain {
             thickness: plane.thickness.0,

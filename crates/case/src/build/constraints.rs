@@ -13,7 +13,7 @@ impl Builder<'_> {
     /// The constraints of a case.
     pub(super) fn constraints(&mut self, mesh: &Mesh) -> Vec<ModelConstraint> {
         let case = self.case;
-        let turning = self.nodes_of_beams(mesh);
+        let turning = self.nodes_with_rotations(mesh);
         let turns = |node: u32| turning.binary_search(&node).is_ok();
         let mut all = Vec::new();
         for (name, link) in case.rigid_link.iter() {

@@ -1,6 +1,6 @@
 //! Bulk viscosity, mass scaling and deletion: what they are made of, and where they are refused.
 
-use carom_bodies::{BulkViscosity, Kinematics, MassScaling};
+use carom_bodies::{BulkViscosity, MassScaling};
 use carom_contact::Integration;
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget};
 use carom_materials::{Law, Material};
@@ -114,8 +114,8 @@ impl Builder<'_> {
             let explicit = scheme.get().is_explicit() && !self.case.time.is_static();
             let spec = &body.spec;
             let solid = body.rigid.is_none() && body.reduced.is_none();
-            let beam = matches!(spec.kinematics, Kinematics::Beam(_));
-            let line = spec.kinematics.dim() == 1;
+            let beam = spec.kinematics.rotations().is_some();
+            let line = spec.kinematics.dim() == 1 || beam;
             let path = format!("body.{}", spec.name);
             for (key, given) in [
                 ("bulk-viscosity", spec.viscosity.is_some()),
@@ -135,10 +135,9 @@ impl Builder<'_> {
                         .push(problem.accepted(["solid or plane cells", "no such key"]));
                 } else if given && (!solid || beam) {
                     let problem = Problem::new(path, "only solids, plane cells and bars have it");
-                    self.problems.push(
-                        problem
-                            .accepted(["a body without `section.beam`, `rigid` and `reduction`"]),
-                    );
+                    self.problems.push(problem.accepted([
+                        "a body without `section.beam`, `section.shell`, `rigid` and `reduction`",
+                    ]));
                 }
             }
             if line {

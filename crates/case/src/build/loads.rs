@@ -6,6 +6,7 @@ use carom_signals::{Error, RandomField};
 
 use super::Builder;
 use super::probes::integrals;
+use super::shells::shell_cells;
 use super::supports::AXES;
 use crate::error::Problem;
 use crate::schema::{self, AmplitudeCourse};
@@ -27,6 +28,7 @@ impl Builder<'_> {
     /// Loads on surfaces.
     pub(super) fn loads(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Vec<Load> {
         let cells: Vec<ElementId> = bodies.iter().flat_map(|b| b.spec.cells.clone()).collect();
+        let shells = shell_cells(bodies);
         let mut loads = Vec::new();
         for (name, load) in self.case.load.iter() {
             let path = format!("load.{name}");
@@ -35,7 +37,13 @@ impl Builder<'_> {
             };
             let amplitude = self.load_amplitude(&path, load);
             let on = load.on.as_deref().unwrap_or_default();
-            let Some(surface) = self.surface(mesh, &cells, &format!("{path}.on"), on) else {
+            let middle = mesh
+                .groups
+                .get(on)
+                .filter(|group| group.dim == 2 && mesh.dim == 3);
+            let middle = middle.and_then(|group| Surface::of_shells(mesh, group, &shells).ok());
+            let surface = middle.or_else(|| self.surface(mesh, &cells, &format!("{path}.on"), on));
+            let Some(surface) = surface else {
                 continue;
             };
             self.of_one_body(&path, on, &surface, bodies);

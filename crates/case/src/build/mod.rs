@@ -29,6 +29,7 @@ mod reductions;
 mod reference;
 mod refused;
 mod rigid;
+mod shells;
 mod signals;
 mod stops;
 mod supports;

@@ -5,7 +5,7 @@ use carom_system::Error as Refusal;
 
 use super::Builder;
 use crate::error::Problem;
-use crate::schema;
+use crate::schema::{self, Section};
 
 impl Builder<'_> {
     /// The problem behind an error of the system or of its first step.
@@ -135,7 +135,14 @@ impl Builder<'_> {
             Refused::Load { .. } => "load".to_string(),
             Refused::NodalLoad(load) => format!("load.{load}"),
             Refused::Rigid(body) => format!("body.{body}.rigid"),
-            Refused::LargeBeam(body) => format!("body.{body}.section.beam.rotations"),
+            Refused::FiniteRotations(body) => {
+                let shell = |body: &schema::Body| matches!(body.section, Some(Section::Shell(_)));
+                let kind = match self.case.body.get(body).is_some_and(shell) {
+                    true => "shell",
+                    false => "beam",
+                };
+                format!("body.{body}.section.{kind}.rotations")
+            }
         };
         Problem::new(path, format!("{what}: {why}"))
     }
@@ -201,6 +208,7 @@ fn key(error: &carom_bodies::Error) -> &'static str {
         Error::NoBetween { .. } => "material",
         Error::BeamAxes { .. } => "section.beam",
         Error::ShellRefused { .. } => "section.shell",
+        Error::ShellCell { .. } => "region",
         Error::NoShape { .. } => "section.beam.shape",
         Error::LargeBeam { .. } => "section.beam.rotations",
         Error::Mechanism { .. } | Error::FlowingHinges { .. } => "hinges",

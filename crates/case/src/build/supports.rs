@@ -93,9 +93,9 @@ impl Builder<'_> {
         (supports, motions, turns)
     }
 
-    /// Whether all these nodes are nodes of beams.
+    /// Whether all these nodes are nodes of beams or shells.
     fn are_of_beams(&self, mesh: &Mesh, nodes: &[u32]) -> bool {
-        let beams = self.nodes_of_beams(mesh);
+        let beams = self.nodes_with_rotations(mesh);
         nodes.iter().all(|node| beams.binary_search(node).is_ok())
     }
 
@@ -107,8 +107,8 @@ impl Builder<'_> {
         let beams = group.is_some_and(|group| self.are_of_beams(mesh, &mesh.group_nodes(group)));
         let (message, accepted) = match (rigid || beams, mesh.dim) {
             (false, _) => (
-                "nodes of a body that deforms have no rotations, except those of beams",
-                "the region of a rigid body, or nodes of beams",
+                "nodes of a body that deforms have no rotations, except those of beams and shells",
+                "the region of a rigid body, or nodes of beams or shells",
             ),
             (true, 3) => return,
             (true, 2) if axis == 2 => return,

@@ -24,6 +24,9 @@ impl Builder<'_> {
         name: &str,
     ) -> Option<Surface> {
         let group = self.group(mesh, path, name)?;
+        if let Some(surface) = self.around_shells(mesh, bodies, (path, group)) {
+            return Some(surface);
+        }
         let axes = axes(mesh, bodies, group);
         let flat = group.dim == 0 && axes.iter().all(|axes| axes.section.radius == Some(0.0));
         if axes.is_empty() || flat {

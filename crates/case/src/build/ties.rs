@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use carom_arlequin::{Error, Rows, trace};
-use carom_bodies::Kinematics;
 use carom_dynamics::ModelBody;
 use carom_mesh::{Mesh, Surface};
 use carom_zones::mortar_rows;
@@ -56,7 +55,7 @@ impl<'a> Ties<'a> {
     pub(super) fn rows(&self, inner: usize, outer: usize) -> Result<Rows, Error> {
         let tolerance = COINCIDENT * self.mesh.size();
         let rows = trace(self.mesh, &self.nodes[inner], &self.nodes[outer], tolerance)?;
-        let bends = |body: usize| matches!(self.bodies[body].spec.kinematics, Kinematics::Beam(_));
+        let bends = |body: usize| self.bodies[body].spec.kinematics.rotations().is_some();
         Ok(match bends(inner) && bends(outer) {
             true => rows.with_rotations(self.mesh.dim as u32),
             false => rows,

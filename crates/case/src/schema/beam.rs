@@ -39,14 +39,15 @@ pub struct BeamSection {
     pub added_mass: Option<AddedMass>,
 }
 
-/// How far nodes of beams turn.
+/// How far nodes of beams and shells turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rotations {
     /// Little: rotations add up like displacements.
     #[default]
     Small,
-    /// By any angle: the geometrically exact beam. For the schemes with iterations, best `energy-momentum`.
+    /// By any angle: geometrically exact beams, shells with the strains of Green and Lagrange. Best with `energy-momentum`; beams need a scheme with
+    /// iterations.
     Finite,
 }
 

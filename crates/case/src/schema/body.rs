@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
-use super::beam::BeamSection;
+use super::beam::{BeamSection, Rotations};
 use super::explicit::{BulkViscosity, Deletion, MassScaling};
 use super::joint::Hinge;
 use carom_quantities::{
@@ -171,6 +171,9 @@ pub enum Section {
     /// Beams: extension, shear, bending and torsion, with rotations of the nodes, of an elastic material or of a metal: `j2`, `j2-table`,
     /// `johnson-cook`. Metal flows in extension and bending; shear and torsion stay elastic.
     Beam(Box<BeamSection>),
+    /// Plates and shells in space, of triangles of three nodes and quadrilaterals of four: membrane, bending and shear, with rotations of the
+    /// nodes. Of an elastic material.
+    Shell(ShellSection),
     /// Plane cells whose strain across the plane is zero.
     PlaneStrain(PlaneSection),
     /// Plane cells whose stress across the plane is zero.
@@ -185,6 +188,19 @@ pub enum Section {
 pub struct BarSection {
     /// Area of the section.
     pub area: Area,
+}
+
+/// Section of plates and shells.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ShellSection {
+    /// Thickness.
+    pub thickness: Length,
+    /// Middle surface from the nodes, along the normal of the cells. Default: in the nodes.
+    pub offset: Option<Coordinate>,
+    /// How far the nodes turn.
+    #[serde(default)]
+    pub rotations: Rotations,
 }
 
 /// Section of plane cells.

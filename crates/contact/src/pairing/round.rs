@@ -1,4 +1,4 @@
-//! Second derivative of the gap between a point, or the axis of a beam, and another axis with a round surface.
+//! Second derivative of the gap between a point, or the axis of a beam, and another axis with a round surface, or an edge or a corner of a shell.
 //!
 //! The gap is the least distance d = |r| less the radii, r = x(ζ_A) - y(ζ_B), over the places ζ on the lines that are free to move:
 //! not held at an end, and of the secondary side only where it crosses. With n = r/d, τ̃_k = ∂r/∂ζ_k, r·τ̃_k = 0, and r̂ the relative
@@ -58,8 +58,8 @@ pub fn add_curvature(point: &Point, foot: &Foothold, factor: f64, block: &mut Bl
 struct Line {
     /// τ̃ in m.
     tangent: Vec3,
-    /// Of its two nodes in the stencil the first.
-    first: usize,
+    /// Its two nodes in the stencil.
+    ends: [usize; 2],
     /// ∂τ̃/∂x of the second node; of the first one it is the opposite.
     share: f64,
 }
@@ -71,8 +71,8 @@ impl Line {
         for (form, share) in form.iter_mut().zip(relative) {
             *form = self.tangent * *share;
         }
-        form[self.first] -= r * self.share;
-        form[self.first + 1] += r * self.share;
+        form[self.ends[0]] -= r * self.share;
+        form[self.ends[1]] += r * self.share;
         form
     }
 }
@@ -81,17 +81,49 @@ impl Line {
 fn own_line(point: &Point, foot: &Foothold) -> Option<Line> {
     point.crosses().then(|| Line {
         tangent: Vec3::from(foot.along),
-        first: 0,
+        ends: [0, 1],
         share: 0.5,
     })
 }
 
-/// That of the face, unless the foot is held at an end.
+/// That of the face, or of the edge of it on which the foot is, unless the foot is held at an end.
 fn line_of_face(point: &Point, foot: &Foothold) -> Option<Line> {
-    let free = foot.dim() == 1 && foot.xi[0].abs() < 1.0;
-    free.then(|| Line {
-        tangent: (Vec3::from(foot.x[0]) - Vec3::from(foot.x[1])) * 0.5,
-        first: point.carriers().count(),
+    let [a, b] = match foot.dim() {
+        1 if foot.xi[0].abs() < 1.0 => [0, 1],
+        2 => edge(foot)?,
+        _ => return None,
+    };
+    let first = point.carriers().count();
+    Some(Line {
+        tangent: (Vec3::from(foot.x[a]) - Vec3::from(foot.x[b])) * 0.5,
+        ends: [first + a, first + b],
         share: -0.5,
     })
+}
+
+/// Distance in the reference cell below which a foot is on an edge.
+const ON: f64 = 1e-12;
+
+/// How far a foot on a plane cell is from each of its edges, in the reference cell; edge k joins the nodes k and k + 1.
+fn from_edges(foot: &Foothold) -> [f64; 4] {
+    let [r, s, _] = foot.xi;
+    match foot.element().nodes {
+        3 => [s, 1.0 - r - s, r, f64::INFINITY],
+        _ => [1.0 + s, 1.0 - r, 1.0 - s, 1.0 + r],
+    }
+}
+
+/// Whether the foot is inside of a plane cell.
+pub fn is_inside(foot: &Foothold) -> bool {
+    foot.dim() == 2 && from_edges(foot).iter().all(|way| *way > ON)
+}
+
+/// The nodes of the edge on which the foot is; none in a corner.
+fn edge(foot: &Foothold) -> Option<[usize; 2]> {
+    let ways = from_edges(foot);
+    let mut on = (0..4).filter(|&k| ways[k] <= ON);
+    match (on.next(), on.next()) {
+        (Some(k), None) => Some([k, (k + 1) % foot.element().nodes]),
+        _ => None,
+    }
 }

@@ -235,7 +235,7 @@ impl Stencil {
     /// Adds factor · ∂²g/∂u² to a block over [`Stencil::unknowns`].
     pub fn add_curvature(&self, factor: f64, block: &mut Block) {
         match &self.foot {
-            Foot::Face(foot) if foot.face.is_round() => {
+            Foot::Face(foot) if foot.face.is_round() && !round::is_inside(foot) => {
                 round::add_curvature(&self.point, foot, factor, block);
             }
             Foot::Face(foot) if foot.dim() == 0 => (),

@@ -45,6 +45,45 @@ fn places(kind: Kind, random: &mut Random, spread: f64) -> Vec<[f64; 3]> {
     x
 }
 
+/// Points over both sides, edges and corners of the middle of a shell.
+#[test]
+fn rows_and_curvature_around_plane_cells_are_derivatives() {
+    let mut random = Random(19);
+    for kind in [Kind::Tri3, Kind::Quad4] {
+        for case in 0..80 {
+            let spread = if case % 2 == 0 { 0.3 } else { 1.6 };
+            let mut x = places(kind, &mut random, spread);
+            let count = kind.table().nodes;
+            if case % 4 < 2 {
+                x[count][2] *= -1.0;
+            }
+            let u: Vec<f64> = random
+                .vector(3 * x.len())
+                .iter()
+                .map(|u| 0.02 * u)
+                .collect();
+            let places = Places {
+                unknowns: &Unknowns::translations(3, x.len()),
+                time: 0.0,
+                x: &x,
+                u: &u,
+                frames: Frames::default(),
+            };
+            let mut around = face(kind, &(0..count as u32).collect::<Vec<_>>());
+            around.radius = Some(0.05);
+            let points = vec![Point::at_node(count as u32, 1.0, 1.0)];
+            let contact = contact(points, Target::Surface(vec![around]));
+            let pairing = paired(&contact, &places);
+            let gap = pairing.rows.gap(0);
+            assert!(
+                gap > 0.0 && gap.is_finite(),
+                "on both sides a point is outside"
+            );
+            assert_derivatives(&places, |places| paired(&contact, places));
+        }
+    }
+}
+
 fn over_a_face(kind: Kind, x: &[[f64; 3]], whole: bool) -> Contact {
     let nodes: Vec<u32> = (0..x.len() as u32).collect();
     let (primary, secondary) = nodes.split_at(kind.table().nodes);

@@ -1,0 +1,281 @@
+//! Shells in statics, small rotations.
+//!
+//! Problems, of MacNeal and Harder (1985, Finite Elem. Anal. Des. 1, 3) where nothing else is said; symmetric parts are meshed:
+//! - Scordelis-Lo roof: R = 25, L = 50, h = 0.25, 80°, E = 4.32e8, ν = 0, weight 90 per area, on diaphragms: the middle of a free edge
+//!   sinks by 0.3024.
+//! - Cylinder pinched between diaphragms: R = 300, L = 600, h = 3, E = 3e6, ν = 0.3, two forces 1: 1.8248e-5 (Belytschko and others 1985).
+//! - Hemisphere with a hole of 18°: R = 10, h = 0.04, E = 6.825e7, ν = 0.3, forces 2 at four points: 0.0940 (MacNeal and Harder), 0.093 (Simo, Fox and
+//!   Rifai 1989).
+//! - Beam twisted by 90°: L = 12, b = 1.1, h = 0.32 and 0.0032, E = 2.9e7, ν = 0.22, force 1 (1e-6 of the thin one) at the end in its plane and
+//!   across: 5.424e-3 and 1.754e-3; 5.256e-3 and 1.294e-3 (Simo, Fox and Rifai 1989). In every element of it the nodes are out of a plane.
+//! - Raasch's hook (Knight 1997, AIAA J. 35, 375): two arcs of R = 14, 60°, and R = 46, 150°, width 20, h = 2, E = 3300, ν = 0.35, force 1
+//!   across at the end: 4.9352.
+//!
+//! Tolerance: 2 %, the spread of published values. Triangles, whose membrane strain is constant, on meshes twice as fine: 3 %.
+
+use carom_bodies::Rotations;
+use carom_materials::Elastic;
+
+use crate::Error;
+use crate::beams::held;
+use crate::check::{Check, Row, Size};
+use crate::shells::{Grid, Held, deflection, force, shell};
+
+fn material(young: f64, poisson: f64, density: f64) -> Elastic {
+    Elastic {
+        density,
+        young,
+        poisson,
+    }
+}
+
+fn radians(degrees: f64) -> f64 {
+    degrees.to_radians()
+}
+
+/// A quarter: x across, y along, z up.
+fn roof(grid: &Grid) -> Result<f64, Error> {
+    let (radius, half, thickness) = (25.0, 25.0, 0.25);
+    let mesh = grid.mesh(&|s, t| {
+        let angle = radians(40.0) * s;
+        [radius * angle.sin(), half * t, radius * angle.cos()]
+    });
+    let made = shell(
+        &mesh,
+        thickness,
+        Rotations::Small,
+        material(4.32e8, 0.0, 90.0 / thickness),
+    )?;
+    let supports = vec![
+        // on the diaphragm at y = 0, symmetric about y = 25 and about x = 0
+        held(grid.row(0), [true, false, true], [false; 3]),
+        held(grid.row(grid.m), [false, true, false], [true, false, true]),
+        held(grid.column(0), [true, false, false], [false, true, true]),
+    ];
+    let load = Held {
+        supports,
+        gravity: [0.0, 0.0, -1.0],
+        ..Held::default()
+    };
+    let edge = grid.node(grid.n, grid.m);
+    Ok(-deflection((mesh, made), load, edge)?[2])
+}
+
+/// An eighth: the force at x = 0, y = 0, z = R.
+fn cylinder(grid: &Grid) -> Result<f64, Error> {
+    let (radius, half, thickness) = (300.0, 300.0, 3.0);
+    let mesh = grid.mesh(&|s, t| {
+        let angle = radians(90.0) * s;
+        [radius * angle.sin(), half * t, radius * angle.cos()]
+    });
+    let made = shell(&mesh, thickness, Rotations::Small, material(3e6, 0.3, 1.0))?;
+    let supports = vec![
+        held(grid.row(grid.m), [true, false, true], [false, true, false]),
+        held(grid.row(0), [false, true, false], [true, false, true]),
+        held(grid.column(0), [true, false, false], [false, true, true]),
+        held(
+            grid.column(grid.n),
+            [false, false, true],
+            [true, true, false],
+        ),
+    ];
+    let point = grid.node(0, 0);
+    let load = Held {
+        supports,
+        loads: vec![force(vec![point], [0.0, 0.0, -0.25])],
+        ..Held::default()
+    };
+    Ok(-deflection((mesh, made), load, point)?[2])
+}
+
+/// A quarter: forces along x outward and along y inward.
+fn hemisphere(grid: &Grid) -> Result<f64, Error> {
+    let radius = 10.0;
+    let mesh = grid.mesh(&|s, t| {
+        let (around, up) = (radians(90.0) * s, radians(72.0) * t);
+        [
+            radius * up.cos() * around.cos(),
+            radius * up.cos() * around.sin(),
+            radius * up.sin(),
+        ]
+    });
+    let made = shell(&mesh, 0.04, Rotations::Small, material(6.825e7, 0.3, 1.0))?;
+    let (first, second) = (grid.node(0, 0), grid.node(grid.n, 0));
+    let supports = vec![
+        held(grid.column(0), [false, true, false], [true, false, true]),
+        held(
+            grid.column(grid.n),
+            [true, false, false],
+            [false, true, true],
+        ),
+        held(vec![first], [false, false, true], [false; 3]),
+    ];
+    let load = Held {
+        supports,
+        loads: vec![
+            force(vec![first], [1.0, 0.0, 0.0]),
+            force(vec![second], [0.0, -1.0, 0.0]),
+        ],
+        ..Held::default()
+    };
+    Ok(deflection((mesh, made), load, first)?[0])
+}
+
+/// Clamped at x = 0, where its width is along y; at the end it is along z. The displacement along the force, in the plane (z) or across (y).
+fn twisted(grid: &Grid, thickness: f64, load: f64, axis: usize) -> Result<f64, Error> {
+    let mesh = grid.mesh(&|s, t| {
+        let (angle, across) = (radians(90.0) * s, 1.1 * (t - 0.5));
+        [12.0 * s, across * angle.cos(), across * angle.sin()]
+    });
+    let made = shell(
+        &mesh,
+        thickness,
+        Rotations::Small,
+        material(2.9e7, 0.22, 1.0),
+    )?;
+    let mut direction = [0.0; 3];
+    direction[axis] = load;
+    let end = grid.node(grid.n, grid.m / 2);
+    let load = Held {
+        supports: vec![held(grid.column(0), [true; 3], [true; 3])],
+        loads: vec![force(vec![end], direction)],
+        ..Held::default()
+    };
+    Ok(deflection((mesh, made), load, end)?[axis])
+}
+
+/// Clamped at the start of the smaller arc; the force across at the end of the larger.
+fn hook(grid: &Grid) -> Result<f64, Error> {
+    let lengths = [14.0 * radians(60.0), 46.0 * radians(150.0)];
+    let mesh = grid.mesh(&|s, t| {
+        let along = s * (lengths[0] + lengths[1]);
+        let [x, y] = if along <= lengths[0] {
+            let angle = along / 14.0;
+            [14.0 * angle.sin(), 14.0 * (1.0 - angle.cos())]
+        } else {
+            // the centre of the second arc is on the other side of the path
+            let turn = radians(60.0);
+            let from = [14.0 * turn.sin(), 14.0 * (1.0 - turn.cos())];
+            let angle = turn - (along - lengths[0]) / 46.0;
+            let centre = [from[0] + 46.0 * turn.sin(), from[1] - 46.0 * turn.cos()];
+            [
+                centre[0] - 46.0 * angle.sin(),
+                centre[1] + 46.0 * angle.cos(),
+            ]
+        };
+        [x, y, 20.0 * t]
+    });
+    let made = shell(&mesh, 2.0, Rotations::Small, material(3300.0, 0.35, 1.0))?;
+    // the force is spread over the edge: halves at its ends
+    let inner = grid.column(grid.n)[1..grid.m].to_vec();
+    let part = 1.0 / grid.m as f64;
+    let ends = vec![grid.node(grid.n, 0), grid.node(grid.n, grid.m)];
+    let load = Held {
+        supports: vec![held(grid.column(0), [true; 3], [true; 3])],
+        loads: vec![
+            force(inner, [0.0, 0.0, part]),
+            force(ends, [0.0, 0.0, 0.5 * part]),
+        ],
+        ..Held::default()
+    };
+    let end = grid.node(grid.n, grid.m / 2);
+    Ok(deflection((mesh, made), load, end)?[2])
+}
+
+/// What is computed on meshes of growing fineness.
+struct Problem<'a> {
+    name: &'a str,
+    published: f64,
+    meshes: &'a [[usize; 2]],
+    solve: &'a dyn Fn(&Grid) -> Result<f64, Error>,
+}
+
+impl Problem<'_> {
+    fn rows(&self, triangles: bool, part: f64, rows: &mut Vec<Row>) -> Result<(), Error> {
+        let kind = if triangles { "tri3" } else { "quad4" };
+        let finer = if triangles { 2 } else { 1 };
+        for (k, mesh) in self.meshes.iter().enumerate() {
+            let [n, m] = mesh.map(|count| finer * count);
+            let grid = Grid { n, m, triangles };
+            let found = (self.solve)(&grid)?;
+            let name = format!("{}, {kind} {n} x {m}: displacement", self.name);
+            rows.push(match k + 1 == self.meshes.len() {
+                true => Row::relative(name, found, self.published, part).published(),
+                false => Row::shown(name, found),
+            });
+        }
+        Ok(())
+    }
+}
+
+fn run(size: Size) -> Result<Vec<Row>, Error> {
+    let full = size == Size::Full;
+    let meshes =
+        |all: &'static [[usize; 2]], quick: usize| if full { all } else { &all[quick..=quick] };
+    let problems = [
+        Problem {
+            name: "Scordelis-Lo roof",
+            published: 0.3024,
+            meshes: meshes(&[[4, 4], [8, 8], [16, 16]], 2),
+            solve: &roof,
+        },
+        Problem {
+            name: "pinched cylinder",
+            published: 1.8248e-5,
+            meshes: meshes(&[[8, 8], [16, 16], [32, 32]], 2),
+            solve: &cylinder,
+        },
+        Problem {
+            name: "hemisphere",
+            published: 0.0940,
+            meshes: meshes(&[[4, 4], [8, 8], [16, 16]], 2),
+            solve: &hemisphere,
+        },
+        Problem {
+            name: "twisted beam, h = 0.32, in plane",
+            published: 5.424e-3,
+            meshes: meshes(&[[12, 2], [24, 4]], 1),
+            solve: &|grid| twisted(grid, 0.32, 1.0, 2),
+        },
+        Problem {
+            name: "twisted beam, h = 0.32, across",
+            published: 1.754e-3,
+            meshes: meshes(&[[12, 2], [24, 4]], 1),
+            solve: &|grid| twisted(grid, 0.32, 1.0, 1),
+        },
+        Problem {
+            name: "twisted beam, h = 0.0032, in plane",
+            published: 5.256e-3,
+            meshes: meshes(&[[12, 2], [24, 4]], 1),
+            solve: &|grid| twisted(grid, 0.0032, 1e-6, 2),
+        },
+        Problem {
+            name: "twisted beam, h = 0.0032, across",
+            published: 1.294e-3,
+            meshes: meshes(&[[12, 2], [24, 4]], 1),
+            solve: &|grid| twisted(grid, 0.0032, 1e-6, 1),
+        },
+        Problem {
+            name: "Raasch's hook",
+            published: 4.9352,
+            meshes: meshes(&[[18, 4], [36, 8], [72, 16]], 1),
+            solve: &hook,
+        },
+    ];
+    let mut rows = Vec::new();
+    for problem in &problems {
+        problem.rows(false, 0.02, &mut rows)?;
+    }
+    if full {
+        for problem in &problems {
+            problem.rows(true, 0.03, &mut rows)?;
+        }
+    }
+    Ok(rows)
+}
+
+pub(crate) const CHECK: Check = Check {
+    name: "shell-benchmarks",
+    fact: "shells deflect as published: roof, pinched cylinder, hemisphere, twisted beam, hook",
+    run,
+};
