@@ -45,6 +45,16 @@ impl Cell {
         cell
     }
 
+    /// The cell with the same corners and straight edges.
+    pub fn straight(&self) -> Cell {
+        let mut cell = Cell {
+            kind: self.kind.table().linear,
+            ..self.clone()
+        };
+        cell.affine = cell.affine_map();
+        cell
+    }
+
     /// Node positions.
     pub fn x(&self) -> &[[f64; 3]] {
         &self.x[..self.kind.table().nodes]

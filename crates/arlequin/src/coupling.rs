@@ -224,7 +224,7 @@ impl Overlap<'_> {
 }
 
 /// Refuses a value that is negative, not a number, or above a bound.
-fn in_range(what: &'static str, value: f64, to: f64) -> Result<(), Error> {
+pub(crate) fn in_range(what: &'static str, value: f64, to: f64) -> Result<(), Error> {
     match (0.0..=to).contains(&value) {
         true => Ok(()),
         false => Err(Error::Range {
@@ -380,13 +380,13 @@ impl<'a> Assembly<'a> {
 
 /// A sparse sum: entries are gathered and put together when they have doubled.
 #[derive(Clone, Debug, Default)]
-struct Sum {
+pub(crate) struct Sum {
     entries: Vec<(u32, f64)>,
     limit: usize,
 }
 
 impl Sum {
-    fn add(&mut self, key: u32, value: f64) {
+    pub fn add(&mut self, key: u32, value: f64) {
         self.entries.push((key, value));
         if self.entries.len() > self.limit.max(256) {
             self.sorted();
@@ -395,7 +395,7 @@ impl Sum {
     }
 
     /// The entries, sorted, each key once.
-    fn sorted(&mut self) -> &[(u32, f64)] {
+    pub fn sorted(&mut self) -> &[(u32, f64)] {
         // The sort is stable: equal keys are summed in the order in which they came.
         self.entries.sort_by_key(|entry| entry.0);
         self.entries.dedup_by(|next, kept| {

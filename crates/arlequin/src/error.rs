@@ -102,6 +102,56 @@ pub enum Error {
         /// Cells of the outer model where it is below one.
         cells: Vec<ElementId>,
     },
+    /// The axis of a beam bends or branches in the solid.
+    #[error(
+        "the axis of the beam is not straight in the solid that it overlaps with: {} cells meet at an angle",
+        cells.len()
+    )]
+    Bent {
+        /// Cells of the beam that meet there.
+        cells: Vec<ElementId>,
+    },
+    /// A solid ends along a beam at a place outside the overlap.
+    #[error("the solid ends along the beam, but outside the overlap: nothing would hold its end")]
+    SolidEndsOutside {
+        /// Cells of the beam there.
+        cells: Vec<ElementId>,
+    },
+    /// The overlap of a beam and a solid is shorter than one cell.
+    #[error(
+        "the overlap is {layers:.2} cells of the coarser model long: it must hold one at least, better two to four"
+    )]
+    Short {
+        /// Length over the larger of both sizes along the axis.
+        layers: f64,
+        /// Cells of the beam there.
+        cells: Vec<ElementId>,
+    },
+    /// The section of a beam is not that of the solid around its axis.
+    #[error(
+        "in the overlap the {what} of the solid around the axis of the beam is {found:.4e} {unit}, that of the section of the beam \
+         {expected:.4e} {unit}: the section must lie in the solid and fill it"
+    )]
+    Section {
+        /// The quantity.
+        what: &'static str,
+        /// Its unit.
+        unit: &'static str,
+        /// Its value in the solid.
+        found: f64,
+        /// That of the section of the beam.
+        expected: f64,
+        /// Cells of the solid there.
+        cells: Vec<ElementId>,
+    },
+    /// Of a beam and a solid one does not end in the overlap.
+    #[error(
+        "the {model} model does not end in the overlap: a beam and a solid continue each other, so each must end there"
+    )]
+    NoEnd {
+        /// The model without an end there.
+        model: Model,
+    },
     /// A weight that varies needs a border of the overlap where each model ends.
     #[error(
         "the {model} model does not end in the overlap: a weight that goes from one border to the other needs \
@@ -151,6 +201,12 @@ pub enum Error {
     #[error("node {node} coincides with more than one node of the other zone")]
     Ambiguous {
         /// The node.
+        node: u32,
+    },
+    /// Faces without a mean rotation.
+    #[error("the faces lie on one line through node {node}: they have no rotation about it")]
+    FacesOnLine {
+        /// The node that would have their motion.
         node: u32,
     },
     /// Failure of the factorisation that measures the rank.

@@ -22,15 +22,19 @@
 //! with a rule of a degree raised by six, not exactly. Affine fields are still coupled exactly: they are the same number
 //! in both models at every point, whatever the rule.
 //!
+//! A beam and a solid have overlaps of their own kind: [`BeamOverlap`].
+//!
 //! Sources: H. Ben Dhia, C. Zammali, F. Voldoire, S. Lamarche (2003), equations (11)-(12); H. Ben Dhia, G. Rateau (2005)
 //! for the method in statics. The integration on the common refinement, the weight by distances and the treatment of
 //! slivers are this project's.
 
+mod beam;
 mod border;
 mod cell;
 mod coupling;
 mod ends;
 mod error;
+mod faces;
 mod model;
 mod overlap;
 mod polytope;
@@ -40,8 +44,10 @@ mod rule;
 mod trace;
 mod weights;
 
+pub use beam::{BeamCell, BeamModels, BeamOverlap, SectionMotion};
 pub use coupling::{Bracket, Coupling, Integration, Mediator, SliverRule};
 pub use error::{Error, Model};
+pub use faces::mean_motion;
 pub use overlap::{Models, Overlap, Region};
 pub use rows::{Rank, Row, Rows, Sliver, Term};
 pub use trace::trace;

@@ -342,7 +342,11 @@ fn measure(polytopes: &[Polytope]) -> f64 {
 }
 
 /// Points and weights of a simplex rule on every simplex of some bodies.
-fn simplex_points(polytopes: &[Polytope], rule: &Rule, dim: usize) -> Vec<([f64; 3], f64)> {
+pub(crate) fn simplex_points(
+    polytopes: &[Polytope],
+    rule: &Rule,
+    dim: usize,
+) -> Vec<([f64; 3], f64)> {
     let reference = [1.0, 1.0, 2.0, 6.0][dim];
     let mut points = Vec::new();
     for polytope in polytopes {

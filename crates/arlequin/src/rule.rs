@@ -3,6 +3,7 @@
 //! The pieces of a common refinement carry products of the shape functions of two meshes, of higher degree than the
 //! tables of `carom-elements` serve.
 
+use carom_elements::Kind;
 use carom_elements::quadrature::{TETRAHEDRON_4, TRIANGLE_3};
 
 /// Points and weights on a reference cell: the unit simplex, or [-1, 1]^dim.
@@ -37,6 +38,30 @@ impl Rule {
             let y = if dim > 1 { (1.0 - z) * t[1] } else { 0.0 };
             [(1.0 - z - y) * t[0], y, z]
         })
+    }
+
+    /// Rule on the reference cell with the corners of a kind, exact for polynomials of total degree `degree`, on cubes of this degree in
+    /// each variable. On a pyramid it is exact for such polynomials in (x, y, ζ) with ξ = x(1 - ζ), η = y(1 - ζ).
+    pub fn of(corners: Kind, degree: usize) -> Rule {
+        let dim = corners.table().dim;
+        let n = degree / 2 + 1;
+        match corners {
+            Kind::Tri3 | Kind::Tet4 => Rule::simplex(dim, degree),
+            Kind::Wedge6 => {
+                let axes = [
+                    unit(&gauss_jacobi(n, 0), 0),
+                    unit(&gauss_jacobi(n, 1), 1),
+                    gauss_jacobi(n, 0),
+                ];
+                product(&axes, |t| [(1.0 - t[1]) * t[0], t[1], t[2]])
+            }
+            Kind::Pyramid5 => {
+                let line = gauss_jacobi(n, 0);
+                let axes = [line.clone(), line, unit(&gauss_jacobi(n, 2), 2)];
+                product(&axes, |t| [t[0] * (1.0 - t[2]), t[1] * (1.0 - t[2]), t[2]])
+            }
+            _ => Rule::cube(dim, degree),
+        }
     }
 
     /// Gauss product on [-1, 1]^dim, exact for polynomials of degree `degree` in each variable.
@@ -152,6 +177,21 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn the_rules_of_wedge_and_pyramid_have_the_moments_of_their_cells() {
+        // wedge: ∫ x² y ζ² = 2!1!/5! · 2/3; pyramid: ∫ x² ζ = ∫ (4/3)(1 - ζ)⁴ ζ dζ
+        for (kind, power, exact) in [
+            (Kind::Wedge6, [2, 1, 2], 2.0 / 120.0 * 2.0 / 3.0),
+            (Kind::Pyramid5, [2, 0, 1], 4.0 / 3.0 / 30.0),
+        ] {
+            let rule = Rule::of(kind, 5);
+            let value = |x: &[f64; 3]| (0..3).map(|i| x[i].powi(power[i])).product::<f64>();
+            let points = rule.points.iter().zip(&rule.weights);
+            let sum: f64 = points.map(|(x, w)| w * value(x)).sum();
+            assert!((sum - exact).abs() < 1e-15, "{kind:?}");
         }
     }
 

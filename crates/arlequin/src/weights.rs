@@ -279,7 +279,7 @@ impl Overlap<'_> {
 }
 
 impl Profile {
-    fn value(self, s: f64, floor: f64) -> f64 {
+    pub(crate) fn value(self, s: f64, floor: f64) -> f64 {
         let rise = match self {
             Profile::Constant(value) => return value,
             Profile::Linear => s,
@@ -290,7 +290,7 @@ impl Profile {
 }
 
 impl Weighting {
-    fn check(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         if !(0.0..0.5).contains(&self.floor) {
             return Err(Error::Range {
                 what: "the floor of the weights",
@@ -319,7 +319,7 @@ impl Weighting {
     }
 
     /// Degree of the weights on a strip.
-    fn degree(&self) -> usize {
+    pub(crate) fn degree(&self) -> usize {
         let degree = |profile: Profile| match profile {
             Profile::Constant(_) => 0,
             Profile::Linear => 1,
@@ -330,14 +330,14 @@ impl Weighting {
 }
 
 /// Integrals over one cell: of N_a N_b, and of both 1 - w times N_a.
-struct Sums {
+pub(crate) struct Sums {
     nodes: usize,
     mass: [[f64; MAX_NODES]; MAX_NODES],
     rest: [[f64; MAX_NODES]; 2],
 }
 
 impl Sums {
-    fn new(nodes: usize) -> Sums {
+    pub fn new(nodes: usize) -> Sums {
         Sums {
             nodes,
             mass: [[0.0; MAX_NODES]; MAX_NODES],
@@ -345,7 +345,7 @@ impl Sums {
         }
     }
 
-    fn add(&mut self, cell: &Cell, xi: &[f64; 3], weight: f64, values: [f64; 2]) {
+    pub fn add(&mut self, cell: &Cell, xi: &[f64; 3], weight: f64, values: [f64; 2]) {
         let mut n = [0.0; MAX_NODES];
         for (a, n) in cell.shape(xi, &mut n).iter().enumerate() {
             self.rest[0][a] += weight * n * values[0];
@@ -353,7 +353,7 @@ impl Sums {
         }
     }
 
-    fn add_mass(&mut self, cell: &Cell, xi: &[f64; 3], weight: f64) {
+    pub fn add_mass(&mut self, cell: &Cell, xi: &[f64; 3], weight: f64) {
         let mut n = [0.0; MAX_NODES];
         let n = cell.shape(xi, &mut n);
         for a in 0..n.len() {
@@ -364,7 +364,7 @@ impl Sums {
     }
 
     /// Nodal values of both weights: 1 - M⁻¹ ∫ (1 - w) N.
-    fn solve(mut self) -> [[f64; MAX_NODES]; 2] {
+    pub fn solve(mut self) -> [[f64; MAX_NODES]; 2] {
         let (n, m) = (self.nodes, &mut self.mass);
         // Gauss elimination without pivoting: a mass matrix is positive definite and well conditioned.
         for k in 0..n {
@@ -386,7 +386,7 @@ impl Sums {
 
 /// Shrinks the weight of a cell towards its mean until it is not negative at the points of a rule, where masses and
 /// stiffness take it. Returns whether it was. The mean is kept.
-fn flatten(cell: &Cell, values: &mut [f64], rule: &carom_elements::Rule) -> bool {
+pub(crate) fn flatten(cell: &Cell, values: &mut [f64], rule: &carom_elements::Rule) -> bool {
     let mean = mean(cell, values);
     let least = rule.points.iter().fold(f64::MAX, |least, xi| {
         let mut n = [0.0; MAX_NODES];
@@ -405,7 +405,7 @@ fn flatten(cell: &Cell, values: &mut [f64], rule: &carom_elements::Rule) -> bool
 }
 
 /// ∫ w / |cell| of a weight given at the nodes.
-fn mean(cell: &Cell, values: &[f64]) -> f64 {
+pub(crate) fn mean(cell: &Cell, values: &[f64]) -> f64 {
     let rule = cell.kind.table().mass_rule;
     let mut sum = 0.0;
     for (xi, w) in rule.points.iter().zip(rule.weights) {

@@ -94,7 +94,12 @@ impl Block {
     ) -> Block {
         let per = kind.table().nodes;
         let length = chunk_length(kind) * per;
-        let stiffness_points = Points::new(kind, kind.table().stiffness_rule);
+        let weighted = weights.is_some_and(|weights| weights.stiffness.iter().any(|w| *w != 1.0));
+        let rule = match weighted {
+            true => kind.table().weighted_stiffness_rule(),
+            false => kind.table().stiffness_rule,
+        };
+        let stiffness_points = Points::new(kind, rule);
         let chunk_weights = |first: usize, count: usize| {
             weights.map(|weights| {
                 let values = first..first + count;

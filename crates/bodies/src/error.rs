@@ -99,8 +99,10 @@ pub enum Error {
         /// What is wrong with it.
         why: &'static str,
     },
-    /// Beams that share their volume with another model.
-    #[error("body '{body}': beams cannot be glued to another model in volume")]
+    /// Beams that share their volume with another model, and flow or turn by finite rotations.
+    #[error(
+        "body '{body}': beams of metal that flows, or with finite rotations, cannot be glued to another model in volume"
+    )]
     BeamWeights {
         /// Name of the body.
         body: String,

@@ -36,8 +36,8 @@ mod turning;
 mod weights;
 
 pub use beam::{
-    Beam, BeamSection, BeamTheory, LAYERS, LargeBeam, Rotations, SectionForces, SectionProperties,
-    SectionShape,
+    Beam, BeamAxis, BeamSection, BeamTheory, LAYERS, LargeBeam, Rotations, SectionForces,
+    SectionProperties, SectionShape,
 };
 pub use body::Body;
 pub use discrete::{

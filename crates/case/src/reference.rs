@@ -50,6 +50,7 @@ const ORDER: &[&str] = &[
     "dashpot",
     "stop",
     "rigid-link",
+    "transition",
     "constraint",
     "fluid",
     "signal",

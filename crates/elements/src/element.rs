@@ -48,6 +48,15 @@ pub struct Element {
 }
 
 impl Element {
+    /// Exact for the stiffness of linear elasticity times a linear weight, on affine cells: quadratic triangles and tetrahedra have
+    /// products of the third degree, beyond their stiffness rule.
+    pub fn weighted_stiffness_rule(&self) -> &'static Rule {
+        match self.kind {
+            Kind::Tri6 | Kind::Tet10 => self.mass_rule,
+            _ => self.stiffness_rule,
+        }
+    }
+
     /// Whether there are nodes besides the corners.
     pub fn is_quadratic(&self) -> bool {
         self.kind != self.linear

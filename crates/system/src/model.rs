@@ -152,6 +152,27 @@ impl ModelConstraint {
     }
 }
 
+impl ModelConstraint {
+    /// The rows of a coupling: inner terms less outer ones. `dim`: of the mesh.
+    pub fn of_rows(name: impl Into<String>, rows: &[Row], dim: usize) -> ModelConstraint {
+        let kind = |component: u32| match component as usize {
+            k if k < dim => Kind::Translation(k),
+            _ if dim == 2 => Kind::Rotation(2),
+            k => Kind::Rotation(k - dim),
+        };
+        let of = |row: &Row| {
+            let inner = row.inner.iter().map(|t| (t, t.coefficient));
+            let outer = row.outer.iter().map(|t| (t, -t.coefficient));
+            let terms = inner.chain(outer);
+            terms.map(|(t, c)| (t.node, kind(t.component), c)).collect()
+        };
+        ModelConstraint {
+            name: name.into(),
+            rows: rows.iter().map(of).collect(),
+        }
+    }
+}
+
 impl Model {
     /// The length that absolute tolerances are fractions of, m: the size of the mesh. Of a mesh without extent, such as a single
     /// point mass, the largest of initial displacements and gaps, and of the ways of the first step; 1 where all are zero.

@@ -61,6 +61,9 @@ mod beam_frequencies;
 mod beam_joints;
 mod beam_on_stop;
 mod beam_pulse;
+mod beam_solid;
+mod beam_solid_patch;
+mod beam_solid_waves;
 mod beams;
 mod block_drop;
 mod blocks;
@@ -200,6 +203,8 @@ registry! {
     large_shells
     beam_on_stop
     beam_pulse
+    beam_solid_patch
+    beam_solid_waves
     block_drop
     blocks
     blocks_as_bars

@@ -11,6 +11,12 @@ pub enum Error {
     /// A model that no system is built from.
     #[error(transparent)]
     System(#[from] carom_system::Error),
+    /// A beam and a solid that cannot be glued.
+    #[error(transparent)]
+    Overlap(#[from] carom_arlequin::Error),
+    /// A body of an overlap that cannot be built.
+    #[error(transparent)]
+    Body(#[from] carom_bodies::Error),
     /// A zone that could not be built.
     #[error("zone '{zone}': {cause}")]
     Zone {

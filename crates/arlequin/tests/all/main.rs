@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod bars;
+mod beam;
 mod corner;
 mod patch;
 mod products;

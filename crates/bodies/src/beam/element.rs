@@ -22,6 +22,9 @@
 //! Where an element is long against the height of its section its mass may then not be positive definite: the least multiple of g² that
 //! makes it so is added, at most ρA L³/48. There g is of the order L² ∂³v/∂x³, and its square of a higher order. Without it errors of both waves are of
 //! second order in L wherever L is not long against the height of the section, with it of fourth order.
+//!
+//! Weights w of inertia and of internal work are linear along the element: K = ∫ δ Bᵀ D B dx, M = ∫ α ρ N Nᵀ dx with the same shapes, both
+//! integrated exactly. Where α varies the motion of the inside is left out of the mass, which stays positive definite.
 
 use carom_materials::Elastic;
 
@@ -53,17 +56,66 @@ struct Bending {
     shear: f64,
 }
 
-/// An element of a length (m) with a section and a material.
+/// Weights at the two ends of an element, linear between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct EndWeights {
+    /// α of the inertia.
+    pub(super) inertia: [f64; 2],
+    /// δ of the internal work.
+    pub(super) stiffness: [f64; 2],
+}
+
+impl EndWeights {
+    /// No other body in the same volume.
+    pub(super) const ONE: EndWeights = EndWeights {
+        inertia: [1.0; 2],
+        stiffness: [1.0; 2],
+    };
+}
+
+/// An element of a length (m) with a section, a material and weights.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a> {
     pub(super) length: f64,
     pub(super) section: &'a BeamSection,
     pub(super) material: &'a Elastic,
+    pub(super) weights: EndWeights,
 }
 
 impl Element<'_> {
     /// K in N/m, N and N m.
     pub(super) fn stiffness(&self) -> Matrix {
+        match self.weights.stiffness == [1.0; 2] {
+            true => self.full_stiffness(),
+            false => self.weighted_stiffness(),
+        }
+    }
+
+    /// ∫ δ Bᵀ D B dx: extension and bending at two points of Gauss, exact for a linear δ; the strain of shear and torsion is constant.
+    fn weighted_stiffness(&self) -> Matrix {
+        let [first, second] = self.weights.stiffness;
+        let mut k = self.shear_and_torsion();
+        k.iter_mut()
+            .flatten()
+            .for_each(|k| *k *= 0.5 * (first + second));
+        let properties = &self.section.properties;
+        let [about_y, about_z] = properties.second_moments;
+        let moduli = [properties.area, about_y, about_z].map(|i| self.material.young * i);
+        for xi in super::fibres::GAUSS {
+            let delta = (1.0 - xi) * first + xi * second;
+            for (row, modulus) in self.strain_rows(xi).iter().zip(moduli) {
+                let factor = 0.5 * self.length * delta * modulus;
+                for (k, a) in k.iter_mut().zip(row) {
+                    for (k, b) in k.iter_mut().zip(row) {
+                        *k += factor * a * b;
+                    }
+                }
+            }
+        }
+        k
+    }
+
+    fn full_stiffness(&self) -> Matrix {
         let (l, section) = (self.length, &self.section.properties);
         let mut k = [[0.0; 12]; 12];
         let along = self.material.young * section.area / l;
@@ -125,12 +177,13 @@ impl Element<'_> {
     /// Consistent mass in kg, kg m and kg m².
     pub(super) fn mass(&self) -> Matrix {
         let mut m = [[0.0; 12]; 12];
+        let [first, second] = self.weights.inertia;
         for (i, whole) in [(0, self.weight()), (3, self.polar())] {
             for (a, b, part) in [
-                (i, i, 3.0),
-                (i, i + 6, 6.0),
-                (i + 6, i, 6.0),
-                (i + 6, i + 6, 3.0),
+                (i, i, 12.0 / (3.0 * first + second)),
+                (i, i + 6, 12.0 / (first + second)),
+                (i + 6, i, 12.0 / (first + second)),
+                (i + 6, i + 6, 12.0 / (first + 3.0 * second)),
             ] {
                 m[a][b] = whole / part;
             }
@@ -142,19 +195,23 @@ impl Element<'_> {
     }
 
     /// The diagonal of the lumped mass: half the mass at each node, half the inertia about x, and in bending the diagonal of the
-    /// consistent mass scaled to the mass of the element. Hinton, Rock and Zienkiewicz (1976).
+    /// consistent mass scaled to the mass of the element. Hinton, Rock and Zienkiewicz (1976). With weights the halves are ∫ α N dx/L.
     pub(super) fn lumped(&self) -> [f64; 12] {
-        let half = 0.5 * self.weight();
+        let [first, second] = self.weights.inertia;
+        let halves = [(2.0 * first + second) / 6.0, (first + 2.0 * second) / 6.0];
         let mut lumped = [0.0; 12];
-        (lumped[0], lumped[6]) = (half, half);
-        (lumped[3], lumped[9]) = (0.5 * self.polar(), 0.5 * self.polar());
-        let across = self.across() * self.length;
+        let added = 0.5 * self.section.added_mass * self.length;
+        for (end, half) in halves.iter().enumerate() {
+            lumped[6 * end] = half * self.weight();
+            lumped[6 * end + 3] = half * self.polar();
+        }
+        let across = halves.map(|half| half * self.weight() + added);
         for plane in self.planes() {
             let own = self.mass_of(&plane);
-            let scale = across / (own[0][0] + own[2][2]);
+            let scale = (across[0] + across[1]) / (own[0][0] + own[2][2]);
             for (k, (place, _)) in plane.unknowns.iter().enumerate() {
                 lumped[*place] = match k % 2 {
-                    0 => 0.5 * across,
+                    0 => across[k / 2],
                     _ => scale * own[k][k],
                 };
             }
@@ -178,6 +235,7 @@ impl Element<'_> {
             length,
             section,
             material,
+            ..
         } = self;
         let properties = &section.properties;
         let plane = |unknowns, second: f64, area: f64| {
@@ -209,19 +267,14 @@ impl Element<'_> {
     }
 
     fn mass_of(&self, plane: &Bending) -> [[f64; 4]; 4] {
-        let (l, phi) = (self.length, plane.shear);
-        let line = self.across();
+        let l = self.length;
+        let [first, second] = self.weights.inertia;
         let mut m = [[0.0; 4]; 4];
         for (xi, weight) in GAUSS {
-            let (square, v) = (xi * xi, plane.deflection(l, xi));
-            let theta = [
-                6.0 * (square - xi) / l,
-                3.0 * square - (4.0 + phi) * xi + 1.0 + phi,
-                -6.0 * (square - xi) / l,
-                3.0 * square - (2.0 - phi) * xi,
-            ];
+            let (v, theta) = (plane.deflection(l, xi), plane.rotation(l, xi));
             let dx = weight * l;
-            let rotary = plane.rotary / (1.0 + phi).powi(2);
+            let alpha = (1.0 - xi) * first + xi * second;
+            let (line, rotary) = (self.across(alpha), alpha * plane.rotary);
             for a in 0..4 {
                 for b in 0..4 {
                     m[a][b] += (line * v[a] * v[b] + rotary * theta[a] * theta[b]) * dx;
@@ -231,9 +284,9 @@ impl Element<'_> {
         m
     }
 
-    /// Mass per length that moves across the axis, kg/m.
-    fn across(&self) -> f64 {
-        self.material.density * self.section.properties.area + self.section.added_mass
+    /// Mass per length that moves across the axis, kg/m, where the weight is α. The fluid has no other body to share with.
+    fn across(&self, alpha: f64) -> f64 {
+        alpha * self.material.density * self.section.properties.area + self.section.added_mass
     }
 
     /// ∫ k N Nᵀ dx of the foundation.
@@ -272,6 +325,25 @@ impl Element<'_> {
         }
     }
 
+    /// Translation and rotation of the section at ξ by the unknowns, six rows.
+    pub(super) fn motion(&self, xi: f64) -> [[f64; 12]; 6] {
+        let mut rows = [[0.0; 12]; 6];
+        for i in [0, 3] {
+            (rows[i][i], rows[i][i + 6]) = (1.0 - xi, xi);
+        }
+        let [about_z, about_y] = self.planes();
+        // the plane x z turns by -θ_y
+        for (moved, turned, plane, turn) in [(1, 5, &about_z, 1.0), (2, 4, &about_y, -1.0)] {
+            let shapes = plane.deflection(self.length, xi).into_iter();
+            let shapes = shapes.zip(plane.rotation(self.length, xi));
+            for ((place, sign), (v, theta)) in plane.unknowns.iter().zip(shapes) {
+                rows[moved][*place] = sign * v;
+                rows[turned][*place] = turn * sign * theta;
+            }
+        }
+        rows
+    }
+
     /// The part of the consistent mass that is of the fluid around the section.
     pub(super) fn fluid_mass(&self) -> Matrix {
         let section = BeamSection {
@@ -298,6 +370,9 @@ impl Element<'_> {
 impl Element<'_> {
     /// The consistent mass of a plane with the motion of the inside.
     fn whole_mass(&self, plane: &Bending) -> [[f64; 4]; 4] {
+        if self.weights.inertia != [1.0; 2] {
+            return self.mass_of(plane);
+        }
         let (mut m, inside) = (self.mass_of(plane), self.inside(plane));
         for (m, inside) in m.iter_mut().flatten().zip(inside.iter().flatten()) {
             *m += inside;
@@ -320,7 +395,7 @@ impl Element<'_> {
     /// What the motion of the inside beyond the shapes adds to the consistent mass.
     fn inside(&self, plane: &Bending) -> [[f64; 4]; 4] {
         let (l, phi) = (self.length, plane.shear);
-        let line = self.across();
+        let line = self.across(1.0);
         let d = [-1.0 / l, 0.0, 1.0 / l, 0.0];
         let t = [0.0, 0.5, 0.0, 0.5];
         let kappa = [0.0, -1.0 / l, 0.0, 1.0 / l];
@@ -376,6 +451,18 @@ impl Bending {
             l * (cube - (2.0 + 0.5 * phi) * square + (1.0 + 0.5 * phi) * xi),
             -2.0 * cube + 3.0 * square + phi * xi,
             l * (cube - (1.0 - 0.5 * phi) * square - 0.5 * phi * xi),
+        ]
+        .map(|n| n / (1.0 + phi))
+    }
+
+    /// N_θ at ξ, 1/m for translations.
+    fn rotation(&self, l: f64, xi: f64) -> [f64; 4] {
+        let (phi, square) = (self.shear, xi * xi);
+        [
+            6.0 * (square - xi) / l,
+            3.0 * square - (4.0 + phi) * xi + 1.0 + phi,
+            -6.0 * (square - xi) / l,
+            3.0 * square - (2.0 - phi) * xi,
         ]
         .map(|n| n / (1.0 + phi))
     }
@@ -442,6 +529,7 @@ mod tests {
                 length: 0.7,
                 section: &section,
                 material: &material,
+                weights: EndWeights::ONE,
             };
             let (whole, mut k) = (element.stiffness(), element.shear_and_torsion());
             let moduli = [properties.area, about_y, about_z].map(|i| 3.0 * i);
@@ -479,6 +567,7 @@ mod tests {
                         length: 1.5_f64.powi(k),
                         section: &section,
                         material: &material,
+                        weights: EndWeights::ONE,
                     };
                     assert!(is_positive(element.mass()), "{theory:?} {poisson} {k}");
                 }

@@ -25,6 +25,7 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::{Mat3, Vec3};
 use carom_algebra::unknowns::Unknowns;
 
+use super::element::EndWeights;
 use super::section::BeamTheory;
 use super::strain::{Elastic, Invariants, Matrix6, Pair};
 use super::{Beam, SectionForces};
@@ -60,7 +61,7 @@ impl LargeBeam {
     /// The same beams with finite rotations. `x`: reference places by system number, m.
     ///
     /// # Errors
-    /// An eccentric axis, hinges, a foundation.
+    /// Weights, an eccentric axis, hinges, a foundation.
     pub(crate) fn new(
         mut small: Beam,
         x: &dyn Fn(u32) -> [f64; 3],
@@ -71,6 +72,11 @@ impl LargeBeam {
             body: small.name.clone(),
             what,
         };
+        if small.weights.iter().any(|w| *w != EndWeights::ONE) {
+            return Err(Error::BeamWeights {
+                body: small.name.clone(),
+            });
+        }
         if small.section.offset != [0.0; 2] {
             return Err(refused("an offset"));
         }

@@ -4,6 +4,8 @@
 //! section: `u_centroid = u + θ × e`. Forces are `f = K u` with one constant matrix for each element; of metal that flows they are those of
 //! the fibres of its sections.
 
+mod axis;
+mod checks;
 mod condensation;
 mod element;
 mod fibres;
@@ -18,22 +20,23 @@ use std::ops::Range;
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::{Mat3, Vec3};
 use carom_algebra::unknowns::Unknowns;
-use carom_elements::Kind;
 use carom_materials::{Elastic, Plane};
 use carom_mesh::{ElementId, Mesh};
 
+pub use self::axis::BeamAxis;
 pub use self::large::LargeBeam;
 pub use self::section::{
     BeamSection, BeamTheory, LAYERS, Rotations, SectionProperties, SectionShape,
 };
 
-use self::element::{Element, Matrix};
+use self::checks::{check, end_weights};
+use self::element::{Element, EndWeights, Matrix};
 use crate::discrete::VisitRow;
 use crate::flowing::Flowing;
 use crate::release::Release;
 use crate::solid::BodySpec;
 use crate::stability::largest_eigenvalue;
-use crate::{Error, Formulation, Kinematics, Placement, Stored};
+use crate::{Error, Placement, Stored};
 
 /// Sine of the angle between orientation and axis below which they are parallel.
 const PARALLEL: f64 = 1e-6;
@@ -67,6 +70,8 @@ pub struct Beam {
     lengths: Vec<f64>,
     /// Axes x, y, z of each element, as rows.
     axes: Vec<Mat3>,
+    /// Weights of each element.
+    weights: Vec<EndWeights>,
     /// K of each element over its unknowns, row-major.
     stiffness: Vec<f64>,
     /// T of elements with released rotations.
@@ -83,7 +88,8 @@ impl Beam {
     ///
     /// # Errors
     /// Cells that are no bars of two nodes, or on a line; one without length, or whose orientation is missing or along it; a
-    /// law at finite strain without a uniaxial one; weights; metal that flows in a section without a shape, or with hinges.
+    /// law at finite strain without a uniaxial one; weights that are too few or negative; metal that flows in a section without a shape, with
+    /// hinges or with weights.
     pub(crate) fn new(
         mesh: &Mesh,
         spec: BodySpec,
@@ -93,6 +99,7 @@ impl Beam {
     ) -> Result<Beam, Error> {
         check(mesh, &spec)?;
         let mut beam = Beam {
+            weights: end_weights(mesh, &spec)?,
             section,
             material: spec.material.initial(),
             dim: mesh.dim,
@@ -280,6 +287,15 @@ impl Beam {
             length: self.lengths[number],
             section: &self.section,
             material: &self.material,
+            weights: self.weights[number],
+        }
+    }
+
+    /// An element that shares its volume with no other body.
+    fn whole_element(&self, number: usize) -> Element<'_> {
+        Element {
+            weights: EndWeights::ONE,
+            ..self.element(number)
         }
     }
 
@@ -550,41 +566,4 @@ fn axes(x: &Vec3, section: &BeamSection, dim: usize) -> Result<Mat3, &'static st
         y.transpose(),
         x.cross(&y).transpose(),
     ]))
-}
-
-fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
-    let body = || spec.name.clone();
-    if spec.cells.is_empty() {
-        return Err(Error::Empty { body: body() });
-    }
-    if mesh.dim < 2 {
-        return Err(Error::BeamOnLine { body: body() });
-    }
-    if spec.weights.is_some() {
-        return Err(Error::BeamWeights { body: body() });
-    }
-    if spec.material.finite().is_some() && spec.material.uniaxial().is_none() {
-        return Err(Error::FiniteKinematics {
-            body: body(),
-            kinematics: spec.kinematics.name(),
-        });
-    }
-    if spec.formulation != Formulation::Full {
-        return Err(Error::LinearFormulation { body: body() });
-    }
-    for &cell in &spec.cells {
-        match mesh.kind(cell) {
-            Kind::Bar2 => {}
-            Kind::Bar3 => return Err(Error::QuadraticBar { body: body() }),
-            kind => {
-                return Err(Error::WrongElement {
-                    body: body(),
-                    found: kind.table().name,
-                    kinematics: spec.kinematics.name(),
-                    dim: Kinematics::dim(spec.kinematics),
-                });
-            }
-        }
-    }
-    Ok(())
 }

@@ -27,13 +27,13 @@ impl Beam {
             .collect()
     }
 
-    /// Forces and moments in the sections of each element. `history`: of this body at `u`.
+    /// Forces and moments in the sections of each element, weights apart. `history`: of this body at `u`.
     pub fn section_forces(&self, u: &[f64], history: &[f64]) -> Vec<SectionForces> {
         let of = |element: usize| {
             let local = self.local(element, u);
             let f = match &self.flowing {
                 None => {
-                    let k = self.element(element).stiffness();
+                    let k = self.whole_element(element).stiffness();
                     k.map(|row| row.iter().zip(&local).map(|(k, u)| k * u).sum::<f64>())
                 }
                 Some(flowing) => self.flowed(flowing, (element, &local), (u, history)),

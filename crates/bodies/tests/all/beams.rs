@@ -311,9 +311,18 @@ fn what_is_no_beam_is_refused() {
     let error = refused(&plane, spec(cells.clone(), soft));
     assert!(matches!(error, Error::FiniteKinematics { .. }));
     let mut glued = spec(cells, STEEL.into());
-    glued.weights = Some(CellWeights {
+    let weights = |stiffness: f64| CellWeights {
         inertia: vec![1.0; 4],
-        stiffness: vec![1.0; 4],
-    });
-    assert!(matches!(refused(&plane, glued), Error::BeamWeights { .. }));
+        stiffness: vec![stiffness; 4],
+    };
+    glued.weights = Some(weights(-0.1));
+    let error = refused(&plane, glued.clone());
+    assert!(matches!(error, Error::NegativeStiffness { .. }));
+    glued.weights = Some(weights(0.5));
+    let mut large = plain(None);
+    large.rotations = carom_bodies::Rotations::Finite;
+    glued.kinematics = Kinematics::Beam(large);
+    let unknowns = Unknowns::new(2, [NodeKind::Turning; 3]);
+    let error = Body::new(&plane, glued, &[0, 1, 2], &unknowns).unwrap_err();
+    assert!(matches!(error, Error::BeamWeights { .. }));
 }

@@ -6,6 +6,7 @@
 mod allocation;
 mod axisymmetry;
 mod bars;
+mod beam_weights;
 mod beams;
 mod derivatives;
 mod discrete;

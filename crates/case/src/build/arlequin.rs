@@ -17,7 +17,7 @@ use crate::error::Problem;
 use crate::schema::{self, BracketLength, BracketWith, OverlapRegion, OverlapShape, ProfileWith};
 
 /// Cells of the outer body across an overlap below which waves notice it.
-const FEW_LAYERS: f64 = 2.0;
+pub(super) const FEW_LAYERS: f64 = 2.0;
 
 /// An overlap of a built case.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub struct BuiltOverlap {
     pub name: String,
     /// Its measure, m, m² or m³.
     pub measure: f64,
-    /// Least thickness in cells of the outer body; infinite without two borders.
+    /// Least thickness in cells of the outer body, of a beam and a solid in those of the coarser one; infinite without two borders.
     pub layers: f64,
     /// Mean size of the cells of the inner and of the outer body in it, m.
     pub sizes: [f64; 2],
@@ -104,15 +104,12 @@ impl Builder<'_> {
         let path = format!("arlequin.{name}");
         let inner = self.body(&format!("{path}.inner"), &given.inner)?;
         let outer = self.body(&format!("{path}.outer"), &given.outer)?;
-        self.same_section(&path, &bodies[inner], &bodies[outer]);
-        if let Kinematics::Beam(_) = bodies[inner].spec.kinematics {
-            let message =
-                "beams cannot be glued in volume: the products of the link carry no rotations";
-            let problem = Problem::new(format!("{path}.inner"), message).found(&given.inner);
-            self.problems
-                .push(problem.accepted(["bars, plane bodies, solids"]));
-            return None;
+        let is_beam = |body: usize| matches!(bodies[body].spec.kinematics, Kinematics::Beam(_));
+        if is_beam(inner) || is_beam(outer) {
+            let of = ([inner, outer], held);
+            return self.beam_overlap((name, given), mesh, bodies, of, joints);
         }
+        self.same_section(&path, &bodies[inner], &bodies[outer]);
         if let Kinematics::Shell(_) = bodies[inner].spec.kinematics {
             let message = "shells cannot be glued in volume";
             let problem = Problem::new(format!("{path}.inner"), message).found(&given.inner);
@@ -152,7 +149,17 @@ impl Builder<'_> {
             .rows(&coupling)
             .map_err(|error| refuse(self, &error))
             .ok()?;
-        self.enter(name, mesh, &overlap, joints)?;
+        let touched = [Model::Inner, Model::Outer].map(|model| overlap.touched(model));
+        let touched = touched.iter().flatten().map(|(cell, _)| *cell);
+        let all: Vec<ElementId> = touched.chain(overlap.removed().iter().copied()).collect();
+        let built = BuiltOverlap {
+            name: name.to_string(),
+            measure: overlap.measure(),
+            layers: overlap.layers(),
+            sizes: [Model::Inner, Model::Outer].map(|model| overlap.size(model)),
+            removed: overlap.removed().len(),
+        };
+        self.enter(mesh, built, all, joints)?;
         for warning in &weights.warnings {
             self.warnings
                 .push(format!("overlap `{name}`: {}", doubt(warning)));
@@ -193,17 +200,15 @@ impl Builder<'_> {
         Some(rows)
     }
 
-    /// Enters the cells of an overlap; refuses a cell of two overlaps, or one that another overlap took away.
-    fn enter(
+    /// Enters an overlap with the cells that it touches or takes away; refuses a cell of two overlaps.
+    pub(super) fn enter(
         &mut self,
-        name: &str,
         mesh: &Mesh,
-        overlap: &Overlap,
+        overlap: BuiltOverlap,
+        all: Vec<ElementId>,
         joints: &mut Joints,
     ) -> Option<()> {
-        let touched = [Model::Inner, Model::Outer].map(|model| overlap.touched(model));
-        let touched = touched.iter().flatten().map(|(cell, _)| *cell);
-        let all: Vec<ElementId> = touched.chain(overlap.removed().iter().copied()).collect();
+        let name = overlap.name.clone();
         let twice: Vec<ElementId> = all
             .iter()
             .copied()
@@ -217,7 +222,7 @@ impl Builder<'_> {
             );
             let problem = Problem::new(format!("arlequin.{name}.overlap"), message)
                 .accepted(["overlaps with no cell in common"]);
-            let problem = self.shown(problem, (name, mesh), &twice);
+            let problem = self.shown(problem, (&name, mesh), &twice);
             self.problems.push(problem);
             return None;
         }
@@ -225,13 +230,7 @@ impl Builder<'_> {
         joints
             .inside
             .extend(all.into_iter().map(|cell| (cell, number)));
-        joints.overlaps.push(BuiltOverlap {
-            name: name.to_string(),
-            measure: overlap.measure(),
-            layers: overlap.layers(),
-            sizes: [Model::Inner, Model::Outer].map(|model| overlap.size(model)),
-            removed: overlap.removed().len(),
-        });
+        joints.overlaps.push(overlap);
         Some(())
     }
 
@@ -246,7 +245,12 @@ impl Builder<'_> {
         }
     }
 
-    fn region(&mut self, mesh: &Mesh, path: &str, given: &OverlapRegion) -> Option<Region> {
+    pub(super) fn region(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        given: &OverlapRegion,
+    ) -> Option<Region> {
         match given {
             OverlapRegion::Named(schema::OverlapName::Intersection) => Some(Region::Intersection),
             OverlapRegion::Group(name) => {
@@ -330,7 +334,7 @@ impl Builder<'_> {
 }
 
 /// Gives a body the cells that stay and their weights, multiplied where it has some.
-fn weigh(mesh: &Mesh, body: &mut ModelBody, cells: &[ElementId], weights: &CellWeights) {
+pub(super) fn weigh(mesh: &Mesh, body: &mut ModelBody, cells: &[ElementId], weights: &CellWeights) {
     let mut inertia = weights.inertia.clone();
     let mut stiffness = weights.stiffness.clone();
     if let Some(before) = &body.spec.weights {
@@ -351,7 +355,7 @@ fn weigh(mesh: &Mesh, body: &mut ModelBody, cells: &[ElementId], weights: &CellW
     body.spec.weights = Some(carom_bodies::CellWeights { inertia, stiffness });
 }
 
-fn weighting(given: schema::Weights) -> Weighting {
+pub(super) fn weighting(given: schema::Weights) -> Weighting {
     let named = |name: schema::ProfileName| match name {
         schema::ProfileName::Linear => Profile::Linear,
         schema::ProfileName::Smooth => Profile::Smooth,

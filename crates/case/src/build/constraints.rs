@@ -85,7 +85,7 @@ impl Builder<'_> {
     }
 
     /// The node of a group of one.
-    fn single(&mut self, mesh: &Mesh, path: &str, name: &str) -> Option<u32> {
+    pub(super) fn single(&mut self, mesh: &Mesh, path: &str, name: &str) -> Option<u32> {
         let group = self.group(mesh, path, name)?;
         let nodes = mesh.group_nodes(group);
         if let [node] = nodes[..] {

@@ -2,6 +2,7 @@
 
 mod advice;
 mod arlequin;
+mod beam_overlaps;
 mod beams;
 mod bodies;
 mod builder;
@@ -36,6 +37,7 @@ mod supports;
 mod surfaces;
 mod ties;
 mod time;
+mod transitions;
 mod unfit;
 mod zones;
 
@@ -144,7 +146,13 @@ impl Builder<'_> {
         let mut bodies = self.bodies(&mesh, &materials);
         let mut discrete = self.discrete(&mut mesh);
         discrete.extend(self.fluids(&mut mesh));
-        let constraints = self.constraints(&mesh);
+        let mut constraints = self.constraints(&mesh);
+        let turning = self.nodes_with_rotations(&mesh);
+        let of_bodies: Vec<_> = bodies
+            .iter()
+            .flat_map(|body| body.spec.cells.clone())
+            .collect();
+        constraints.extend(self.transitions(&mesh, &of_bodies, &turning));
         let (supports, motions, turns) = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
         let loads = self.loads(&mesh, &bodies);

@@ -80,7 +80,30 @@ impl Builder<'_> {
                 cells,
                 "at least one cell of the outer body, better two to four",
             ),
+            Error::Bent { cells } => (
+                ".overlap",
+                cells,
+                "a beam with a straight axis in the solid",
+            ),
+            Error::SolidEndsOutside { cells } => {
+                (".overlap", cells, "an overlap up to the end of the solid")
+            }
+            Error::Short { cells, .. } => (
+                ".overlap",
+                cells,
+                "at least one cell of the coarser body along the axis, better two to four",
+            ),
+            Error::Section { cells, .. } => (
+                ".overlap",
+                cells,
+                "a solid whose sections are those of the beam, about the same axis",
+            ),
             Error::Empty => (".overlap", all, "a place where both bodies are"),
+            Error::NoEnd { .. } => (
+                ".overlap",
+                all,
+                "a beam that ends in the solid, or a group or a box that says how far it goes",
+            ),
             Error::NoBorder { .. } => (".weights", all, "an overlap in which each body ends"),
             Error::Range { .. } | Error::Reflects { .. } => (".weights", &[], "\"linear\""),
             Error::NoMediator => (".mediator", all, "\"coarser\""),
@@ -99,6 +122,7 @@ impl Builder<'_> {
             Error::Defect(_)
             | Error::NoInterface { .. }
             | Error::Ambiguous { .. }
+            | Error::FacesOnLine { .. }
             | Error::Algebra(_) => ("", &[], "two sound bodies"),
         };
         let problem = Problem::new(format!("{path}{key}"), error.to_string()).accepted([accepted]);

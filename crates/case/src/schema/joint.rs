@@ -1,4 +1,4 @@
-//! `[rigid-link]`, `[constraint]`, `[fluid]`, and what joins beams: hinges, foundations, added mass.
+//! `[rigid-link]`, `[transition]`, `[constraint]`, `[fluid]`, and what joins beams: hinges, foundations, added mass.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -61,6 +61,30 @@ pub struct RigidLink {
     pub first: String,
     /// Group of the nodes that follow. Those of beams also turn with the first one.
     pub nodes: String,
+}
+
+/// The end of a beam on a face of a solid or plane body that it continues. The two bodies have no common nodes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Transition {
+    /// Group of one node: the end of the beam.
+    pub end: String,
+    /// Group of the sides of the other body that the end stands on.
+    pub face: String,
+    /// How the face moves with the end. Default `"distributing"`: it keeps uniform tension and pure bending.
+    #[serde(default)]
+    pub motion: TransitionMotion,
+}
+
+/// How a face moves with a node.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TransitionMotion {
+    /// The node has the mean translation and rotation of the face, which may deform otherwise.
+    #[default]
+    Distributing,
+    /// All nodes of the face move as parts of a rigid body with the node.
+    Rigid,
 }
 
 /// A linear constraint: the sum of its terms keeps its initial value.

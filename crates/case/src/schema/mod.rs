@@ -50,6 +50,7 @@ pub use discrete::{Dashpot, DashpotPoint, Ends, PointMass, Spring, SpringPoint, 
 pub use explicit::{BulkViscosity, Deletion, MassScaling};
 pub use joint::{
     AddedMass, Channel, Constraint, ConstraintTerm, FluidGap, Foundation, Hinge, RigidLink,
+    Transition, TransitionMotion,
 };
 pub use load::{
     AmplitudeCourse, AmplitudePoint, BaseAcceleration, DensityPoint, Load, RandomForce,
@@ -120,6 +121,9 @@ pub struct Case {
     /// Rigid links, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub rigid_link: Named<RigidLink>,
+    /// Ends of beams on faces of solids, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub transition: Named<Transition>,
     /// Linear constraints, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub constraint: Named<Constraint>,

@@ -61,7 +61,8 @@ pub struct StepChoice {
 pub struct StepCount(pub u32);
 
 /// An overlap of two bodies, which represent the same material there and are glued in volume (Arlequin method). The two
-/// bodies have their own meshes and are in different zones. Contact surfaces lie outside of the overlap.
+/// bodies have their own meshes and are in different zones. Contact surfaces lie outside of the overlap. One of the two may be a body of beams
+/// and the other a solid or plane body that continues it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Arlequin {
@@ -70,7 +71,8 @@ pub struct Arlequin {
     /// Body of the rest, the coarser model. It may cover the inner body; its cells inside the inner body and outside of
     /// the overlap are removed.
     pub outer: String,
-    /// Region in which the two are glued, at least one cell of the outer body thick, better two to four.
+    /// Region in which the two are glued, at least one cell of the outer body thick, better two to four. Of a beam and a solid it is a length of
+    /// the axis of the beam.
     #[serde(default)]
     pub overlap: OverlapRegion,
     /// Distribution of inertia and internal work between the two bodies. Default `"linear"`: the only profile that
