@@ -2,7 +2,13 @@
 
 use crate::block::Block;
 use crate::finite::Outcome;
-use crate::shell::ShellForces;
+
+/// Forces and moments on the nodes of a shell element, N and N m, and its strain energy, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ShellForces {
+    pub nodes: [[f64; 6]; 4],
+    pub energy: f64,
+}
 
 /// Buffers of the internal-force sweep: one list of nodal forces and one energy per chunk.
 #[derive(Debug, Default)]

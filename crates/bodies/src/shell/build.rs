@@ -5,8 +5,9 @@ use carom_algebra::unknowns::Unknowns;
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Mesh};
 
+use super::products::{Configuration, MOST};
 use super::section::ElasticSection;
-use super::strain::{Configuration, Form, MOST};
+use super::strain::Form;
 use super::{Element, Shell, ShellSection};
 use crate::solid::BodySpec;
 use crate::{Error, Formulation, Kinematics, Rotations};

@@ -9,21 +9,16 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::{Mat3, Vec3};
 use rayon::prelude::*;
 
+use super::products::{Configuration, MOST};
 use super::section::STRAINS;
-use super::strain::{Configuration, MOST, Strains};
+use super::strain::Strains;
 use super::{Element, PER_NODE, Shell};
 use crate::Placement;
+use crate::scratch::ShellForces;
 use crate::turning::{balanced, spatial};
 
 /// Elements that one thread takes, at least.
 const ELEMENTS: usize = 256;
-
-/// Forces and moments on the nodes of an element, N and N m, and its strain energy, J.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct ShellForces {
-    nodes: [[f64; PER_NODE]; MOST],
-    energy: f64,
-}
 
 /// The state of the nodes of an element.
 pub(super) struct Now {

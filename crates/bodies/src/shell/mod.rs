@@ -11,6 +11,7 @@
 mod build;
 mod finite;
 mod mass;
+mod products;
 mod results;
 mod section;
 mod small;
@@ -23,17 +24,14 @@ use carom_algebra::csr::Csr;
 use carom_materials::Elastic;
 use carom_mesh::ElementId;
 
-pub(crate) use self::finite::ShellForces;
 pub use self::results::Resultants;
 pub use self::section::ShellSection;
 
+use self::products::{Configuration, MOST};
 use self::section::ElasticSection;
-use self::strain::{Configuration, Form, MOST, Strains};
+use self::strain::{Form, Strains};
 use crate::scratch::Scratch;
 use crate::{Placement, Rotations, Stored};
-
-/// Points through the thickness where nothing else is said.
-const LAYERS: u32 = 5;
 
 /// Unknowns of a node.
 const PER_NODE: usize = 6;

@@ -24,8 +24,6 @@ pub struct ShellSection {
     pub thickness: f64,
     /// From the nodes to the middle surface along the normal, m.
     pub offset: f64,
-    /// Points through the thickness of a metal that flows.
-    pub layers: u32,
     /// How far its nodes turn.
     pub rotations: Rotations,
 }
@@ -36,7 +34,6 @@ impl ShellSection {
         ShellSection {
             thickness,
             offset: 0.0,
-            layers: super::LAYERS,
             rotations: Rotations::Small,
         }
     }

@@ -13,8 +13,8 @@
 
 use carom_algebra::tensor::Vec3;
 
+use super::products::{Configuration, DIRECTOR, MOST, Row, gradient};
 use super::section::STRAINS;
-use super::strain::{Configuration, DIRECTOR, MOST, Row, gradient};
 
 /// Shape functions and their derivatives by r and s.
 struct Shapes {

@@ -42,7 +42,7 @@ pub(crate) struct Outlines {
 }
 
 impl Outlines {
-    /// All cells and the outer edges of plane bodies, the outer faces of solids, the axes of bars and beams, of what is `shown`: asked
+    /// All cells and the outer edges of plane bodies, the cells of shells, the outer faces of solids, the axes of bars and beams, of what is `shown`: asked
     /// with the number of the body and that of the cell among the cells of all bodies.
     pub(crate) fn new(system: &System, shown: impl Fn(usize, usize) -> bool) -> Outlines {
         let mut outlines = Outlines {
@@ -72,7 +72,8 @@ impl Outlines {
                     cell += 1;
                     continue;
                 }
-                for face in table.faces {
+                let of_shell = table.dim == 2 && system.dim == 3;
+                for face in table.faces.iter().filter(|_| !of_shell) {
                     let own: Vec<u32> = face.nodes.iter().map(number).collect();
                     let mut key = own.clone();
                     key.sort_unstable();
@@ -85,9 +86,14 @@ impl Outlines {
                         .and_modify(|twice| *twice = None)
                         .or_insert(Some((around, cell)));
                 }
-                if system.dim == 2 {
+                if table.dim == 2 {
                     let all: Vec<u32> = (0..nodes.len()).map(|local| number(&local)).collect();
                     let around = ring(table.faces.iter().map(|f| f.nodes), &all);
+                    if of_shell {
+                        // seen from both sides
+                        let back = around.iter().rev().copied().collect();
+                        outlines.patches.push((back, cell));
+                    }
                     outlines.patches.push((around, cell));
                 }
                 cell += 1;
