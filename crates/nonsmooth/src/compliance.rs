@@ -25,30 +25,31 @@ impl Compliance<'_> {
 
 /// The sparse rows B of `D = N M⁻¹ Nᵀ = B Bᵀ`, `B = N M^(-1/2)`, M diagonal.
 ///
-/// D itself is never made, so that memory and the cost of a product grow as the entries of N. Of each candidate the block of D
-/// over its own rows is kept beside them.
+/// D itself is never made, so that memory and the cost of a product grow as the entries of N. The rows of a candidate are over the same
+/// unknowns, which are kept once, with the entries of all its rows side by side; beside them, its block of D over its own rows.
 #[derive(Clone, Debug, Default)]
 pub struct Lumped {
     /// Rows of a candidate: one, or its normal and its tangents.
     width: usize,
-    /// Where rows begin, and one end more.
+    /// Number of the rows.
+    rows: usize,
+    /// Where the unknowns of candidates begin, and one end more.
     starts: Vec<u32>,
     /// Unknowns, numbered from 0 without gaps.
     unknowns: Vec<u32>,
-    /// Entries of B.
+    /// Entries of B: of each unknown of a candidate those in its rows.
     entries: Vec<f64>,
     /// Number of the unknowns.
     count: usize,
     /// Blocks of D over the rows of each candidate, row-major.
     blocks: Vec<f64>,
-    /// One row of B over all unknowns, else zero.
-    spread: Vec<f64>,
 }
 
 impl Lumped {
-    /// Removes all rows. `width`: rows of each candidate.
+    /// Removes all rows. `width`: rows of each candidate, three at most.
     pub fn clear(&mut self, width: usize) {
         self.width = width;
+        self.rows = 0;
         self.starts.clear();
         self.starts.push(0);
         self.unknowns.clear();
@@ -59,37 +60,50 @@ impl Lumped {
 
     /// Appends a row: unknowns and entries of B. An unknown may come more than once.
     pub fn push(&mut self, row: impl Iterator<Item = (u32, f64)>) {
+        let (candidate, k) = (self.rows / self.width, self.rows % self.width);
+        let first = self.starts[candidate] as usize;
+        // mostly the unknowns of the row before, in their order
+        let mut next = first;
         for (unknown, entry) in row {
-            self.unknowns.push(unknown);
-            self.entries.push(entry);
-            self.count = self.count.max(unknown as usize + 1);
+            if self.unknowns.get(next) != Some(&unknown) {
+                let own = self.unknowns[first..].iter();
+                next = match own.clone().position(|own| *own == unknown) {
+                    Some(place) => first + place,
+                    None => {
+                        self.unknowns.push(unknown);
+                        self.entries.resize(self.entries.len() + self.width, 0.0);
+                        self.count = self.count.max(unknown as usize + 1);
+                        self.unknowns.len() - 1
+                    }
+                };
+            }
+            self.entries[next * self.width + k] += entry;
+            next += 1;
         }
-        self.starts.push(self.unknowns.len() as u32);
+        self.rows += 1;
+        if self.rows.is_multiple_of(self.width) {
+            self.starts.push(self.unknowns.len() as u32);
+        }
     }
 
     /// Makes the blocks, once all rows are there.
     pub fn finish(&mut self) {
-        let mut spread = std::mem::take(&mut self.spread);
-        spread.clear();
-        spread.resize(self.count, 0.0);
-        for first in (0..self.rows()).step_by(self.width.max(1)) {
-            for one in first..first + self.width {
-                self.add(one, 1.0, &mut spread);
-                for other in first..first + self.width {
-                    let entry = self.along(other, &spread);
-                    self.blocks.push(entry);
-                }
-                for &unknown in self.row(one).0 {
-                    spread[unknown as usize] = 0.0;
+        let mut blocks = std::mem::take(&mut self.blocks);
+        for i in 0..self.rows / self.width {
+            let (_, entries) = self.candidate(i);
+            for k in 0..self.width {
+                for l in 0..self.width {
+                    let terms = entries.chunks_exact(self.width).map(|of| of[k] * of[l]);
+                    blocks.push(terms.sum());
                 }
             }
         }
-        self.spread = spread;
+        self.blocks = blocks;
     }
 
     /// Number of the rows.
     pub fn rows(&self) -> usize {
-        self.starts.len().saturating_sub(1)
+        self.rows
     }
 
     /// Numbers that it holds: entries of B and of the blocks.
@@ -107,23 +121,71 @@ impl Lumped {
         self.count
     }
 
-    fn row(&self, row: usize) -> (&[u32], &[f64]) {
-        let range = self.starts[row] as usize..self.starts[row + 1] as usize;
-        (&self.unknowns[range.clone()], &self.entries[range])
+    /// Unknowns and entries of a candidate.
+    fn candidate(&self, i: usize) -> (&[u32], &[f64]) {
+        let range = self.starts[i] as usize..self.starts[i + 1] as usize;
+        let entries = range.start * self.width..range.end * self.width;
+        (&self.unknowns[range], &self.entries[entries])
+    }
+
+    /// Unknowns and entries of a row.
+    fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
+        let (unknowns, entries) = self.candidate(row / self.width);
+        let entries = entries.iter().skip(row % self.width).step_by(self.width);
+        unknowns.iter().map(|&k| k as usize).zip(entries.copied())
     }
 
     /// (B x)_row.
     pub(crate) fn along(&self, row: usize, x: &[f64]) -> f64 {
-        let (unknowns, entries) = self.row(row);
-        let terms = unknowns.iter().zip(entries);
-        terms.map(|(&k, b)| b * x[k as usize]).sum()
+        self.row(row).map(|(k, b)| b * x[k]).sum()
     }
 
     /// x += Bᵀ p of one row.
     pub(crate) fn add(&self, row: usize, p: f64, x: &mut [f64]) {
-        let (unknowns, entries) = self.row(row);
-        for (&k, b) in unknowns.iter().zip(entries) {
-            x[k as usize] += b * p;
+        for (k, b) in self.row(row) {
+            x[k] += b * p;
+        }
+    }
+
+    /// B x in the rows of candidate `i`.
+    pub(crate) fn along_all(&self, i: usize, x: &[f64]) -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        match self.width {
+            3 => sums = self.sums::<3>(i, x),
+            2 => sums[..2].copy_from_slice(&self.sums::<2>(i, x)),
+            _ => sums[0] = self.along(i, x),
+        }
+        sums
+    }
+
+    fn sums<const W: usize>(&self, i: usize, x: &[f64]) -> [f64; W] {
+        let (unknowns, entries) = self.candidate(i);
+        let (entries, _) = entries.as_chunks::<W>();
+        let mut sums = [0.0; W];
+        for (&unknown, entries) in unknowns.iter().zip(entries) {
+            let x = x[unknown as usize];
+            for (sum, entry) in sums.iter_mut().zip(entries) {
+                *sum += entry * x;
+            }
+        }
+        sums
+    }
+
+    /// x += Bᵀ p of the rows of candidate `i`.
+    pub(crate) fn add_all(&self, i: usize, p: &[f64; 3], x: &mut [f64]) {
+        match self.width {
+            3 => self.add_sums(i, p, x),
+            2 => self.add_sums(i, &[p[0], p[1]], x),
+            _ => self.add(i, p[0], x),
+        }
+    }
+
+    fn add_sums<const W: usize>(&self, i: usize, p: &[f64; W], x: &mut [f64]) {
+        let (unknowns, entries) = self.candidate(i);
+        let (entries, _) = entries.as_chunks::<W>();
+        for (&unknown, entries) in unknowns.iter().zip(entries) {
+            let terms = entries.iter().zip(p).map(|(entry, p)| entry * p);
+            x[unknown as usize] += terms.sum::<f64>();
         }
     }
 
@@ -141,16 +203,11 @@ impl Lumped {
         x.clear();
         x.resize(self.count, 0.0);
         for (row, &p) in p.iter().enumerate().filter(|(_, p)| **p != 0.0) {
-            let (unknowns, entries) = self.row(row);
-            for (&k, b) in unknowns.iter().zip(entries) {
-                x[k as usize] += (b * p).abs();
+            for (k, b) in self.row(row) {
+                x[k] += (b * p).abs();
             }
         }
-        let size = |row: usize| -> f64 {
-            let (unknowns, entries) = self.row(row);
-            let terms = unknowns.iter().zip(entries);
-            terms.map(|(&k, b)| b.abs() * x[k as usize]).sum()
-        };
+        let size = |row: usize| -> f64 { self.row(row).map(|(k, b)| b.abs() * x[k]).sum() };
         sizes.clear();
         sizes.extend((0..self.rows()).map(size));
     }
@@ -168,8 +225,8 @@ impl Lumped {
         for one in 0..n {
             self.add(one, 1.0, &mut x);
             dense.extend((0..n).map(|other| self.along(other, &x)));
-            for &unknown in self.row(one).0 {
-                x[unknown as usize] = 0.0;
+            for (k, _) in self.row(one) {
+                x[k] = 0.0;
             }
         }
     }
@@ -202,11 +259,17 @@ mod tests {
         let block = |i: usize| [0, 1, 2, 3].map(|k| lumped.block(i, k / 2, k % 2));
         assert_eq!(block(0), [5.0, -7.0, -7.0, 17.0]);
         assert_eq!(block(1), [5.0, -2.0, -2.0, 1.25]);
-        assert_eq!(lumped.numbers(), 9 + 8);
+        assert_eq!(lumped.numbers(), 2 * (2 + 3) + 8);
         let (p, mut x, mut sizes) = ([1.0, 0.0, -2.0, 4.0], Vec::new(), Vec::new());
         lumped.gather(&p, &mut x);
         let product: Vec<f64> = (0..4).map(|row| lumped.along(row, &x)).collect();
         assert_eq!(product, [7.0, -5.0, -18.0, 9.5]);
+        let all = [0, 1].map(|i| lumped.along_all(i, &x));
+        assert_eq!(all, [[7.0, -5.0, 0.0], [-18.0, 9.5, 0.0]]);
+        let mut sum = vec![0.0; 4];
+        lumped.add_all(0, &[1.0, 0.0, 0.0], &mut sum);
+        lumped.add_all(1, &[-2.0, 4.0, 0.0], &mut sum);
+        assert_eq!(sum, x);
         lumped.sizes(&p, &mut x, &mut sizes);
         for (row, (product, size)) in product.iter().zip(&sizes).enumerate() {
             let own: f64 = (0..4).map(|j| (dense[4 * row + j] * p[j]).abs()).sum();

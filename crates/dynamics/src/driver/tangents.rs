@@ -53,12 +53,14 @@ impl Driver {
         }
     }
 
-    /// Whether sliding is a velocity at the end of the step, or the way in it.
+    /// Whether sliding is a velocity at the end of the step, or the way in it. In explicit steps no force changes the way, and
+    /// a point could not stick by it.
     pub(super) fn slides_by_rate(&self) -> bool {
         let system = &*self.system;
         let of_rate = |k: usize| system.contacts[k].law.get().level() == Level::Rate;
         let mut rubbing = (0..system.contacts.len()).filter(|&k| system.friction[k] > 0.0);
-        !self.maps.is_static() && rubbing.all(of_rate)
+        let way_is_known = self.maps.all().iter().all(|map| map.displacement.x == 0.0);
+        !self.maps.is_static() && (way_is_known || rubbing.all(of_rate))
     }
 
     /// The times, from that at which the places of a contact are taken, over which its sliding is looked at, s.

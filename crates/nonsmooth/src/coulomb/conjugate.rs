@@ -17,16 +17,17 @@ pub(super) struct Conjugate {
 }
 
 impl Conjugate {
-    /// Forgets all directions.
+    /// Forgets all directions, and takes note of the forces, and of what is kept of them, which is linear in the forces.
     pub fn begin(&mut self, forces: &[f64], kept: &[f64]) {
         for (direction, like) in self.direction.iter_mut().zip([forces, kept]) {
             direction.clear();
             direction.resize(like.len(), 0.0);
         }
         self.last = f64::INFINITY;
+        self.note(forces, kept);
     }
 
-    /// Takes note of the forces before a sweep, and of what is kept of them, which is linear in the forces.
+    /// Takes note of the forces before a sweep.
     pub fn note(&mut self, forces: &[f64], kept: &[f64]) {
         for (before, now) in self.before.iter_mut().zip([forces, kept]) {
             before.clear();
@@ -34,19 +35,20 @@ impl Conjugate {
         }
     }
 
-    /// Goes on from the forces after the sweep.
+    /// Goes on from the forces after the sweep, and takes note of those that it ends with.
     pub fn go_on(&mut self, forces: &mut [f64], kept: &mut [f64]) {
         let changes = forces.iter().zip(&self.before[0]);
         let square: f64 = changes.map(|(now, before)| (now - before).powi(2)).sum();
         let beta = square / self.last;
         self.last = square;
-        let goes_on = beta <= 1.0;
-        let pairs = self.direction.iter_mut().zip(&self.before);
+        let (beta, goes_on) = if beta <= 1.0 { (beta, 1.0) } else { (0.0, 0.0) };
+        let pairs = self.direction.iter_mut().zip(&mut self.before);
         for ((direction, before), now) in pairs.zip([forces, kept]) {
             for ((d, before), now) in direction.iter_mut().zip(before).zip(now) {
-                let (change, along) = (*now - before, if goes_on { beta * *d } else { 0.0 });
+                let (change, along) = (*now - *before, beta * *d);
                 *now += along;
-                *d = if goes_on { change + along } else { 0.0 };
+                *before = *now;
+                *d = goes_on * (change + along);
             }
         }
     }

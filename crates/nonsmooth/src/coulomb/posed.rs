@@ -128,12 +128,13 @@ impl<'a> Posed<'a> {
         };
         let relation = self.relation(i, Status::Closed);
         let factor = self.factor(i, &relation);
+        let slope = factor * own[0] + relation.compliance;
         Alone {
             mobile: [[1.0, 0.0], [0.0, 1.0]],
-            diagonal: Some(Diagonal {
+            diagonal: (slope > 0.0).then(|| Diagonal {
                 own,
                 factor,
-                slope: factor * own[0] + relation.compliance,
+                slope,
                 free: self.free(i, &relation),
             }),
         }
@@ -184,10 +185,6 @@ impl<'a> Posed<'a> {
     /// Entries of the block of D of candidate `i` along its normal and its tangents, where it is diagonal with equal tangents but for
     /// rounding and supports hold nothing of it: that of a node with equal masses in all directions.
     fn diagonal(&self, i: usize) -> Option<[f64; 2]> {
-        // of few points passes find the forces, and sweeps are not what takes time
-        if matches!(self.d, Compliance::Dense(_)) {
-            return None;
-        }
         let entry = |k: usize, l: usize| self.entry(i, k, l);
         let own = [entry(0, 0), entry(1, 1)];
         let least = ROUNDING * own[0].min(own[1]);
@@ -197,7 +194,7 @@ impl<'a> Posed<'a> {
             apart = across.into_iter().fold(apart, f64::max);
             apart = apart.max((entry(2, 2) - own[1]).abs());
         }
-        let is_mobile = own[1] > HELD * (own[0] + self.tangents as f64 * own[1]);
+        let is_mobile = self.s[2] > 0.0 && own[1] > HELD * (own[0] + self.tangents as f64 * own[1]);
         (least > 0.0 && apart <= least && is_mobile).then_some(own)
     }
 

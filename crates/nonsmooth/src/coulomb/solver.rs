@@ -3,9 +3,11 @@
 use carom_laws::Status;
 
 use super::conjugate::Conjugate;
+use super::posed::Alone;
+use super::sweep::Product;
 use super::trial::Trial;
 use super::{FrictionFailure, Posed, Slip, newton, sweep};
-use crate::{Compliance, Lumped};
+use crate::Compliance;
 
 /// Largest defect of a solution, relative to the terms that should balance in its candidate. Passes go on to it where they
 /// can; where they bring nothing more, [`Posed::tolerance`] decides.
@@ -35,6 +37,8 @@ const ROUNDS: usize = 9;
 const ALONE: usize = 20_000;
 /// Rows of D for which passes take over where sweeps are slow: their entries are made then, 8 MB at most.
 const FEW_ROWS: usize = 1000;
+/// Sweeps of few points, whose passes cost as much as some tens of them.
+const OF_FEW: usize = 50;
 /// Sweeps before passes take over, which cost as much as some hundred of them.
 const BEFORE_PASSES: usize = 500;
 /// Change of the forces in a sweep, over the largest and what is asked for, from which on defects are looked at.
@@ -94,12 +98,12 @@ impl Coulomb {
         self.best.copy_from(&self.trial);
         self.best.merit = f64::INFINITY;
         let d = match problem.d {
-            Compliance::Dense(d) => return self.rounds((problem, d)),
+            Compliance::Dense(d) => return self.solve_few((problem, d)),
             Compliance::Lumped(d) => d,
         };
         let few = d.rows() <= FEW_ROWS;
         let sweeps = if few { BEFORE_PASSES } else { ALONE };
-        let relaxed = self.relax((problem, d), sweeps);
+        let relaxed = self.relax((problem, d), sweeps, true);
         if relaxed.is_ok() || !few {
             return relaxed;
         }
@@ -116,6 +120,20 @@ impl Coulomb {
         ));
         self.entries = entries;
         solved
+    }
+
+    /// Few points: sweeps where each point is solved in closed form, or passes.
+    fn solve_few(&mut self, (problem, d): (&Posed, &[f64])) -> Result<(), FrictionFailure> {
+        let in_closed_form = |alone: &Alone| alone.diagonal.is_some();
+        if self.trial.alone.iter().all(in_closed_form) {
+            if self.relax((problem, d), OF_FEW, false).is_ok() {
+                return Ok(());
+            }
+            self.trial.start(problem);
+            self.best.copy_from(&self.trial);
+            self.best.merit = f64::INFINITY;
+        }
+        self.rounds((problem, d))
     }
 
     /// Newton passes, and sweeps where they bring nothing.
@@ -146,25 +164,30 @@ impl Coulomb {
     }
 
     /// Sweeps alone, along conjugate directions: of points of a lumped mass few are needed, and each costs no more than one product with D.
-    fn relax(
+    /// `near`: whether the tolerance that is asked for will do.
+    fn relax<D: Product + ?Sized>(
         &mut self,
-        (problem, d): (&Posed, &Lumped),
+        (problem, d): (&Posed, &D),
         most: usize,
+        near: bool,
     ) -> Result<(), FrictionFailure> {
         self.trial.go_on_from_last(problem);
         d.gather(&self.trial.p, &mut self.kept);
-        let (mut patience, settled) = (PATIENCE, SETTLED * problem.tolerance.max(10.0 * TOLERANCE));
+        let asked = if near { problem.tolerance } else { 0.0 };
+        let (mut patience, settled) = (PATIENCE, SETTLED * asked.max(10.0 * TOLERANCE));
+        let is_solution =
+            |trial: &Trial| trial.worst.0 <= TOLERANCE || near && trial.is_near(problem);
+        let alone = problem.len() == 1;
         self.conjugate.begin(&self.trial.p, &self.kept);
         for _ in 0..most {
             self.sweeps += 1;
             let room = (&mut self.trial, &mut self.kept);
-            self.conjugate.note(&room.0.p, room.1);
-            if sweep::sweep((problem, d), room.0, room.1) > settled {
+            if sweep::sweep((problem, d), room.0, room.1) > settled && !alone {
                 self.conjugate.go_on(&mut room.0.p, room.1);
                 continue;
             }
             self.trial.measure(problem, &self.reversals);
-            if self.trial.worst.0 <= TOLERANCE || self.trial.is_near(problem) {
+            if is_solution(&self.trial) {
                 self.finish(problem);
                 return Ok(());
             }
@@ -176,10 +199,11 @@ impl Coulomb {
             } else {
                 break;
             }
+            self.conjugate.note(&self.trial.p, &self.kept);
         }
         self.trial.measure(problem, &self.reversals);
         self.best.copy_from(&self.trial);
-        if self.trial.is_near(problem) {
+        if is_solution(&self.trial) {
             self.finish(problem);
             return Ok(());
         }
@@ -278,6 +302,58 @@ impl Coulomb {
                 0.0
             };
             self.tangential.push([p(row + 1), second]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use carom_laws::{Capture, Law, Local, Reading, Velocity};
+
+    use super::super::{FrictionProblem, Tangential};
+    use super::*;
+    use crate::interface::Candidate;
+
+    /// A node of 2 kg that comes down with 3 m/s and slides with `slides`, D = 1/m. Stopped along the normal it takes 6 N s, and along
+    /// the plane m |v| or μ times that.
+    fn node(slides: [f64; 2]) -> FrictionProblem {
+        let law = Law::Velocity(Velocity {
+            capture: Capture::Now,
+            reading: Reading::Closed,
+        });
+        FrictionProblem {
+            step: 1,
+            names: vec!["node".to_string()],
+            candidates: vec![Candidate {
+                law,
+                local: Local::default(),
+                rate_free: -3.0,
+                status: Status::Closed,
+                faces_itself: false,
+                instant: [1.0; 2],
+            }],
+            friction: vec![Tangential {
+                mu: 0.5,
+                free: slides,
+                slip: Slip::Stick,
+                ..Tangential::default()
+            }],
+            tangents: 2,
+            compliance: vec![0.5, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.5],
+            factors: [0.0, 1.0, 1.0],
+            tolerance: 1e-10,
+        }
+    }
+
+    #[test]
+    fn a_node_with_equal_masses_takes_no_pass() {
+        // 2.5 N s would stop it; 10 N s are more than μ P
+        for (slides, t) in [([0.75, -1.0], [-1.5, 2.0]), ([3.0, -4.0], [-1.8, 2.4])] {
+            let solution = node(slides).solve().unwrap();
+            assert_eq!(solution.passes, 0);
+            assert!((solution.forces[0] - 6.0).abs() < 1e-14);
+            let off = [0, 1].map(|k| (solution.tangential[0][k] - t[k]).abs());
+            assert!(off.into_iter().all(|off| off < 1e-14), "{solution:?}");
         }
     }
 }

@@ -16,35 +16,56 @@ const TURNS: u32 = 12;
 
 /// The products with D that a sweep keeps up to date.
 pub(super) trait Product {
-    /// Entry `row` of D p, from what is kept.
-    fn at(&self, row: usize, kept: &[f64]) -> f64;
-    /// What is kept when entry `row` of p changes.
-    fn change(&self, row: usize, change: f64, kept: &mut [f64]);
+    /// Makes what is kept for these forces.
+    fn gather(&self, p: &[f64], kept: &mut Vec<f64>);
+    /// Entries of D p in the `width` rows of a candidate, from what is kept.
+    fn at(&self, candidate: usize, width: usize, kept: &[f64]) -> [f64; 3];
+    /// What is kept when these entries of p change.
+    fn change(&self, candidate: usize, width: usize, changes: &[f64; 3], kept: &mut [f64]);
 }
 
 /// All entries of D, row-major; D p is kept.
 impl Product for [f64] {
-    fn at(&self, row: usize, kept: &[f64]) -> f64 {
-        kept[row]
+    fn gather(&self, p: &[f64], kept: &mut Vec<f64>) {
+        kept.clear();
+        let of_row = |d: &[f64]| d.iter().zip(p).map(|(d, p)| d * p).sum::<f64>();
+        kept.extend(self.chunks_exact(p.len()).map(of_row));
     }
 
-    fn change(&self, row: usize, change: f64, kept: &mut [f64]) {
-        // D is symmetric: its row is its column
-        let d = &self[row * kept.len()..(row + 1) * kept.len()];
-        for (kept, d) in kept.iter_mut().zip(d) {
-            *kept += change * d;
+    fn at(&self, candidate: usize, width: usize, kept: &[f64]) -> [f64; 3] {
+        let mut products = [0.0; 3];
+        products[..width].copy_from_slice(&kept[candidate * width..][..width]);
+        products
+    }
+
+    fn change(&self, candidate: usize, width: usize, changes: &[f64; 3], kept: &mut [f64]) {
+        for (k, change) in changes[..width]
+            .iter()
+            .enumerate()
+            .filter(|of| *of.1 != 0.0)
+        {
+            // D is symmetric: its row is its column
+            let row = candidate * width + k;
+            let d = &self[row * kept.len()..(row + 1) * kept.len()];
+            for (kept, d) in kept.iter_mut().zip(d) {
+                *kept += change * d;
+            }
         }
     }
 }
 
 /// D is the product of sparse rows, and Bᵀ p is kept.
 impl Product for Lumped {
-    fn at(&self, row: usize, kept: &[f64]) -> f64 {
-        self.along(row, kept)
+    fn gather(&self, p: &[f64], kept: &mut Vec<f64>) {
+        Lumped::gather(self, p, kept);
     }
 
-    fn change(&self, row: usize, change: f64, kept: &mut [f64]) {
-        self.add(row, change, kept);
+    fn at(&self, candidate: usize, _: usize, kept: &[f64]) -> [f64; 3] {
+        self.along_all(candidate, kept)
+    }
+
+    fn change(&self, candidate: usize, _: usize, changes: &[f64; 3], kept: &mut [f64]) {
+        self.add_all(candidate, changes, kept);
     }
 }
 
@@ -58,21 +79,21 @@ pub(super) fn sweep<D: Product + ?Sized>(
     let (mut change, mut largest) = (0.0_f64, 0.0_f64);
     for i in 0..problem.len() {
         let (row, width) = (problem.normal(i), 1 + problem.tangents);
-        let mut others = [0.0; 3];
+        let mut others = d.at(i, width, kept);
         for (k, others) in others.iter_mut().enumerate().take(width) {
-            let own = problem.own((i, &trial.alone[i]), k, &trial.p);
-            *others = d.at(row + k, kept) - own;
+            *others -= problem.own((i, &trial.alone[i]), k, &trial.p);
         }
         let of = (problem, &trial.alone[i]);
         let forces = solve(of, i, &mut trial.statuses[i], &others);
+        let mut changes = [0.0; 3];
         for k in 0..width {
-            let moved = forces[k] - trial.p[row + k];
-            if moved != 0.0 {
-                trial.p[row + k] = forces[k];
-                d.change(row + k, moved, kept);
-                change = change.max(moved.abs());
-            }
+            changes[k] = forces[k] - trial.p[row + k];
+            trial.p[row + k] = forces[k];
+            change = change.max(changes[k].abs());
             largest = largest.max(forces[k].abs());
+        }
+        if changes != [0.0; 3] {
+            d.change(i, width, &changes, kept);
         }
     }
     if change == 0.0 { 0.0 } else { change / largest }
