@@ -166,13 +166,16 @@ pub enum Error {
     },
     /// A part of the model that can move without any force, and that no contact could hold.
     #[error(
-        "the static stage: body '{body}' can {motion} without any force; hold it by supports or a contact, or remove the static stage"
+        "the static stage: body '{body}' can {motion} without any force{}; hold it by supports or a contact, or remove the static stage",
+        beside(.constraints)
     )]
     FreeMotion {
         /// Name of the body.
         body: String,
         /// The motion.
         motion: String,
+        /// Names of the constraints that join the body to others and leave this motion free.
+        constraints: Vec<String>,
     },
     /// A part of the model that supports leave free, and whose loads no contact takes.
     #[error(
@@ -201,4 +204,12 @@ pub enum Error {
     /// An observer failed: the results could not be written.
     #[error("{0}")]
     Observer(#[source] Box<dyn std::error::Error + Send + Sync>),
+}
+
+/// Constraints that leave a motion free, as an end of a message.
+fn beside(constraints: &[String]) -> String {
+    match constraints {
+        [] => String::new(),
+        names => format!(", which constraint '{}' leaves free", names.join("', '")),
+    }
 }

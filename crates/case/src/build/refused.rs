@@ -16,9 +16,18 @@ impl Builder<'_> {
             Error::WeakForm { contact, .. } => {
                 Problem::new(format!("contact.{contact}.integration"), error.to_string())
             }
-            Error::FreeMotion { body, motion } => {
-                let message =
-                    format!("in a static stage the body `{body}` can {motion} without any force");
+            Error::FreeMotion {
+                body,
+                motion,
+                constraints,
+            } => {
+                let joined = match &constraints[..] {
+                    [] => String::new(),
+                    names => format!(", which constraint `{}` leaves free", names.join("`, `")),
+                };
+                let message = format!(
+                    "in a static stage the body `{body}` can {motion} without any force{joined}"
+                );
                 Problem::new("time.static", message).accepted([
                     "supports that hold it",
                     "a contact that may hold it",

@@ -117,9 +117,19 @@ fn size_of_elements(system: &System, part: &Range<usize>) -> f64 {
 }
 
 fn free_motion(system: &System, nodes: &[u32], motion: &str) -> Error {
+    let inside = |&(unknown, _): &(u32, f64)| {
+        let node = system.unknowns.node(unknown as usize);
+        nodes.binary_search(&node).is_ok()
+    };
+    let joins = |(_, rows): &&(String, Range<usize>)| {
+        let mut terms = system.link_rows[rows.clone()].iter().flatten();
+        terms.any(inside)
+    };
+    let joining = system.links.iter().filter(joins);
     Error::FreeMotion {
         body: body_at(system, nodes[0]),
         motion: motion.to_string(),
+        constraints: joining.map(|(name, _)| name.clone()).collect(),
     }
 }
 

@@ -192,7 +192,14 @@ fn a_static_stage_names_the_beam_that_a_constraint_leaves_free() {
         }];
         model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });
         match Driver::new(System::new(model).unwrap()) {
-            Err(Error::FreeMotion { body, motion }) => format!("{body} can {motion}"),
+            Err(Error::FreeMotion {
+                body,
+                motion,
+                constraints,
+            }) => {
+                assert_eq!(constraints, ["joint"]);
+                format!("{body} can {motion}")
+            }
             Err(other) => panic!("{other}"),
             Ok(mut driver) => driver
                 .step()

@@ -179,7 +179,7 @@ fn started(mut model: Model, holds: &[(&str, [bool; 3])]) -> String {
     }
     model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });
     match Driver::new(System::new(model).unwrap()) {
-        Err(Error::FreeMotion { body, motion }) => format!("{body}: {motion}"),
+        Err(Error::FreeMotion { body, motion, .. }) => format!("{body}: {motion}"),
         Err(other) => panic!("{other}"),
         Ok(_) => "held".to_string(),
     }

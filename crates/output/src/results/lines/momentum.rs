@@ -106,7 +106,7 @@ pub(super) fn resizing(evidence: &Evidence) -> Finding {
                 Form::Percent,
             ),
             Bounds::Both(RESIZING, MISSED),
-            "use a scheme and a law without chatter, because the halvings change the step in contact; or a fixed step",
+            "use a scheme and a law without chatter, because each new size of the step in contact counts; or a fixed step",
         )),
         None => Finding::Absent,
     }
