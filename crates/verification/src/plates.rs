@@ -3,7 +3,7 @@
 //! Problems: a square plate of side L = 1, ν = 0.3, under its weight q per area.
 //! - Simply supported, with rotations along the edges held: the series of Navier with shear, Σ 16 q/(π² m n D λ²) (1 + D λ/(κ G h)) sin sin over odd m
 //!   and n, λ = π² (m² + n²)/L². Thickness 0.001 and 0.1, mesh of 16 by 16 quadrilaterals whose inner nodes are moved by up to a quarter of their size.
-//! - Clamped, thin: 0.00126532 q L⁴/D (Taylor and Govindjee 2004, Commun. Numer. Methods Eng. 20, 97).
+//! - Clamped, thin: 0.00126532 q L⁴/D (Taylor and Govindjee 2004, Commun. Numer. Methods Eng. 20, 757).
 //! - Frequencies of the first, thickness 0.01 and 0.1: the lower root of (D λ + κ G h - ρ I ω²)(κ G h λ - ρ h ω²) = (κ G h)² λ of Mindlin's plate with
 //!   the rotary inertia ρ I = ρ h³/12. Modes that are symmetric about both middles, on a quarter with 16 by 16 elements.
 //!
