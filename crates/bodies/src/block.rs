@@ -5,7 +5,7 @@
 
 use carom_algebra::lanes::Lanes;
 use carom_algebra::tensor::Mat3;
-use carom_elements::{Kind, MAX_NODES};
+use carom_elements::{Kind, MAX_NODES, Rule};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
@@ -85,20 +85,15 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// `weights`: of these elements in their order.
+    /// `rule`: where the internal work is taken; `weights`: of these elements in their order.
     pub(crate) fn new(
-        kind: Kind,
+        (kind, rule): (Kind, &'static Rule),
         physics: Physics,
         of: &Nodes,
         weights: Option<&CellWeights>,
     ) -> Block {
         let per = kind.table().nodes;
         let length = chunk_length(kind) * per;
-        let weighted = weights.is_some_and(|weights| weights.stiffness.iter().any(|w| *w != 1.0));
-        let rule = match weighted {
-            true => kind.table().weighted_stiffness_rule(),
-            false => kind.table().stiffness_rule,
-        };
         let stiffness_points = Points::new(kind, rule);
         let chunk_weights = |first: usize, count: usize| {
             weights.map(|weights| {
@@ -472,7 +467,7 @@ mod tests {
             stiffness: (0..total).map(|a| (a as f64).sin().powi(2)).collect(),
         });
         let block = Block::new(
-            kind,
+            (kind, element.stiffness_rule),
             physics,
             &Nodes {
                 elements: &elements,

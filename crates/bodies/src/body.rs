@@ -301,7 +301,8 @@ impl Body {
             Body::Solid(solid) => solid.history_len(),
             Body::Beam(beam) => beam.history_len(),
             Body::LargeBeam(beam) => beam.history_len(),
-            Body::Shell(_) | Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => 0,
+            Body::Shell(shell) => shell.history_len(),
+            Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => 0,
         }
     }
 
@@ -322,7 +323,7 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.internal_force(u, scratch, f),
             Body::Beam(beam) => beam.internal_force(u, f),
-            Body::Shell(shell) if !shell.turns() => shell.internal_force(u, f),
+            Body::Shell(shell) if shell.is_linear() => shell.internal_force(u, f),
             Body::Shell(_) | Body::LargeBeam(_) => 0.0,
             Body::Discrete(discrete) => discrete.internal_force(u, f),
             Body::Rigid(_) => 0.0,
@@ -349,7 +350,7 @@ impl Body {
             Body::Solid(solid) => solid.force(at, new, scratch, f),
             Body::Beam(beam) => beam.force(at, new, f),
             Body::LargeBeam(beam) => beam.force(at, new, f),
-            Body::Shell(shell) => Ok(shell.force(at, scratch, f)),
+            Body::Shell(shell) => shell.force(at, new, scratch, f),
             Body::Discrete(discrete) => Ok(discrete.force(at, f)),
             Body::Reduced(reduced) => Ok(reduced.force(at, f)),
             Body::Rigid(rigid) => {
@@ -503,7 +504,7 @@ impl Body {
             Body::Solid(solid) => solid.stresses(u, history),
             Body::Beam(beam) => beam.stresses(u, history),
             Body::LargeBeam(beam) => beam.stresses(u, history),
-            Body::Shell(shell) => shell.stresses(u),
+            Body::Shell(shell) => shell.stresses(u, history),
             // neither volume nor stress
             Body::Discrete(discrete) => vec![(0.0, Mat3::zeros()); discrete.cells().len()],
             Body::Rigid(rigid) => vec![(0.0, Mat3::zeros()); rigid.cells().len()],
@@ -518,6 +519,7 @@ impl Body {
             Body::Solid(solid) => solid.plastic_strains(history),
             Body::Beam(beam) => beam.plastic_strains(history),
             Body::LargeBeam(beam) => beam.plastic_strains(history),
+            Body::Shell(shell) => shell.plastic_strains(history),
             _ => None,
         }
     }

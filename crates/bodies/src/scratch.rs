@@ -1,13 +1,13 @@
 //! Buffers of the force sweeps.
 
 use crate::block::Block;
-use crate::finite::Outcome;
+use crate::finite::{Outcome, Stored};
 
-/// Forces and moments on the nodes of a shell element, N and N m, and its strain energy, J.
+/// Forces and moments on the nodes of a shell element, N and N m, and its energies.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ShellForces {
     pub nodes: [[f64; 6]; 4],
-    pub energy: f64,
+    pub stored: Stored,
 }
 
 /// Buffers of the internal-force sweep: one list of nodal forces and one energy per chunk.

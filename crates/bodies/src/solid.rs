@@ -38,6 +38,9 @@ pub struct BodySpec {
     pub formulation: Formulation,
     /// Weights of inertia and internal work; none for a body that is alone in its volume.
     pub weights: Option<CellWeights>,
+    /// Whether the internal work at small strain has a rule that is exact for weights times products of strains in straight cells: needed
+    /// for the bending patch of quadratic cells that overlap a beam.
+    pub exact_products: bool,
     /// Bulk viscosity; needs a law at finite strain.
     pub viscosity: Option<BulkViscosity>,
     /// Mass scaling.
@@ -64,6 +67,7 @@ impl BodySpec {
             material: material.into(),
             formulation: Formulation::Full,
             weights: None,
+            exact_products: false,
             viscosity: None,
             scaling: None,
             deletion: None,
@@ -545,7 +549,12 @@ impl Parts<'_> {
                     x: self.x,
                     unknowns: self.unknowns,
                 };
-                blocks.push(Block::new(kind, self.physics, &nodes, weights.as_ref()));
+                let rule = match spec.exact_products && spec.material.finite().is_none() {
+                    true => kind.table().weighted_stiffness_rule(),
+                    false => kind.table().stiffness_rule,
+                };
+                let weights = weights.as_ref();
+                blocks.push(Block::new((kind, rule), self.physics, &nodes, weights));
             }
             cells.extend(of_kind);
         }

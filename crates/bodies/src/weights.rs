@@ -17,7 +17,7 @@ pub(crate) const WIDEST: usize = 16;
 ///
 /// Each list holds the w_a cell after cell in the order of [`crate::BodySpec::cells`], as many as the kind of the cell
 /// has nodes, without unit. Masses take the weight at the points of the kind's mass rule (bars: integrated exactly),
-/// forces, energies and stiffness at those of its stiffness rule with weights (bars: the mean of the two values; beams: exactly). Weights of two
+/// forces, energies and stiffness at those of its stiffness rule (bars: the mean of the two values; beams: exactly). Weights of two
 /// bodies on the same cells that sum to 1 everywhere give the whole body. Values may be negative as long as the weights
 /// at the points of the stiffness rule and the lumped masses are not. Lumped masses of the two bodies add up at each node
 /// of linear cells; of quadratic ones, lumped by scaling the diagonal, in the total alone. Ben Dhia (1998).

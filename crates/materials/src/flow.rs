@@ -254,7 +254,7 @@ impl<H: Hardening> Flow<'_, H> {
     }
 }
 
-/// The laws of parameters with a hardening, at finite strain and under uniaxial stress; they have no stored energy alone.
+/// The laws of parameters with a hardening, at finite strain, under uniaxial and under plane stress; they have no stored energy alone.
 macro_rules! flows {
     ($law:ident) => {
         impl $crate::Pointwise for $law {
@@ -328,6 +328,25 @@ macro_rules! flows {
                 history: (&[f64], &mut [f64]),
             ) -> $crate::UniaxialResponse {
                 $crate::uniaxial::update(self, strain, dt, history)
+            }
+        }
+
+        impl $crate::PlaneStress for $law {
+            fn history_len(&self) -> usize {
+                $crate::plane_stress::PLASTIC + 1 + $crate::hardening::Hardening::further(self)
+            }
+
+            fn stress(&self, strain: &[f64; 3], history: &[f64]) -> [f64; 3] {
+                $crate::plane_stress::stress(self, strain, history)
+            }
+
+            fn update(
+                &self,
+                strain: &[f64; 3],
+                dt: f64,
+                history: (&[f64], &mut [f64]),
+            ) -> $crate::PlaneStressResponse {
+                $crate::plane_stress::update(self, strain, dt, history)
             }
         }
     };

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::flow::{PLASTIC, flows};
 use crate::hardening::Hardening;
 use crate::range::{OutOfRange, require};
-use crate::{Elastic, Material, Parameters, Uniaxial};
+use crate::{Elastic, Material, Parameters, PlaneStress, Uniaxial};
 
 /// J2 (von Mises) plasticity with linear isotropic hardening, in logarithmic strain: σ_y + H ε_p.
 ///
@@ -64,6 +64,10 @@ impl Parameters for J2Plasticity {
     }
 
     fn uniaxial(&self) -> Option<Box<dyn Uniaxial>> {
+        Some(Box::new(*self))
+    }
+
+    fn plane_stress(&self) -> Option<Box<dyn PlaneStress>> {
         Some(Box::new(*self))
     }
 

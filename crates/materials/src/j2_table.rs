@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::flow::{PLASTIC, flows};
 use crate::hardening::Hardening;
 use crate::range::{OutOfRange, require};
-use crate::{Elastic, Material, Parameters, Uniaxial};
+use crate::{Elastic, Material, Parameters, PlaneStress, Uniaxial};
 
 /// Most points of a [`J2Table`].
 pub const MAX_HARDENING_POINTS: usize = 16;
@@ -154,6 +154,10 @@ impl Parameters for J2Table {
     }
 
     fn uniaxial(&self) -> Option<Box<dyn Uniaxial>> {
+        Some(Box::new(*self))
+    }
+
+    fn plane_stress(&self) -> Option<Box<dyn PlaneStress>> {
         Some(Box::new(*self))
     }
 

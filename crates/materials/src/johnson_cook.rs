@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::flow::{PLASTIC, flows};
 use crate::hardening::Hardening;
 use crate::range::{OutOfRange, require};
-use crate::{Elastic, Material, Parameters, Uniaxial};
+use crate::{Elastic, Material, Parameters, PlaneStress, Uniaxial};
 
 /// Place of the rise of the temperature in the history, behind ε_p.
 const RISE: usize = 1;
@@ -188,6 +188,10 @@ impl Parameters for JohnsonCook {
     }
 
     fn uniaxial(&self) -> Option<Box<dyn Uniaxial>> {
+        Some(Box::new(*self))
+    }
+
+    fn plane_stress(&self) -> Option<Box<dyn PlaneStress>> {
         Some(Box::new(*self))
     }
 

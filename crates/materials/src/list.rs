@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{Elastic, Material, OutOfRange, Parameters, Plane, Uniaxial};
+use crate::{Elastic, Material, OutOfRange, Parameters, Plane, PlaneStress, Uniaxial};
 
 macro_rules! declare {
     ([] $($(#[$doc:meta])* $law:ident $key:literal,)*) => {
@@ -51,6 +51,11 @@ impl Law {
     /// The law under uniaxial stress at small strain where it is not linear elasticity alone: of a metal that flows.
     pub fn uniaxial(&self) -> Option<Box<dyn Uniaxial>> {
         self.parameters().uniaxial()
+    }
+
+    /// The law under plane stress at small strain where it is not linear elasticity alone: of a metal that flows.
+    pub fn plane_stress(&self) -> Option<Box<dyn PlaneStress>> {
+        self.parameters().plane_stress()
     }
 
     /// Linear elasticity of the undeformed material.

@@ -1,6 +1,6 @@
 //! What the parameters of any material answer.
 
-use crate::{Elastic, Material, OutOfRange, Uniaxial};
+use crate::{Elastic, Material, OutOfRange, PlaneStress, Uniaxial};
 
 /// The parameters of a material, as the case file gives them.
 pub trait Parameters {
@@ -8,6 +8,10 @@ pub trait Parameters {
     fn finite(&self) -> Option<&dyn Material>;
     /// The law under uniaxial stress at small strain, of bars and of the fibres of beams; none of a law that has none but elasticity.
     fn uniaxial(&self) -> Option<Box<dyn Uniaxial>> {
+        None
+    }
+    /// The law under plane stress at small strain, of shells; none of a law that has none but elasticity.
+    fn plane_stress(&self) -> Option<Box<dyn PlaneStress>> {
         None
     }
     /// Linear elasticity of the undeformed material.

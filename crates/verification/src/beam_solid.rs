@@ -147,6 +147,7 @@ impl Spliced {
         for ((part, cells), weights) in bodies.iter_mut().zip(&glued.cells).zip(weights) {
             part.mass = MassKind::Consistent;
             part.spec.cells = cells.clone();
+            part.spec.exact_products = true;
             part.spec.weights = Some(CellWeights {
                 inertia: weights.inertia.clone(),
                 stiffness: weights.stiffness.clone(),

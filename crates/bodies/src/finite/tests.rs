@@ -90,7 +90,12 @@ fn block(kind: Kind, kinematics: Kinematics, count: usize, weighted: bool) -> (B
         x: &x.collect::<Vec<_>>(),
         unknowns: &Unknowns::translations(element.dim, total),
     };
-    let block = Block::new(kind, Physics::Continuum(law), &nodes, weights.as_ref());
+    let block = Block::new(
+        (kind, kind.table().stiffness_rule),
+        Physics::Continuum(law),
+        &nodes,
+        weights.as_ref(),
+    );
     let u = (0..element.dim * total).map(|i| 0.15 * size * (i as f64).cos());
     (block, u.collect())
 }

@@ -5,6 +5,7 @@ use carom_algebra::unknowns::Unknowns;
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Mesh};
 
+use super::layers::Layers;
 use super::products::{Configuration, MOST};
 use super::section::ElasticSection;
 use super::strain::Form;
@@ -34,7 +35,7 @@ impl Shell {
     ///
     /// # Errors
     /// No cell, cells that are neither tri3 nor quad4, a mesh that is not one of space; a cell without area or that is not convex, or too warped;
-    /// neighbours whose normals disagree; a material at finite strain, weights, a formulation; an offset with finite rotations.
+    /// neighbours whose normals disagree; a material at finite strain that is no metal, weights, a formulation; an offset with finite rotations.
     pub(crate) fn new(
         mesh: &Mesh,
         spec: BodySpec,
@@ -55,8 +56,11 @@ impl Shell {
             stiffness: Vec::new(),
             starts: vec![0],
             smallest: f64::INFINITY,
+            layers: None,
         };
         let elastic = ElasticSection::new(&material, section.thickness);
+        let law = spec.material.plane_stress();
+        shell.layers = law.map(|law| Layers::new(law, section.thickness, section.layers));
         for (place, &cell) in shell.cells.iter().enumerate() {
             let nodes = mesh.element_nodes(cell);
             let x: Vec<Vec3> = nodes
@@ -209,7 +213,7 @@ fn check(mesh: &Mesh, spec: &BodySpec, section: &ShellSection) -> Result<(), Err
             what: "a share of its volume with another model",
         });
     }
-    if spec.material.finite().is_some() {
+    if spec.material.finite().is_some() && spec.material.plane_stress().is_none() {
         return Err(Error::FiniteKinematics {
             body: body(),
             kinematics: spec.kinematics.name(),

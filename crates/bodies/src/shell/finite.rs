@@ -9,13 +9,15 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::{Mat3, Vec3};
 use rayon::prelude::*;
 
+use super::layers::Layers;
 use super::products::{Configuration, MOST};
 use super::section::STRAINS;
+use super::small::add_product;
 use super::strain::Strains;
 use super::{Element, PER_NODE, Shell};
-use crate::Placement;
 use crate::scratch::ShellForces;
 use crate::turning::{balanced, spatial};
+use crate::{Placement, Stored};
 
 /// Elements that one thread takes, at least.
 const ELEMENTS: usize = 256;
@@ -68,10 +70,28 @@ impl Element {
         (end, strains, place, forces)
     }
 
-    fn forces(&self, at: &Placement) -> ShellForces {
-        let (end, strains, place, forces) = self.acting(at);
+    /// Forces and moments on the nodes, in their axes. `flow`: the layers of metal, and the history of the element.
+    fn forces(&self, at: &Placement, flow: Option<(&Layers, &[f64], &mut [f64])>) -> ShellForces {
+        let (end, place, forces, stored) = match flow {
+            None => {
+                let (end, strains, place, forces) = self.acting(at);
+                let strain = self.energy(&strains);
+                let stored = Stored {
+                    strain,
+                    ..Stored::default()
+                };
+                (end, place, forces, stored)
+            }
+            Some((layers, old, new)) => {
+                let end = self.now(at.frames, at.u);
+                let strains = self.form.strains(&end.configuration);
+                let (forces, stored) = self.flow(layers, &strains, at.dt, (old, new));
+                let place = end.configuration;
+                (end, place, forces, stored)
+            }
+        };
         let mut out = ShellForces {
-            energy: self.energy(&strains),
+            stored,
             ..ShellForces::default()
         };
         let found = self.form.gradient(&place, &forces);
@@ -84,15 +104,14 @@ impl Element {
         out
     }
 
-    /// The symmetric part of ∂f/∂u, row-major.
-    fn tangent(&self, at: &Placement) -> Vec<f64> {
+    /// The symmetric part of ∂f/∂u, row-major. `flow`: the layers of metal, and the history at the start of the step.
+    fn tangent(&self, at: &Placement, flow: Option<(&Layers, &[f64])>) -> Vec<f64> {
         let n = PER_NODE * self.count;
         let mut k = vec![0.0; n * n];
-        let (end, _, place, forces) = self.acting(at);
+        let (end, strains, place, mut forces) = self.acting(at);
         // what a change of the increment turns in space; a translation stays what it is
         let turns: [Mat3; MOST] =
             std::array::from_fn(|node| spatial(&end.starts[node], &end.increments[node]));
-        let section = self.elastic.tangent();
         for (point, area) in self.form.areas.iter().enumerate() {
             let found = self.form.derivatives(&place, point);
             let mut rows = [[0.0; MOST * PER_NODE]; STRAINS];
@@ -104,19 +123,15 @@ impl Element {
                     own[3..].copy_from_slice(by_turn.as_slice());
                 }
             }
-            for (stress, row) in section.iter().zip(&rows) {
-                let mut product = [0.0; MOST * PER_NODE];
-                for (factor, other) in stress.iter().zip(&rows).filter(|(c, _)| **c != 0.0) {
-                    for (product, other) in product.iter_mut().zip(other) {
-                        *product += area * factor * other;
-                    }
+            let section = match flow {
+                None => self.elastic.tangent(),
+                Some((layers, old)) => {
+                    let (own, section) = self.flowing(layers, point, (&strains[point], at.dt), old);
+                    forces[point] = own.map(|force| force * area);
+                    section
                 }
-                for (k, left) in k.chunks_exact_mut(n).zip(row) {
-                    for (k, right) in k.iter_mut().zip(&product) {
-                        *k += left * right;
-                    }
-                }
-            }
+            };
+            add_product(&rows, &section, *area, &mut k);
         }
         let to = |(node, part): (usize, usize)| match part {
             0 => Mat3::identity(),
@@ -136,33 +151,51 @@ impl Element {
 }
 
 impl Shell {
-    /// Forces are found side by side and added in the order of the elements.
+    /// Forces of elements are found side by side and added in their order.
     pub(super) fn finite_force(
         &self,
         at: &Placement,
+        new: &mut [f64],
         scratch: &mut Vec<ShellForces>,
         f: &mut [f64],
-    ) -> f64 {
+    ) -> Stored {
         scratch.resize_with(self.elements.len(), ShellForces::default);
         let elements = self.elements.par_iter().with_min_len(ELEMENTS);
-        elements
-            .zip(&mut scratch[..])
-            .for_each(|(element, out)| *out = element.forces(at));
-        let mut energy = 0.0;
-        for (element, found) in self.elements.iter().zip(scratch.iter()) {
-            energy += found.energy;
+        let elements = elements.zip(&mut scratch[..]);
+        match &self.layers {
+            None => elements.for_each(|(element, out)| *out = element.forces(at, None)),
+            Some(layers) => {
+                let kept = self.kept_of_element();
+                let histories = at.old.par_chunks(kept).zip(new.par_chunks_mut(kept));
+                elements
+                    .zip(histories)
+                    .for_each(|((element, out), (old, new))| {
+                        *out = element.forces(at, Some((layers, old, new)));
+                    });
+            }
+        }
+        self.gathered(scratch, f)
+    }
+
+    /// Adds the forces of elements, and returns the sum of their energies.
+    pub(super) fn gathered(&self, scratch: &[ShellForces], f: &mut [f64]) -> Stored {
+        let mut stored = Stored::default();
+        for (element, found) in self.elements.iter().zip(scratch) {
+            stored.include(&found.stored);
             for (force, &first) in found.nodes.iter().zip(&element.first[..element.count]) {
                 for (f, force) in f[first..first + PER_NODE].iter_mut().zip(force) {
                     *f += force;
                 }
             }
         }
-        energy
+        stored
     }
 
     pub(super) fn add_finite_tangent(&self, at: &Placement, by_u: f64, matrix: &mut Csr) {
         for (number, element) in self.elements.iter().enumerate() {
-            let k = element.tangent(at);
+            let flow = self.layers.as_ref();
+            let flow = flow.map(|layers| (layers, &at.old[self.history_of(number)]));
+            let k = element.tangent(at, flow);
             self.add(number, by_u, &k, &(0..usize::MAX), matrix);
         }
     }

@@ -10,6 +10,7 @@
 
 mod build;
 mod finite;
+mod layers;
 mod mass;
 mod products;
 mod results;
@@ -25,13 +26,14 @@ use carom_materials::Elastic;
 use carom_mesh::ElementId;
 
 pub use self::results::Resultants;
-pub use self::section::ShellSection;
+pub use self::section::{LAYERS, ShellSection};
 
+use self::layers::Layers;
 use self::products::{Configuration, MOST};
 use self::section::ElasticSection;
 use self::strain::{Form, Strains};
 use crate::scratch::Scratch;
-use crate::{Placement, Rotations, Stored};
+use crate::{Error, Placement, Rotations, Stored};
 
 /// Unknowns of a node.
 const PER_NODE: usize = 6;
@@ -93,6 +95,8 @@ pub struct Shell {
     stiffness: Vec<f64>,
     starts: Vec<usize>,
     smallest: f64,
+    /// Of metal that flows.
+    layers: Option<Layers>,
 }
 
 impl Shell {
@@ -130,7 +134,7 @@ impl Shell {
 
     /// Whether forces are linear in the displacement.
     pub(crate) fn is_linear(&self) -> bool {
-        self.section.rotations == Rotations::Small
+        self.section.rotations == Rotations::Small && self.layers.is_none()
     }
 
     /// Whether its nodes turn by any angle.
@@ -139,23 +143,67 @@ impl Shell {
     }
 
     /// Adds the internal forces; see [`Body::force`](crate::Body::force).
-    pub(crate) fn force(&self, at: &Placement, scratch: &mut Scratch, f: &mut [f64]) -> Stored {
-        let strain = match self.turns() {
-            true => self.finite_force(at, &mut scratch.shells, f),
-            false => self.small_force(at, f),
-        };
-        Stored {
-            strain,
-            ..Stored::default()
+    ///
+    /// # Errors
+    /// A section that flows has no stress between two displacements.
+    pub(crate) fn force(
+        &self,
+        at: &Placement,
+        new: &mut [f64],
+        scratch: &mut Scratch,
+        f: &mut [f64],
+    ) -> Result<Stored, Error> {
+        if self.layers.is_some() && at.from.is_some() {
+            return Err(Error::NoBetween {
+                body: self.name.clone(),
+            });
         }
+        Ok(match (self.turns(), &self.layers) {
+            (true, _) => self.finite_force(at, new, &mut scratch.shells, f),
+            (false, Some(layers)) => self.small_flow(layers, at, new, (&mut scratch.shells, f)),
+            (false, None) => Stored {
+                strain: self.small_force(at, f),
+                ..Stored::default()
+            },
+        })
+    }
+
+    /// Numbers that the layers of an element keep; of triangles some are not used.
+    fn kept_of_element(&self) -> usize {
+        let layers = self.layers.as_ref();
+        MOST * layers.map_or(0, Layers::history_len)
+    }
+
+    /// Numbers that it keeps from one step to the next.
+    pub(crate) fn history_len(&self) -> usize {
+        self.elements.len() * self.kept_of_element()
+    }
+
+    /// Place of the history of an element in that of all.
+    fn history_of(&self, element: usize) -> Range<usize> {
+        let kept = self.kept_of_element();
+        kept * element..kept * (element + 1)
+    }
+
+    /// Largest equivalent plastic strain in the layers of each element; none where nothing flows.
+    pub(crate) fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
+        let layers = self.layers.as_ref()?;
+        let of = |element| {
+            let points = history[self.history_of(element)].chunks_exact(layers.history_len());
+            points
+                .map(|own| layers.plastic_strain(own))
+                .fold(0.0, f64::max)
+        };
+        Some((0..self.elements.len()).map(of).collect())
     }
 
     /// Adds `by_u` ∂f/∂u to a matrix over all unknowns; see [`Body::add_tangent`](crate::Body::add_tangent).
     pub(crate) fn add_tangent(&self, at: &Placement, by_u: f64, matrix: &mut Csr) {
         let share = if at.from.is_some() { 0.5 } else { 1.0 };
-        match self.turns() {
-            true => self.add_finite_tangent(at, share * by_u, matrix),
-            false => self.add_stiffness(share * by_u, &(0..usize::MAX), matrix),
+        match (self.turns(), &self.layers) {
+            (true, _) => self.add_finite_tangent(at, share * by_u, matrix),
+            (false, Some(layers)) => self.add_small_tangent(layers, at, share * by_u, matrix),
+            (false, None) => self.add_stiffness(share * by_u, &(0..usize::MAX), matrix),
         }
     }
 

@@ -31,36 +31,16 @@ impl Shell {
         for element in &self.elements {
             let strains = match self.turns() {
                 true => element.form.strains(&element.now(frames, u).configuration),
-                false => self.small_strains(element, u),
+                false => element.small_strains(self.section.offset, u),
             };
             visit(element, &strains);
         }
     }
 
-    fn small_strains(&self, element: &Element, u: &[f64]) -> Strains {
-        let mut strains = Strains::default();
-        for (point, strains) in strains
-            .iter_mut()
-            .enumerate()
-            .take(element.form.areas.len())
-        {
-            for (strain, row) in strains
-                .iter_mut()
-                .zip(element.rows(point, self.section.offset))
-            {
-                *strain = row
-                    .iter()
-                    .zip(element.unknowns())
-                    .map(|(b, i)| b * u[i])
-                    .sum();
-            }
-        }
-        strains
-    }
-
     /// Forces and moments in the middle of each element. `frames`: of the nodes, with finite rotations.
-    pub fn resultants(&self, frames: &[Rotation], u: &[f64]) -> Vec<Resultants> {
-        let mut all = Vec::with_capacity(self.elements.len());
+    /// `history`: of this body there.
+    pub fn resultants(&self, frames: &[Rotation], u: &[f64], history: &[f64]) -> Vec<Resultants> {
+        let mut all: Vec<Resultants> = Vec::with_capacity(self.elements.len());
         self.each_strain(frames, u, &mut |element, strains| {
             let now = match self.turns() {
                 true => element.now(frames, u).configuration,
@@ -73,7 +53,15 @@ impl Shell {
             };
             let (form, whole) = (&element.form, element.area());
             for (point, area) in form.areas.iter().enumerate() {
-                let forces = element.elastic.forces(&strains[point]);
+                let forces = match &self.layers {
+                    None => element.elastic.forces(&strains[point]),
+                    Some(layers) => {
+                        let own = &history[self.history_of(all.len())];
+                        let kept = layers.history_len();
+                        let own = &own[kept * point..kept * (point + 1)];
+                        element.beside(&strains[point], &layers.forces(&strains[point], own))
+                    }
+                };
                 let (tangents, part) = (form.tangents(&now, point), area / whole);
                 mean.membrane += in_space(&tangents, &forces, 0) * part;
                 mean.bending += in_space(&tangents, &forces, 3) * part;
@@ -86,10 +74,10 @@ impl Shell {
     }
 
     /// Volume (m³) and mean stress (Pa) of each element: the membrane forces over the thickness. Bending has no mean.
-    pub(crate) fn stresses(&self, u: &[f64]) -> Vec<(f64, Mat3)> {
+    pub(crate) fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
         let thickness = self.section.thickness;
         // membrane strains do not depend on rotations
-        let found = self.resultants(&[], u);
+        let found = self.resultants(&[], u, history);
         let elements = self.elements.iter().zip(found);
         elements
             .map(|(element, found)| (element.area() * thickness, found.membrane / thickness))

@@ -4,6 +4,9 @@ use carom_materials::Elastic;
 
 use crate::Rotations;
 
+/// Layers through the thickness where nothing else is said.
+pub const LAYERS: u32 = 4;
+
 /// Shear correction of a homogeneous section, after Reissner.
 const SHEAR: f64 = 5.0 / 6.0;
 
@@ -24,6 +27,8 @@ pub struct ShellSection {
     pub thickness: f64,
     /// From the nodes to the middle surface along the normal, m.
     pub offset: f64,
+    /// Layers through the thickness of a metal that flows, an even number; each has two points.
+    pub layers: u32,
     /// How far its nodes turn.
     pub rotations: Rotations,
 }
@@ -34,6 +39,7 @@ impl ShellSection {
         ShellSection {
             thickness,
             offset: 0.0,
+            layers: LAYERS,
             rotations: Rotations::Small,
         }
     }

@@ -1,12 +1,17 @@
-//! Shells with small rotations: one constant stiffness for each element.
+//! Shells with small rotations: one constant stiffness for each element, or layers that flow.
 
 use std::ops::Range;
 
 use carom_algebra::csr::Csr;
 
-use super::section::STRAINS;
+use rayon::prelude::*;
+
+use super::layers::Layers;
+use super::section::{AtPoint, STRAINS};
+use super::strain::Strains;
 use super::{Element, PER_NODE, Shell};
-use crate::Placement;
+use crate::scratch::ShellForces;
+use crate::{Placement, Stored};
 
 impl Element {
     /// Derivatives of the strains of a point by the unknowns, row by row: a rotation of a node moves the middle surface beside it by
@@ -32,23 +37,114 @@ impl Element {
         let mut k = vec![0.0; n * n];
         let section = self.elastic.tangent();
         for (point, area) in self.form.areas.iter().enumerate() {
-            let rows = self.rows(point, offset);
-            for (stress, row) in section.iter().zip(&rows) {
-                // the row of H B that belongs to this strain
-                let mut product = [0.0; 4 * PER_NODE];
-                for (factor, other) in stress.iter().zip(&rows).filter(|(c, _)| **c != 0.0) {
-                    for (product, other) in product.iter_mut().zip(other) {
-                        *product += area * factor * other;
-                    }
-                }
-                for (k, left) in k.chunks_exact_mut(n).zip(row).filter(|(_, b)| **b != 0.0) {
-                    for (k, right) in k.iter_mut().zip(&product) {
-                        *k += left * right;
-                    }
+            add_product(&self.rows(point, offset), &section, *area, &mut k);
+        }
+        k
+    }
+
+    /// Strains at a displacement.
+    pub(super) fn small_strains(&self, offset: f64, u: &[f64]) -> Strains {
+        let mut strains = Strains::default();
+        for (point, strains) in strains.iter_mut().enumerate().take(self.form.areas.len()) {
+            for (strain, row) in strains.iter_mut().zip(self.rows(point, offset)) {
+                *strain = row.iter().zip(self.unknowns()).map(|(b, i)| b * u[i]).sum();
+            }
+        }
+        strains
+    }
+
+    /// Forces and moments at all points, times their areas, where the section flows, and the energies.
+    pub(super) fn flow(
+        &self,
+        layers: &Layers,
+        strains: &Strains,
+        dt: f64,
+        (old, new): (&[f64], &mut [f64]),
+    ) -> (Strains, Stored) {
+        let (mut forces, mut stored) = (Strains::default(), Stored::default());
+        let kept = layers.history_len();
+        let histories = old.chunks_exact(kept).zip(new.chunks_exact_mut(kept));
+        for ((point, area), history) in self.form.areas.iter().enumerate().zip(histories) {
+            let strain = &strains[point];
+            let (found, own) = layers.update(strain, dt, history);
+            forces[point] = self.beside(strain, &found).map(|force| force * area);
+            let mut alone = *strain;
+            alone[..6].fill(0.0);
+            let beside = self.elastic.energy(&alone);
+            stored.strain += area * (own.strain + beside);
+            stored.hardening += area * own.hardening;
+            stored.dissipated += area * own.dissipated;
+        }
+        (forces, stored)
+    }
+
+    /// Membrane forces and moments of the layers beside elastic shear and drilling.
+    pub(super) fn beside(&self, strain: &AtPoint, layers: &AtPoint) -> AtPoint {
+        let elastic = self.elastic.forces(strain);
+        std::array::from_fn(|i| if i < 6 { layers[i] } else { elastic[i] })
+    }
+
+    /// Forces and moments at a point where the section flows, and their derivative.
+    pub(super) fn flowing(
+        &self,
+        layers: &Layers,
+        point: usize,
+        (strain, dt): (&AtPoint, f64),
+        old: &[f64],
+    ) -> (AtPoint, [AtPoint; STRAINS]) {
+        let kept = layers.history_len();
+        let old = &old[kept * point..kept * (point + 1)];
+        let (forces, mut section) = layers.tangent(strain, dt, old);
+        let elastic = self.elastic.tangent();
+        section[6..].copy_from_slice(&elastic[6..]);
+        (self.beside(strain, &forces), section)
+    }
+
+    /// Forces and moments on the nodes of a section that flows, with small rotations.
+    fn flowed(
+        &self,
+        (layers, offset): (&Layers, f64),
+        at: &Placement,
+        history: (&[f64], &mut [f64]),
+    ) -> ShellForces {
+        let strains = self.small_strains(offset, at.u);
+        let (forces, stored) = self.flow(layers, &strains, at.dt, history);
+        let mut out = ShellForces {
+            stored,
+            ..ShellForces::default()
+        };
+        for (point, forces) in forces.iter().enumerate().take(self.form.areas.len()) {
+            for (force, row) in forces.iter().zip(self.rows(point, offset)) {
+                for (out, b) in out.nodes.iter_mut().flatten().zip(row) {
+                    *out += force * b;
                 }
             }
         }
-        k
+        out
+    }
+}
+
+/// Adds area · Bᵀ H B to a matrix, row-major.
+pub(super) fn add_product(
+    rows: &[[f64; 4 * PER_NODE]; STRAINS],
+    section: &[AtPoint; STRAINS],
+    area: f64,
+    k: &mut [f64],
+) {
+    let n = k.len().isqrt();
+    for (stress, row) in section.iter().zip(rows) {
+        // the row of H B that belongs to this strain
+        let mut product = [0.0; 4 * PER_NODE];
+        for (factor, other) in stress.iter().zip(rows).filter(|(c, _)| **c != 0.0) {
+            for (product, other) in product.iter_mut().zip(other) {
+                *product += area * factor * other;
+            }
+        }
+        for (k, left) in k.chunks_exact_mut(n).zip(row).filter(|(_, b)| **b != 0.0) {
+            for (k, right) in k.iter_mut().zip(&product) {
+                *k += left * right;
+            }
+        }
     }
 }
 
@@ -61,6 +157,51 @@ impl Shell {
             energy += 0.5 * force * u[i];
         });
         energy
+    }
+
+    /// Adds the forces of a section that flows.
+    pub(super) fn small_flow(
+        &self,
+        layers: &Layers,
+        at: &Placement,
+        new: &mut [f64],
+        (scratch, f): (&mut Vec<ShellForces>, &mut [f64]),
+    ) -> Stored {
+        scratch.resize_with(self.elements.len(), ShellForces::default);
+        let (kept, offset) = (self.kept_of_element(), self.section.offset);
+        let histories = at.old.par_chunks(kept).zip(new.par_chunks_mut(kept));
+        let elements = self.elements.par_iter().zip(&mut scratch[..]);
+        elements
+            .zip(histories)
+            .for_each(|((element, out), history)| {
+                *out = element.flowed((layers, offset), at, history);
+            });
+        self.gathered(scratch, f)
+    }
+
+    /// Adds the derivative of the forces of a section that flows.
+    pub(super) fn add_small_tangent(
+        &self,
+        layers: &Layers,
+        at: &Placement,
+        by_u: f64,
+        matrix: &mut Csr,
+    ) {
+        let offset = self.section.offset;
+        for (number, element) in self.elements.iter().enumerate() {
+            let n = PER_NODE * element.count;
+            let mut k = vec![0.0; n * n];
+            let (strains, old) = (
+                element.small_strains(offset, at.u),
+                &at.old[self.history_of(number)],
+            );
+            for (point, area) in element.form.areas.iter().enumerate() {
+                let strain = (&strains[point], at.dt);
+                let (_, section) = element.flowing(layers, point, strain, old);
+                add_product(&element.rows(point, offset), &section, *area, &mut k);
+            }
+            self.add(number, by_u, &k, &(0..usize::MAX), matrix);
+        }
     }
 
     pub(super) fn small_force(&self, at: &Placement, f: &mut [f64]) -> f64 {

@@ -9,7 +9,7 @@ use carom_bodies::{
     Body, BodySpec, CellWeights, Error, Kinematics, Placement, Rotations, Scratch, ShellSection,
 };
 use carom_elements::Kind;
-use carom_materials::{Elastic, Law, NeoHooke};
+use carom_materials::{Elastic, J2Plasticity, Law, NeoHooke};
 use carom_mesh::{ElementId, Mesh};
 use carom_testing::Random;
 
@@ -160,7 +160,7 @@ fn a_patch_has_constant_membrane_forces_and_constant_moments() {
             STEEL.shear_modulus() * xy,
         ];
         for (u, factor) in [(stretched, THICKNESS), (bent, THICKNESS.powi(3) / 12.0)] {
-            for found in shell.resultants(&[], &u) {
+            for found in shell.resultants(&[], &u, &[]) {
                 let tensors = [found.membrane, found.bending];
                 let of = &tensors[usize::from(factor != THICKNESS)];
                 let components = [of[(0, 0)], of[(1, 1)], of[(0, 1)]];
@@ -304,6 +304,123 @@ fn forces_over_a_step_do_the_work_of_the_energy_and_have_no_moment_in_its_middle
         let change = stored.strain - energy(&from);
         assert!((work / change - 1.0).abs() < 1e-12, "{work} {change}");
         assert!(moment.norm() < 1e-12 * scale, "{moment} {scale}");
+    }
+}
+
+/// The shell of a metal.
+fn of_metal(made: &(Mesh, Vec<ElementId>), section: ShellSection, yield_stress: f64) -> Body {
+    let mut spec = spec(made.1.clone(), section);
+    spec.material = Law::J2Plasticity(J2Plasticity {
+        initial: STEEL,
+        yield_stress,
+        hardening: 2e9,
+    });
+    let number: Vec<u32> = (0..9).collect();
+    Body::new(&made.0, spec, &number, &map(section.rotations)).unwrap()
+}
+
+#[test]
+fn a_metal_that_does_not_yield_is_the_elastic_shell() {
+    let mut random = Random(23);
+    for (rotations, triangles) in [
+        (Rotations::Small, false),
+        (Rotations::Finite, false),
+        (Rotations::Finite, true),
+    ] {
+        let made = mesh(triangles, 0.05);
+        let section = section(rotations, 0.0);
+        let (elastic, metal) = (built(&made, section), of_metal(&made, section, 1e15));
+        let mut u = random_motion(&mut random, 0.01);
+        u.chunks_exact_mut(6).for_each(|own| own[3..].fill(0.0));
+        let (old, still) = (vec![0.0; metal.history_len()], vec![0.0; 54]);
+        let frames = [Rotation::default(); 9];
+        let at = |history| Placement {
+            old: history,
+            ..placement(&u, None, &frames, &still)
+        };
+        let mut scratch = Scratch::default();
+        let (mut f, mut g, mut new) = (vec![0.0; 54], vec![0.0; 54], old.clone());
+        let one = elastic
+            .force(&at(&[]), &mut [], &mut scratch, &mut f)
+            .unwrap();
+        let other = metal
+            .force(&at(&old), &mut new, &mut Scratch::default(), &mut g)
+            .unwrap();
+        let scale = f.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+        // rounding, and that of the iterations on the stress across
+        assert!(f.iter().zip(&g).all(|(f, g)| (f - g).abs() < 1e-11 * scale));
+        assert!((one.strain / other.strain - 1.0).abs() < 1e-11);
+        assert!(other.dissipated == 0.0 && new == old);
+        assert_eq!(
+            metal.plastic_strains(&new).unwrap(),
+            vec![0.0; made.1.len()]
+        );
+    }
+}
+
+#[test]
+fn a_shell_that_flows_dissipates_what_is_not_stored_and_has_its_tangent() {
+    let mut random = Random(29);
+    let made = mesh(false, 0.05);
+    let metal = of_metal(&made, section(Rotations::Small, 0.03), 3e8);
+    let still = vec![0.0; 54];
+    let way = random_motion(&mut random, 3e-3);
+    let run = |u: &[f64], old: &[f64]| {
+        let at = Placement {
+            old,
+            ..placement(u, None, &[], &still)
+        };
+        let (mut f, mut new) = (vec![0.0; 54], old.to_vec());
+        let mut scratch = Scratch::default();
+        let stored = metal.force(&at, &mut new, &mut scratch, &mut f).unwrap();
+        (f, new, stored)
+    };
+    let (mut old, mut last, mut before) =
+        (vec![0.0; metal.history_len()], still.clone(), still.clone());
+    let (mut work, mut dissipated, mut kept, count) = (0.0, 0.0, 0.0, 2000);
+    for k in 1..=count {
+        let part = (3.0 * f64::from(k) / f64::from(count)).sin();
+        let u: Vec<f64> = way.iter().map(|w| part * w).collect();
+        let (f, new, stored) = run(&u, &old);
+        for i in 0..54 {
+            work += 0.5 * (f[i] + before[i]) * (u[i] - last[i]);
+        }
+        dissipated += stored.dissipated;
+        kept = stored.strain + stored.hardening;
+        (old, last, before) = (new, u, f);
+    }
+    assert!(dissipated > 0.1 * work, "{dissipated} {work}");
+    // first order in the step, a 2000th of the way
+    assert!(
+        (work - dissipated - kept).abs() < 2e-3 * work,
+        "{work} {dissipated} {kept}"
+    );
+
+    let unknowns = map(Rotations::Small);
+    let mut cliques = Cliques::new();
+    metal.each_element(&mut |nodes| {
+        let own = nodes.iter().flat_map(|&node| unknowns.of(node));
+        cliques.push(&own.map(|i| i as u32).collect::<Vec<_>>());
+    });
+    let mut matrix = Csr::from_cliques(54, &cliques);
+    let end: Vec<f64> = last.iter().zip(&way).map(|(u, w)| u - 0.3 * w).collect();
+    let at = Placement {
+        old: &old,
+        ..placement(&end, None, &[], &still)
+    };
+    metal.add_tangent(&at, [1.0, 0.0], &mut matrix).unwrap();
+    let by = random_motion(&mut random, 1.0);
+    let mut product = vec![0.0; 54];
+    matrix.multiply(&by, &mut product);
+    let moved = |step: f64| -> Vec<f64> {
+        let u: Vec<f64> = end.iter().zip(&by).map(|(u, b)| u + step * b).collect();
+        run(&u, &old).0
+    };
+    let (after, ahead) = (moved(1e-9), moved(-1e-9));
+    let scale = product.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
+    for ((a, b), p) in after.iter().zip(&ahead).zip(&product) {
+        // rounding over the step
+        assert!(((a - b) / 2e-9 - p).abs() < 1e-4 * scale);
     }
 }
 

@@ -72,6 +72,7 @@ impl Builder<'_> {
         let weights = [&glued.weights.inner, &glued.weights.outer];
         for (k, body) in [inner, outer].into_iter().enumerate() {
             weigh(mesh, &mut bodies[body], &glued.cells[k], weights[k]);
+            bodies[body].spec.exact_products = true;
         }
         let mut rows = glued.rows;
         let dropped = held.drop_rows(&mut rows);

@@ -71,6 +71,7 @@ impl Builder<'_> {
                 material,
                 formulation: formulation(body.formulation),
                 weights: None,
+                exact_products: false,
                 viscosity: body.bulk_viscosity.map(Into::into),
                 scaling: body.mass_scaling.map(Into::into),
                 deletion: body.deletion.map(|deletion| deletion.plastic_strain),

@@ -1,6 +1,6 @@
 //! Shells: sections, and what shells refuse.
 
-use carom_bodies::{Kinematics, Rotations, ShellSection};
+use carom_bodies::{Kinematics, Rotations, SHELL_LAYERS, ShellSection};
 use carom_dynamics::ModelBody;
 use carom_materials::Law;
 use carom_mesh::{ElementId, Group, Mesh, Surface};
@@ -17,15 +17,39 @@ impl Builder<'_> {
         given: &schema::ShellSection,
         material: Law,
     ) -> Option<Kinematics> {
-        if material.finite().is_some() {
+        let flows = material.plane_stress().is_some();
+        if material.finite().is_some() && !flows {
             let problem = Problem::new(
                 format!("{path}.material"),
-                "shells take an elastic material; with rotations = \"finite\" they turn by any angle with it",
+                "shells have small strains; with rotations = \"finite\" they turn by any angle",
             );
+            let accepted = ["elastic", "j2", "j2-table", "johnson-cook"];
             self.problems
-                .push(problem.found(material.key()).accepted(["elastic"]));
+                .push(problem.found(material.key()).accepted(accepted));
             return None;
         }
+        let layers = match (given.layers, flows) {
+            (None, _) => SHELL_LAYERS,
+            (Some(layers), true) if layers % 2 == 0 => layers,
+            (Some(layers), _) => {
+                let (message, found, accepted) = match flows {
+                    true => (
+                        "no layer may lie across the middle of the section",
+                        layers.to_string(),
+                        "an even number",
+                    ),
+                    false => (
+                        "the section of an elastic shell has no layers",
+                        material.key().to_owned(),
+                        "a material that flows: j2, j2-table, johnson-cook",
+                    ),
+                };
+                let problem = Problem::new(format!("{path}.section.shell.layers"), message);
+                self.problems
+                    .push(problem.found(found).accepted([accepted]));
+                return None;
+            }
+        };
         let rotations = match given.rotations {
             schema::Rotations::Small => Rotations::Small,
             schema::Rotations::Finite => Rotations::Finite,
@@ -44,6 +68,7 @@ impl Builder<'_> {
         Some(Kinematics::Shell(ShellSection {
             rotations,
             offset,
+            layers,
             ..ShellSection::new(given.thickness.0)
         }))
     }

@@ -172,7 +172,7 @@ pub enum Section {
     /// `johnson-cook`. Metal flows in extension and bending; shear and torsion stay elastic.
     Beam(Box<BeamSection>),
     /// Plates and shells in space, of triangles of three nodes and quadrilaterals of four: membrane, bending and shear, with rotations of the
-    /// nodes. Of an elastic material.
+    /// nodes. Of an elastic material or of a metal: `j2`, `j2-table`, `johnson-cook`, which flows in membrane and bending; shear across stays elastic.
     Shell(ShellSection),
     /// Plane cells whose strain across the plane is zero.
     PlaneStrain(PlaneSection),
@@ -201,6 +201,9 @@ pub struct ShellSection {
     /// How far the nodes turn.
     #[serde(default)]
     pub rotations: Rotations,
+    /// Layers through the thickness of a metal that flows, an even number; each has two points. Default: 4.
+    #[schemars(extend("minimum" = 2, "maximum" = 50))]
+    pub layers: Option<u32>,
 }
 
 /// Section of plane cells.

@@ -30,6 +30,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             material: Material::NeoHooke(NeoHooke { initial }),
             formulation: Formulation::BBar,
             weights: None,
+            exact_products: false,
             viscosity: None,
             scaling: None,
             deletion: None,

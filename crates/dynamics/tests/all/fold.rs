@@ -23,6 +23,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             material: SOFT.into(),
             formulation: Formulation::Full,
             weights: None,
+            exact_products: false,
             viscosity: None,
             scaling: None,
             deletion: None,
