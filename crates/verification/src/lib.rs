@@ -80,6 +80,7 @@ mod crushed_tube;
 mod deletion;
 mod elastic_plastic_bars;
 mod elastic_plastic_beams;
+mod elastic_plastic_shells;
 mod energy_identity;
 mod energy_identity_features;
 mod first_force;
@@ -221,6 +222,7 @@ registry! {
     deletion
     elastic_plastic_bars
     elastic_plastic_beams
+    elastic_plastic_shells
     energy_identity
     energy_identity_features
     explicit_implicit
