@@ -108,12 +108,14 @@ pub enum Error {
         body: String,
     },
     /// A cell that no shell can be on.
-    #[error("body '{body}': cell {} {why}", cell.index)]
+    #[error("body '{body}': cell {} about ({:.6}, {:.6}, {:.6}) m {why}", cell.index, centre[0], centre[1], centre[2])]
     ShellCell {
         /// Name of the body.
         body: String,
         /// The cell.
         cell: ElementId,
+        /// Mean place of its nodes, m.
+        centre: [f64; 3],
         /// What is wrong with it.
         why: &'static str,
     },

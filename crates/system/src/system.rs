@@ -116,14 +116,21 @@ pub struct System {
 }
 
 impl System {
-    /// Smallest size of an element normal to the surfaces of a contact, of both its sides, m.
+    /// Smallest size of an element normal to the surfaces of a contact, of both its sides, m. Of a shell that others touch a quarter of its thickness,
+    /// half the way to its middle: a point that has crossed that is on the other side, and is seen as one that never was inside.
     pub fn depth_of_elements(&self, contact: usize) -> f64 {
         let primary = match &self.contacts[contact].target {
             Target::Surface(faces) => &faces[..],
             Target::Rigid(_) => &[],
         };
-        let faces = self.secondary_faces[contact].iter().chain(primary);
-        let sizes = faces.map(|face| {
+        let faces = self.secondary_faces[contact]
+            .iter()
+            .map(|face| (face, false));
+        let faces = faces.chain(primary.iter().map(|face| (face, true)));
+        let sizes = faces.map(|(face, touched)| {
+            if touched && face.is_round() && face.kind.table().dim == 2 {
+                return 0.5 * face.radius.unwrap_or(0.0);
+            }
             if let Some(radius) = face.radius.filter(|radius| *radius > 0.0) {
                 return 2.0 * radius;
             }

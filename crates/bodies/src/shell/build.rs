@@ -142,11 +142,7 @@ fn corners(mesh: &Mesh, spec: &BodySpec) -> Result<Vec<Vec<Corner>>, Error> {
     corners.resize_with(mesh.nodes.len(), Vec::new);
     for (element, &cell) in spec.cells.iter().enumerate() {
         let nodes = mesh.element_nodes(cell);
-        let refused = |why| Error::ShellCell {
-            body: spec.name.clone(),
-            cell,
-            why,
-        };
+        let refused = |why| refused(mesh, spec, cell, why);
         let x = |a: usize| Vec3::from(mesh.nodes[nodes[a % nodes.len()] as usize]);
         let (count, mut whole) = (nodes.len(), Vec3::zeros());
         let size = longest(&(0..count).map(x).collect::<Vec<_>>());
@@ -154,7 +150,7 @@ fn corners(mesh: &Mesh, spec: &BodySpec) -> Result<Vec<Vec<Corner>>, Error> {
         (0..count).for_each(|a| whole += normal(a));
         let whole = whole / count as f64;
         if whole.norm() <= 1e-9 * size * size {
-            return Err(refused("has no area"));
+            return Err(refused("has no area, or crosses itself"));
         }
         let (flat, across) = (whole.norm(), whole.normalize());
         if (0..count).any(|a| normal(a).dot(&across) <= 1e-3 * flat) {
@@ -176,6 +172,20 @@ fn corners(mesh: &Mesh, spec: &BodySpec) -> Result<Vec<Vec<Corner>>, Error> {
     Ok(corners)
 }
 
+fn refused(mesh: &Mesh, spec: &BodySpec, cell: ElementId, why: &'static str) -> Error {
+    let nodes = mesh.element_nodes(cell);
+    let mean = |i: usize| {
+        let places = nodes.iter().map(|&node| mesh.nodes[node as usize][i]);
+        places.sum::<f64>() / nodes.len() as f64
+    };
+    Error::ShellCell {
+        body: spec.name.clone(),
+        cell,
+        centre: [0, 1, 2].map(mean),
+        why,
+    }
+}
+
 /// Refuses neighbours that run along their common edge in the same direction: their normals are opposite. More than two elements at
 /// an edge have no common side.
 fn agree(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
@@ -192,11 +202,9 @@ fn agree(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
         if let [(_, first, _), (_, second, cell)] = same
             && first == second
         {
-            return Err(Error::ShellCell {
-                body: spec.name.clone(),
-                cell: *cell,
-                why: "has its normal against that of its neighbour; orient all cells of a shell alike",
-            });
+            let why =
+                "has its normal against that of its neighbour; orient all cells of a shell alike";
+            return Err(refused(mesh, spec, *cell, why));
         }
     }
     Ok(())
