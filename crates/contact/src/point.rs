@@ -55,6 +55,11 @@ impl Point {
         }
     }
 
+    /// Its node, if it is one.
+    pub(crate) fn as_node(&self) -> Option<u32> {
+        (self.count == 1).then_some(self.nodes[0])
+    }
+
     /// Whether it stands at no fixed place between its nodes ([`Point::crossing`]).
     pub fn crosses(&self) -> bool {
         self.crosses

@@ -16,9 +16,11 @@ use carom_elements::{MAX_FACE_NODES, map};
 use carom_mesh::{Bounds, BoxTree, Face, Projection};
 use rayon::prelude::*;
 
+pub(crate) use self::sides::Sides;
 pub(crate) use self::turned::Corners;
 use crate::{Frames, Places, Point};
 
+mod sides;
 mod turned;
 
 /// Faces whose corners one thread takes at a time, at least.
@@ -43,6 +45,8 @@ pub struct Sight {
     depth: Vec<f64>,
     /// Gap beyond which nothing is looked for, m.
     reach: f64,
+    /// Which points tell a contact that two would tell; none where no surface faces itself, or points are no nodes.
+    sides: Option<Sides>,
 }
 
 /// Lists of numbers in one pool.
@@ -147,9 +151,11 @@ impl Sight {
             around,
             beside,
             reach: if itself { 4.0 * largest } else { f64::INFINITY },
+            sides: None,
         };
         if itself {
             sight.limit_to_thickness(points, target, x);
+            sight.take_sides(points, x);
         }
         sight
     }
@@ -157,6 +163,11 @@ impl Sight {
     /// Whether the surface faces itself: points on its both sides may then say the same.
     pub fn is_of_itself(&self) -> bool {
         self.reach.is_finite()
+    }
+
+    /// Which points tell a contact that two would tell.
+    pub(crate) fn sides(&self) -> Option<&Sides> {
+        self.sides.as_ref()
     }
 
     /// Largest penetration that is a contact at some point, m.
@@ -182,6 +193,30 @@ impl Sight {
     /// The view of a point.
     pub(crate) fn of(&self, point: usize) -> View<'_> {
         View { sight: self, point }
+    }
+
+    /// Decides which points tell a contact that two would tell.
+    fn take_sides(&mut self, points: &[Point], x: &[[f64; 3]]) {
+        let nodes = points.iter().map(Point::as_node);
+        let Some(nodes) = nodes.collect::<Option<Vec<u32>>>() else {
+            return;
+        };
+        let rest = vec![0.0; 3 * x.len()];
+        let places = Places {
+            unknowns: &Unknowns::translations(3, x.len()),
+            time: 0.0,
+            x,
+            u: &rest,
+            frames: Frames::default(),
+        };
+        let normals: Vec<[f64; 3]> = self.normals(&places).collect();
+        let diagonals: Vec<f64> = self
+            .faces
+            .iter()
+            .map(|face| diagonal(&bounds(face, x)))
+            .collect();
+        let surface = (&self.faces[..], &normals[..], &diagonals[..]);
+        self.sides = Some(Sides::new(&nodes, &self.around, surface));
     }
 
     /// Takes half the way back to the closest face turned against a point as depth where that is less.

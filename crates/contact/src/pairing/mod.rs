@@ -19,6 +19,7 @@ mod round;
 mod share;
 mod stencil;
 mod tie;
+mod twice;
 
 use carom_algebra::csr::Csr;
 

@@ -10,6 +10,7 @@ mod mortar;
 mod moving;
 mod round;
 mod search;
+mod sides;
 mod sight;
 mod steep;
 

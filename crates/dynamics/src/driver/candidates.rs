@@ -100,6 +100,21 @@ impl Driver {
             }
         }
         self.active = active;
+        if self.maps.is_explicit() {
+            self.leave_to_others();
+        }
+    }
+
+    /// Leaves out points whose contact those opposite to them tell, where forces of both would hardly move anything apart.
+    fn leave_to_others(&mut self) {
+        let (system, pairing) = (Arc::clone(&self.system), &self.pairing);
+        let chosen = &self.next.interface.watched;
+        self.candidates.retain(|&point| {
+            let number = system.contact_of(point as usize);
+            let (contact, first) = (&system.contacts[number], system.first_point[number]);
+            let takes_part = |other: usize| chosen[first + other];
+            !contact.leaves_it((pairing, first), point as usize - first, takes_part)
+        });
     }
 
     fn approaches(&self, point: usize) -> bool {

@@ -3,7 +3,7 @@
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Reading, Velocity};
-use carom_contact::{Basis, Integration, Law, Plane};
+use carom_contact::{Basis, Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -26,12 +26,29 @@ fn velocity() -> Law {
 /// Two plates of 1 m x 1 m and two elements, of meshes that do not match, that touch and approach each other with 2 m/s and slide
 /// with 0.5 m/s; `across`: elements along the sides of the upper one.
 fn plates(across: usize, integration: Integration, friction: f64) -> Driver {
+    let model = model([across, across - across / 9], [0.5, 0.0], |[own, other]| {
+        let target = ModelTarget::Surface(other);
+        ModelContact {
+            integration,
+            friction,
+            ..ModelContact::new("joint", own, target, velocity())
+        }
+    });
+    Driver::new(System::new(model).unwrap()).unwrap()
+}
+
+/// Plates of as many elements along the sides, the upper one first, that slide with `slides` m/s and are `apart` m from each other;
+/// `contact`: between their sides.
+fn model(
+    [across, below]: [usize; 2],
+    [slides, apart]: [f64; 2],
+    contact: impl FnOnce([Surface; 2]) -> ModelContact,
+) -> Model {
     let height = 2.0 / across as f64;
     let plate = |name: &str, low: f64, n: usize| {
         generate::box_(name, [0.0, 0.0, low], [1.0, 1.0, height], [n, n, 2], false)
     };
-    let mut mesh = plate("a", height, across);
-    let below = across - across / 9;
+    let mut mesh = plate("a", height + apart, across);
     mesh.merge("b", plate("b", 0.0, below)).unwrap();
     let body = |name: &str, velocity: [f64; 3]| {
         let cells = mesh.groups[name].elements.clone();
@@ -44,23 +61,16 @@ fn plates(across: usize, integration: Integration, friction: f64) -> Driver {
         let group = &mesh.groups[&format!("{body}.{side}")];
         Surface::new(&mesh, group, &mesh.groups[body].elements).unwrap()
     };
-    let law = velocity();
-    let target = ModelTarget::Surface(side("b", "top"));
-    let model = Model {
-        contacts: vec![ModelContact {
-            integration,
-            friction,
-            ..ModelContact::new("joint", side("a", "bottom"), target, law)
-        }],
+    Model {
+        contacts: vec![contact([side("a", "bottom"), side("b", "top")])],
         ..Model::new(
-            vec![body("a", [0.5, 0.0, -1.0]), body("b", [0.0, 0.0, 1.0])],
+            vec![body("a", [slides, 0.0, -1.0]), body("b", [0.0, 0.0, 1.0])],
             mesh,
             Scheme::CentralDifference(CentralDifference {}),
             // the waves have 2 m/s; an eighth of the way through an element
             0.0625 / across as f64,
         )
-    };
-    Driver::new(System::new(model).unwrap()).unwrap()
+    }
 }
 
 /// Points that carry a force after a step, and the numbers per point of the largest matrix, each with its place.
@@ -108,6 +118,45 @@ fn ten_thousand_points_have_at_most_a_hundred_numbers_each() {
             numbers <= 100.0,
             "{integration:?}, friction {friction}: {numbers}"
         );
+    }
+}
+
+/// Two plates that come together, as one surface that faces itself, have the forces that they have where the finer one is the secondary
+/// surface, whichever of them is the first: to 1e-9 of the largest, as the solver finds both to 1e-10 of it.
+#[test]
+fn of_a_surface_that_faces_itself_the_finer_side_tells_the_contact() {
+    let finite = |own, target, law| ModelContact {
+        sliding: Sliding::Finite,
+        friction: FRICTION,
+        ..ModelContact::new("joint", own, ModelTarget::Surface(target), law)
+    };
+    let told = |[upper, lower]: [Surface; 2]| match upper.faces.len() > lower.faces.len() {
+        true => finite(upper, lower, velocity()),
+        false => finite(lower, upper, velocity()),
+    };
+    let itself = |[mut both, lower]: [Surface; 2]| {
+        both.faces.extend(lower.faces);
+        both.nodes.extend(lower.nodes);
+        both.nodes.sort_unstable();
+        finite(both.clone(), both, velocity())
+    };
+    for sizes in [[18, 16], [16, 18]] {
+        let [once, twice] = [
+            model(sizes, [0.0, 1e-3], told),
+            model(sizes, [0.0, 1e-3], itself),
+        ]
+        .map(|model| {
+            let mut driver = Driver::new(System::new(model).unwrap()).unwrap();
+            driver.step().unwrap();
+            let state = driver.state();
+            let closed = state.interface.force.iter().filter(|p| **p > 0.0);
+            (closed.count(), state.motion.contact_force.clone())
+        });
+        assert_eq!((once.0, twice.0), (19 * 19, 19 * 19));
+        let largest = once.1.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+        for (k, (a, b)) in once.1.iter().zip(&twice.1).enumerate() {
+            assert!((a - b).abs() <= 1e-9 * largest, "{k}: {a:e} {b:e}");
+        }
     }
 }
 
