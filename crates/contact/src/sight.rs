@@ -16,10 +16,12 @@ use carom_elements::{MAX_FACE_NODES, map};
 use carom_mesh::{Bounds, BoxTree, Face, Projection};
 use rayon::prelude::*;
 
+use self::lists::{Incidence, Lists};
 pub(crate) use self::sides::Sides;
 pub(crate) use self::turned::Corners;
 use crate::{Frames, Places, Point};
 
+mod lists;
 mod sides;
 mod turned;
 
@@ -49,51 +51,11 @@ pub struct Sight {
     sides: Option<Sides>,
 }
 
-/// Lists of numbers in one pool.
-#[derive(Clone, Debug, Default)]
-struct Lists {
-    numbers: Vec<u32>,
-    ends: Vec<u32>,
-}
-
 /// What one point sees.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View<'a> {
     sight: &'a Sight,
     point: usize,
-}
-
-impl Lists {
-    fn push(&mut self, list: impl IntoIterator<Item = u32>) {
-        self.numbers.extend(list);
-        self.ends.push(self.numbers.len() as u32);
-    }
-
-    fn of(&self, k: usize) -> &[u32] {
-        let first = k.checked_sub(1).map_or(0, |k| self.ends[k]);
-        &self.numbers[first as usize..self.ends[k] as usize]
-    }
-}
-
-/// Faces by the nodes that they have: sorted pairs.
-struct Incidence(Vec<(u32, u32)>);
-
-impl Incidence {
-    fn new(faces: &[Face]) -> Incidence {
-        let pairs = faces.iter().zip(0..);
-        let mut pairs: Vec<(u32, u32)> = pairs
-            .flat_map(|(face, k)| face.corners().iter().map(move |&node| (node, k)))
-            .collect();
-        pairs.sort_unstable();
-        Incidence(pairs)
-    }
-
-    /// Faces that have a node.
-    fn of(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
-        let first = self.0.partition_point(|(n, _)| *n < node);
-        let pairs = self.0[first..].iter();
-        pairs.take_while(move |(n, _)| *n == node).map(|(_, k)| *k)
-    }
 }
 
 impl Sight {

@@ -7,7 +7,7 @@
 
 use carom_mesh::Face;
 
-use super::{Incidence, Lists};
+use super::lists::{Incidence, Lists};
 
 /// Cosine of the angle between the normals of a face and of the first one of its piece: two faces of a piece make 90° at most, so that a
 /// piece does not face itself before it is bent.
