@@ -60,12 +60,17 @@ const DECADES: f64 = 100.0;
 
 impl Fit {
     /// Reads `KEY`, `A,B` and `restitution=0.98` (any column of `study.csv`) or `force=FILE`: a CSV table with a column
-    /// `time_s` and one that ends in `force_n`, such as the `histories.csv` of a run; the force of a row acts from the time
+    /// `time_s` and one that ends in `force_n`, of several that of the `contact`, such as the `contact.csv` of a run; the force of a row acts from the time
     /// before to its own.
     ///
     /// # Errors
     /// The range is none; the quantity is unknown; the file cannot be read.
-    pub fn read(key: &str, between: &str, to: &str) -> Result<Fit, SweepError> {
+    pub fn read(
+        key: &str,
+        between: &str,
+        to: &str,
+        contact: Option<&str>,
+    ) -> Result<Fit, SweepError> {
         let ends = between.split_once(',').and_then(|(a, b)| {
             Some([a.trim().parse::<f64>().ok()?, b.trim().parse::<f64>().ok()?])
         });
@@ -79,7 +84,7 @@ impl Fit {
             )
         })?;
         let goal = match to.split_once('=') {
-            Some(("force", file)) => Goal::Force(history(Path::new(file))?),
+            Some(("force", file)) => Goal::Force(history(Path::new(file), contact)?),
             Some((name, value)) => quantity(to, name.trim(), value.trim())?,
             None => quantity(to, to, "")?,
         };
@@ -127,8 +132,8 @@ fn read_text(path: &Path) -> io::Result<String> {
     String::from_utf8(bytes).map_err(io::Error::other)
 }
 
-/// A force history from a CSV table of numbers.
-fn history(path: &Path) -> Result<StepForce, SweepError> {
+/// A force history from a CSV table of numbers; of several forces that of a contact.
+fn history(path: &Path, contact: Option<&str>) -> Result<StepForce, SweepError> {
     let name = path.display().to_string();
     let refuse = |problem: Problem| wrong("--to", &name, problem);
     let text = read_text(path).map_err(|cause| {
@@ -141,7 +146,20 @@ fn history(path: &Path) -> Result<StepForce, SweepError> {
     let heads: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
     let column = |wanted: &dyn Fn(&str) -> bool| heads.iter().position(|head| wanted(head.trim()));
     let time = column(&|head| head == "time_s");
-    let force = column(&|head| head.ends_with("force_n"));
+    let forces = heads.iter().filter(|head| head.trim().ends_with("force_n"));
+    let own = contact.map(|name| format!("contact.{}.force_n", name.replace('-', "_")));
+    let force = match (forces.clone().count(), own) {
+        (0 | 1, _) => column(&|head| head.ends_with("force_n")),
+        (_, Some(own)) => column(&|head| head == own),
+        _ => None,
+    };
+    if let (None, true) = (force, forces.clone().count() > 1) {
+        let message = format!("`{name}` has the forces of several contacts");
+        let accepted = forces.filter_map(|head| head.trim().strip_prefix("contact."));
+        let accepted =
+            accepted.map(|head| format!("--contact {}", head.trim_end_matches(".force_n")));
+        return Err(refuse(Problem::new("", message).accepted(accepted)));
+    }
     let Some((time, force)) = time.zip(force) else {
         let message = format!("`{name}` has no force history");
         let accepted = ["a column `time_s` and one that ends in `force_n`"];

@@ -44,7 +44,11 @@ pub fn study(arguments: &Arguments) -> u8 {
     if let (Some(key), Some(between), Some(to)) =
         (&arguments.fit, &arguments.between, &arguments.to)
     {
-        return fit(common, &input, Fit::read(key, between, to));
+        return fit(
+            common,
+            &input,
+            Fit::read(key, between, to, common.contact.as_deref()),
+        );
     }
     let vary = arguments.vary.iter().map(|text| Axis::read(text));
     let vary = match vary.collect::<Result<Vec<Axis>, _>>() {

@@ -10,6 +10,9 @@
 //! - the point is not deeper behind it than the *depth*: on a surface that faces itself at most half the thickness of the
 //!   body there, so that the far side, at the whole thickness, is out of view until the body is pressed together to half
 //!   of it.
+//!
+//! A surface around axes of beams or middles of shells has no far side: of itself all faces are in view but those that are near along
+//! the surface, which any point would touch.
 
 use carom_algebra::unknowns::Unknowns;
 use carom_elements::{MAX_FACE_NODES, map};
@@ -21,6 +24,7 @@ pub(crate) use self::sides::Sides;
 pub(crate) use self::turned::Corners;
 use crate::{Frames, Places, Point};
 
+mod along;
 mod lists;
 mod sides;
 mod turned;
@@ -30,6 +34,10 @@ const CHUNK: usize = 512;
 
 /// Cosine of the angle between the normals of a point and of a face up to which the face is in view.
 const OPPOSED: f64 = -0.5;
+
+/// Distance along a surface around axes or middles up to which a face is near, over the thickness: three, since gaps of points further on
+/// are open until the surface is bent to a radius of its thickness.
+const NEAR: f64 = 3.0;
 
 /// How far sideways the other side of a wall may be, over its depth behind the plane of a face: 63°.
 const BEND: f64 = 2.0;
@@ -49,6 +57,8 @@ pub struct Sight {
     reach: f64,
     /// Which points tell a contact that two would tell; none where no surface faces itself, or points are no nodes.
     sides: Option<Sides>,
+    /// Whether the surface lies around axes or middles, without a far side.
+    round: bool,
 }
 
 /// What one point sees.
@@ -95,6 +105,12 @@ impl Sight {
             second.dedup();
             beside.push(second);
         }
+        let round = target.iter().any(Face::is_round);
+        if round {
+            let widest = secondary.iter().chain(target);
+            let widest = widest.filter_map(|face| face.radius).fold(0.0, f64::max);
+            beside = along::near(points, target, x, NEAR * 2.0 * widest);
+        }
         let itself = !beside.numbers.is_empty();
         let diagonal = |face: &Face| diagonal(&bounds(face, x));
         let size = |k: usize| {
@@ -114,8 +130,9 @@ impl Sight {
             beside,
             reach: if itself { 4.0 * largest } else { f64::INFINITY },
             sides: None,
+            round,
         };
-        if itself {
+        if itself && !round {
             sight.limit_to_thickness(points, target, x);
             sight.take_sides(points, x);
         }
@@ -226,9 +243,9 @@ impl View<'_> {
     /// Whether a face of the target is in view, its foot being the closest point to the viewer. `normals`: of the
     /// secondary faces, at this configuration.
     pub(crate) fn shows(&self, item: u32, foot: &Projection, normals: &[[f64; 3]]) -> bool {
-        foot.gap >= -self.sight.depth[self.point]
-            && self.opposes(foot, normals)
-            && !self.is_beside(item)
+        let faced = self.sight.round
+            || foot.gap >= -self.sight.depth[self.point] && self.opposes(foot, normals);
+        faced && !self.is_beside(item)
     }
 
     /// Takes the normals of the faces around the viewer among those of all, unless they are of this configuration: `seen` tells
@@ -261,6 +278,9 @@ impl View<'_> {
         if self.is_beside(item) {
             return f64::INFINITY;
         }
+        if self.sight.round {
+            return 0.0;
+        }
         let around = self.sight.around.of(self.point).iter();
         let around = around.map(|&k| (&self.sight.faces[k as usize], &normals[k as usize]));
         turned::until_opposed(face, around, (OPPOSED, places))
@@ -268,7 +288,10 @@ impl View<'_> {
 
     /// The most that nodes may move, m, before the viewer, at `x` (m) and deep behind a face, may be within the depth or before the face.
     pub(crate) fn behind(&self, face: &Face, x: &[f64; 3], places: &Places) -> f64 {
-        turned::until_behind(face, (x, self.sight.depth[self.point]), places)
+        match self.sight.round {
+            true => 0.0,
+            false => turned::until_behind(face, (x, self.sight.depth[self.point]), places),
+        }
     }
 
     fn is_beside(&self, item: u32) -> bool {
@@ -286,7 +309,9 @@ impl View<'_> {
     ) -> bool {
         let around = self.sight.around.of(self.point).iter();
         let normals = around.map(|&k| &normals[k as usize]);
-        corners.is_blind(normals, (x, self.sight.depth[self.point])) || self.is_beside(item)
+        let depth = self.sight.depth[self.point];
+        let faced = self.sight.round || !corners.is_blind(normals, (x, depth));
+        !faced || self.is_beside(item)
     }
 
     fn opposes(&self, foot: &Projection, normals: &[[f64; 3]]) -> bool {

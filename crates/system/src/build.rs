@@ -268,6 +268,14 @@ fn numbering(model: &Model, centres: &[Option<u32>]) -> (Vec<u32>, Vec<u32>, Vec
     let cells = model.bodies.iter().flat_map(|body| &body.spec.cells);
     let discrete = model.discrete.iter().flat_map(|some| &some.spec.cells);
     let mut joined = Parts::new(&model.mesh, cells.chain(discrete).copied());
+    // a body of several pieces is in one part: its tangents and the momentum that its contacts give it are those of a body
+    for body in &model.bodies {
+        let cells = body.spec.cells.iter();
+        let nodes: Vec<u32> = cells
+            .map(|&cell| model.mesh.element_nodes(cell)[0])
+            .collect();
+        joined.join(&nodes);
+    }
     if model.nonlinear.preload.is_some() && !model.mixes_schemes() {
         // a static stage has no mass that would hold what only constraints hold, and takes their rows into the matrix of the part
         for row in model.constraints.iter().flat_map(|some| &some.rows) {

@@ -77,8 +77,12 @@ fn unfit_around_axes(contact: &Contact, secondary: &[Face]) -> Option<&'static s
         Integration::Mortar { .. } => {
             Some("surfaces around axes of beams and middles of shells have no mortar method")
         }
-        _ if contact.sight.is_some() => {
-            Some("beams and shells do not face themselves, and a depth means nothing to them")
+        _ if contact
+            .sight
+            .as_ref()
+            .is_some_and(|sight| !sight.is_of_itself()) =>
+        {
+            Some("a depth means nothing to surfaces around axes of beams and middles of shells")
         }
         _ if target
             .iter()

@@ -116,8 +116,8 @@ pub struct System {
 }
 
 impl System {
-    /// Smallest size of an element normal to the surfaces of a contact, of both its sides, m. Of a shell that others touch a quarter of its thickness,
-    /// half the way to its middle: a point that has crossed that is on the other side, and is seen as one that never was inside.
+    /// Smallest size of an element normal to the surfaces of a contact, of both its sides, m. Of a shell or a beam that others touch half the way to its
+    /// middle, a quarter of its thickness: a point that has crossed that is on the other side, and is seen as one that never was inside.
     pub fn depth_of_elements(&self, contact: usize) -> f64 {
         let primary = match &self.contacts[contact].target {
             Target::Surface(faces) => &faces[..],
@@ -128,7 +128,7 @@ impl System {
             .map(|face| (face, false));
         let faces = faces.chain(primary.iter().map(|face| (face, true)));
         let sizes = faces.map(|(face, touched)| {
-            if touched && face.is_round() && face.kind.table().dim == 2 {
+            if touched && face.is_round() {
                 return 0.5 * face.radius.unwrap_or(0.0);
             }
             if let Some(radius) = face.radius.filter(|radius| *radius > 0.0) {

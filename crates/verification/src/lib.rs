@@ -123,6 +123,7 @@ mod sdnl111_bars;
 mod self_contact;
 mod shapes;
 mod shell_benchmarks;
+mod shell_self_contact;
 mod shells;
 mod shock_front;
 mod sliding_block;
@@ -265,6 +266,7 @@ registry! {
     sdnl111
     sdnl111_bars
     self_contact
+    shell_self_contact
     shapes
     shell_benchmarks
     shock_front

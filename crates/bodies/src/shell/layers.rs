@@ -110,6 +110,15 @@ impl Layers {
         forces
     }
 
+    /// Stresses of the outermost points, that to which the normal points first.
+    pub(super) fn outermost(&self, of: &AtPoint, history: &[f64]) -> [[f64; 3]; 2] {
+        let at = |k: usize| {
+            let own = &history[self.kept * k..self.kept * (k + 1)];
+            self.law.stress(&Layers::strain(of, self.points[k][0]), own)
+        };
+        [at(self.points.len() - 1), at(0)]
+    }
+
     /// Largest equivalent plastic strain.
     pub(super) fn plastic_strain(&self, history: &[f64]) -> f64 {
         let histories = history.chunks_exact(self.kept);

@@ -8,7 +8,7 @@ use super::strain::Strains;
 use super::{Element, Shell};
 use crate::distortion::{Distortion, Extreme};
 
-/// Forces and moments per length in the middle of an element, as tensors over the axes of coordinates, per length and area of the
+/// Forces and moments per length in the middle of an element, and stresses at its faces, as tensors over the axes of coordinates, per length and area of the
 /// reference configuration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resultants {
@@ -18,6 +18,8 @@ pub struct Resultants {
     pub bending: Mat3,
     /// Shear forces q·n, N/m: the force along the normal on a section is q·ν, ν its outward normal.
     pub shear: [f64; 3],
+    /// Stress in the plane of the shell at its faces, Pa, that to which the normal points first; of metals that flow at the outermost points.
+    pub faces: [Mat3; 2],
 }
 
 impl Shell {
@@ -50,16 +52,22 @@ impl Shell {
                 membrane: Mat3::zeros(),
                 bending: Mat3::zeros(),
                 shear: [0.0; 3],
+                faces: [Mat3::zeros(); 2],
             };
             let (form, whole) = (&element.form, element.area());
             for (point, area) in form.areas.iter().enumerate() {
-                let forces = match &self.layers {
-                    None => element.elastic.forces(&strains[point]),
+                let strain = &strains[point];
+                let (forces, faces) = match &self.layers {
+                    None => {
+                        let forces = element.elastic.forces(strain);
+                        (forces, self.faces(&forces))
+                    }
                     Some(layers) => {
                         let own = &history[self.history_of(all.len())];
                         let kept = layers.history_len();
                         let own = &own[kept * point..kept * (point + 1)];
-                        element.beside(&strains[point], &layers.forces(&strains[point], own))
+                        let forces = element.beside(strain, &layers.forces(strain, own));
+                        (forces, layers.outermost(strain, own))
                     }
                 };
                 let (tangents, part) = (form.tangents(&now, point), area / whole);
@@ -67,10 +75,20 @@ impl Shell {
                 mean.bending += in_space(&tangents, &forces, 3) * part;
                 let shear = (tangents[0] * forces[6] + tangents[1] * forces[7]) * part;
                 (0..3).for_each(|i| mean.shear[i] += shear[i]);
+                for (mean, stress) in mean.faces.iter_mut().zip(&faces) {
+                    *mean += in_space(&tangents, stress, 0) * part;
+                }
             }
             all.push(mean);
         });
         all
+    }
+
+    /// Stresses at both faces of an elastic section, N/h ± 6 M/h².
+    fn faces(&self, forces: &AtPoint) -> [[f64; 3]; 2] {
+        let h = self.section.thickness;
+        [1.0, -1.0]
+            .map(|side| [0, 1, 2].map(|i| forces[i] / h + side * 6.0 * forces[3 + i] / (h * h)))
     }
 
     /// Volume (m³) and mean stress (Pa) of each element: the membrane forces over the thickness. Bending has no mean.
@@ -107,9 +125,9 @@ impl Shell {
     }
 }
 
-/// Σ f_ij g_i ⊗ g_j of the three numbers of a point from `from` on.
-fn in_space(tangents: &[Vec3; 2], of: &AtPoint, from: usize) -> Mat3 {
-    let [x, y, xy] = [of[from], of[from + 1], of[from + 2]];
+/// Σ f_ij g_i ⊗ g_j of three numbers from `from` on.
+fn in_space(tangents: &[Vec3; 2], of: &[f64], from: usize) -> Mat3 {
+    let (x, y, xy) = (of[from], of[from + 1], of[from + 2]);
     let [first, second] = tangents;
     let mixed = first * second.transpose();
     first * first.transpose() * x

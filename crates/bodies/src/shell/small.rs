@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use carom_algebra::csr::Csr;
-
+use carom_algebra::tensor::Vec3;
 use rayon::prelude::*;
 
 use super::layers::Layers;
+use super::products::{Configuration, DIRECTOR, MOST};
 use super::section::{AtPoint, STRAINS};
 use super::strain::Strains;
 use super::{Element, PER_NODE, Shell};
@@ -21,7 +22,7 @@ impl Element {
         let found = self.form.derivatives(&self.reference.beside(offset), point);
         for (row, gradient) in rows.iter_mut().zip(&found) {
             for (node, [by_place, by_turn]) in gradient.iter().enumerate().take(self.count) {
-                let director = self.reference.axes[node][2];
+                let director = self.reference.axes[node][DIRECTOR];
                 let by_turn = by_turn + director.cross(by_place) * offset;
                 let own = &mut row[PER_NODE * node..PER_NODE * (node + 1)];
                 own[..3].copy_from_slice(by_place.as_slice());
@@ -44,13 +45,19 @@ impl Element {
 
     /// Strains at a displacement.
     pub(super) fn small_strains(&self, offset: f64, u: &[f64]) -> Strains {
-        let mut strains = Strains::default();
-        for (point, strains) in strains.iter_mut().enumerate().take(self.form.areas.len()) {
-            for (strain, row) in strains.iter_mut().zip(self.rows(point, offset)) {
-                *strain = row.iter().zip(self.unknowns()).map(|(b, i)| b * u[i]).sum();
-            }
+        let middle = self.reference.beside(offset);
+        let mut change = Configuration {
+            x: [Vec3::zeros(); MOST],
+            axes: [[Vec3::zeros(); 3]; MOST],
+        };
+        for (node, &first) in self.first[..self.count].iter().enumerate() {
+            let of = |k: usize| Vec3::new(u[first + k], u[first + k + 1], u[first + k + 2]);
+            let (moved, turned) = (of(0), of(3));
+            let axes = &self.reference.axes[node];
+            change.axes[node] = axes.map(|axis| turned.cross(&axis));
+            change.x[node] = moved + change.axes[node][DIRECTOR] * offset;
         }
-        strains
+        self.form.changes(&middle, &change)
     }
 
     /// Forces and moments at all points, times their areas, where the section flows, and the energies.
@@ -113,12 +120,13 @@ impl Element {
             stored,
             ..ShellForces::default()
         };
-        for (point, forces) in forces.iter().enumerate().take(self.form.areas.len()) {
-            for (force, row) in forces.iter().zip(self.rows(point, offset)) {
-                for (out, b) in out.nodes.iter_mut().flatten().zip(row) {
-                    *out += force * b;
-                }
-            }
+        let by = self.form.gradient(&self.reference.beside(offset), &forces);
+        for ((out, [by_place, by_turn]), axes) in
+            out.nodes.iter_mut().zip(&by).zip(&self.reference.axes)
+        {
+            out[..3].copy_from_slice(by_place.as_slice());
+            let by_turn = by_turn + axes[DIRECTOR].cross(by_place) * offset;
+            out[3..].copy_from_slice(by_turn.as_slice());
         }
         out
     }

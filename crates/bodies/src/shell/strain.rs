@@ -108,6 +108,28 @@ impl Form {
         products
     }
 
+    /// Derivative of the strains at a configuration along a change of its places and axes.
+    pub(super) fn changes(&self, of: &Configuration, by: &Configuration) -> Strains {
+        let (v, dv, n) = (self.ways(of), self.ways(by), self.nodes);
+        let mut products = Products::default();
+        for i in 0..n - 1 {
+            for j in i..n - 1 {
+                products.pairs[pair(i, j)] = v[i].dot(&dv[j]) + dv[i].dot(&v[j]);
+            }
+            for j in 0..n {
+                for (axis, products) in products.axes.iter_mut().enumerate() {
+                    products[i * n + j] =
+                        dv[i].dot(&of.axes[j][axis]) + v[i].dot(&by.axes[j][axis]);
+                }
+            }
+        }
+        let mut changes = Strains::default();
+        for (changes, rows) in changes.iter_mut().zip(&self.rows) {
+            *changes = rows.values(&products);
+        }
+        changes
+    }
+
     /// What acts on the products where these act on the strains of the points.
     fn on_products(&self, forces: &Strains) -> Products {
         let mut sum = Products::default();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use carom_mesh::{Mesh, generate, read, refine};
+use carom_mesh::{Mesh, generate, halve_bars, read, refine};
 use carom_quantities::units;
 
 use super::{Builder, dimensions};
@@ -63,6 +63,8 @@ impl Builder<'_> {
             }
         }
         if self.problems.is_empty() {
+            let bodies = self.case.body.iter();
+            halve_bars(&mut whole, bodies.map(|(_, body)| body.region.as_str()));
             self.refined(whole)
         } else {
             None

@@ -208,13 +208,13 @@ pub enum Field {
     Velocity,
     /// Acceleration of the nodes, m/s².
     Acceleration,
-    /// Stress of the cells, Pa; of beams the mean over the section.
+    /// Stress of the cells, Pa; of beams and shells the mean over the section, of shells also that at both faces.
     Stress,
     /// Rotation of the nodes of beams, rad; zero elsewhere.
     Rotation,
     /// Forces (N) and moments (N m) in the sections of beams, in the axes of the section; zero elsewhere. `section_force`: normal
     /// force, shear forces along y and z; `section_moment_first`, `section_moment_second`: torque, bending moments about y and z,
-    /// at the first and at the second node.
+    /// at the first and at the second node. Of shells `membrane_force` (N/m), `bending_moment` (N) and `shear_force` (N/m), over the axes of coordinates.
     SectionForces,
 }
 

@@ -403,7 +403,7 @@ fn a_fit_finds_the_parameter_that_made_the_result() {
         (format!("force={}", histories.display()), 1e-3),
     ];
     for (goal, tolerance) in goals {
-        let wanted = Fit::read("time.scheme.theta.theta", "0.5,1.0", &goal).unwrap();
+        let wanted = Fit::read("time.scheme.theta.theta", "0.5,1.0", &goal, None).unwrap();
         let fitted = sweep(&work.path().join("fit"), 1, |sweep| {
             fit(&input, &wanted, sweep)
         });
@@ -413,7 +413,13 @@ fn a_fit_finds_the_parameter_that_made_the_result() {
         assert!(fitted.study.runs.len() < 25, "{}", fitted.study.runs.len());
         assert!(fitted.page.is_file());
     }
-    let far = Fit::read("time.scheme.theta.theta", "0.5,1.0", "restitution=0.2").unwrap();
+    let far = Fit::read(
+        "time.scheme.theta.theta",
+        "0.5,1.0",
+        "restitution=0.2",
+        None,
+    )
+    .unwrap();
     let fitted = sweep(&work.path().join("fit"), 1, |sweep| {
         fit(&input, &far, sweep)
     })
@@ -431,11 +437,28 @@ fn a_goal_that_is_none_is_refused() {
         ("0,1", "rest=0.5"),
         ("0,1", "force=nowhere.csv"),
     ] {
-        let read = Fit::read("time.scheme.theta.theta", between, goal);
+        let read = Fit::read("time.scheme.theta.theta", between, goal, None);
         assert!(
             matches!(read, Err(SweepError::Input { .. })),
             "{between} {goal}"
         );
+    }
+}
+
+#[test]
+fn of_several_forces_that_of_the_contact_counts() {
+    let work = tempfile::tempdir().unwrap();
+    let file = work.path().join("contact.csv");
+    let table = "time_s,contact.left.force_n,contact.far_right.force_n\n0.0,0.0,0.0\n1.0,2.0,3.0\n";
+    std::fs::write(&file, table).unwrap();
+    let goal = format!("force={}", file.display());
+    let read = |contact| Fit::read("time.scheme.theta.theta", "0.5,1.0", &goal, contact);
+    assert!(read(Some("far-right")).is_ok());
+    for contact in [None, Some("right")] {
+        let Err(SweepError::Input { problems, .. }) = read(contact) else {
+            panic!("{contact:?}");
+        };
+        assert!(problems[0].to_string().contains("several contacts"));
     }
 }
 

@@ -1,24 +1,121 @@
 //! Fields with one value per cell, over the cells of all bodies in their order.
 
-use carom_dynamics::System;
+use carom_algebra::tensor::Mat3;
+use carom_bodies::{Body, Resultants};
+use carom_dynamics::{Motion, System};
+
+use crate::results::Fields;
+use crate::vtu::{Field, Values};
 
 /// Mean stress of each cell in VTK's order xx, yy, zz, xy, yz, xz, Pa: of Cauchy at finite strain. `histories`: of all
 /// materials at `u`.
 pub(crate) fn cell_stresses(system: &System, u: &[f64], histories: &[f64]) -> Vec<[f64; 6]> {
     let bodies = system.bodies.iter().enumerate();
     let of_bodies = bodies.flat_map(|(k, body)| body.stresses(u, system.history(k, histories)));
-    of_bodies
-        .map(|(_, s)| {
-            [
-                s[(0, 0)],
-                s[(1, 1)],
-                s[(2, 2)],
-                s[(0, 1)],
-                s[(1, 2)],
-                s[(0, 2)],
-            ]
-        })
-        .collect()
+    of_bodies.map(|(_, stress)| in_order(&stress)).collect()
+}
+
+/// A symmetric tensor in VTK's order.
+fn in_order(s: &Mat3) -> [f64; 6] {
+    [
+        s[(0, 0)],
+        s[(1, 1)],
+        s[(2, 2)],
+        s[(0, 1)],
+        s[(1, 2)],
+        s[(0, 2)],
+    ]
+}
+
+/// Fields of shells, zero in other cells but for the stresses.
+#[derive(Default)]
+pub(crate) struct ShellFields {
+    /// Stress at the face to which the normal points and at the other, Pa; of other cells their own.
+    pub faces: [Vec<[f64; 6]>; 2],
+    /// N/m.
+    pub membrane: Vec<[f64; 6]>,
+    /// N.
+    pub bending: Vec<[f64; 6]>,
+    /// N/m.
+    pub shear: Vec<[f64; 3]>,
+}
+
+impl ShellFields {
+    /// `None` without shells. `stress`: of each cell, or nothing where it is not asked for.
+    pub(crate) fn new(
+        system: &System,
+        motion: &Motion,
+        stress: &[[f64; 6]],
+    ) -> Option<ShellFields> {
+        let is_shell = |body: &Body| matches!(body, Body::Shell(_));
+        if !system.bodies.iter().any(is_shell) {
+            return None;
+        }
+        let mut fields = ShellFields::default();
+        for (k, body) in system.bodies.iter().enumerate() {
+            let history = system.history(k, &motion.history);
+            let from = fields.shear.len();
+            match body {
+                Body::Shell(shell) => {
+                    let all = shell.resultants(&motion.frames, &motion.u, history);
+                    all.iter().for_each(|own| fields.push(own));
+                }
+                _ => {
+                    let to = from + body.cells().len();
+                    for face in &mut fields.faces {
+                        let own = stress.get(from..to);
+                        face.extend_from_slice(own.unwrap_or(&vec![[0.0; 6]; to - from]));
+                    }
+                    fields.membrane.resize(to, [0.0; 6]);
+                    fields.bending.resize(to, [0.0; 6]);
+                    fields.shear.resize(to, [0.0; 3]);
+                }
+            }
+        }
+        Some(fields)
+    }
+
+    /// Those that are asked for.
+    pub(crate) fn fields(&self, asked: &Fields) -> Vec<Field<'_>> {
+        let tensor = |name, values| Field {
+            name,
+            values: Values::SymmetricTensor(values),
+        };
+        let mut fields = Vec::new();
+        if asked.stress {
+            fields.push(tensor("stress_top", &self.faces[0]));
+            fields.push(tensor("stress_bottom", &self.faces[1]));
+        }
+        if asked.section_forces {
+            fields.push(tensor("membrane_force", &self.membrane));
+            fields.push(tensor("bending_moment", &self.bending));
+            fields.push(Field {
+                name: "shear_force",
+                values: Values::Vector(&self.shear),
+            });
+        }
+        fields
+    }
+
+    fn push(&mut self, own: &Resultants) {
+        for (face, stress) in self.faces.iter_mut().zip(&own.faces) {
+            face.push(in_order(stress));
+        }
+        self.membrane.push(in_order(&own.membrane));
+        self.bending.push(in_order(&own.bending));
+        self.shear.push(own.shear);
+    }
+}
+
+/// Equivalent stress of von Mises of each cell, Pa: of a shell the largest of its middle and its faces.
+pub(crate) fn cell_von_mises(stress: &[[f64; 6]], shells: Option<&ShellFields>) -> Vec<f64> {
+    let mut mises: Vec<f64> = stress.iter().map(von_mises).collect();
+    for face in shells.iter().flat_map(|shells| &shells.faces) {
+        for (mises, stress) in mises.iter_mut().zip(face) {
+            *mises = mises.max(von_mises(stress));
+        }
+    }
+    mises
 }
 
 /// Equivalent plastic strain of each cell, zero in bodies without; `None` if no body has any.
@@ -35,7 +132,7 @@ pub(crate) fn plastic_strains(system: &System, histories: &[f64]) -> Option<Vec<
 }
 
 /// Equivalent stress of von Mises, sqrt(3/2 s : s) with s the deviator, Pa.
-pub(crate) fn von_mises(stress: &[f64; 6]) -> f64 {
+fn von_mises(stress: &[f64; 6]) -> f64 {
     let [xx, yy, zz, xy, yz, xz] = *stress;
     let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
     let shear = xy * xy + yz * yz + xz * xz;

@@ -12,7 +12,7 @@ use carom_mesh::Face;
 use serde::{Deserialize, Serialize};
 
 use crate::results::beams::{SECTION_FORCES, rotations, section_forces};
-use crate::results::cells::{cell_stresses, deleted, plastic_strains, von_mises};
+use crate::results::cells::{ShellFields, cell_stresses, cell_von_mises, deleted, plastic_strains};
 use crate::results::{Fields, Zoning};
 use crate::vtu::{Cells, Field, Grid, Values, write};
 use crate::writer::Writer;
@@ -288,7 +288,11 @@ impl Volume {
             false => Vec::new(),
         };
         let plastic = plastic_strains(system, &snapshot.motion.history);
-        let mises: Vec<f64> = stress.iter().map(von_mises).collect();
+        let shells = match fields.stress || fields.section_forces {
+            true => ShellFields::new(system, &snapshot.motion, &stress),
+            false => None,
+        };
+        let mises = cell_von_mises(&stress, shells.as_ref());
         let mut cell_fields = vec![Field {
             name: "body",
             values: Values::Integer(&self.body),
@@ -320,6 +324,9 @@ impl Volume {
                 name: "von_mises",
                 values: Values::Scalar(&mises),
             });
+        }
+        if let Some(shells) = &shells {
+            cell_fields.extend(shells.fields(fields));
         }
         let forces = SECTION_FORCES.iter().zip(&forces);
         cell_fields.extend(

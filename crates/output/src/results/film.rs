@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Error;
 use crate::plot::{Frame, Scene, film_figure, quantity};
-use crate::results::cells::{cell_stresses, deleted, von_mises};
+use crate::results::cells::{ShellFields, cell_stresses, cell_von_mises, deleted};
 use crate::results::outlines::{Outlines, gap, size};
 
 /// Instants kept, and instants shown: the distances of these are a multiple of the distances of those.
@@ -91,7 +91,7 @@ impl Film {
             time: state.time,
             u: motion.u.clone(),
             frames: motion.frames.clone(),
-            stress: stress.iter().map(von_mises).collect(),
+            stress: cell_von_mises(&stress, ShellFields::new(system, motion, &stress).as_ref()),
             deleted: deleted(system, &motion.history),
             marks,
         });
