@@ -178,7 +178,7 @@ fn pieces(one: bool) -> Result<(Vec<f64>, f64), Error> {
     let law = Material::NeoHooke(NeoHooke { initial: soft });
     let strain = Kinematics::PlaneStrain { thickness: 1.0 };
     let mut bodies = [
-        part(&mesh, "lower", strain, law.clone())?,
+        part(&mesh, "lower", strain, law)?,
         part(&mesh, "upper", strain, law)?,
     ];
     let walls = [0, 1].map(|k| surface(&mesh, ["lower.bottom", "upper.bottom"][k], &bodies[k]));
