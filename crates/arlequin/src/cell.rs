@@ -90,13 +90,19 @@ impl Cell {
         fits.then(|| (origin, inverse(&j, det)))
     }
 
+    /// The kind with the same corners and no other nodes.
+    pub fn corners(&self) -> Kind {
+        self.kind.table().linear
+    }
+
     /// Whether two quadrilaterals or hexahedra are parallelograms or parallelepipeds with the same axes, up to their
     /// order and sense: shape functions of one are then linear in each reference coordinate of the other.
     pub fn is_aligned(&self, other: &Cell) -> bool {
         let Some((_, inverse)) = &other.affine else {
             return false;
         };
-        if !self.is_affine() || self.degree() == 1 || other.degree() == 1 {
+        let cube = |cell: &Cell| matches!(cell.corners(), Kind::Quad4 | Kind::Hex8);
+        if !self.is_affine() || !cube(self) || !cube(other) {
             return false;
         }
         let (j, _) = self.jacobian(&[0.0; 3]);
@@ -192,8 +198,8 @@ impl Cell {
     /// Edge length of the regular cell (cube, or corner of a cube) of the same measure.
     pub fn length(&self) -> f64 {
         let dim = self.kind.table().dim;
-        let corner = match self.kind {
-            Kind::Tri3 => 2.0,
+        let corner = match self.corners() {
+            Kind::Tri3 | Kind::Wedge6 => 2.0,
             Kind::Tet4 => 6.0,
             _ => 1.0,
         };
@@ -206,15 +212,17 @@ impl Cell {
         along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
     }
 
-    /// The cell as convex parts: itself; a hexahedron with warped faces, or not convex, as the 24 tetrahedra that
+    /// The cell with straight edges as convex parts: itself; a hexahedron with warped faces, or not convex, as the 24 tetrahedra that
     /// join its centre with the four triangles around the middle of each face (which neighbours share).
     pub fn parts(&self) -> Vec<Convex> {
         match self.kind.table().dim {
             1 => vec![self.segment()],
-            2 => vec![self.polygon()],
-            _ => self
-                .polyhedron()
-                .map_or_else(|| self.tetrahedra(), |part| vec![part]),
+            2 => vec![self.straight().polygon()],
+            _ => {
+                let cell = self.straight();
+                let whole = cell.polyhedron();
+                whole.map_or_else(|| cell.tetrahedra(), |part| vec![part])
+            }
         }
     }
 
@@ -269,7 +277,7 @@ impl Cell {
 
     fn tetrahedra(&self) -> Vec<Convex> {
         let centre = Polytope::mean(self.x());
-        let mut parts = Vec::with_capacity(24);
+        let mut parts = Vec::new();
         for face in self.kind.table().faces {
             let corners: Vec<[f64; 3]> = face.nodes.iter().map(|&a| self.x[a]).collect();
             let middle = Polytope::mean(&corners);

@@ -3,6 +3,8 @@
 //! A facet of a piece is inside S if S goes on just behind it. Else it is a border, and what lies a tenth of an outer cell
 //! behind it says of which model: that step leaves the strip by which two meshes of one curved body differ.
 
+use carom_elements::Face;
+
 use crate::border::Border;
 use crate::cell::{Cell, norm};
 use crate::error::{Error, Model};
@@ -198,11 +200,9 @@ fn step(facet: &Facet, length: f64) -> [f64; 3] {
 /// A face of a cell.
 fn face_of(cell: &Cell, face: usize) -> Facet {
     let table = cell.kind.table();
-    let vertices: Vec<[f64; 3]> = table.faces[face]
-        .nodes
-        .iter()
-        .map(|&a| cell.x()[a])
-        .collect();
+    let Face { kind, nodes } = table.faces[face];
+    let corners = kind.table().linear.table().nodes;
+    let vertices: Vec<[f64; 3]> = nodes[..corners].iter().map(|&a| cell.x()[a]).collect();
     let plane = match table.dim {
         1 => {
             let other = cell.x()[1 - face];

@@ -111,20 +111,22 @@ pub enum Error {
         /// Cells of the beam that meet there.
         cells: Vec<ElementId>,
     },
-    /// A solid ends along a beam at a place outside the overlap.
-    #[error("the solid ends along the beam, but outside the overlap: nothing would hold its end")]
+    /// A solid ends along a beam or a shell at a place outside the overlap.
+    #[error(
+        "the solid ends along the thin model, but outside the overlap: nothing would hold its end"
+    )]
     SolidEndsOutside {
-        /// Cells of the beam there.
+        /// Cells of either there.
         cells: Vec<ElementId>,
     },
-    /// The overlap of a beam and a solid is shorter than one cell.
+    /// The overlap of a beam or shell and a solid is shorter than one cell.
     #[error(
         "the overlap is {layers:.2} cells of the coarser model long: it must hold one at least, better two to four"
     )]
     Short {
-        /// Length over the larger of both sizes along the axis.
+        /// Length over the larger of both sizes along the axis or the middle surface.
         layers: f64,
-        /// Cells of the beam there.
+        /// Cells of the beam or shell there.
         cells: Vec<ElementId>,
     },
     /// The section of a beam is not that of the solid around its axis.
@@ -144,9 +146,37 @@ pub enum Error {
         /// Cells of the solid there.
         cells: Vec<ElementId>,
     },
-    /// Of a beam and a solid one does not end in the overlap.
+    /// The solid is not from one face of a shell to the other.
     #[error(
-        "the {model} model does not end in the overlap: a beam and a solid continue each other, so each must end there"
+        "in the overlap the solid lies from {:.4e} m to {:.4e} m about the middle surface of the shell, the section of the shell from \
+         {:.4e} m to {:.4e} m: both must be the same",
+        found[0], found[1], -expected, expected
+    )]
+    Thickness {
+        /// Where its faces are along the director, m; no numbers where it is not found.
+        found: [f64; 2],
+        /// Half the thickness of the shell, m.
+        expected: f64,
+        /// Cells of the shell there.
+        cells: Vec<ElementId>,
+    },
+    /// Elements of a shell meet at an angle in the overlap, or with opposite normals.
+    #[error("the shell has a fold in the overlap: its middle surface must be smooth there")]
+    Fold {
+        /// Cells of the shell that meet there.
+        cells: Vec<ElementId>,
+    },
+    /// An element of a shell that is too thick for its curvature.
+    #[error(
+        "an element of the shell folds over within its thickness: it is too thick for its curvature, or warped"
+    )]
+    FoldsOver {
+        /// The cell.
+        cell: ElementId,
+    },
+    /// Of a beam or shell and a solid one does not end in the overlap.
+    #[error(
+        "the {model} model does not end in the overlap: a thin model and a solid continue each other, so each must end there"
     )]
     NoEnd {
         /// The model without an end there.
@@ -207,6 +237,27 @@ pub enum Error {
     #[error("the faces lie on one line through node {node}: they have no rotation about it")]
     FacesOnLine {
         /// The node that would have their motion.
+        node: u32,
+    },
+    /// Faces that are no section of the shell whose edge stands on them.
+    #[error(
+        "the faces are {height:.4e} m high along the edge and their middle is {:.0} % of that beside it; the shell is {thickness:.4e} m thick",
+        100.0 * (beside / height).abs()
+    )]
+    FaceOfEdge {
+        /// Area of the faces over the length of the edge, m.
+        height: f64,
+        /// Distance of their middle from the edge along the director, m.
+        beside: f64,
+        /// Thickness of the shell, m.
+        thickness: f64,
+    },
+    /// A node of an edge of a shell with no face beside it.
+    #[error(
+        "node {node} of the edge has no face beside it: the faces must reach along all of the edge"
+    )]
+    EdgeWithoutFace {
+        /// The node.
         node: u32,
     },
     /// Failure of the factorisation that measures the rank.

@@ -105,7 +105,7 @@ impl Moments {
 }
 
 /// Positions, shape functions and weights at the points of a face.
-fn each_point(mesh: &Mesh, face: &Face, mut each: impl FnMut(&[f64; 3], &[f64], f64)) {
+pub(crate) fn each_point(mesh: &Mesh, face: &Face, mut each: impl FnMut(&[f64; 3], &[f64], f64)) {
     let table = face.kind.table();
     let mut x = [[0.0; 3]; MAX_FACE_NODES];
     for (x, &node) in x.iter_mut().zip(face.corners()) {
@@ -122,7 +122,7 @@ fn each_point(mesh: &Mesh, face: &Face, mut each: impl FnMut(&[f64; 3], &[f64], 
     }
 }
 
-fn unit(axis: usize) -> [f64; 3] {
+pub(crate) fn unit(axis: usize) -> [f64; 3] {
     std::array::from_fn(|i| f64::from(i == axis))
 }
 

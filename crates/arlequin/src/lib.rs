@@ -22,7 +22,7 @@
 //! with a rule of a degree raised by six, not exactly. Affine fields are still coupled exactly: they are the same number
 //! in both models at every point, whatever the rule.
 //!
-//! A beam and a solid have overlaps of their own kind: [`BeamOverlap`].
+//! A beam and a solid have overlaps of their own kind: [`BeamOverlap`]; a shell and a solid too: [`ShellOverlap`].
 //!
 //! Sources: H. Ben Dhia, C. Zammali, F. Voldoire, S. Lamarche (2003), equations (11)-(12); H. Ben Dhia, G. Rateau (2005)
 //! for the method in statics. The integration on the common refinement, the weight by distances and the treatment of
@@ -32,6 +32,7 @@ mod beam;
 mod border;
 mod cell;
 mod coupling;
+mod edge;
 mod ends;
 mod error;
 mod faces;
@@ -41,14 +42,17 @@ mod polytope;
 mod refine;
 mod rows;
 mod rule;
+mod shell;
 mod trace;
 mod weights;
 
 pub use beam::{BeamCell, BeamModels, BeamOverlap, SectionMotion};
 pub use coupling::{Bracket, Coupling, Integration, Mediator, SliverRule};
+pub use edge::{EdgeCell, edge_mean_motion, edge_rigid_motion};
 pub use error::{Error, Model};
 pub use faces::mean_motion;
 pub use overlap::{Models, Overlap, Region};
 pub use rows::{Rank, Row, Rows, Sliver, Term};
+pub use shell::{ShellCell, ShellModels, ShellOverlap};
 pub use trace::trace;
 pub use weights::{CellWeights, Profile, Warning, Weighting, Weights, means};

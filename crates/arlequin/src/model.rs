@@ -1,6 +1,6 @@
 //! The cells of one model, with point location.
 
-use carom_elements::{Kind, MAX_FACE_NODES};
+use carom_elements::MAX_FACE_NODES;
 use carom_mesh::{Bounds, BoxTree, ElementId, Mesh};
 
 use crate::cell::Cell;
@@ -18,7 +18,7 @@ pub(crate) struct Cells<'a> {
 }
 
 impl<'a> Cells<'a> {
-    /// Errors: no cells, a cell of another dimension than the space or of a kind that is not cut, a defective cell.
+    /// Errors: no cells, a cell of another dimension than the space, a defective cell.
     pub fn new(mesh: &'a Mesh, model: Model, ids: &[ElementId]) -> Result<Cells<'a>, Error> {
         if ids.is_empty() {
             return Err(Error::NoCells { model });
@@ -33,11 +33,6 @@ impl<'a> Cells<'a> {
                     expected: mesh.dim,
                 });
             }
-        }
-        let cuttable = [Kind::Bar2, Kind::Tri3, Kind::Quad4, Kind::Tet4, Kind::Hex8];
-        if let Some(&cell) = ids.iter().find(|&&id| !cuttable.contains(&mesh.kind(id))) {
-            let kind = mesh.kind(cell).table().name;
-            return Err(Error::Kind { model, cell, kind });
         }
         if let Some(&defect) = mesh.check(ids).first() {
             return Err(Error::Defect(defect));

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use carom_elements::Kind;
 use carom_mesh::{ElementId, Mesh};
 
 use crate::border::Border;
@@ -81,6 +82,12 @@ impl<'a> Overlap<'a> {
     /// covered (below 95 %) by the other model; the inner model ends inside the outer one outside S; S thinner than one
     /// cell of the outer model.
     pub fn new(models: Models<'a>, region: &Region) -> Result<Overlap<'a>, Error> {
+        refuse_kinds(&models)?;
+        Overlap::of_any(models, region)
+    }
+
+    /// The same of cells of any kind, which count with straight edges where they are cut.
+    pub(crate) fn of_any(models: Models<'a>, region: &Region) -> Result<Overlap<'a>, Error> {
         let inner = Cells::new(models.mesh, Model::Inner, models.inner)?;
         let outer = Cells::new(models.mesh, Model::Outer, models.outer)?;
         refuse_shared_nodes(&inner, &outer)?;
@@ -216,6 +223,22 @@ impl<'a> Overlap<'a> {
 pub(crate) fn in_group(group: &Option<BTreeSet<ElementId>>, pair: (ElementId, ElementId)) -> bool {
     let has = |group: &BTreeSet<ElementId>| group.contains(&pair.0) || group.contains(&pair.1);
     group.as_ref().is_none_or(has)
+}
+
+/// Refuses kinds of cells whose weights and rows have no tests.
+fn refuse_kinds(models: &Models) -> Result<(), Error> {
+    let taken = [Kind::Bar2, Kind::Tri3, Kind::Quad4, Kind::Tet4, Kind::Hex8];
+    for (model, cells) in [(Model::Inner, models.inner), (Model::Outer, models.outer)] {
+        let other = |&&cell: &&ElementId| {
+            let kind = models.mesh.kind(cell);
+            kind.table().dim == models.mesh.dim && !taken.contains(&kind)
+        };
+        if let Some(&cell) = cells.iter().find(other) {
+            let kind = models.mesh.kind(cell).table().name;
+            return Err(Error::Kind { model, cell, kind });
+        }
+    }
+    Ok(())
 }
 
 fn box_sides(region: &Region, dim: usize) -> Vec<Plane> {

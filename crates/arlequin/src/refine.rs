@@ -4,6 +4,7 @@
 //! with the number of vertices. A cell that lies wholly in one of the other model is not cut at all and integrated
 //! on its own reference cell.
 
+use carom_elements::Kind;
 use carom_mesh::ElementId;
 
 use crate::cell::{Cell, Convex};
@@ -73,21 +74,29 @@ pub(crate) enum Part {
 
 /// Quadrature rules of one degree, and of a raised one for cells that are not affine.
 pub(crate) struct Rules {
-    exact: [Rule; 2],
+    /// For each kind of corners.
+    made: Vec<(Kind, [Rule; 2])>,
     /// For quadrilaterals and hexahedra whose axes are those of the other cell.
     aligned: Rule,
-    raised: [Rule; 2],
+    /// For pieces.
+    simplex: [Rule; 2],
 }
 
 impl Rules {
     /// `degree`: total degree of what is integrated; `along`: its degree in each reference coordinate, where the axes of
     /// the two cells agree.
     pub fn new(dim: usize, degree: usize, along: usize) -> Rules {
-        let pair = |degree| [Rule::simplex(dim, degree), Rule::cube(dim, degree)];
+        let kinds: &[Kind] = match dim {
+            1 => &[Kind::Bar2],
+            2 => &[Kind::Tri3, Kind::Quad4],
+            _ => &[Kind::Tet4, Kind::Hex8, Kind::Wedge6, Kind::Pyramid5],
+        };
+        let both = [degree, degree + RAISED[dim]];
+        let pair = |&kind| (kind, both.map(|degree| Rule::of(kind, degree)));
         Rules {
-            exact: pair(degree),
+            made: kinds.iter().map(pair).collect(),
             aligned: Rule::cube(dim, along),
-            raised: pair(degree + RAISED[dim]),
+            simplex: both.map(|degree| Rule::simplex(dim, degree)),
         }
     }
 
@@ -101,19 +110,13 @@ impl Rules {
 
     /// The rule for one cell by itself.
     pub fn of_cell(&self, cell: &Cell, affine: bool) -> &Rule {
-        let rules = if affine { &self.exact } else { &self.raised };
-        match cell.degree() {
-            1 if cell.kind.table().dim > 1 => &rules[0],
-            _ => &rules[1],
-        }
+        let found = self.made.iter().find(|(kind, _)| *kind == cell.corners());
+        let rules = found.map_or(&self.simplex, |(_, rules)| rules);
+        &rules[usize::from(!affine)]
     }
 
     fn of_simplices(&self, affine: bool) -> &Rule {
-        if affine {
-            &self.exact[0]
-        } else {
-            &self.raised[0]
-        }
+        &self.simplex[usize::from(!affine)]
     }
 }
 

@@ -6,7 +6,7 @@
 //! is. Each is given cell by cell as its L2 projection on the shape functions of the cell, integrated on the common
 //! refinement: ∫ w N_a is that of the weight itself.
 
-use carom_elements::MAX_NODES;
+use carom_elements::{Element, MAX_NODES};
 use carom_mesh::{ElementId, Mesh};
 
 use crate::cell::Cell;
@@ -160,16 +160,17 @@ impl Overlap<'_> {
     ) -> Result<CellWeights, Error> {
         let side = self.side(model);
         let dim = self.mesh().dim;
-        let largest = [Model::Inner, Model::Outer]
-            .iter()
-            .flat_map(|&m| self.cells(m))
-            .map(|&id| self.mesh().kind(id).table().degree)
-            .fold(1, usize::max);
+        let both = [Model::Inner, Model::Outer];
+        let kinds = both.iter().flat_map(|&m| self.cells(m));
+        let kinds = kinds.map(|&id| self.mesh().kind(id).table());
+        let largest = kinds.clone().map(|kind| kind.degree).fold(1, usize::max);
         let profile = match self.is_strip() {
             true => weighting.degree(),
             false => CURVED_DEGREE,
         };
-        let rules = Rules::new(dim, largest + profile.max(largest), 1 + profile.max(1));
+        let along = kinds.map(degree_along).fold(1, usize::max);
+        let degree = largest + profile.max(largest);
+        let rules = Rules::new(dim, degree, along + profile.max(along));
         let mut weights = CellWeights {
             inertia: Vec::new(),
             stiffness: Vec::new(),
@@ -185,7 +186,11 @@ impl Overlap<'_> {
             let (mut alpha, mut delta) = (values[0], values[1]);
             let flat = [
                 flatten(&cell, &mut alpha[..nodes], cell.kind.table().mass_rule),
-                flatten(&cell, &mut delta[..nodes], cell.kind.table().stiffness_rule),
+                flatten(
+                    &cell,
+                    &mut delta[..nodes],
+                    cell.kind.table().weighted_stiffness_rule(),
+                ),
             ];
             if flat.contains(&true) {
                 flattened.push(side.ids[i]);
@@ -276,6 +281,11 @@ impl Overlap<'_> {
         let ratio = alpha.iter().zip(&delta).map(|(a, d)| a / d);
         ratio.fold(1.0, f64::min).max(0.0).sqrt()
     }
+}
+
+/// Degree of the shape functions of a kind in each reference coordinate.
+pub(crate) fn degree_along(kind: &Element) -> usize {
+    1 + usize::from(kind.is_quadratic())
 }
 
 impl Profile {

@@ -57,7 +57,7 @@ pub use release::Release;
 pub use rigid::{Inertia, Rigid};
 pub use scaling::{MARGIN, MassScaling};
 pub use scratch::Scratch;
-pub use shell::{LAYERS as SHELL_LAYERS, Resultants, Shell, ShellSection};
+pub use shell::{LAYERS as SHELL_LAYERS, Resultants, Shell, ShellPlate, ShellSection, plates};
 pub use size::{height, smallest as smallest_size};
 pub use solid::{BodySpec, Solid};
 pub use weights::CellWeights;

@@ -5,7 +5,7 @@ use carom_bodies::{BeamSection, BeamTheory, CellWeights, Kinematics, MassKind, S
 use carom_dynamics::{ModelBody, ModelConstraint};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate, raise};
-use carom_zones::{GluedBeam, glue_beam};
+use carom_zones::{Glued, glue_thin};
 
 use crate::Error;
 use crate::build::{body, surface};
@@ -138,10 +138,10 @@ impl Spliced {
     }
 
     /// The bodies, solid first, with consistent mass (a lumped one has too much inertia in torsion where few cells are across), and the overlap.
-    pub(crate) fn glued(&self, mesh: &Mesh) -> Result<([ModelBody; 2], GluedBeam), Error> {
+    pub(crate) fn glued(&self, mesh: &Mesh) -> Result<([ModelBody; 2], Glued), Error> {
         let [solid, beam] = self.bodies(mesh)?;
         let specs = [&solid.spec, &beam.spec];
-        let glued = glue_beam(mesh, specs, &Region::Intersection, &self.weighting)?;
+        let glued = glue_thin(mesh, specs, &Region::Intersection, &self.weighting)?;
         let mut bodies = [solid, beam];
         let weights = [&glued.weights.inner, &glued.weights.outer];
         for ((part, cells), weights) in bodies.iter_mut().zip(&glued.cells).zip(weights) {

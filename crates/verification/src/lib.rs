@@ -124,6 +124,10 @@ mod self_contact;
 mod shapes;
 mod shell_benchmarks;
 mod shell_self_contact;
+mod shell_solid;
+mod shell_solid_impact;
+mod shell_solid_patch;
+mod shell_solid_waves;
 mod shells;
 mod shock_front;
 mod sliding_block;
@@ -140,6 +144,7 @@ mod threads;
 mod threads_features;
 mod tori;
 mod viability;
+mod wave_packet;
 mod zones_glued_at_contact;
 mod zones_in_contact;
 
@@ -269,6 +274,9 @@ registry! {
     shell_self_contact
     shapes
     shell_benchmarks
+    shell_solid_impact
+    shell_solid_patch
+    shell_solid_waves
     shock_front
     sliding_block
     sliding_work

@@ -8,7 +8,6 @@
 //! Sources: Gravouil, Combescure (2001); Prakash, Hjelmstad (2004); Ben Dhia et al. (2003), equations (11)-(12). The form
 //! for any pair of schemes with weights of the multipliers in time is this project's.
 
-mod beam_solid;
 mod between;
 mod compliance;
 mod control;
@@ -24,15 +23,16 @@ mod refusals;
 mod response;
 mod start;
 mod step;
+mod thin;
 mod tie;
 mod together;
 mod whole;
 mod zones;
 
-pub use beam_solid::{GluedBeam, glue_beam};
 pub use between::BetweenState;
 pub use error::Error;
 pub use model::{LinkKind, ModelZone, Zoned};
+pub use thin::{Glued, glue_thin};
 pub use tie::mortar_rows;
 pub use whole::Whole;
 pub use zones::{Sample, Zones, ZonesState};

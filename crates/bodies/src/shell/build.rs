@@ -8,6 +8,7 @@ use carom_mesh::{ElementId, Mesh};
 use super::layers::Layers;
 use super::products::{Configuration, MOST};
 use super::section::ElasticSection;
+use super::shares::{self, PointWeights};
 use super::strain::Form;
 use super::{Element, Shell, ShellSection};
 use crate::solid::BodySpec;
@@ -35,7 +36,8 @@ impl Shell {
     ///
     /// # Errors
     /// No cell, cells that are neither tri3 nor quad4, a mesh that is not one of space; a cell without area or that is not convex, or too warped;
-    /// neighbours whose normals disagree; a material at finite strain that is no metal, weights, a formulation; an offset with finite rotations.
+    /// neighbours whose normals disagree; a material at finite strain that is no metal, a formulation; an offset with finite rotations; weights with finite
+    /// rotations or of a metal, too few of them, or negative ones.
     pub(crate) fn new(
         mesh: &Mesh,
         spec: BodySpec,
@@ -45,8 +47,8 @@ impl Shell {
     ) -> Result<Shell, Error> {
         check(mesh, &spec, &section)?;
         let material = spec.material.initial();
-        let corners = corners(mesh, &spec)?;
-        agree(mesh, &spec)?;
+        let weights = shares::nodal(mesh, &spec)?;
+        let geometry = geometry(mesh, &spec)?;
         let mut shell = Shell {
             name: spec.name,
             section,
@@ -63,32 +65,34 @@ impl Shell {
         shell.layers = law.map(|law| Layers::new(law, section.thickness, section.layers));
         for (place, &cell) in shell.cells.iter().enumerate() {
             let nodes = mesh.element_nodes(cell);
-            let x: Vec<Vec3> = nodes
-                .iter()
-                .map(|&node| mesh.nodes[node as usize].into())
-                .collect();
-            let directors: Vec<Vec3> = nodes
-                .iter()
-                .map(|&node| director(&corners[node as usize], place))
-                .collect();
-            let reference = configuration(&x, &directors);
+            let reference = geometry[place];
+            let [alpha, delta] = &weights[place];
             let along = reference.axes[0][0];
             let mut element = Element {
                 count: nodes.len(),
                 nodes: [0; MOST],
                 first: [0; MOST],
                 frames: [usize::MAX; MOST],
-                form: Form::new(nodes.len(), &reference.beside(section.offset), &along),
+                form: Form::new(
+                    nodes.len(),
+                    &reference.beside(section.offset),
+                    &along,
+                    delta,
+                ),
                 reference,
                 elastic,
+                weights: PointWeights::default(),
             };
+            let at_points = PointWeights::new(&element.form.shapes, [alpha, delta]);
+            element.weights = at_points.checked(&shell.name, cell)?;
+            shell.refuse_negative_mass(&element, (cell, nodes))?;
             for (a, &node) in nodes.iter().enumerate() {
                 let own = number[node as usize];
                 element.nodes[a] = own;
                 element.first[a] = unknowns.first(own);
                 element.frames[a] = unknowns.frame(own).unwrap_or(usize::MAX);
             }
-            let longest = longest(&x);
+            let longest = longest(&element.reference.x[..element.count]);
             if element.count == 3 {
                 let square = section.thickness.powi(2);
                 let factor = square / (square + TRIANGLE * longest * longest);
@@ -103,6 +107,45 @@ impl Shell {
         }
         Ok(shell)
     }
+}
+
+impl Shell {
+    fn refuse_negative_mass(
+        &self,
+        element: &Element,
+        (cell, nodes): (ElementId, &[u32]),
+    ) -> Result<(), Error> {
+        let shares = element.shares(self.density());
+        let bad = |(_, mass): &(&u32, &f64)| mass.is_nan() || **mass < 0.0;
+        match nodes.iter().zip(&shares).find(bad) {
+            Some((&node, &mass)) => Err(Error::NegativeMass {
+                body: self.name.clone(),
+                cell,
+                node,
+                mass,
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Places of the nodes of each element, and their axes.
+///
+/// # Errors
+/// A cell without area or that is not convex, or too warped; neighbours whose normals disagree.
+pub(super) fn geometry(mesh: &Mesh, spec: &BodySpec) -> Result<Vec<Configuration>, Error> {
+    let corners = corners(mesh, spec)?;
+    agree(mesh, spec)?;
+    let of = |(place, &cell): (usize, &ElementId)| {
+        let nodes = mesh.element_nodes(cell).iter();
+        let own = nodes.map(|&node| {
+            let x = Vec3::from(mesh.nodes[node as usize]);
+            (x, director(&corners[node as usize], place))
+        });
+        let (x, directors): (Vec<Vec3>, Vec<Vec3>) = own.unzip();
+        configuration(&x, &directors)
+    };
+    Ok(spec.cells.iter().enumerate().map(of).collect())
 }
 
 /// Places and axes of the nodes: the first axis is the part of the first edge normal to the director.
@@ -210,15 +253,16 @@ fn agree(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {
     Ok(())
 }
 
-fn check(mesh: &Mesh, spec: &BodySpec, section: &ShellSection) -> Result<(), Error> {
+pub(super) fn check(mesh: &Mesh, spec: &BodySpec, section: &ShellSection) -> Result<(), Error> {
     let body = || spec.name.clone();
     if spec.cells.is_empty() {
         return Err(Error::Empty { body: body() });
     }
-    if spec.weights.is_some() {
+    let flows = spec.material.plane_stress().is_some();
+    if spec.weights.is_some() && (flows || section.rotations == Rotations::Finite) {
         return Err(Error::ShellRefused {
             body: body(),
-            what: "a share of its volume with another model",
+            what: "a share of their volume with another model if they turn by any angle or flow",
         });
     }
     if spec.material.finite().is_some() && spec.material.plane_stress().is_none() {

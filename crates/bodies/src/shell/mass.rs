@@ -13,10 +13,16 @@ use crate::stability::largest_eigenvalue;
 const GYRATION: f64 = 1.0 / 8.0;
 
 impl Element {
+    /// Area of each point times its weight of inertia, m².
+    fn inert(&self) -> impl Iterator<Item = f64> + '_ {
+        let points = self.form.areas.iter().zip(&self.weights.inertia);
+        points.map(|(area, alpha)| area * alpha)
+    }
+
     /// ∫ ρ h N_a dA of each node, kg.
-    fn shares(&self, density: f64) -> [f64; 4] {
+    pub(super) fn shares(&self, density: f64) -> [f64; 4] {
         let mut shares = [0.0; 4];
-        for (shapes, area) in self.form.shapes.iter().zip(&self.form.areas) {
+        for (shapes, area) in self.form.shapes.iter().zip(self.inert()) {
             for (share, n) in shares.iter_mut().zip(shapes) {
                 *share += density * area * n;
             }
@@ -26,14 +32,14 @@ impl Element {
 
     /// ∫ ρ h N_a N_b dA, kg.
     fn shared(&self, density: f64, a: usize, b: usize) -> f64 {
-        let points = self.form.shapes.iter().zip(&self.form.areas);
+        let points = self.form.shapes.iter().zip(self.inert());
         points.map(|(n, area)| density * area * n[a] * n[b]).sum()
     }
 }
 
 impl Shell {
     /// ρ h, kg/m².
-    fn density(&self) -> f64 {
+    pub(super) fn density(&self) -> f64 {
         self.material.density * self.section.thickness
     }
 

@@ -15,8 +15,10 @@ mod mass;
 mod products;
 mod results;
 mod section;
+mod shares;
 mod small;
 mod strain;
+mod surface;
 mod tying;
 
 use std::ops::Range;
@@ -27,10 +29,12 @@ use carom_mesh::ElementId;
 
 pub use self::results::Resultants;
 pub use self::section::{LAYERS, ShellSection};
+pub use self::surface::{ShellPlate, plates};
 
 use self::layers::Layers;
 use self::products::{Configuration, MOST};
 use self::section::ElasticSection;
+use self::shares::PointWeights;
 use self::strain::{Form, Strains};
 use crate::scratch::Scratch;
 use crate::{Error, Placement, Rotations, Stored};
@@ -51,6 +55,7 @@ struct Element {
     reference: Configuration,
     form: Form,
     elastic: ElasticSection,
+    weights: PointWeights,
 }
 
 impl Element {
@@ -64,10 +69,16 @@ impl Element {
         self.form.areas.iter().sum()
     }
 
+    /// Area of each point times its weight of internal work, m².
+    fn working(&self) -> impl Iterator<Item = f64> + '_ {
+        let points = self.form.areas.iter().zip(&self.weights.stiffness);
+        points.map(|(area, delta)| area * delta)
+    }
+
     /// Forces and moments per length at all points, times their areas.
     fn weighted(&self, strains: &Strains) -> Strains {
         let mut forces = Strains::default();
-        let points = forces.iter_mut().zip(strains).zip(&self.form.areas);
+        let points = forces.iter_mut().zip(strains).zip(self.working());
         for ((forces, strains), area) in points {
             *forces = self.elastic.forces(strains).map(|force| force * area);
         }
@@ -76,7 +87,7 @@ impl Element {
 
     /// Strain energy, J.
     fn energy(&self, strains: &Strains) -> f64 {
-        let points = strains.iter().zip(&self.form.areas);
+        let points = strains.iter().zip(self.working());
         points
             .map(|(strains, area)| area * self.elastic.energy(strains))
             .sum()

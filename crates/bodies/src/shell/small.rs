@@ -37,8 +37,8 @@ impl Element {
         let n = PER_NODE * self.count;
         let mut k = vec![0.0; n * n];
         let section = self.elastic.tangent();
-        for (point, area) in self.form.areas.iter().enumerate() {
-            add_product(&self.rows(point, offset), &section, *area, &mut k);
+        for (point, area) in self.working().enumerate() {
+            add_product(&self.rows(point, offset), &section, area, &mut k);
         }
         k
     }

@@ -41,8 +41,14 @@ pub(super) struct Form {
 }
 
 impl Form {
-    /// The strains of an element in its reference configuration; `along`: the direction of the first axis.
-    pub(super) fn new(nodes: usize, reference: &Configuration, along: &Vec3) -> Form {
+    /// The strains of an element in its reference configuration; `along`: the direction of the first axis; `delta`: weights of the internal
+    /// work at its nodes.
+    pub(super) fn new(
+        nodes: usize,
+        reference: &Configuration,
+        along: &Vec3,
+        delta: &[f64; MOST],
+    ) -> Form {
         let mut form = Form {
             nodes,
             rows: Vec::new(),
@@ -51,7 +57,7 @@ impl Form {
             shapes: Vec::new(),
             start: Strains::default(),
         };
-        for point in tying::points(nodes, reference, along) {
+        for point in tying::points(nodes, reference, along, delta) {
             form.rows.push(Rows::new(&point.rows));
             form.areas.push(point.area);
             form.by.push(point.by);

@@ -8,7 +8,7 @@
 //! * shear in the plane of quadrilaterals: an element that bends in its plane has e_rs = ½ r x_r·x_d beside e_rr = s x_r·x_d. What of these linear
 //!   terms a constant strain does not have, p_r = ½ x_r·x_d - c_r e_rr - c_s e_rs at the centre and p_s alike, is taken off e_rs in the axes of
 //!   the centre, times j₀/j, the ratio of the areas there and at the point: constant stress does no work on it, so that the patch test holds (Simo and
-//!   Rifai 1990, Int. J. Numer. Methods Eng. 29, 1595);
+//!   Rifai 1990, Int. J. Numer. Methods Eng. 29, 1595). With weights of the internal work its weighted mean is taken off besides, for the same reason;
 //! * shear of triangles: MITC3 (Lee and Bathe 2004, Comput. Struct. 82, 945).
 
 use carom_algebra::tensor::Vec3;
@@ -62,8 +62,15 @@ pub(super) struct Point {
     pub by: [[f64; MOST]; 2],
 }
 
-/// The points of an element in its reference configuration; `along`: the direction of the first axis.
-pub(super) fn points(nodes: usize, reference: &Configuration, along: &Vec3) -> Vec<Point> {
+/// The points of an element in its reference configuration; `along`: the direction of the first axis; `delta`: weights of the internal work at
+/// its nodes.
+pub(super) fn points(
+    nodes: usize,
+    reference: &Configuration,
+    along: &Vec3,
+    delta: &[f64; MOST],
+) -> Vec<Point> {
+    let means = linear_means(nodes, reference, along, delta);
     let of = |(place, weight): ([f64; 2], f64)| {
         let at = shapes(nodes, place);
         let (area, to) = axes(reference, nodes, &at, along);
@@ -76,7 +83,8 @@ pub(super) fn points(nodes: usize, reference: &Configuration, along: &Vec3) -> V
         });
         let mut rows = local(nodes, (&at.n, &by), &covariant, &to);
         if nodes == 4 {
-            relieve(&mut rows, reference, along, (place, area));
+            let linear = [0, 1].map(|i| place[i] / area - means[i]);
+            relieve(&mut rows, reference, along, linear);
         }
         Point {
             rows,
@@ -86,6 +94,27 @@ pub(super) fn points(nodes: usize, reference: &Configuration, along: &Vec3) -> V
         }
     };
     rule(nodes).into_iter().map(of).collect()
+}
+
+/// Means of r/j and s/j over the area j dr ds, with weights: without them zero.
+fn linear_means(
+    nodes: usize,
+    reference: &Configuration,
+    along: &Vec3,
+    delta: &[f64; MOST],
+) -> [f64; 2] {
+    let (mut sums, mut whole) = ([0.0; 2], 0.0);
+    for (place, weight) in rule(nodes) {
+        let at = shapes(nodes, place);
+        let delta: f64 = at.n.iter().zip(delta).map(|(n, d)| n * d).sum();
+        let (area, _) = axes(reference, nodes, &at, along);
+        whole += weight * delta * area;
+        (0..2).for_each(|i| sums[i] += weight * delta * place[i]);
+    }
+    match whole > 0.0 {
+        true => sums.map(|sum| sum / whole),
+        false => [0.0; 2],
+    }
 }
 
 /// The covariant strains at a point: membrane rr, ss, rs; shear r, s.
@@ -252,13 +281,8 @@ fn quadrilateral(reference: &Configuration, [r, s]: [f64; 2]) -> Covariant {
     }
 }
 
-/// Takes from the membrane strains of a point the shear that bending in the plane would have.
-fn relieve(
-    rows: &mut [Row; STRAINS],
-    reference: &Configuration,
-    along: &Vec3,
-    ([r, s], area): ([f64; 2], f64),
-) {
+/// Takes from the membrane strains of a point the shear that bending in the plane would have; r and s over the area, less their means.
+fn relieve(rows: &mut [Row; STRAINS], reference: &Configuration, along: &Vec3, [r, s]: [f64; 2]) {
     let (five, [c_r, c_s]) = (Five::new(reference), twist(reference));
     let Five {
         a,
@@ -278,7 +302,7 @@ fn relieve(
     };
     let (p_r, p_s) = (excess([a, b], c_r, c_s), excess([c, d], c_s, c_r));
     let (centre, to) = axes(reference, 4, &shapes(4, [0.0; 2]), along);
-    let part = -centre / area;
+    let part = -centre;
     for (row, (i, j), twice) in [(0, (0, 0), 1.0), (1, (1, 1), 1.0), (2, (0, 1), 2.0)] {
         let both = twice * part * (to[i][0] * to[j][1] + to[i][1] * to[j][0]);
         rows[row].add(both * r, &p_r);

@@ -497,7 +497,14 @@ fn cells_that_make_no_shell_are_refused() {
         stiffness: vec![1.0; 16],
     };
     let error = refused(mesh(false, 0.0), &|spec| {
+        spec.kinematics = Kinematics::Shell(section(Rotations::Finite, 0.0));
         spec.weights = Some(weights.clone())
     });
     assert!(matches!(error, Error::ShellRefused { .. }), "{error}");
+    let error = refused(mesh(false, 0.0), &|spec| {
+        let mut weights = weights.clone();
+        weights.stiffness[5] = -2.0;
+        spec.weights = Some(weights)
+    });
+    assert!(matches!(error, Error::NegativeStiffness { .. }), "{error}");
 }

@@ -12,6 +12,7 @@ use carom_mesh::{ElementId, Mesh};
 
 use super::Builder;
 use super::held::Held;
+use super::thin_overlaps::is_thin;
 use super::unfit::doubt;
 use crate::error::Problem;
 use crate::schema::{self, BracketLength, BracketWith, OverlapRegion, OverlapShape, ProfileWith};
@@ -26,7 +27,7 @@ pub struct BuiltOverlap {
     pub name: String,
     /// Its measure, m, m² or m³.
     pub measure: f64,
-    /// Least thickness in cells of the outer body, of a beam and a solid in those of the coarser one; infinite without two borders.
+    /// Least thickness in cells of the outer body, of a beam or shell and a solid in those of the coarser one; infinite without two borders.
     pub layers: f64,
     /// Mean size of the cells of the inner and of the outer body in it, m.
     pub sizes: [f64; 2],
@@ -104,19 +105,11 @@ impl Builder<'_> {
         let path = format!("arlequin.{name}");
         let inner = self.body(&format!("{path}.inner"), &given.inner)?;
         let outer = self.body(&format!("{path}.outer"), &given.outer)?;
-        let is_beam = |body: usize| matches!(bodies[body].spec.kinematics, Kinematics::Beam(_));
-        if is_beam(inner) || is_beam(outer) {
+        if [inner, outer].iter().any(|&body| is_thin(&bodies[body])) {
             let of = ([inner, outer], held);
-            return self.beam_overlap((name, given), mesh, bodies, of, joints);
+            return self.thin_overlap((name, given), mesh, bodies, of, joints);
         }
         self.same_section(&path, &bodies[inner], &bodies[outer]);
-        if let Kinematics::Shell(_) = bodies[inner].spec.kinematics {
-            let message = "shells cannot be glued in volume";
-            let problem = Problem::new(format!("{path}.inner"), message).found(&given.inner);
-            self.problems
-                .push(problem.accepted(["bars, plane bodies, solids"]));
-            return None;
-        }
         if bodies[inner].spec.kinematics == Kinematics::Axisymmetric {
             let message =
                 "axisymmetric bodies cannot be glued: the products of the link carry no radius";

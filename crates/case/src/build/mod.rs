@@ -2,7 +2,6 @@
 
 mod advice;
 mod arlequin;
-mod beam_overlaps;
 mod beams;
 mod bodies;
 mod builder;
@@ -35,6 +34,7 @@ mod signals;
 mod stops;
 mod supports;
 mod surfaces;
+mod thin_overlaps;
 mod ties;
 mod time;
 mod transitions;
@@ -148,11 +148,7 @@ impl Builder<'_> {
         discrete.extend(self.fluids(&mut mesh));
         let mut constraints = self.constraints(&mesh);
         let turning = self.nodes_with_rotations(&mesh);
-        let of_bodies: Vec<_> = bodies
-            .iter()
-            .flat_map(|body| body.spec.cells.clone())
-            .collect();
-        constraints.extend(self.transitions(&mesh, &of_bodies, &turning));
+        constraints.extend(self.transitions(&mesh, &bodies, &turning));
         let (supports, motions, turns) = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
         let loads = self.loads(&mesh, &bodies);

@@ -1,69 +1,39 @@
-//! Ends of beams on faces of solids.
+//! Ends of beams and edges of shells on faces of solids.
 
-use carom_arlequin::mean_motion;
-use carom_dynamics::ModelConstraint;
-use carom_mesh::{ElementId, Mesh};
+use carom_arlequin::{EdgeCell, edge_mean_motion, edge_rigid_motion, mean_motion};
+use carom_bodies::{Kinematics, ShellPlate, plates};
+use carom_dynamics::{ModelBody, ModelConstraint};
+use carom_elements::Kind;
+use carom_mesh::{ElementId, Mesh, Surface};
 
 use super::Builder;
 use crate::error::Problem;
-use crate::schema::TransitionMotion;
+use crate::schema::{Transition, TransitionMotion};
 
 impl Builder<'_> {
-    /// The constraints between ends of beams and faces. `cells`: of all bodies; `turning`: nodes with rotations, sorted.
+    /// The constraints between ends of beams or edges of shells and faces. `turning`: nodes with rotations, sorted.
     pub(super) fn transitions(
         &mut self,
         mesh: &Mesh,
-        cells: &[ElementId],
+        bodies: &[ModelBody],
         turning: &[u32],
     ) -> Vec<ModelConstraint> {
         let case = self.case;
+        let cells = bodies.iter().flat_map(|body| body.spec.cells.iter());
+        let sides: Vec<ElementId> = cells
+            .copied()
+            .filter(|&cell| mesh.kind(cell).table().dim == mesh.dim)
+            .collect();
         let mut all = Vec::new();
         for (name, given) in case.transition.iter() {
             let path = format!("transition.{name}");
-            let end = self.single(mesh, &format!("{path}.end"), &given.end);
-            let sides: Vec<ElementId> = cells
-                .iter()
-                .copied()
-                .filter(|&cell| mesh.kind(cell).table().dim == mesh.dim)
-                .collect();
             let face = self.surface(mesh, &sides, &format!("{path}.face"), &given.face);
-            let (Some(end), Some(face)) = (end, face) else {
-                continue;
+            let of = (name, given, path.as_str());
+            let found = match self.is_edge(mesh, &given.end) {
+                true => self.edge_on(mesh, bodies, of, face),
+                false => self.end_on(mesh, turning, of, face),
             };
-            if turning.binary_search(&end).is_err() {
-                let message = "the node at the end of a transition must have rotations";
-                let problem = Problem::new(format!("{path}.end"), message).found(&given.end);
-                self.problems.push(problem.accepted(["a node of a beam"]));
-                continue;
-            }
-            if face.nodes.binary_search(&end).is_ok() {
-                let message =
-                    "the node belongs to the face: a transition joins bodies without common nodes";
-                let problem = Problem::new(format!("{path}.end"), message).found(&given.end);
-                self.problems
-                    .push(problem.accepted(["a beam with nodes of its own"]));
-                continue;
-            }
-            all.push(match given.motion {
-                TransitionMotion::Rigid => {
-                    let nodes: Vec<(u32, bool)> = face
-                        .nodes
-                        .iter()
-                        .map(|&node| (node, turning.binary_search(&node).is_ok()))
-                        .collect();
-                    ModelConstraint::rigid_link(name, mesh, end, &nodes, true)
-                }
-                TransitionMotion::Distributing => match mean_motion(mesh, &face.faces, end) {
-                    Ok(rows) => ModelConstraint::of_rows(name, &rows.rows, mesh.dim),
-                    Err(error) => {
-                        let problem = Problem::new(format!("{path}.face"), error.to_string());
-                        let problem = problem.found(&given.face);
-                        self.problems
-                            .push(problem.accepted(["faces that are not on one line"]));
-                        continue;
-                    }
-                },
-            });
+            all.extend(found);
         }
         if let (Some(first), false) = (all.first(), self.plan.zones.is_empty()) {
             let message = "transitions are not available in zones";
@@ -74,5 +44,147 @@ impl Builder<'_> {
             ]));
         }
         all
+    }
+
+    /// Whether a name is that of a group of lines.
+    fn is_edge(&self, mesh: &Mesh, name: &str) -> bool {
+        let lines = |cell: &ElementId| mesh.kind(*cell) == Kind::Bar2;
+        let group = mesh.groups.get(name);
+        mesh.dim == 3 && group.is_some_and(|group| group.elements.iter().all(lines))
+    }
+
+    /// The end of a beam on a face.
+    fn end_on(
+        &mut self,
+        mesh: &Mesh,
+        turning: &[u32],
+        (name, given, path): (&str, &Transition, &str),
+        face: Option<Surface>,
+    ) -> Option<ModelConstraint> {
+        let end = self.single(mesh, &format!("{path}.end"), &given.end);
+        let (end, face) = (end?, face?);
+        if turning.binary_search(&end).is_err() {
+            let message = "the node at the end of a transition must have rotations";
+            let problem = Problem::new(format!("{path}.end"), message).found(&given.end);
+            self.problems.push(problem.accepted(["a node of a beam"]));
+            return None;
+        }
+        self.apart_from_face(&[end], &face, (given, path))?;
+        Some(match given.motion {
+            TransitionMotion::Rigid => {
+                let nodes: Vec<(u32, bool)> = face
+                    .nodes
+                    .iter()
+                    .map(|&node| (node, turning.binary_search(&node).is_ok()))
+                    .collect();
+                ModelConstraint::rigid_link(name, mesh, end, &nodes, true)
+            }
+            TransitionMotion::Distributing => match mean_motion(mesh, &face.faces, end) {
+                Ok(rows) => ModelConstraint::of_rows(name, &rows.rows, mesh.dim),
+                Err(error) => {
+                    let problem = Problem::new(format!("{path}.face"), error.to_string());
+                    let problem = problem.found(&given.face);
+                    self.problems
+                        .push(problem.accepted(["faces that are not on one line"]));
+                    return None;
+                }
+            },
+        })
+    }
+
+    /// The edge of a shell on a face.
+    fn edge_on(
+        &mut self,
+        mesh: &Mesh,
+        bodies: &[ModelBody],
+        (name, given, path): (&str, &Transition, &str),
+        face: Option<Surface>,
+    ) -> Option<ModelConstraint> {
+        let group = self.group(mesh, &format!("{path}.end"), &given.end)?;
+        let (lines, nodes) = (group.elements.clone(), mesh.group_nodes(group));
+        let face = face?;
+        self.apart_from_face(&nodes, &face, (given, path))?;
+        let edge = self.edge(mesh, bodies, &lines, (given, path))?;
+        let rows = match given.motion {
+            TransitionMotion::Distributing => edge_mean_motion(mesh, &face.faces, &edge),
+            TransitionMotion::Rigid => edge_rigid_motion(mesh, &face.faces, &edge),
+        };
+        match rows {
+            Ok(rows) => Some(ModelConstraint::of_rows(name, &rows.rows, mesh.dim)),
+            Err(error) => {
+                let problem = Problem::new(format!("{path}.face"), error.to_string());
+                let accepted = "the side of a solid along the edge, as high as the shell is thick";
+                self.problems
+                    .push(problem.found(&given.face).accepted([accepted]));
+                None
+            }
+        }
+    }
+
+    /// Lines as pieces of the edge of a shell.
+    fn edge(
+        &mut self,
+        mesh: &Mesh,
+        bodies: &[ModelBody],
+        lines: &[ElementId],
+        (given, path): (&Transition, &str),
+    ) -> Option<Vec<EdgeCell>> {
+        let shells = bodies.iter().filter_map(|body| match body.spec.kinematics {
+            Kinematics::Shell(section) => Some((&body.spec, section)),
+            _ => None,
+        });
+        let mut all: Vec<(ElementId, ShellPlate)> = Vec::new();
+        for (spec, section) in shells {
+            match plates(mesh, spec, &section) {
+                Ok(plates) => all.extend(spec.cells.iter().copied().zip(plates)),
+                Err(error) => {
+                    let path = format!("body.{}", spec.name);
+                    self.problems.push(Problem::new(path, error.to_string()));
+                    return None;
+                }
+            }
+        }
+        let piece = |&line: &ElementId| {
+            let ends = mesh.element_nodes(line);
+            all.iter().find_map(|(cell, plate)| {
+                let nodes = mesh.element_nodes(*cell);
+                let place = |node: u32| nodes.iter().position(|&own| own == node);
+                let ([a, b], [from, to]) = ([place(ends[0])?, place(ends[1])?], [ends[0], ends[1]]);
+                Some(EdgeCell {
+                    nodes: [from, to],
+                    x: [plate.x[a], plate.x[b]],
+                    directors: [plate.directors[a], plate.directors[b]],
+                    offset: plate.offset,
+                    thickness: plate.thickness,
+                })
+            })
+        };
+        let edge: Option<Vec<EdgeCell>> = lines.iter().map(piece).collect();
+        if edge.is_none() {
+            let message = "the lines at the end of a transition must be edges of shells";
+            let problem = Problem::new(format!("{path}.end"), message).found(&given.end);
+            let accepted = ["edges of a shell", "a group of one node: the end of a beam"];
+            self.problems.push(problem.accepted(accepted));
+        }
+        edge
+    }
+
+    /// Refuses nodes of the end that belong to the face.
+    fn apart_from_face(
+        &mut self,
+        nodes: &[u32],
+        face: &Surface,
+        (given, path): (&Transition, &str),
+    ) -> Option<()> {
+        let has = |node: &u32| face.nodes.binary_search(node).is_ok();
+        if !nodes.iter().any(has) {
+            return Some(());
+        }
+        let message =
+            "the node belongs to the face: a transition joins bodies without common nodes";
+        let problem = Problem::new(format!("{path}.end"), message).found(&given.end);
+        self.problems
+            .push(problem.accepted(["a beam or a shell with nodes of its own"]));
+        None
     }
 }

@@ -91,18 +91,33 @@ impl Builder<'_> {
             Error::Short { cells, .. } => (
                 ".overlap",
                 cells,
-                "at least one cell of the coarser body along the axis, better two to four",
+                "at least one cell of the coarser body, better two to four",
             ),
             Error::Section { cells, .. } => (
                 ".overlap",
                 cells,
                 "a solid whose sections are those of the beam, about the same axis",
             ),
+            Error::Thickness { cells, .. } => (
+                ".overlap",
+                cells,
+                "a solid from one face of the shell to the other, about the same middle surface",
+            ),
+            Error::Fold { cells } => (
+                ".overlap",
+                cells,
+                "a shell without folds in the overlap, its normals all to the same side",
+            ),
+            Error::FoldsOver { cell } => (
+                "",
+                std::slice::from_ref(cell),
+                "flatter cells, or a thinner shell",
+            ),
             Error::Empty => (".overlap", all, "a place where both bodies are"),
             Error::NoEnd { .. } => (
                 ".overlap",
                 all,
-                "a beam that ends in the solid, or a group or a box that says how far it goes",
+                "a beam or a shell that ends in the solid, or a group or a box that says how far it goes",
             ),
             Error::NoBorder { .. } => (".weights", all, "an overlap in which each body ends"),
             Error::Range { .. } | Error::Reflects { .. } => (".weights", &[], "\"linear\""),
@@ -123,6 +138,8 @@ impl Builder<'_> {
             | Error::NoInterface { .. }
             | Error::Ambiguous { .. }
             | Error::FacesOnLine { .. }
+            | Error::FaceOfEdge { .. }
+            | Error::EdgeWithoutFace { .. }
             | Error::Algebra(_) => ("", &[], "two sound bodies"),
         };
         let problem = Problem::new(format!("{path}{key}"), error.to_string()).accepted([accepted]);

@@ -63,11 +63,11 @@ pub struct RigidLink {
     pub nodes: String,
 }
 
-/// The end of a beam on a face of a solid or plane body that it continues. The two bodies have no common nodes.
+/// The end of a beam on a face of a solid or plane body that it continues, or the edge of a shell on a face of a solid. The two bodies have no common nodes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Transition {
-    /// Group of one node: the end of the beam.
+    /// Group of one node: the end of the beam. Or group of lines: the edge of the shell.
     pub end: String,
     /// Group of the sides of the other body that the end stands on.
     pub face: String,
@@ -80,10 +80,10 @@ pub struct Transition {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum TransitionMotion {
-    /// The node has the mean translation and rotation of the face, which may deform otherwise.
+    /// The node has the mean translation and rotation of the face, of an edge those of the strip beside it; the face may deform otherwise.
     #[default]
     Distributing,
-    /// All nodes of the face move as parts of a rigid body with the node.
+    /// All nodes of the face move as parts of a rigid body with the node, on an edge with its section beside them.
     Rigid,
 }
 
