@@ -341,7 +341,7 @@ pub(crate) const CHECK: Check = Check {
         match size {
             Size::Quick => {
                 rows.extend(roll_up(32, 20)?);
-                rows.extend(roof(4)?);
+                rows.extend(roof(8)?);
                 rows.extend(flying([3, 2], 2e-3, 300)?);
             }
             Size::Full => {

@@ -5,7 +5,7 @@
 //! Eng. 20, 757); shear adds 0.2 % at L/h = 100. Tolerance 1 %, as it is asked.
 //!
 //! Wave: a strip in cylindrical bending, a packet of right-going waves of Mindlin's plate, a Gauss curve of wave numbers about 2π/λ of the standard
-//! deviation 1/(1.5 λ), λ = 8 h and 16 h, elements of h. What comes back is the root of the energy in the zone of the shell over that at the start,
+//! deviation 1/(1.5 λ), λ = 8 h and 16 h, elements of h/2; with elements of h, eight to a wave, what comes back is shown. What comes back is the root of the energy in the zone of the shell over that at the start,
 //! when the packet is five of its lengths beyond the overlap. Closed form: none comes back; bound 2 %, the project's own, stated beforehand.
 //!
 //! Ledger of the same run, the trapezoidal rule in both zones. One step: no energy is made, residual and work of the link 1e-10 of the energy (rounding of
@@ -191,7 +191,7 @@ fn rows(size: Size) -> Result<Vec<Row>, Error> {
     )];
     let cases: &[(f64, usize)] = match size {
         Size::Quick => &[(8.0, 2)],
-        Size::Full => &[(8.0, 2), (8.0, 4), (16.0, 2), (16.0, 4)],
+        Size::Full => &[(8.0, 2), (16.0, 2)],
     };
     for &(thicknesses, overlap) in cases {
         let label = format!("wave of {thicknesses} h, overlap {overlap} h");
