@@ -12,7 +12,6 @@ use carom_mesh::{ElementId, Mesh};
 
 use super::Builder;
 use super::held::Held;
-use super::thin_overlaps::is_thin;
 use super::unfit::doubt;
 use crate::error::Problem;
 use crate::schema::{self, BracketLength, BracketWith, OverlapRegion, OverlapShape, ProfileWith};
@@ -324,6 +323,14 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// Whether a body is one of beams or shells.
+pub(super) fn is_thin(body: &ModelBody) -> bool {
+    matches!(
+        body.spec.kinematics,
+        Kinematics::Beam(_) | Kinematics::Shell(_)
+    )
 }
 
 /// Gives a body the cells that stay and their weights, multiplied where it has some.

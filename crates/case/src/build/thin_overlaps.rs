@@ -6,7 +6,7 @@ use carom_mesh::{ElementId, Mesh};
 use carom_zones::{Error, Glued, glue_thin};
 
 use super::Builder;
-use super::arlequin::{BuiltOverlap, FEW_LAYERS, Joints, weigh, weighting};
+use super::arlequin::{BuiltOverlap, FEW_LAYERS, Joints, is_thin, weigh, weighting};
 use super::held::Held;
 use super::unfit::doubt;
 use crate::error::Problem;
@@ -134,11 +134,6 @@ impl Builder<'_> {
         self.problems.push(problem);
         None
     }
-}
-
-/// Whether a body is one of beams or shells.
-pub(super) fn is_thin(body: &ModelBody) -> bool {
-    Thin::of(body).is_some()
 }
 
 /// Kinds of thin bodies.
