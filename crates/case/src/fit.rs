@@ -155,9 +155,7 @@ fn history(path: &Path, contact: Option<&str>) -> Result<StepForce, SweepError> 
     };
     if let (None, true) = (force, forces.clone().count() > 1) {
         let message = format!("`{name}` has the forces of several contacts");
-        let accepted = forces.filter_map(|head| head.trim().strip_prefix("contact."));
-        let accepted =
-            accepted.map(|head| format!("--contact {}", head.trim_end_matches(".force_n")));
+        let accepted = ["`--contact NAME`, one of the contacts of the file"];
         return Err(refuse(Problem::new("", message).accepted(accepted)));
     }
     let Some((time, force)) = time.zip(force) else {

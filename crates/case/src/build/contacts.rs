@@ -7,7 +7,7 @@ use carom_contact::law::Level;
 use carom_contact::law::{Reading, Restitution, Side, Velocity};
 use carom_contact::{Initial, Integration, Law, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
-use carom_mesh::{ElementId, Mesh, Surface};
+use carom_mesh::{ElementId, Face, Mesh, Surface};
 
 use super::laws::sides;
 use super::{Builder, advice};
@@ -46,6 +46,13 @@ impl Builder<'_> {
             let (Some(secondary), Some(primary)) = (secondary, primary) else {
                 continue;
             };
+            if contact.depth.is_some() && secondary.faces.iter().any(Face::is_round) {
+                let message =
+                    "a depth means nothing to surfaces around axes of beams and middles of shells";
+                let problem = Problem::new(format!("{path}.depth"), message);
+                self.problems.push(problem.accepted(["no `depth`"]));
+                continue;
+            }
             let sides = sides(mesh, bodies, &secondary, &primary);
             let scheme = self.scheme_at(secondary.faces.first().map(|face| face.parent), of);
             let Some(law) = self.law(name, &contact.law, (&sides, &scheme)) else {
