@@ -19,6 +19,7 @@ use crate::rest::Rest;
 use crate::sight::View;
 use crate::{Places, Point, Sight};
 
+mod corners;
 pub(crate) mod faces;
 mod foot;
 pub(crate) mod group;

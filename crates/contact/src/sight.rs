@@ -154,12 +154,15 @@ impl Sight {
         self.depth.iter().fold(0.0, |most, depth| most.max(*depth))
     }
 
-    /// The corners of faces where they are, in their order; of curved faces none.
-    pub(crate) fn corners(places: &Places, faces: &[Face], corners: &mut Vec<Option<Corners>>) {
-        corners.resize_with(faces.len(), || None);
-        let pairs = corners.par_iter_mut().zip(faces);
-        pairs.with_min_len(CHUNK).for_each(|(corners, face)| {
-            *corners = Corners::of(face, places);
+    /// The corners of some faces where they are, in the order of their numbers; of curved faces none.
+    pub(crate) fn corners(
+        places: &Places,
+        (faces, items): (&[Face], &[u32]),
+        corners: &mut [Option<Corners>],
+    ) {
+        let pairs = corners.par_iter_mut().zip(items);
+        pairs.with_min_len(CHUNK).for_each(|(corners, &item)| {
+            *corners = Corners::of(&faces[item as usize], places);
         });
     }
 

@@ -28,16 +28,21 @@ impl Contact {
         rest: &mut Rest,
         pairing: &mut Pairing,
     ) {
+        let groups = &mut search.groups;
+        groups.resize_with(self.points.len().div_ceil(BLOCK), Group::default);
         if let (Target::Surface(faces), Some(_)) = (&self.target, &self.sight) {
-            search.faces.begin_sight(due.len(), (places, faces));
+            let nothing = Kept::default();
+            let kept = due.iter().map(|&point| {
+                let k = point as usize;
+                groups[k / BLOCK].kept.get(k % BLOCK).unwrap_or(&nothing)
+            });
+            search.faces.begin_sight(kept, (places, faces));
         }
         for &point in due {
             if let Some(view) = self.view(point as usize) {
                 search.faces.see(view, places);
             }
         }
-        let groups = &mut search.groups;
-        groups.resize_with(self.points.len().div_ceil(BLOCK), Group::default);
         let mut first = 0;
         for points in due.chunk_by(|a, b| *a as usize / BLOCK == *b as usize / BLOCK) {
             groups[points[0] as usize / BLOCK].due = first..first + points.len();

@@ -3,6 +3,7 @@
 use carom_elements::Kind;
 use carom_mesh::{Bounds, BoxTree, Face, Projection, QUADS};
 
+use super::corners::Taken;
 use super::foot::{faces_point, foot_on, hull};
 use super::kept::{Guess, Kept, Query, squared};
 use crate::sight::{Corners, View};
@@ -18,7 +19,7 @@ const LOOSE: f64 = 2.0;
 /// a row are within twelve.
 const SPREAD: f64 = 32.0;
 
-/// Faces over the points that look at them, below which the corners of all are taken.
+/// Faces over the points that do not know which they look at, below which the corners of all are taken.
 const MANY: usize = 16;
 
 /// Longest rest of a point that sees its own surface, over the farthest limit: about as much as its normals allow.
@@ -40,10 +41,10 @@ pub(crate) struct FaceTree {
     age: u32,
     /// Unit normals of the secondary faces, where sight asks for them.
     normals: Vec<[f64; 3]>,
-    /// Corners of the faces in this configuration, where sight asks for many of them.
-    corners: Vec<Option<Corners>>,
     /// In which call of [`FaceTree::begin_sight`] each was computed, and which call was the last.
     seen: (Vec<u32>, u32),
+    /// Corners of the faces in this configuration, where sight asks for many of them.
+    corners: Taken,
 }
 
 /// What a point asks.
@@ -115,26 +116,40 @@ impl FaceTree {
     pub fn bytes(&self) -> usize {
         self.tree.as_ref().map_or(0, BoxTree::bytes)
             + size_of_val(&self.normals[..])
-            + size_of_val(&self.corners[..])
+            + self.corners.bytes()
             + size_of_val(&self.seen.0[..])
     }
 
     /// Takes all normals and corners that views ask for.
     pub fn see_all(&mut self, sight: Option<&Sight>, (places, faces): (&Places, &[Face])) {
         self.normals.clear();
-        self.corners.clear();
+        self.corners.begin(faces.len());
         if let Some(sight) = sight {
             self.normals.extend(sight.normals(places));
-            Sight::corners(places, faces, &mut self.corners);
+            (0..faces.len() as u32).for_each(|item| self.corners.ask(item));
+            self.corners.take(places, faces);
         }
     }
 
-    /// Begins a configuration in which normals are taken one after the other, for so many points; corners are taken all or none.
-    pub fn begin_sight(&mut self, points: usize, (places, faces): (&Places, &[Face])) {
-        self.corners.clear();
-        if points > faces.len() / MANY {
-            Sight::corners(places, faces, &mut self.corners);
+    /// Begins a configuration in which normals are taken one after the other, for points with what they remember. Corners are taken of
+    /// the faces that these have listed, or of all where many points have no list.
+    pub fn begin_sight<'a>(
+        &mut self,
+        points: impl Iterator<Item = &'a Kept>,
+        (places, faces): (&Places, &[Face]),
+    ) {
+        self.corners.begin(faces.len());
+        let mut without = 0;
+        for kept in points {
+            match kept.listed(self.epoch) {
+                Some(items) => items.for_each(|item| self.corners.ask(item)),
+                None => without += 1,
+            }
         }
+        if without > faces.len() / MANY {
+            (0..faces.len() as u32).for_each(|item| self.corners.ask(item));
+        }
+        self.corners.take(places, faces);
         let (seen, now) = &mut self.seen;
         *now = now.wrapping_add(1);
         if *now == 0 {
@@ -322,14 +337,13 @@ impl FaceTree {
         places: &Places,
     ) -> bool {
         let made;
-        let corners = match self.corners.get(item as usize) {
-            Some(kept) => kept,
+        let corners = match self.corners.of(item) {
+            Some(taken) => taken,
             None => {
                 made = Corners::of(face, places);
-                &made
+                made.as_ref()
             }
         };
-        let corners = corners.as_ref();
         corners.is_some_and(|corners| view.is_blind((item, corners), x, &self.normals))
     }
 

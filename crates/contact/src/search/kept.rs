@@ -57,6 +57,12 @@ impl Kept {
         (self.x, self.reach) = (*x, Some(reach));
     }
 
+    /// The faces that were listed by these boxes, if they were.
+    pub fn listed(&self, epoch: u32) -> Option<impl Iterator<Item = u32> + '_> {
+        let listed = self.reach.is_some() && self.epoch == epoch;
+        listed.then(|| self.faces.iter().map(|(item, _)| *item))
+    }
+
     /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of::<Kept>() + self.faces.capacity() * size_of::<(u32, f64)>()
