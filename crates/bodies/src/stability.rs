@@ -21,12 +21,17 @@ pub(crate) fn scale(dim: usize, k: &[f64], m: &[f64], out: &mut Vec<f64>) {
 /// (row-major, overwritten): tr(B^p)^(1/p) with p = 4096 by repeated squaring, never below the eigenvalue and at most
 /// n^(1/p) times it. Infinite if a diagonal entry is.
 pub(crate) fn largest_eigenvalue(b: &mut Vec<f64>) -> f64 {
+    largest_eigenvalue_in(b, &mut Vec::new())
+}
+
+/// [`largest_eigenvalue`] with memory for a square, whatever it holds.
+fn largest_eigenvalue_in(b: &mut Vec<f64>, square: &mut Vec<f64>) -> f64 {
     const SQUARINGS: u32 = 12;
     let n = b.len().isqrt();
     let trace = |b: &[f64]| (0..n).map(|i| b[i * n + i]).sum::<f64>();
     // log of the factor taken out so far, as a power of the original matrix
     let mut logarithm = 0.0;
-    let mut square = vec![0.0; n * n];
+    square.resize(n * n, 0.0);
     let mut power = 1.0;
     for _ in 0..SQUARINGS {
         let factor = trace(b);
@@ -43,32 +48,26 @@ pub(crate) fn largest_eigenvalue(b: &mut Vec<f64>) -> f64 {
             *entry = if scaled.abs() < 1e-100 { 0.0 } else { scaled };
         }
         logarithm += factor.ln() / power;
-        Arch::new().dispatch(Square {
-            b,
-            square: &mut square,
-        });
-        std::mem::swap(b, &mut square);
+        Arch::new().dispatch(Square { b, square });
+        std::mem::swap(b, square);
         power *= 2.0;
     }
     (logarithm + trace(b).ln() / power).exp()
 }
 
 /// Upper bound, within a thousandth, of the largest magnitude of an eigenvalue of a symmetric matrix (row-major,
-/// overwritten), from its square.
-pub(crate) fn largest_magnitude(b: &mut Vec<f64>) -> f64 {
+/// overwritten), from its square. `square`: memory, whatever it holds.
+pub(crate) fn largest_magnitude(b: &mut Vec<f64>, square: &mut Vec<f64>) -> f64 {
     // entries of order one, so that no square overflows
     let size = b.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
     if size == 0.0 || !size.is_finite() {
         return size;
     }
     b.iter_mut().for_each(|b| *b /= size);
-    let mut square = vec![0.0; b.len()];
-    Arch::new().dispatch(Square {
-        b,
-        square: &mut square,
-    });
-    std::mem::swap(b, &mut square);
-    size * largest_eigenvalue(b).sqrt()
+    square.resize(b.len(), 0.0);
+    Arch::new().dispatch(Square { b, square });
+    std::mem::swap(b, square);
+    size * largest_eigenvalue_in(b, square).sqrt()
 }
 
 /// The square of a row-major matrix.
@@ -131,7 +130,7 @@ mod tests {
     fn magnitude_is_that_of_a_negative_eigenvalue_too() {
         // eigenvalues 1 and -3
         let mut b = vec![-1.0, 2.0, 2.0, -1.0];
-        let value = largest_magnitude(&mut b);
+        let value = largest_magnitude(&mut b, &mut Vec::new());
         assert!((3.0 * (1.0 - 1e-12)..3.003).contains(&value), "{value}");
     }
 }

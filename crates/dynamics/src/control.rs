@@ -112,7 +112,7 @@ pub struct Control {
     /// Attempts dropped because they had no solution.
     pub failed: u64,
     /// Part of the critical step that an explicit step at finite strain may have, s; infinite before it is known.
-    pub(crate) stable: f64,
+    pub stable: f64,
     /// Fastest compression of a point with bulk viscosity in the last step, 1/s.
     pub(crate) compression: f64,
     /// Factor by which an iteration with a fresh factor between two states reduced the residual when it was last seen; zero

@@ -296,7 +296,8 @@ impl OfChunk<'_> {
         let collect = &mut |element: &Matrices| masses.extend(element.lumped);
         self.block.matrices_of(self.chunk, dim, false, collect);
         let nodes = self.block.kind.table().nodes;
-        let (mut k, mut scaled) = (vec![0.0; (dim * nodes).pow(2)], Vec::new());
+        let mut k = vec![0.0; (dim * nodes).pow(2)];
+        let (mut scaled, mut memory) = (Vec::new(), Vec::new());
         let mut room = Box::new(Element::room());
         let mut new = vec![0.0; self.finite.kept_of_element(self.block)];
         let modulus = self.body.bulk_modulus();
@@ -314,7 +315,7 @@ impl OfChunk<'_> {
             let viscous = self.body.coefficients(self.first + number);
             // no eigenvalue is beyond the norm
             if viscous.is_some() || norm > bound.frequency * bound.frequency {
-                let square = stability::largest_magnitude(&mut scaled);
+                let square = stability::largest_magnitude(&mut scaled, &mut memory);
                 let frequency = self.body.damped_frequency(self.first + number, square);
                 if frequency > bound.frequency {
                     bound.frequency = frequency;

@@ -99,7 +99,8 @@ fn step(driver: &mut Driver, friction: f64) -> (usize, f64) {
             assert!(t.hypot(s) <= friction * force + 1e-11 * largest, "{point}");
         }
     }
-    let numbers = driver.costs().compliance_bytes as f64 / 12.0;
+    // eight bytes each, beside the places that rows share: no more numbers than that
+    let numbers = driver.costs().compliance_bytes as f64 / 8.0;
     (closed, numbers / state.interface.force.len() as f64)
 }
 
