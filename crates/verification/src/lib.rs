@@ -142,6 +142,7 @@ mod taylor_bar;
 mod taylor_bar_steel;
 mod threads;
 mod threads_features;
+mod tied_surfaces;
 mod tori;
 mod viability;
 mod wave_packet;
@@ -290,6 +291,7 @@ registry! {
     taylor_bar_steel
     threads
     threads_features
+    tied_surfaces
     tori
     viability
     zones_glued_at_contact

@@ -35,6 +35,7 @@ mod stops;
 mod supports;
 mod surfaces;
 mod thin_overlaps;
+mod tied;
 mod ties;
 mod time;
 mod transitions;

@@ -1,4 +1,4 @@
-//! Ends of beams and edges of shells on faces of solids.
+//! Ends of beams and edges of shells on faces of solids, and surfaces on each other.
 
 use carom_arlequin::{EdgeCell, edge_mean_motion, edge_rigid_motion, mean_motion};
 use carom_bodies::{Kinematics, ShellPlate, plates};
@@ -8,7 +8,14 @@ use carom_mesh::{ElementId, Mesh, Surface};
 
 use super::Builder;
 use crate::error::Problem;
-use crate::schema::{Transition, TransitionMotion};
+use crate::schema::TransitionMotion;
+
+/// An end on a face, as a case gives it.
+struct Given<'a> {
+    end: &'a str,
+    face: &'a str,
+    motion: TransitionMotion,
+}
 
 impl Builder<'_> {
     /// The constraints between ends of beams or edges of shells and faces. `turning`: nodes with rotations, sorted.
@@ -27,9 +34,20 @@ impl Builder<'_> {
         let mut all = Vec::new();
         for (name, given) in case.transition.iter() {
             let path = format!("transition.{name}");
-            let face = self.surface(mesh, &sides, &format!("{path}.face"), &given.face);
+            if let Some(surfaces) = &given.surfaces {
+                all.extend(self.tied((mesh, bodies), (name, &path), surfaces, &sides));
+            }
+            let (Some(end), Some(face)) = (&given.end, &given.face) else {
+                continue;
+            };
+            let given = &Given {
+                end,
+                face,
+                motion: given.motion.unwrap_or_default(),
+            };
+            let face = self.surface(mesh, &sides, &format!("{path}.face"), given.face);
             let of = (name, given, path.as_str());
-            let found = match self.is_edge(mesh, &given.end) {
+            let found = match self.is_edge(mesh, given.end) {
                 true => self.edge_on(mesh, bodies, of, face),
                 false => self.end_on(mesh, turning, of, face),
             };
@@ -58,14 +76,14 @@ impl Builder<'_> {
         &mut self,
         mesh: &Mesh,
         turning: &[u32],
-        (name, given, path): (&str, &Transition, &str),
+        (name, given, path): (&str, &Given, &str),
         face: Option<Surface>,
     ) -> Option<ModelConstraint> {
-        let end = self.single(mesh, &format!("{path}.end"), &given.end);
+        let end = self.single(mesh, &format!("{path}.end"), given.end);
         let (end, face) = (end?, face?);
         if turning.binary_search(&end).is_err() {
             let message = "the node at the end of a transition must have rotations";
-            let problem = Problem::new(format!("{path}.end"), message).found(&given.end);
+            let problem = Problem::new(format!("{path}.end"), message).found(given.end);
             self.problems.push(problem.accepted(["a node of a beam"]));
             return None;
         }
@@ -83,7 +101,7 @@ impl Builder<'_> {
                 Ok(rows) => ModelConstraint::of_rows(name, &rows.rows, mesh.dim),
                 Err(error) => {
                     let problem = Problem::new(format!("{path}.face"), error.to_string());
-                    let problem = problem.found(&given.face);
+                    let problem = problem.found(given.face);
                     self.problems
                         .push(problem.accepted(["faces that are not on one line"]));
                     return None;
@@ -97,10 +115,10 @@ impl Builder<'_> {
         &mut self,
         mesh: &Mesh,
         bodies: &[ModelBody],
-        (name, given, path): (&str, &Transition, &str),
+        (name, given, path): (&str, &Given, &str),
         face: Option<Surface>,
     ) -> Option<ModelConstraint> {
-        let group = self.group(mesh, &format!("{path}.end"), &given.end)?;
+        let group = self.group(mesh, &format!("{path}.end"), given.end)?;
         let (lines, nodes) = (group.elements.clone(), mesh.group_nodes(group));
         let face = face?;
         self.apart_from_face(&nodes, &face, (given, path))?;
@@ -115,7 +133,7 @@ impl Builder<'_> {
                 let problem = Problem::new(format!("{path}.face"), error.to_string());
                 let accepted = "the side of a solid along the edge, as high as the shell is thick";
                 self.problems
-                    .push(problem.found(&given.face).accepted([accepted]));
+                    .push(problem.found(given.face).accepted([accepted]));
                 None
             }
         }
@@ -127,7 +145,7 @@ impl Builder<'_> {
         mesh: &Mesh,
         bodies: &[ModelBody],
         lines: &[ElementId],
-        (given, path): (&Transition, &str),
+        (given, path): (&Given, &str),
     ) -> Option<Vec<EdgeCell>> {
         let shells = bodies.iter().filter_map(|body| match body.spec.kinematics {
             Kinematics::Shell(section) => Some((&body.spec, section)),
@@ -162,7 +180,7 @@ impl Builder<'_> {
         let edge: Option<Vec<EdgeCell>> = lines.iter().map(piece).collect();
         if edge.is_none() {
             let message = "the lines at the end of a transition must be edges of shells";
-            let problem = Problem::new(format!("{path}.end"), message).found(&given.end);
+            let problem = Problem::new(format!("{path}.end"), message).found(given.end);
             let accepted = ["edges of a shell", "a group of one node: the end of a beam"];
             self.problems.push(problem.accepted(accepted));
         }
@@ -174,7 +192,7 @@ impl Builder<'_> {
         &mut self,
         nodes: &[u32],
         face: &Surface,
-        (given, path): (&Transition, &str),
+        (given, path): (&Given, &str),
     ) -> Option<()> {
         let has = |node: &u32| face.nodes.binary_search(node).is_ok();
         if !nodes.iter().any(has) {
@@ -182,7 +200,7 @@ impl Builder<'_> {
         }
         let message =
             "the node belongs to the face: a transition joins bodies without common nodes";
-        let problem = Problem::new(format!("{path}.end"), message).found(&given.end);
+        let problem = Problem::new(format!("{path}.end"), message).found(given.end);
         self.problems
             .push(problem.accepted(["a beam or a shell with nodes of its own"]));
         None

@@ -63,17 +63,28 @@ pub struct RigidLink {
     pub nodes: String,
 }
 
-/// The end of a beam on a face of a solid or plane body that it continues, or the edge of a shell on a face of a solid. The two bodies have no common nodes.
+/// The end of a beam on a face of a solid or plane body that it continues, the edge of a shell on a face of a solid, or two surfaces whose
+/// nodes need not match. The two bodies have no common nodes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend(
+    "oneOf" = [{ "required": ["end"] }, { "required": ["surfaces"] }],
+    "dependentRequired" = { "end": ["face"], "face": ["end"], "motion": ["end"] },
+))]
 pub struct Transition {
     /// Group of one node: the end of the beam. Or group of lines: the edge of the shell.
-    pub end: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub end: Option<String>,
     /// Group of the sides of the other body that the end stands on.
-    pub face: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub face: Option<String>,
     /// How the face moves with the end. Default `"distributing"`: it keeps uniform tension and pure bending.
-    #[serde(default)]
-    pub motion: TransitionMotion,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<TransitionMotion>,
+    /// Two groups of sides of solid or plane bodies that lie on each other and are tied: their displacements are equal in the mean around
+    /// each node of the side with more nodes (mortar method).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surfaces: Option<[String; 2]>,
 }
 
 /// How a face moves with a node.

@@ -43,7 +43,7 @@ pub(super) struct Linking {
 struct Point {
     dofs: Vec<u32>,
     coefficients: Vec<f64>,
-    /// b.
+    /// b; nothing of a point that moves no row.
     left: Vec<f64>,
     /// H⁻¹ b.
     held: Vec<f64>,
@@ -286,11 +286,16 @@ impl Linking {
             let n = points.len();
             self.matrix.clear();
             self.matrix.extend_from_slice(compliance.matrix());
-            for (i, &one) in points.iter().enumerate() {
-                for (j, &other) in points[..=i].iter().enumerate() {
-                    let (Some(one), Some(other)) =
-                        (&self.points[one as usize], &self.points[other as usize])
-                    else {
+            let moving = |&point: &u32| {
+                let point = self.points[point as usize].as_ref();
+                point.filter(|point| !point.left.is_empty())
+            };
+            for (i, one) in points.iter().enumerate() {
+                let Some(one) = moving(one) else {
+                    continue;
+                };
+                for (j, other) in points[..=i].iter().enumerate() {
+                    let Some(other) = moving(other) else {
                         continue;
                     };
                     let taken = one.left.iter().zip(&other.held).map(|(b, g)| b * g);
@@ -331,9 +336,14 @@ impl Linking {
         operators.end(&mut self.half, &mut self.x);
         let left = system.link_rows.iter();
         let left = left.map(|row| velocity(system, &self.factors, row, &self.x));
-        let left: Vec<f64> = left.collect();
+        let mut left: Vec<f64> = left.collect();
+        if left.iter().all(|b| *b == 0.0) {
+            left.clear();
+        }
         let mut held = left.clone();
-        self.condensed.solve(&mut held);
+        if !held.is_empty() {
+            self.condensed.solve(&mut held);
+        }
         *slot = Some(Point {
             dofs: dofs.to_vec(),
             coefficients: coefficients.to_vec(),
