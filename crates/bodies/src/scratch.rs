@@ -10,6 +10,16 @@ pub(crate) struct ShellForces {
     pub stored: Stored,
 }
 
+/// Nodes of a chunk of shell elements with one point.
+#[derive(Debug, Default)]
+pub(crate) struct ShellChunk {
+    /// Place of each, m, and the rows of its rotation.
+    pub states: Vec<[f64; 12]>,
+    /// Force and moment on each, N and N m.
+    pub forces: Vec<[f64; 6]>,
+    pub stored: Stored,
+}
+
 /// Buffers of the internal-force sweep: one list of nodal forces and one energy per chunk.
 #[derive(Debug, Default)]
 pub struct Scratch {
@@ -21,6 +31,8 @@ pub struct Scratch {
     pub(crate) outcomes: Vec<Outcome>,
     /// Of shells with finite rotations, one of each element.
     pub(crate) shells: Vec<ShellForces>,
+    /// Of shells with one point, one of each chunk.
+    pub(crate) shell_chunks: Vec<ShellChunk>,
 }
 
 impl Scratch {

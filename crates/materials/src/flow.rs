@@ -348,6 +348,10 @@ macro_rules! flows {
             ) -> $crate::PlaneStressResponse {
                 $crate::plane_stress::update(self, strain, dt, history)
             }
+
+            fn side_by_side(&self, dt: f64, points: &mut $crate::PlaneStressPoints) {
+                $crate::side_by_side::update(self, dt, points);
+            }
         }
     };
 }

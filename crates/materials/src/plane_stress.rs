@@ -11,16 +11,17 @@
 
 use std::fmt::Debug;
 
+use crate::PlaneStressPoints;
 use crate::hardening::Hardening;
 
 /// Place of ε_p in the history.
 pub(crate) const PLASTIC: usize = 3;
 
 /// Iterations on the strain across, at most; three to five are usual.
-const ITERATIONS: usize = 50;
+pub(crate) const ITERATIONS: usize = 50;
 
 /// Stress across that is rounding, over the trial stress.
-const ROUNDING: f64 = 1e-14;
+pub(crate) const ROUNDING: f64 = 1e-14;
 
 /// What a law answers under plane stress at one point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,6 +58,9 @@ pub trait PlaneStress: Debug + Send + Sync {
         dt: f64,
         history: (&[f64], &mut [f64]),
     ) -> PlaneStressResponse;
+
+    /// The same at several points side by side, without the tangent.
+    fn side_by_side(&self, dt: f64, points: &mut PlaneStressPoints);
 }
 
 /// See [`PlaneStress::stress`].

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use carom_algebra::unknowns::Kind;
 use carom_arlequin::Row;
-use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind, Reduction};
+use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind, Reduction, Rotations};
 use carom_contact::{Initial, Integration, Law, Obstacle, Sliding};
 use carom_mesh::{Mesh, Surface};
 use carom_schemes::Scheme;
@@ -354,11 +354,13 @@ impl ModelTarget {
 
 impl Model {
     /// Whether it has a pressure or traction, a motion in time, damping, a static stage, friction, mortar, a body at finite
-    /// strain, an obstacle that moves, or a scheme with forces between two states: the energy of its steps is then balanced
+    /// strain or with finite rotations, an obstacle that moves, or a scheme with forces between two states: the energy of its steps is then balanced
     /// by works, not by the identity of the scheme, and a step of fixed size that fails is taken in halves.
     pub fn is_nonlinear(&self) -> bool {
-        let finite =
-            |body: &ModelBody| body.rigid.is_some() || body.spec.material.finite().is_some();
+        let finite = |body: &ModelBody| {
+            let turns = body.spec.kinematics.rotations() == Some(Rotations::Finite);
+            body.rigid.is_some() || body.spec.material.finite().is_some() || turns
+        };
         self.nonlinear.asks()
             || self.bodies.iter().any(finite)
             || self.bodies.iter().any(damped)

@@ -99,6 +99,7 @@ mod mass_on_stop;
 mod modal_damping;
 mod modes;
 mod oblique_bar;
+mod one_point_shells;
 mod orbiting_mass;
 mod order;
 mod order_features;
@@ -247,6 +248,7 @@ registry! {
     modal_damping
     modes
     oblique_bar
+    one_point_shells
     orbiting_mass
     order
     order_features

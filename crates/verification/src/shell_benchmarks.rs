@@ -19,7 +19,7 @@ use carom_materials::Elastic;
 use crate::Error;
 use crate::beams::held;
 use crate::check::{Check, Row, Size};
-use crate::shells::{Grid, Held, deflection, force, shell};
+use crate::shells::{Grid, Held, Loaded, force, shell};
 
 fn material(young: f64, poisson: f64, density: f64) -> Elastic {
     Elastic {
@@ -34,7 +34,7 @@ fn radians(degrees: f64) -> f64 {
 }
 
 /// A quarter: x across, y along, z up.
-fn roof(grid: &Grid) -> Result<f64, Error> {
+pub(crate) fn roof(grid: &Grid) -> Result<Loaded, Error> {
     let (radius, half, thickness) = (25.0, 25.0, 0.25);
     let mesh = grid.mesh(&|s, t| {
         let angle = radians(40.0) * s;
@@ -58,11 +58,11 @@ fn roof(grid: &Grid) -> Result<f64, Error> {
         ..Held::default()
     };
     let edge = grid.node(grid.n, grid.m);
-    Ok(-deflection((mesh, made), load, edge)?[2])
+    Ok(Loaded::new((mesh, made), load, edge, [0.0, 0.0, -1.0]))
 }
 
 /// An eighth: the force at x = 0, y = 0, z = R.
-fn cylinder(grid: &Grid) -> Result<f64, Error> {
+pub(crate) fn cylinder(grid: &Grid) -> Result<Loaded, Error> {
     let (radius, half, thickness) = (300.0, 300.0, 3.0);
     let mesh = grid.mesh(&|s, t| {
         let angle = radians(90.0) * s;
@@ -85,11 +85,11 @@ fn cylinder(grid: &Grid) -> Result<f64, Error> {
         loads: vec![force(vec![point], [0.0, 0.0, -0.25])],
         ..Held::default()
     };
-    Ok(-deflection((mesh, made), load, point)?[2])
+    Ok(Loaded::new((mesh, made), load, point, [0.0, 0.0, -1.0]))
 }
 
 /// A quarter: forces along x outward and along y inward.
-fn hemisphere(grid: &Grid) -> Result<f64, Error> {
+pub(crate) fn hemisphere(grid: &Grid) -> Result<Loaded, Error> {
     let radius = 10.0;
     let mesh = grid.mesh(&|s, t| {
         let (around, up) = (radians(90.0) * s, radians(72.0) * t);
@@ -118,11 +118,16 @@ fn hemisphere(grid: &Grid) -> Result<f64, Error> {
         ],
         ..Held::default()
     };
-    Ok(deflection((mesh, made), load, first)?[0])
+    Ok(Loaded::new((mesh, made), load, first, [1.0, 0.0, 0.0]))
 }
 
 /// Clamped at x = 0, where its width is along y; at the end it is along z. The displacement along the force, in the plane (z) or across (y).
-fn twisted(grid: &Grid, thickness: f64, load: f64, axis: usize) -> Result<f64, Error> {
+pub(crate) fn twisted(
+    grid: &Grid,
+    thickness: f64,
+    load: f64,
+    axis: usize,
+) -> Result<Loaded, Error> {
     let mesh = grid.mesh(&|s, t| {
         let (angle, across) = (radians(90.0) * s, 1.1 * (t - 0.5));
         [12.0 * s, across * angle.cos(), across * angle.sin()]
@@ -133,19 +138,20 @@ fn twisted(grid: &Grid, thickness: f64, load: f64, axis: usize) -> Result<f64, E
         Rotations::Small,
         material(2.9e7, 0.22, 1.0),
     )?;
-    let mut direction = [0.0; 3];
-    direction[axis] = load;
+    let mut along = [0.0; 3];
+    along[axis] = 1.0;
+    let direction = along.map(|along| load * along);
     let end = grid.node(grid.n, grid.m / 2);
     let load = Held {
         supports: vec![held(grid.column(0), [true; 3], [true; 3])],
         loads: vec![force(vec![end], direction)],
         ..Held::default()
     };
-    Ok(deflection((mesh, made), load, end)?[axis])
+    Ok(Loaded::new((mesh, made), load, end, along))
 }
 
 /// Clamped at the start of the smaller arc; the force across at the end of the larger.
-fn hook(grid: &Grid) -> Result<f64, Error> {
+pub(crate) fn hook(grid: &Grid) -> Result<Loaded, Error> {
     let lengths = [14.0 * radians(60.0), 46.0 * radians(150.0)];
     let mesh = grid.mesh(&|s, t| {
         let along = s * (lengths[0] + lengths[1]);
@@ -179,7 +185,7 @@ fn hook(grid: &Grid) -> Result<f64, Error> {
         ..Held::default()
     };
     let end = grid.node(grid.n, grid.m / 2);
-    Ok(deflection((mesh, made), load, end)?[2])
+    Ok(Loaded::new((mesh, made), load, end, [0.0, 0.0, 1.0]))
 }
 
 /// What is computed on meshes of growing fineness.
@@ -187,7 +193,7 @@ struct Problem<'a> {
     name: &'a str,
     published: f64,
     meshes: &'a [[usize; 2]],
-    solve: &'a dyn Fn(&Grid) -> Result<f64, Error>,
+    solve: &'a dyn Fn(&Grid) -> Result<Loaded, Error>,
 }
 
 impl Problem<'_> {
@@ -197,7 +203,7 @@ impl Problem<'_> {
         for (k, mesh) in self.meshes.iter().enumerate() {
             let [n, m] = mesh.map(|count| finer * count);
             let grid = Grid { n, m, triangles };
-            let found = (self.solve)(&grid)?;
+            let found = (self.solve)(&grid)?.deflection()?;
             let name = format!("{}, {kind} {n} x {m}: displacement", self.name);
             rows.push(match k + 1 == self.meshes.len() {
                 true => Row::relative(name, found, self.published, part).published(),

@@ -1,6 +1,6 @@
 //! Meshes, bodies and static stages of shells.
 
-use carom_bodies::{Kinematics, MassKind, Rotations, ShellSection};
+use carom_bodies::{Formulation, Kinematics, MassKind, Rotations, ShellSection};
 use carom_dynamics::{Driver, Model, ModelBody, NodalLoad, Preload, Support, System};
 use carom_elements::Kind;
 use carom_materials::Elastic;
@@ -161,4 +161,53 @@ pub(crate) fn deflection(
     let mut found = [0.0; 3];
     loaded(made, held, 1, &mut |_, driver| found = moved(driver, node))?;
     Ok(found)
+}
+
+/// A shell with its loads, and the displacement that is asked for.
+pub(crate) struct Loaded {
+    pub mesh: Mesh,
+    pub made: ModelBody,
+    pub held: Held,
+    pub node: u32,
+    /// Direction of the displacement.
+    pub along: [f64; 3],
+}
+
+impl Loaded {
+    pub(crate) fn new(
+        (mesh, made): (Mesh, ModelBody),
+        held: Held,
+        node: u32,
+        along: [f64; 3],
+    ) -> Loaded {
+        Loaded {
+            mesh,
+            made,
+            held,
+            node,
+            along,
+        }
+    }
+
+    /// At the end of a static stage, m.
+    pub(crate) fn deflection(self) -> Result<f64, Error> {
+        let found = deflection((self.mesh, self.made), self.held, self.node)?;
+        Ok(found
+            .iter()
+            .zip(&self.along)
+            .map(|(u, along)| u * along)
+            .sum())
+    }
+
+    /// The same with one point and finite rotations, under a small part of the loads.
+    pub(crate) fn with_one_point(mut self, hourglass: f64, part: f64) -> Result<f64, Error> {
+        if let Kinematics::Shell(section) = &mut self.made.spec.kinematics {
+            section.rotations = Rotations::Finite;
+        }
+        self.made.spec.formulation = Formulation::Reduced { hourglass };
+        let loads = self.held.loads.iter_mut();
+        loads.for_each(|load| load.force = load.force.map(|force| part * force));
+        self.held.gravity = self.held.gravity.map(|gravity| part * gravity);
+        Ok(self.deflection()? / part)
+    }
 }

@@ -6,6 +6,8 @@ use carom_elements::Kind;
 use carom_mesh::{ElementId, Mesh};
 
 use super::layers::Layers;
+use super::one_point::{Centre, Hourglass};
+use super::pass::Pass;
 use super::products::{Configuration, MOST};
 use super::section::ElasticSection;
 use super::shares::{self, PointWeights};
@@ -59,7 +61,9 @@ impl Shell {
             starts: vec![0],
             smallest: f64::INFINITY,
             layers: None,
+            pass: None,
         };
+        let mut centres = Vec::new();
         let elastic = ElasticSection::new(&material, section.thickness);
         let law = spec.material.plane_stress();
         shell.layers = law.map(|law| Layers::new(law, section.thickness, section.layers));
@@ -82,7 +86,14 @@ impl Shell {
                 reference,
                 elastic,
                 weights: PointWeights::default(),
+                hourglass: None,
             };
+            if let Formulation::Reduced { hourglass } = spec.formulation {
+                let centre = Centre::new(&reference, &along);
+                element.form = element.form.with_one_point(&reference, &centre);
+                element.hourglass = Some(Hourglass::new(&elastic, centre.area, hourglass));
+                centres.push(centre);
+            }
             let at_points = PointWeights::new(&element.form.shapes, [alpha, delta]);
             element.weights = at_points.checked(&shell.name, cell)?;
             shell.refuse_negative_mass(&element, (cell, nodes))?;
@@ -104,6 +115,9 @@ impl Shell {
                 shell.starts.push(shell.stiffness.len());
             }
             shell.elements.push(element);
+        }
+        if !centres.is_empty() {
+            shell.pass = Some(Pass::new(&shell.elements, &centres));
         }
         Ok(shell)
     }
@@ -271,8 +285,16 @@ pub(super) fn check(mesh: &Mesh, spec: &BodySpec, section: &ShellSection) -> Res
             kinematics: spec.kinematics.name(),
         });
     }
-    if spec.formulation != Formulation::Full {
-        return Err(Error::LinearFormulation { body: body() });
+    match spec.formulation {
+        Formulation::Full => {}
+        Formulation::Reduced { .. } if section.rotations == Rotations::Finite => {}
+        Formulation::Reduced { .. } => {
+            return Err(Error::ShellRefused {
+                body: body(),
+                what: "one point with small rotations",
+            });
+        }
+        Formulation::BBar => return Err(Error::LinearFormulation { body: body() }),
     }
     if section.rotations == Rotations::Finite && section.offset != 0.0 {
         return Err(Error::ShellRefused {
@@ -288,6 +310,12 @@ pub(super) fn check(mesh: &Mesh, spec: &BodySpec, section: &ShellSection) -> Res
                 found: kind.table().name,
                 kinematics: spec.kinematics.name(),
                 dim: Kinematics::dim(spec.kinematics),
+            });
+        }
+        if spec.formulation != Formulation::Full && kind != Kind::Quad4 {
+            return Err(Error::NotReduced {
+                body: body(),
+                found: kind.table().name,
             });
         }
     }

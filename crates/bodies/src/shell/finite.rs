@@ -12,10 +12,10 @@ use rayon::prelude::*;
 use super::layers::Layers;
 use super::products::{Configuration, MOST};
 use super::section::STRAINS;
-use super::small::add_product;
+use super::small::{add_product, diagonal};
 use super::strain::Strains;
 use super::{Element, PER_NODE, Shell};
-use crate::scratch::ShellForces;
+use crate::scratch::{Scratch, ShellForces};
 use crate::turning::{balanced, spatial};
 use crate::{Placement, Stored};
 
@@ -75,12 +75,7 @@ impl Element {
         let (end, place, forces, stored) = match flow {
             None => {
                 let (end, strains, place, forces) = self.acting(at);
-                let strain = self.energy(&strains);
-                let stored = Stored {
-                    strain,
-                    ..Stored::default()
-                };
-                (end, place, forces, stored)
+                (end, place, forces, self.stored(&strains))
             }
             Some((layers, old, new)) => {
                 let end = self.now(at.frames, at.u);
@@ -112,8 +107,8 @@ impl Element {
         // what a change of the increment turns in space; a translation stays what it is
         let turns: [Mat3; MOST] =
             std::array::from_fn(|node| spatial(&end.starts[node], &end.increments[node]));
-        for (point, area) in self.form.areas.iter().enumerate() {
-            let found = self.form.derivatives(&place, point);
+        let rows = |place: &Configuration, list: usize| {
+            let found = self.form.derivatives(place, list);
             let mut rows = [[0.0; MOST * PER_NODE]; STRAINS];
             for (row, gradient) in rows.iter_mut().zip(&found) {
                 for (node, [by_place, by_turn]) in gradient.iter().enumerate().take(self.count) {
@@ -123,6 +118,9 @@ impl Element {
                     own[3..].copy_from_slice(by_turn.as_slice());
                 }
             }
+            rows
+        };
+        for (point, area) in self.form.areas.iter().enumerate() {
             let section = match flow {
                 None => self.elastic.tangent(),
                 Some((layers, old)) => {
@@ -131,7 +129,10 @@ impl Element {
                     section
                 }
             };
-            add_product(&rows, &section, *area, &mut k);
+            add_product(&rows(&place, point), &section, *area, &mut k);
+        }
+        for (list, stiffness) in (1..).zip(self.unseen()) {
+            add_product(&rows(&place, list), &diagonal(&stiffness), 1.0, &mut k);
         }
         let to = |(node, part): (usize, usize)| match part {
             0 => Mat3::identity(),
@@ -156,9 +157,13 @@ impl Shell {
         &self,
         at: &Placement,
         new: &mut [f64],
-        scratch: &mut Vec<ShellForces>,
+        scratch: &mut Scratch,
         f: &mut [f64],
     ) -> Stored {
+        if let (Some(pass), None) = (&self.pass, at.from) {
+            return pass.force(self.layers.as_ref(), at, new, (scratch, f));
+        }
+        let scratch = &mut scratch.shells;
         scratch.resize_with(self.elements.len(), ShellForces::default);
         let elements = self.elements.par_iter().with_min_len(ELEMENTS);
         let elements = elements.zip(&mut scratch[..]);

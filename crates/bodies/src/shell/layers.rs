@@ -3,7 +3,7 @@
 //! A point at the height z has the strain ε + z κ under plane stress; N = Σ σ w, M = Σ z σ w over the two points of Gauss in each layer. The rule is exact for
 //! an elastic section, and for one that flows throughout if the number of layers is even; between, the moment errs by 0.24/N² at most with N layers.
 
-use carom_materials::{MAX_KEPT, PlaneStress, PlaneStressResponse};
+use carom_materials::{MAX_KEPT, PlaneStress, PlaneStressPoints, PlaneStressResponse};
 
 use super::section::{AtPoint, STRAINS};
 use crate::Stored;
@@ -38,6 +38,21 @@ impl Layers {
     /// Numbers that are kept of a section.
     pub(super) fn history_len(&self) -> usize {
         self.kept * self.points.len()
+    }
+
+    /// Numbers that are kept of a point.
+    pub(super) fn kept(&self) -> usize {
+        self.kept
+    }
+
+    /// Height and weight of each point, m.
+    pub(super) fn points(&self) -> &[[f64; 2]] {
+        &self.points
+    }
+
+    /// The law at points side by side.
+    pub(super) fn side_by_side(&self, dt: f64, points: &mut PlaneStressPoints) {
+        self.law.side_by_side(dt, points);
     }
 
     fn strain(of: &AtPoint, z: f64) -> [f64; 3] {

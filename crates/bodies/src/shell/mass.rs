@@ -15,7 +15,7 @@ const GYRATION: f64 = 1.0 / 8.0;
 impl Element {
     /// Area of each point times its weight of inertia, m².
     fn inert(&self) -> impl Iterator<Item = f64> + '_ {
-        let points = self.form.areas.iter().zip(&self.weights.inertia);
+        let points = self.form.inert.iter().zip(&self.weights.inertia);
         points.map(|(area, alpha)| area * alpha)
     }
 

@@ -10,8 +10,11 @@
 
 mod build;
 mod finite;
+mod kernel;
 mod layers;
 mod mass;
+mod one_point;
+mod pass;
 mod products;
 mod results;
 mod section;
@@ -32,6 +35,8 @@ pub use self::section::{LAYERS, ShellSection};
 pub use self::surface::{ShellPlate, plates};
 
 use self::layers::Layers;
+use self::one_point::Hourglass;
+use self::pass::Pass;
 use self::products::{Configuration, MOST};
 use self::section::ElasticSection;
 use self::shares::PointWeights;
@@ -56,6 +61,8 @@ struct Element {
     form: Form,
     elastic: ElasticSection,
     weights: PointWeights,
+    /// With one point.
+    hourglass: Option<Hourglass>,
 }
 
 impl Element {
@@ -66,7 +73,7 @@ impl Element {
     }
 
     fn area(&self) -> f64 {
-        self.form.areas.iter().sum()
+        self.form.inert.iter().sum()
     }
 
     /// Area of each point times its weight of internal work, m².
@@ -75,22 +82,34 @@ impl Element {
         points.map(|(area, delta)| area * delta)
     }
 
-    /// Forces and moments per length at all points, times their areas.
+    /// Forces and moments per length at all points, times their areas, and what holds the motions that one point does not see.
     fn weighted(&self, strains: &Strains) -> Strains {
         let mut forces = Strains::default();
         let points = forces.iter_mut().zip(strains).zip(self.working());
         for ((forces, strains), area) in points {
             *forces = self.elastic.forces(strains).map(|force| force * area);
         }
+        if let Some(hourglass) = &self.hourglass {
+            hourglass.force(strains, &mut forces);
+        }
         forces
     }
 
-    /// Strain energy, J.
-    fn energy(&self, strains: &Strains) -> f64 {
+    /// Energies of an elastic section.
+    fn stored(&self, strains: &Strains) -> Stored {
         let points = strains.iter().zip(self.working());
-        points
+        let seen: f64 = points
             .map(|(strains, area)| area * self.elastic.energy(strains))
-            .sum()
+            .sum();
+        let [unseen, hourglass] = match &self.hourglass {
+            Some(hourglass) => hourglass.force(strains, &mut Strains::default()),
+            None => [0.0; 2],
+        };
+        Stored {
+            strain: seen + unseen,
+            hourglass,
+            ..Stored::default()
+        }
     }
 }
 
@@ -108,6 +127,8 @@ pub struct Shell {
     smallest: f64,
     /// Of metal that flows.
     layers: Option<Layers>,
+    /// Of quadrilaterals with one point: elements side by side.
+    pass: Option<Pass>,
 }
 
 impl Shell {
@@ -170,7 +191,7 @@ impl Shell {
             });
         }
         Ok(match (self.turns(), &self.layers) {
-            (true, _) => self.finite_force(at, new, &mut scratch.shells, f),
+            (true, _) => self.finite_force(at, new, scratch, f),
             (false, Some(layers)) => self.small_flow(layers, at, new, (&mut scratch.shells, f)),
             (false, None) => Stored {
                 strain: self.small_force(at, f),
@@ -182,7 +203,8 @@ impl Shell {
     /// Numbers that the layers of an element keep; of triangles some are not used.
     fn kept_of_element(&self) -> usize {
         let layers = self.layers.as_ref();
-        MOST * layers.map_or(0, Layers::history_len)
+        let points = if self.pass.is_some() { 1 } else { MOST };
+        points * layers.map_or(0, Layers::history_len)
     }
 
     /// Numbers that it keeps from one step to the next.

@@ -54,7 +54,8 @@ impl Shell {
                 shear: [0.0; 3],
                 faces: [Mat3::zeros(); 2],
             };
-            let (form, whole) = (&element.form, element.area());
+            let form = &element.form;
+            let whole: f64 = form.areas.iter().sum();
             for (point, area) in form.areas.iter().enumerate() {
                 let strain = &strains[point];
                 let (forces, faces) = match &self.layers {

@@ -45,28 +45,36 @@ impl ShellSection {
     }
 }
 
-/// The elastic stiffness of a section per area: forces and moments per length are linear in the strains.
+/// The elastic stiffness of a section per area: forces and moments per length are linear in the strains. Each list has the factors of a strain on its own
+/// force, of the strain across on it, and of the shear.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ElasticSection {
-    poisson: f64,
-    /// E h/(1 - ν²), N/m.
-    membrane: f64,
-    /// E h³/(12 (1 - ν²)), N m.
-    bending: f64,
-    /// κ G h, N/m.
-    shear: f64,
     /// N/m.
-    drilling: f64,
+    pub membrane: [f64; 3],
+    /// N m.
+    pub bending: [f64; 3],
+    /// κ G h, N/m.
+    pub shear: f64,
+    /// N/m.
+    pub drilling: f64,
 }
 
 impl ElasticSection {
+    /// E h/(1 - ν²), E h³/(12 (1 - ν²)).
     pub(super) fn new(material: &Elastic, thickness: f64) -> ElasticSection {
         let plane = material.young / (1.0 - material.poisson.powi(2));
+        let of = |height: f64| {
+            let own = plane * height;
+            [
+                own,
+                own * material.poisson,
+                own * 0.5 * (1.0 - material.poisson),
+            ]
+        };
         let shear = material.shear_modulus() * thickness;
         ElasticSection {
-            poisson: material.poisson,
-            membrane: plane * thickness,
-            bending: plane * thickness.powi(3) / 12.0,
+            membrane: of(thickness),
+            bending: of(thickness.powi(3) / 12.0),
             shear: SHEAR * shear,
             drilling: DRILLING * shear,
         }
@@ -80,14 +88,16 @@ impl ElasticSection {
         }
     }
 
+    /// Stiffness without stress across, per length: E h, E h³/12 and κ G h.
+    pub(super) fn uniaxial(&self) -> [f64; 3] {
+        let free = |[own, across, _]: [f64; 3]| own - across * across / own;
+        [free(self.membrane), free(self.bending), self.shear]
+    }
+
     /// Forces and moments per length.
     pub(super) fn forces(&self, of: &AtPoint) -> AtPoint {
-        let plane = |stiffness: f64, [x, y, xy]: [f64; 3]| {
-            [
-                stiffness * (x + self.poisson * y),
-                stiffness * (y + self.poisson * x),
-                stiffness * 0.5 * (1.0 - self.poisson) * xy,
-            ]
+        let plane = |[own, across, shear]: [f64; 3], [x, y, xy]: [f64; 3]| {
+            [own * x + across * y, own * y + across * x, shear * xy]
         };
         let n = plane(self.membrane, [of[0], of[1], of[2]]);
         let m = plane(self.bending, [of[3], of[4], of[5]]);

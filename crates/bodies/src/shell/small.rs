@@ -32,6 +32,12 @@ impl Element {
         rows
     }
 
+    /// Diagonals of the stiffness against what one point does not see.
+    pub(super) fn unseen(&self) -> impl Iterator<Item = AtPoint> {
+        let lists = self.hourglass.iter();
+        lists.flat_map(|hourglass| hourglass.diagonals())
+    }
+
     /// K over the unknowns, row-major.
     pub(super) fn stiffness(&self, offset: f64) -> Vec<f64> {
         let n = PER_NODE * self.count;
@@ -39,6 +45,10 @@ impl Element {
         let section = self.elastic.tangent();
         for (point, area) in self.working().enumerate() {
             add_product(&self.rows(point, offset), &section, area, &mut k);
+        }
+        for (list, stiffness) in (1..).zip(self.unseen()) {
+            let section = diagonal(&stiffness);
+            add_product(&self.rows(list, offset), &section, 1.0, &mut k);
         }
         k
     }
@@ -81,6 +91,11 @@ impl Element {
             stored.strain += area * (own.strain + beside);
             stored.hardening += area * own.hardening;
             stored.dissipated += area * own.dissipated;
+        }
+        if let Some(hourglass) = &self.hourglass {
+            let [unseen, own] = hourglass.force(strains, &mut forces);
+            stored.strain += unseen;
+            stored.hourglass += own;
         }
         (forces, stored)
     }
@@ -130,6 +145,11 @@ impl Element {
         }
         out
     }
+}
+
+/// The matrix with this diagonal.
+pub(super) fn diagonal(of: &AtPoint) -> [AtPoint; STRAINS] {
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { of[i] } else { 0.0 }))
 }
 
 /// Adds area · Bᵀ H B to a matrix, row-major.

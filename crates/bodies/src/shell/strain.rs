@@ -12,6 +12,7 @@
 
 use carom_algebra::tensor::{Mat3, Vec3};
 
+use super::one_point::Centre;
 use super::products::{Configuration, MOST, Products, Rows, gradient, pair};
 use super::section::{AtPoint, STRAINS};
 use super::tying;
@@ -29,15 +30,17 @@ pub(super) type AddBlock<'a> = dyn FnMut([(usize, usize); 2], &Mat3) + 'a;
 #[derive(Debug)]
 pub(super) struct Form {
     nodes: usize,
+    /// Of the points; with one point, more that have energy follow.
     rows: Vec<Rows>,
     /// Area of each point, m².
     pub areas: Vec<f64>,
     /// Derivatives of the shape functions at each point by the lengths along its two axes in the reference configuration.
     by: Vec<[[f64; MOST]; 2]>,
-    /// Shape functions at each point.
+    /// Shape functions at each point of the mass, and its area, m².
     pub shapes: Vec<[f64; MOST]>,
+    pub inert: Vec<f64>,
     /// Sums in the reference configuration.
-    start: Strains,
+    pub start: Strains,
 }
 
 impl Form {
@@ -55,6 +58,7 @@ impl Form {
             areas: Vec::new(),
             by: Vec::new(),
             shapes: Vec::new(),
+            inert: Vec::new(),
             start: Strains::default(),
         };
         for point in tying::points(nodes, reference, along, delta) {
@@ -62,7 +66,23 @@ impl Form {
             form.areas.push(point.area);
             form.by.push(point.by);
             form.shapes.push(point.shapes);
+            form.inert.push(point.area);
         }
+        form.start = form.sums(reference);
+        form
+    }
+
+    /// The same with one point.
+    pub(super) fn with_one_point(self, reference: &Configuration, centre: &Centre) -> Form {
+        let (point, rest) = centre.rows();
+        let mut form = Form {
+            rows: std::iter::once(Rows::new(&point.rows))
+                .chain(rest)
+                .collect(),
+            areas: vec![point.area],
+            by: vec![point.by],
+            ..self
+        };
         form.start = form.sums(reference);
         form
     }
@@ -178,7 +198,7 @@ impl Form {
         found
     }
 
-    /// Derivatives of the strains of a point.
+    /// Derivatives of the strains of a point, or of a list that follows.
     pub(super) fn derivatives(&self, of: &Configuration, point: usize) -> [Gradient; STRAINS] {
         std::array::from_fn(|k| {
             let (mut unit, mut by) = ([0.0; STRAINS], Products::default());

@@ -17,12 +17,12 @@ use super::products::{Configuration, DIRECTOR, MOST, Row, gradient};
 use super::section::STRAINS;
 
 /// Shape functions and their derivatives by r and s.
-struct Shapes {
-    n: [f64; MOST],
-    by: [[f64; MOST]; 2],
+pub(super) struct Shapes {
+    pub n: [f64; MOST],
+    pub by: [[f64; MOST]; 2],
 }
 
-fn shapes(nodes: usize, [r, s]: [f64; 2]) -> Shapes {
+pub(super) fn shapes(nodes: usize, [r, s]: [f64; 2]) -> Shapes {
     if nodes == 3 {
         return Shapes {
             n: [1.0 - r - s, r, s, 0.0],
@@ -118,13 +118,13 @@ fn linear_means(
 }
 
 /// The covariant strains at a point: membrane rr, ss, rs; shear r, s.
-struct Covariant {
-    membrane: [Row; 3],
-    shear: [Row; 2],
+pub(super) struct Covariant {
+    pub membrane: [Row; 3],
+    pub shear: [Row; 2],
 }
 
 /// Area over that of the parent cell, and derivatives by the lengths along both axes of a point from those by r and s.
-fn axes(
+pub(super) fn axes(
     reference: &Configuration,
     nodes: usize,
     at: &Shapes,
@@ -141,7 +141,7 @@ fn axes(
 }
 
 /// Strains in the axes of a point from covariant ones; `to`: derivatives along both axes from those by r and s.
-fn local(
+pub(super) fn local(
     nodes: usize,
     (n, by): (&[f64; MOST], &[[f64; MOST]; 2]),
     covariant: &Covariant,
@@ -179,7 +179,7 @@ fn local(
 }
 
 /// x,α·d at a place of the parent cell.
-fn shear_at(nodes: usize, place: [f64; 2], along: usize) -> Row {
+pub(super) fn shear_at(nodes: usize, place: [f64; 2], along: usize) -> Row {
     let at = shapes(nodes, place);
     Row::with_axis(nodes, &at.by[along], (DIRECTOR, &at.n))
 }
@@ -311,7 +311,7 @@ fn relieve(rows: &mut [Row; STRAINS], reference: &Configuration, along: &Vec3, [
 }
 
 /// c_r and c_s of X_d = c_r X_r + c_s X_s + its part across both.
-fn twist(reference: &Configuration) -> [f64; 2] {
+pub(super) fn twist(reference: &Configuration) -> [f64; 2] {
     let sum = |signs: [f64; MOST]| gradient(reference, 4, &signs.map(|sign| 0.25 * sign));
     let along_r = sum([-1.0, 1.0, 1.0, -1.0]);
     let along_s = sum([-1.0, -1.0, 1.0, 1.0]);

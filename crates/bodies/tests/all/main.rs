@@ -14,6 +14,7 @@ mod distortion;
 mod finite;
 mod flowing;
 mod mass;
+mod one_point_shells;
 mod patch;
 mod quadratic;
 mod refusals;

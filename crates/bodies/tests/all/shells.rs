@@ -13,16 +13,16 @@ use carom_materials::{Elastic, J2Plasticity, Law, NeoHooke};
 use carom_mesh::{ElementId, Mesh};
 use carom_testing::Random;
 
-const STEEL: Elastic = Elastic {
+pub(crate) const STEEL: Elastic = Elastic {
     density: 7800.0,
     young: 2e11,
     poisson: 0.3,
 };
 
-const THICKNESS: f64 = 0.02;
+pub(crate) const THICKNESS: f64 = 0.02;
 
 /// Four quadrilaterals around an inner node, or the triangles of their halves; the outer square has the side 1. `bulge`: how far nodes lie out of its plane.
-fn mesh(triangles: bool, bulge: f64) -> (Mesh, Vec<ElementId>) {
+pub(crate) fn mesh(triangles: bool, bulge: f64) -> (Mesh, Vec<ElementId>) {
     let mut mesh = Mesh::new(3);
     let at = [
         [0.0, 0.0],
@@ -52,7 +52,7 @@ fn mesh(triangles: bool, bulge: f64) -> (Mesh, Vec<ElementId>) {
     (mesh, cells)
 }
 
-fn section(rotations: Rotations, offset: f64) -> ShellSection {
+pub(crate) fn section(rotations: Rotations, offset: f64) -> ShellSection {
     ShellSection {
         rotations,
         offset,
@@ -60,7 +60,7 @@ fn section(rotations: Rotations, offset: f64) -> ShellSection {
     }
 }
 
-fn map(rotations: Rotations) -> Unknowns {
+pub(crate) fn map(rotations: Rotations) -> Unknowns {
     let kind = match rotations {
         Rotations::Small => NodeKind::SmallRotations,
         Rotations::Finite => NodeKind::Turning,
@@ -84,7 +84,7 @@ fn force(body: &Body, u: &[f64]) -> (Vec<f64>, f64) {
     (f, energy)
 }
 
-fn placement<'a>(
+pub(crate) fn placement<'a>(
     u: &'a [f64],
     from: Option<&'a [f64]>,
     frames: &'a [Rotation],
@@ -101,7 +101,7 @@ fn placement<'a>(
 }
 
 /// Unknowns of all nodes from their place.
-fn field(mesh: &Mesh, of: &dyn Fn(Vec3) -> [Vec3; 2]) -> Vec<f64> {
+pub(crate) fn field(mesh: &Mesh, of: &dyn Fn(Vec3) -> [Vec3; 2]) -> Vec<f64> {
     let nodes = mesh.nodes.iter();
     let values = nodes.flat_map(|x| of(Vec3::from(*x)));
     values.flat_map(|v| [v.x, v.y, v.z]).collect()
@@ -205,7 +205,7 @@ fn a_warped_shell_turned_by_any_angle_stores_nothing() {
 }
 
 /// A motion of all nodes of size `part`.
-fn random_motion(random: &mut Random, part: f64) -> Vec<f64> {
+pub(crate) fn random_motion(random: &mut Random, part: f64) -> Vec<f64> {
     (0..54).map(|_| part * random.between(-1.0, 1.0)).collect()
 }
 

@@ -75,6 +75,16 @@ impl Builder<'_> {
 
     /// Refuses keys that shells do not take.
     pub(super) fn suits_shells(&mut self, path: &str, body: &Body) {
+        if let Some(Section::Shell(section)) = &body.section
+            && matches!(body.formulation, schema::Formulation::With(_))
+            && section.rotations == schema::Rotations::Small
+        {
+            let message = "shells with one point have finite rotations";
+            let problem = Problem::new(format!("{path}.formulation"), message);
+            self.problems.push(
+                problem.accepted(["section.shell.rotations = \"finite\"", "no `formulation`"]),
+            );
+        }
         if is_shell(body) && body.rigid.is_some() {
             let message = "a rigid body of shells has no cells from which its inertia follows";
             let problem = Problem::new(format!("{path}.rigid"), message);

@@ -100,7 +100,7 @@ pub enum FormulationName {
 #[serde(rename_all = "kebab-case")]
 pub enum FormulationWith {
     /// One-point integration with a stiffness against hourglass modes. For 4-node quadrilaterals and 8-node hexahedra
-    /// of materials at finite strain.
+    /// of materials at finite strain, and for quadrilaterals of shells with finite rotations.
     Reduced(Reduced),
 }
 
@@ -108,7 +108,8 @@ pub enum FormulationWith {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Reduced {
-    /// Factor of the stiffness against hourglass modes.
+    /// Factor of the stiffness against hourglass modes; of shells relative to that of full integration in a parallelogram, so that elastic
+    /// shells take 1.
     #[serde(default = "twentieth")]
     #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))]
     pub hourglass: f64,
