@@ -2,16 +2,21 @@
 
 use carom_algebra::unknowns::Kind;
 use carom_bodies::{BodySpec, Kinematics, Release};
-use carom_dynamics::ModelConstraint;
+use carom_dynamics::{ModelBody, ModelConstraint};
 use carom_mesh::{ElementId, Mesh};
 
+use super::turning::{SMALL_TURNS, any_angle};
 use super::{Builder, plural};
 use crate::error::Problem;
 use crate::schema::{Axis, Body, Hinge};
 
 impl Builder<'_> {
     /// The constraints of a case.
-    pub(super) fn constraints(&mut self, mesh: &Mesh) -> Vec<ModelConstraint> {
+    pub(super) fn constraints(
+        &mut self,
+        mesh: &Mesh,
+        bodies: &[ModelBody],
+    ) -> Vec<ModelConstraint> {
         let case = self.case;
         let turning = self.nodes_with_rotations(mesh);
         let turns = |node: u32| turning.binary_search(&node).is_ok();
@@ -39,6 +44,18 @@ impl Builder<'_> {
                 continue;
             }
             let leads = turns(first);
+            let mut linked: Vec<u32> = nodes.iter().map(|(node, _)| *node).collect();
+            linked.push(first);
+            linked.sort_unstable();
+            if let (true, Some(body)) = (leads, any_angle(mesh, bodies, &linked)) {
+                let name = &body.spec.name;
+                let message = format!(
+                    "a rigid link turns by small angles, and body '{name}' may turn by any"
+                );
+                let problem = Problem::new(format!("{path}.nodes"), message).found(&link.nodes);
+                self.problems.push(problem.accepted(SMALL_TURNS));
+                continue;
+            }
             all.push(ModelConstraint::rigid_link(
                 name, mesh, first, &nodes, leads,
             ));

@@ -39,6 +39,7 @@ mod tied;
 mod ties;
 mod time;
 mod transitions;
+mod turning;
 mod unfit;
 mod zones;
 
@@ -147,7 +148,7 @@ impl Builder<'_> {
         let mut bodies = self.bodies(&mesh, &materials);
         let mut discrete = self.discrete(&mut mesh);
         discrete.extend(self.fluids(&mut mesh));
-        let mut constraints = self.constraints(&mesh);
+        let mut constraints = self.constraints(&mesh, &bodies);
         let turning = self.nodes_with_rotations(&mesh);
         constraints.extend(self.transitions(&mesh, &bodies, &turning));
         let (supports, motions, turns) = self.supports(&mesh);

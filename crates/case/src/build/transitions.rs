@@ -7,6 +7,7 @@ use carom_elements::Kind;
 use carom_mesh::{ElementId, Mesh, Surface};
 
 use super::Builder;
+use super::turning::{SMALL_TURNS, any_angle};
 use crate::error::Problem;
 use crate::schema::TransitionMotion;
 
@@ -47,6 +48,9 @@ impl Builder<'_> {
             };
             let face = self.surface(mesh, &sides, &format!("{path}.face"), given.face);
             let of = (name, given, path.as_str());
+            if self.turns_by_any_angle(mesh, bodies, of, face.as_ref()) {
+                continue;
+            }
             let found = match self.is_edge(mesh, given.end) {
                 true => self.edge_on(mesh, bodies, of, face),
                 false => self.end_on(mesh, turning, of, face),
@@ -62,6 +66,32 @@ impl Builder<'_> {
             ]));
         }
         all
+    }
+
+    /// Refuses ends and faces of bodies that turn by any angle: the rows are those of small turns.
+    fn turns_by_any_angle(
+        &mut self,
+        mesh: &Mesh,
+        bodies: &[ModelBody],
+        (_, given, path): (&str, &Given, &str),
+        face: Option<&Surface>,
+    ) -> bool {
+        let end = mesh.groups.get(given.end);
+        let end = end.map_or(Vec::new(), |group| mesh.group_nodes(group));
+        let face = face.map_or(&[][..], |face| &face.nodes);
+        let [of_end, of_face] = [&end[..], face].map(|nodes| any_angle(mesh, bodies, nodes));
+        let (body, key, found) = match (of_end, of_face) {
+            (Some(body), _) => (body, "end", given.end),
+            (None, Some(body)) => (body, "face", given.face),
+            (None, None) => return false,
+        };
+        let name = &body.spec.name;
+        let message = format!(
+            "a transition holds for small rotations, and body '{name}' may turn by any angle"
+        );
+        let problem = Problem::new(format!("{path}.{key}"), message).found(found);
+        self.problems.push(problem.accepted(SMALL_TURNS));
+        true
     }
 
     /// Whether a name is that of a group of lines.

@@ -11,3 +11,4 @@ mod inputs;
 mod resume;
 mod run;
 mod streams;
+mod thin_cases;
