@@ -115,6 +115,20 @@ impl Contact {
         }
     }
 
+    /// The contact with other faces of the target, by system number; of a surface that faces itself points see what is around them of these
+    /// faces too. `x`: reference coordinates by system number, m.
+    pub fn with_faces(&self, faces: Vec<Face>, x: &[[f64; 3]]) -> Contact {
+        let sight = match self.faces_itself() {
+            true => Some(Sight::new((&self.points, &faces), &faces, x, None)),
+            false => self.sight.clone(),
+        };
+        Contact {
+            target: Target::Surface(faces),
+            sight,
+            ..self.clone()
+        }
+    }
+
     /// Whether the surface faces itself.
     pub fn faces_itself(&self) -> bool {
         self.sight.as_ref().is_some_and(Sight::is_of_itself)

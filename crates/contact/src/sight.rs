@@ -113,11 +113,11 @@ impl Sight {
         }
         let itself = !beside.numbers.is_empty();
         let diagonal = |face: &Face| diagonal(&bounds(face, x));
+        // a point without faces sees nothing
         let size = |k: usize| {
-            let faces = around.of(k).iter();
-            faces.fold(f64::INFINITY, |least, &k| {
-                least.min(diagonal(&secondary[k as usize]))
-            })
+            let sizes = around.of(k).iter();
+            let sizes = sizes.map(|&k| diagonal(&secondary[k as usize]));
+            sizes.reduce(f64::min).unwrap_or(0.0)
         };
         let largest = secondary.iter().chain(target).map(diagonal);
         let largest = largest.fold(0.0, f64::max);

@@ -19,6 +19,8 @@
 //! bare face, within the way of a step before and behind it (the law looks half a step ahead); momentum and energy balance; a run that
 //! is resumed from the bytes of the flight meets the same face, with the same bytes.
 //! Tolerance: rounding, as above.
+//!
+//! Problem 5: the same, with the end of the column and the front of the hammer as one surface that faces itself. The same facts.
 
 use std::sync::Arc;
 
@@ -272,8 +274,9 @@ fn crushed() -> Result<Vec<Row>, Error> {
     ])
 }
 
-/// Problem 4.
-fn struck() -> Result<Vec<Row>, Error> {
+/// Problems 4 and 5, in which one surface faces itself.
+fn struck(itself: bool) -> Result<Vec<Row>, Error> {
+    let name = if itself { "itself" } else { "struck" };
     let mut mesh = bar(4);
     // its corners stay away from the rim of the column, beyond which they would face nothing
     let (start, size) = (
@@ -293,9 +296,15 @@ fn struck() -> Result<Vec<Row>, Error> {
     });
     let cells = group(&mesh, "hammer")?.elements.clone();
     let hammer = BodySpec::new("hammer", cells, Kinematics::Solid, hard);
-    let top = Surface::new(&mesh, group(&mesh, "bar.right")?, &column.cells)?;
-    let face = Surface::new(&mesh, group(&mesh, "hammer.left")?, &hammer.cells)?;
+    let mut top = Surface::new(&mesh, group(&mesh, "bar.right")?, &column.cells)?;
+    let mut face = Surface::new(&mesh, group(&mesh, "hammer.left")?, &hammer.cells)?;
     let front = face.nodes.clone();
+    if itself {
+        top.faces.extend(face.faces);
+        top.nodes.extend(face.nodes);
+        top.nodes.sort_unstable();
+        face = top.clone();
+    }
     let hammer = ModelBody {
         velocity: [-SPEED, 0.0, 0.0],
         ..ModelBody::new(hammer)
@@ -349,36 +358,41 @@ fn struck() -> Result<Vec<Row>, Error> {
     let way = SPEED * 20.0 * STEP;
     let ledger = &state.ledger;
     Ok(vec![
-        Row::near("struck: deleted cells", ledger.deleted as f64, 1.0, 0.0),
+        Row::near(
+            format!("{name}: deleted cells"),
+            ledger.deleted as f64,
+            1.0,
+            0.0,
+        ),
         Row::at_least(
-            "struck: force on the cell when it is deleted, N",
+            format!("{name}: force on the cell when it is deleted, N"),
             at_deletion,
             1.0,
         ),
-        Row::at_least("struck: steps of flight behind it", steps, 100.0),
+        Row::at_least(format!("{name}: steps of flight behind it"), steps, 100.0),
         Row::at_most(
-            "struck: change of the momentum in flight, relative",
+            format!("{name}: change of the momentum in flight, relative"),
             change / flying.abs(),
             ROUNDING,
         ),
         Row::near(
-            "struck: place of the second blow less that of the bare face, ways of a step",
+            format!("{name}: place of the second blow less that of the bare face, ways of a step"),
             (least - 3.0 * EDGE) / way,
             0.0,
             1.0,
         ),
         Row::at_least(
-            "struck: whether a run that is cut in the flight ends in the same bytes",
+            format!("{name}: whether a run that is cut in the flight ends in the same bytes"),
             f64::from(u8::from(is_same)),
             1.0,
         ),
         Row::at_most(
-            "struck: momentum residual, relative",
+            format!("{name}: momentum residual, relative"),
             ledger.largest_momentum_residual / flying.abs(),
             ROUNDING,
         ),
         Row::at_most(
-            "struck: energy residual, relative",
+            format!("{name}: energy residual, relative"),
             ledger.largest_energy_residual / ledger.initial.energy(),
             ROUNDING,
         ),
@@ -397,7 +411,8 @@ pub(crate) const CHECK: Check = Check {
         )?);
         rows.extend(torn()?);
         rows.extend(crushed()?);
-        rows.extend(struck()?);
+        rows.extend(struck(false)?);
+        rows.extend(struck(true)?);
         Ok(rows)
     },
 };

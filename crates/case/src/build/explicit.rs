@@ -67,12 +67,7 @@ impl Builder<'_> {
                 let given = self.case.contact.get(&contact.name);
                 let small =
                     |given: &schema::Contact| matches!(given.sliding, Some(schema::Sliding::Small));
-                let refused = if secondary.as_ref() == Some(&body) {
-                    Some((
-                        "cannot face itself",
-                        "a contact between two bodies or with an obstacle",
-                    ))
-                } else if contact.depth.is_some() {
+                let refused = if contact.depth.is_some() {
                     Some(("has no `depth`", "no `depth`"))
                 } else if given.is_some_and(small) {
                     Some(("cannot be paired once", "sliding = \"finite\""))

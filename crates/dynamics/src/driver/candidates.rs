@@ -7,6 +7,7 @@ use carom_contact::law::Status;
 use carom_nonsmooth::Compliance;
 
 use super::Driver;
+use super::deletion::as_left;
 use super::paired::{approaches, sums_compliances};
 use crate::coulomb::Slip;
 use crate::error::Error;
@@ -111,7 +112,8 @@ impl Driver {
         let chosen = &self.next.interface.watched;
         self.candidates.retain(|&point| {
             let number = system.contact_of(point as usize);
-            let (contact, first) = (&system.contacts[number], system.first_point[number]);
+            let contact = as_left(&self.bared, &system, number);
+            let first = system.first_point[number];
             let takes_part = |other: usize| chosen[first + other];
             !contact.leaves_it((pairing, first), point as usize - first, takes_part)
         });

@@ -5,7 +5,7 @@
 //! gone has no force any more, unless another face is opposite.
 
 use carom_bodies::{Body, Placement};
-use carom_contact::{Contact, Search, Target};
+use carom_contact::{Contact, Search};
 
 use super::Driver;
 use crate::error::Error;
@@ -52,10 +52,7 @@ impl Driver {
         self.bared.resize(system.contacts.len(), None);
         for (number, contact) in system.contacts.iter().enumerate() {
             let faces = system.faces_left(number, &self.state.motion.history);
-            self.bared[number] = faces.map(|faces| Contact {
-                target: Target::Surface(faces),
-                ..contact.clone()
-            });
+            self.bared[number] = faces.map(|faces| contact.with_faces(faces, &system.x));
             if self.bared[number].is_some() {
                 self.search[number] = Search::default();
             }
