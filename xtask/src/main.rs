@@ -3,7 +3,8 @@
 //!
 //! Quick things first: what the repository holds (`files`), the documentation (`docs`), who uses whom (`layers`,
 //! `circles`), format,
-//! lints, pages of the API, one build of the dependencies for all commands (`builds`), then the README's test command.
+//! lints, pages of the API, one build of the dependencies for all commands (`builds`), then the README's test command, and reports in a browser
+//! where one is installed (`page`).
 
 // A tool for the terminal: printing is its work.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
@@ -15,6 +16,7 @@ mod commands;
 mod docs;
 mod files;
 mod layers;
+mod page;
 mod pages;
 mod place;
 
@@ -30,7 +32,7 @@ const DOC: &str = "cargo doc --release --workspace --no-deps";
 /// A named check: what is wrong, one line each, or nothing.
 type Check = (&'static str, fn(&Path) -> Vec<String>);
 
-const CHECKS: [Check; 9] = [
+const CHECKS: [Check; 10] = [
     ("files", files::check),
     ("documentation", docs::check),
     ("layers", layers::check),
@@ -40,6 +42,7 @@ const CHECKS: [Check; 9] = [
     ("pages of the API", |root| command(root, DOC)),
     ("one build for all commands", builds::check),
     ("tests", |root| command(root, TEST)),
+    ("page", page::check),
 ];
 
 fn main() -> ExitCode {

@@ -9,6 +9,12 @@ use carom_elements::Kind;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// A page could not be compressed, which would be a fault of the program.
+    #[error("cannot compress the data of a page: {cause}")]
+    Compression {
+        /// The cause.
+        cause: String,
+    },
     /// The operating system refused: disk full, no permission, a folder standing where a file should be.
     #[error("cannot {action} '{path}': {source}", path = path.display())]
     File {

@@ -14,6 +14,7 @@ pub mod form;
 pub mod history;
 pub mod impacts;
 pub mod modes;
+pub mod page;
 pub mod plot;
 pub mod pvd;
 pub mod report;

@@ -1,7 +1,8 @@
 //! The report: one page for people, in one file that needs no network.
 //!
 //! The page is `templates/report.html`; this file fills it with the summary, the impacts, the figures (inline, so that
-//! they follow the light or dark theme of the reader) and the text of the case.
+//! they follow the light or dark theme of the reader) and the text of the case, and with what its program shows
+//! ([`crate::page`]).
 
 use std::path::Path;
 
@@ -9,7 +10,10 @@ use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 
 use crate::form::{NOTHING, percent};
+use crate::page::anchors::section;
+use crate::page::{Data, PROGRAM, STYLE};
 use crate::plot::{digits, quantity, scientific};
+use crate::results::{BodyQuality, Tile};
 use crate::summary::Summary;
 use crate::{Error, ImpactRow, atomic};
 
@@ -24,6 +28,12 @@ pub struct Report<'a> {
     pub figures: &'a [String],
     /// The text of the case file.
     pub case: &'a str,
+    /// What stands on top.
+    pub tiles: &'a [Tile],
+    /// Quality of the cells of the bodies.
+    pub quality: &'a [BodyQuality],
+    /// What the program of the page shows; a page without has its tables and figures alone.
+    pub data: Option<&'a Data>,
 }
 
 impl Report<'_> {
@@ -40,6 +50,10 @@ impl Report<'_> {
             .cloned()
             .map(Value::from_safe_string)
             .collect();
+        let texts = self.data.map(Data::texts).transpose()?;
+        let [head, block] = texts.unwrap_or_default();
+        let model = self.data.and_then(|data| data.page.model.as_ref());
+        let program = self.data.map(|_| PROGRAM.to_owned());
         let contacts = self.summary.contacts.values();
         let impacts: usize = contacts.map(|contact| contact.impacts).sum();
         let page = environment.get_template("report.html")?.render(context! {
@@ -48,6 +62,16 @@ impl Report<'_> {
             hidden => impacts.saturating_sub(self.impacts.len()),
             figures,
             case => self.case,
+            tiles => Serde(self.tiles),
+            quality => Serde(self.quality),
+            plots => self.data.map(sections).unwrap_or_default(),
+            has_model => model.is_some(),
+            decimated => model.and_then(|model| model.decimated_from),
+            drawn => model.map(|model| model.nodes),
+            head => Value::from_safe_string(head),
+            block => Value::from_safe_string(block),
+            program => program.map(Value::from_safe_string),
+            program_style => Value::from_safe_string(STYLE.to_owned()),
         })?;
         Ok(page)
     }
@@ -61,6 +85,14 @@ impl Report<'_> {
     }
 }
 
+/// The sections of the page that have plots.
+fn sections(data: &Data) -> Vec<&'static str> {
+    let plots = data.page.plots.iter().map(|plot| plot.id);
+    plots
+        .chain(data.page.raster.as_ref().map(|raster| raster.id))
+        .collect()
+}
+
 /// What all pages share: the style and the ways to show a number.
 ///
 /// # Errors
@@ -72,6 +104,7 @@ pub(crate) fn environment() -> Result<Environment<'static>, Error> {
     });
     environment.add_filter("exact", |value: Value| show(&value, exact));
     environment.add_filter("percent", |value: Value| show(&value, percent));
+    environment.add_filter("section", |line: &str| section(line));
     environment.add_filter("bytes", |value: Value| show(&value, bytes));
     environment.add_template("style.css", include_str!("../templates/style.css"))?;
     Ok(environment)

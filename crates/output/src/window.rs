@@ -20,6 +20,7 @@ pub struct PeakOfMean {
     integral: f64,
     /// Steps since the sums were renewed.
     age: usize,
+    mean: f64,
     peak: f64,
     since: f64,
 }
@@ -33,6 +34,7 @@ impl PeakOfMean {
             span: 0.0,
             integral: 0.0,
             age: 0,
+            mean: 0.0,
             peak: 0.0,
             since: 0.0,
         }
@@ -65,8 +67,14 @@ impl PeakOfMean {
             .front()
             .map_or(0.0, |(_, value)| outside * value);
         let mean = (self.integral - before) / self.window;
+        self.mean = mean;
         self.peak = self.peak.max(mean);
         self.since = self.since.max(mean);
+    }
+
+    /// Mean over the window that ends with the last step.
+    pub fn mean(&self) -> f64 {
+        self.mean
     }
 
     /// Largest mean so far; zero if none was positive.

@@ -68,6 +68,11 @@ impl Obstacle {
         translation.map_or([0.0; 3], |translation| translation.at(t).0)
     }
 
+    /// Place (m) at a time in s of the particle that is at `x` (m) at time 0.
+    pub fn moved(&self, x: &[f64; 3], t: f64) -> [f64; 3] {
+        self.motion.at(t).map_or(*x, |pose| pose.forth(x))
+    }
+
     /// Mean velocity in m/s, from one time to another, of the particle that is at x (m) at time `t`; its velocity then
     /// where both are the same. Times in s.
     pub fn mean_velocity(&self, x: &[f64; 3], t: f64, [from, to]: [f64; 2]) -> [f64; 3] {

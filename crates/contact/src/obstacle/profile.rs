@@ -68,6 +68,32 @@ impl Profile {
         }
     }
 
+    /// Places along the curve in its own plane, closed by the first one, m, and the unit vector along the axis: to draw it.
+    pub fn outline(&self) -> (Vec<[f64; 3]>, [f64; 3]) {
+        let n = self.points.len();
+        let [a, b] = self.axes;
+        let place = |c: [f64; 2]| [0, 1, 2].map(|i| self.point[i] + c[0] * a[i] + c[1] * b[i]);
+        let samples = match self.bends.is_empty() {
+            true => 1,
+            false => 2 * SAMPLES,
+        };
+        let along = |sample: usize| {
+            let (k, part) = (sample / samples % n, sample % samples);
+            match part {
+                0 => self.corner(k),
+                _ => {
+                    let angle = self.width(k) * part as f64 / samples as f64;
+                    self.jet(self.points[k][0] + angle)[0]
+                }
+            }
+        };
+        let axis = [0, 1, 2].map(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            a[j] * b[k] - a[k] * b[j]
+        });
+        ((0..=n * samples).map(along).map(place).collect(), axis)
+    }
+
     /// The normal on the left of a direction of the curve, which runs anticlockwise, or on the right: towards the material.
     fn normal(&self, along: [f64; 2]) -> [f64; 2] {
         let sign = match self.side {

@@ -43,6 +43,11 @@ impl RigidSurface {
         }
     }
 
+    /// The faces, their nodes by place in the second list, and the places of the nodes at time 0, m.
+    pub fn faces(&self) -> (&[Face], &[[f64; 3]]) {
+        (&self.faces, &self.x)
+    }
+
     /// Gap over the closest face (the first of equals) of a place x in m; a place beyond the rim faces nothing.
     pub fn distance(&self, x: &[f64; 3]) -> Distance {
         let foot = |item: u32| {

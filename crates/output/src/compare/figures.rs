@@ -2,6 +2,10 @@
 
 use crate::Error;
 use crate::compare::{Comparison, Done};
+use crate::page::Data;
+use crate::page::block::Block;
+use crate::page::draft::{self, Line, draft, line, zipped};
+use crate::page::schema::{Page, Quantity, SCHEMA};
 use crate::plot::{Axis, Curve, Figure, Panel, Role};
 use crate::results::exact::{Polyline, force_curve, motion_curves};
 use crate::results::trace::Trace;
@@ -68,6 +72,46 @@ pub(crate) fn figures(comparison: &Comparison) -> Vec<(&'static str, Result<Stri
         (!figure.panels.is_empty()).then(|| (file, figure.svg()))
     };
     all.into_iter().filter_map(draw).collect()
+}
+
+/// The plots of the page: what the figures show, without their clipping.
+pub(crate) fn page(comparison: &Comparison) -> Data {
+    let done = comparison.variants.iter();
+    let done: Vec<(&str, &Done)> = done
+        .filter_map(|v| Some((v.name.as_str(), v.done()?)))
+        .collect();
+    let end = done.iter().map(|(_, d)| d.summary.time.end);
+    let end = end.fold(0.0, f64::max);
+    let all = [
+        ("contact force", "N", forces(comparison, &done, end)),
+        ("displacement", "m", motions(comparison, &done, end, 0)),
+        ("velocity", "m/s", motions(comparison, &done, end, 1)),
+        ("energy", "J", energies(&done)),
+    ];
+    let mut drafts = Vec::new();
+    for (quantity, unit, parts) in all {
+        for (title, curves, exact) in parts.iter().filter(|(_, curves, _)| !curves.is_empty()) {
+            let exact = exact.iter();
+            let mut lines: Vec<Line> = exact.map(|c| line("exact", "exact", zipped(c))).collect();
+            let computed = curves.iter();
+            lines.extend(computed.map(|(name, c)| line(*name, "computed", zipped(c))));
+            drafts.push(draft("plot-comparison", title, (quantity, unit), lines));
+        }
+    }
+    let mut block = Block::default();
+    let page = Page {
+        schema: SCHEMA,
+        abscissa: Quantity {
+            name: "time".to_owned(),
+            unit: "s",
+        },
+        end,
+        events: Vec::new(),
+        plots: draft::plots(drafts, &mut block),
+        raster: None,
+        model: None,
+    };
+    Data { page, block }
 }
 
 /// The curves of the variants that have one.

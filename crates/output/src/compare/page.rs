@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use minijinja::{Value, context};
 
-use crate::compare::figures::figures;
+use crate::compare::figures::{figures, page};
 use crate::compare::{Comparison, Standard, columns};
+use crate::page::{PROGRAM, STYLE};
 use crate::report::environment;
 use crate::table::{Table, write_csv};
 use crate::{Error, Folder, atomic};
@@ -45,6 +46,7 @@ impl Comparison {
             include_str!("../../templates/comparison.html"),
         )?;
         let table = self.table();
+        let [head, block] = page(self).texts()?;
         let variants: Vec<Value> = self
             .variants
             .iter()
@@ -79,6 +81,10 @@ impl Comparison {
                 heads => inner(&table.heads),
                 variants,
                 window,
+                head => Value::from_safe_string(head),
+                block => Value::from_safe_string(block),
+                program => Value::from_safe_string(PROGRAM.to_owned()),
+                program_style => Value::from_safe_string(STYLE.to_owned()),
                 version => env!("CARGO_PKG_VERSION"),
                 figures => figures.into_iter().map(Value::from_safe_string).collect::<Vec<_>>(),
             })?;

@@ -5,11 +5,15 @@ use std::collections::BTreeMap;
 use carom_contact::{Contact as Pair, Integration};
 use carom_dynamics::{ContactRecord, Impact, Ledger, System};
 
-use crate::plot::model_figure;
+use crate::plot::{Logarithmic, model_figure};
 use crate::results::costs::{counts, courant, newton, timings};
 use crate::results::exact;
+use crate::results::film::film;
 use crate::results::impacts::ContactTotals;
 use crate::results::lines::{Evidence, judge};
+use crate::results::page::quality::qualities;
+use crate::results::page::tiles::tiles;
+use crate::results::page::{self, Sources};
 use crate::results::reduced;
 use crate::results::totals::Last;
 use crate::results::{Comparison, Ending, LevelSettings, Results};
@@ -34,14 +38,25 @@ impl Results {
 /// Writes figures, report and summary. Everything is tried; the first error is returned.
 fn conclude(mut results: Results, ending: &Ending) -> Result<Summary, Error> {
     let mut errors = Vec::new();
-    let figures = draw(&mut results, &mut errors);
-    keep(results.filtered.write(&mut results.folder), &mut errors);
+    let (figures, spectra) = draw(&mut results, &mut errors);
+    let filtered = keep(results.filtered.write(&mut results.folder), &mut errors);
     let report = keep(results.folder.file("report.html"), &mut errors);
     let path = keep(results.folder.file("summary.json"), &mut errors);
     let cause = ending.unfinished.clone();
     let mut summary = summary(&results, ending, cause.or_else(|| first(&errors)));
     if let Some(path) = report {
+        let (of_cells, quality) = qualities(&results.system);
+        let sources = Sources {
+            results: &results,
+            filtered: filtered.as_deref().unwrap_or_default(),
+            spectra: spectra.as_ref(),
+            momentum: summary.momentum.size,
+        };
+        let data = page::data(&sources, &of_cells);
         let report = Report {
+            tiles: &tiles(&results, &summary),
+            quality: &quality,
+            data: Some(&data),
             summary: &summary,
             impacts: &results.impacts.told.rows,
             figures: &figures,
@@ -69,8 +84,8 @@ fn keep<T>(outcome: Result<T, Error>, errors: &mut Vec<Error>) -> Option<T> {
     outcome.map_err(|error| errors.push(error)).ok()
 }
 
-/// Writes the figures; returns those that could be drawn.
-fn draw(results: &mut Results, errors: &mut Vec<Error>) -> Vec<String> {
+/// Writes the figures; returns those that could be drawn, and the response spectra.
+fn draw(results: &mut Results, errors: &mut Vec<Error>) -> (Vec<String>, Option<Logarithmic>) {
     let reference = results.settings.reference.as_ref();
     let system = &results.system;
     let model = results.settings.zoning.as_ref().map(|zoning| {
@@ -81,14 +96,15 @@ fn draw(results: &mut Results, errors: &mut Vec<Error>) -> Vec<String> {
     let drawn = results
         .curves
         .draw(reference, (results.last.time, results.is_static()));
-    let film = results.film.draw(system);
-    let film = film.map(|figure| ("plots/film.svg", figure));
+    let film = film(system, &results.stills).map(|figure| ("plots/film.svg", figure));
     let instants = results.instants.draw(system);
     let instants = instants.map(|figure| ("plots/largest-forces.svg", figure));
     let spectra = keep(results.spectra.write(&mut results.folder), errors).flatten();
-    let spectra = spectra.map(|figure| ("plots/spectra.svg", figure.svg()));
+    let drawn_spectra = spectra
+        .as_ref()
+        .map(|figure| ("plots/spectra.svg", figure.svg()));
     let drawn = model.into_iter().chain(drawn).chain(film);
-    let drawn = drawn.chain(instants).chain(spectra);
+    let drawn = drawn.chain(instants).chain(drawn_spectra);
     let mut figures = Vec::new();
     for (name, figure) in drawn {
         let Some(svg) = keep(figure, errors) else {
@@ -101,7 +117,7 @@ fn draw(results: &mut Results, errors: &mut Vec<Error>) -> Vec<String> {
         );
         figures.push(svg);
     }
-    figures
+    (figures, spectra)
 }
 
 fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Summary {

@@ -96,6 +96,32 @@ impl Curves {
         self.traces = kept;
     }
 
+    /// Displacement, velocity and acceleration of each sensor.
+    pub(crate) fn motions(&self) -> &[[Trace; 3]] {
+        &self.traces.motions
+    }
+
+    /// Residual of the balance of energy, J.
+    pub(crate) fn residual(&self) -> &Trace {
+        &self.traces.residual
+    }
+
+    /// The energies that are there, J, by name.
+    pub(crate) fn energies(&self) -> Vec<(&'static str, &Trace)> {
+        let traces = &self.traces;
+        let own = [
+            ("kinetic", &traces.kinetic),
+            ("strain", &traces.strain),
+            ("total", &traces.total),
+            ("dissipated by scheme and contact", &traces.dissipated),
+        ];
+        let balanced = traces.balanced.points() != traces.total.points();
+        let balanced = balanced.then_some(("balanced by the scheme", &traces.balanced));
+        let there = |(_, trace): &(&str, &Trace)| trace.points().iter().any(|p| p.1 != 0.0);
+        let further = FURTHER.into_iter().zip(&traces.further).filter(there);
+        own.into_iter().chain(balanced).chain(further).collect()
+    }
+
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
         let (t, motion, balance) = (report.time, &state.motion, &report.balance);
         let kept = &mut self.traces;

@@ -24,6 +24,29 @@ pub(crate) struct Filtered {
     every: Option<f64>,
 }
 
+/// An acceleration of a probe, raw or behind a filter.
+#[derive(Debug)]
+pub(crate) struct FilteredCurve {
+    /// Probe, kind of acceleration and direction.
+    pub(crate) title: String,
+    /// `raw`, or the name of the filter.
+    pub(crate) name: String,
+    /// Class of the filter, Hz.
+    pub(crate) filter: Option<u32>,
+    /// s, m/s².
+    pub(crate) points: Vec<(f64, f64)>,
+}
+
+impl FilteredCurve {
+    /// Its role in a plot.
+    pub(crate) fn role(&self) -> &'static str {
+        match self.filter {
+            None => "computed",
+            Some(_) => "filtered",
+        }
+    }
+}
+
 /// Names of the accelerations of a probe that are written; whether each has that of the frame.
 fn kinds(probe: &Probe) -> impl Iterator<Item = (&'static str, bool)> {
     let own = probe.acceleration.then_some(("acceleration", false));
@@ -79,20 +102,32 @@ impl Filtered {
         }
     }
 
-    /// Writes `filtered.csv`, if a probe has a filter and there are two states.
+    /// Writes `filtered.csv`, if a probe has a filter and there are two states; returns its columns, each raw one before those behind its
+    /// filters.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub(crate) fn write(&mut self, folder: &mut Folder) -> Result<(), Error> {
+    pub(crate) fn write(&mut self, folder: &mut Folder) -> Result<Vec<FilteredCurve>, Error> {
         let (Some(first), Some(last)) = (self.times.first(), self.times.last()) else {
-            return Ok(());
+            return Ok(Vec::new());
         };
         let step = (last - first) / (self.times.len().max(2) - 1) as f64;
         if step <= 0.0 {
-            return Ok(());
+            return Ok(Vec::new());
         }
         let first = *first;
         let (mut names, mut columns) = (vec![column(&["time"], "s")], Vec::new());
+        let mut curves = Vec::new();
+        let curve = |title: &str, filter: Option<u32>, samples: &[f64]| FilteredCurve {
+            title: title.to_owned(),
+            name: filter.map_or("raw".to_owned(), |class| format!("CFC {class}")),
+            filter,
+            points: samples
+                .iter()
+                .enumerate()
+                .map(|(k, a)| (first + k as f64 * step, *a))
+                .collect(),
+        };
         let mut histories = self.histories.drain(..);
         for (probe, sensors) in &self.probes {
             for (kind, _) in kinds(probe) {
@@ -101,6 +136,8 @@ impl Filtered {
                     let raw = histories.next().unwrap_or_default();
                     let raw = sampled(&self.times, raw, step);
                     names.push(column(&["probe", &probe.name, &what], "m/s²"));
+                    let title = format!("Probe {}: {what}", probe.name);
+                    curves.push(curve(&title, None, &raw));
                     columns.push(raw.clone());
                     for class in &probe.filters {
                         // cases with longer steps are refused
@@ -109,8 +146,9 @@ impl Filtered {
                         };
                         let mut samples = raw.clone();
                         filter.apply(&mut samples);
-                        let class = format!("cfc {class}");
-                        names.push(column(&["probe", &probe.name, &what, &class], "m/s²"));
+                        let name = format!("cfc {class}");
+                        names.push(column(&["probe", &probe.name, &what, &name], "m/s²"));
+                        curves.push(curve(&title, Some(*class), &samples));
                         columns.push(samples);
                     }
                 }
@@ -132,7 +170,8 @@ impl Filtered {
                 .collect();
             rows.push(cells.iter().copied())?;
         }
-        rows.finish()
+        rows.finish()?;
+        Ok(curves)
     }
 }
 

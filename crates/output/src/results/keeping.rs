@@ -8,14 +8,14 @@ use serde::Deserialize;
 
 use super::due::Due;
 use super::{
-    Results, discrete, exact, fields, figures, film, histories, impacts, instants, totals,
+    Results, discrete, exact, fields, figures, histories, impacts, instants, page, stills, totals,
 };
 use crate::checkpoint::{self, Checkpoint};
 use crate::results::Settings;
 use crate::{Error, Folder};
 
-/// What the results have gathered: bytes of the list of files, histories, impacts, fields, figures, film, instants of largest forces,
-/// springs and dashpots, spectra, filtered accelerations, errors against the exact solution, totals, wall time of the run.
+/// What the results have gathered: bytes of the list of files, histories, impacts, fields, figures, kept instants, instants of largest forces,
+/// springs and dashpots, spectra, filtered accelerations, series and statuses of the page, errors against the exact solution, totals, wall time of the run.
 #[derive(Deserialize)]
 struct Gathered(
     u64,
@@ -23,11 +23,13 @@ struct Gathered(
     impacts::Kept,
     Option<fields::Sent>,
     figures::Traces,
-    film::Film,
+    stills::Kept,
     Vec<instants::Instant>,
     discrete::DiscretePeaks,
     Vec<Vec<Vec<[f64; 2]>>>,
     (Vec<f64>, Vec<Vec<f64>>),
+    page::series::Series,
+    page::raster::RasterOf,
     Option<exact::Errors>,
     totals::Totals,
     Duration,
@@ -51,11 +53,13 @@ impl Results {
             impacts,
             sent,
             traces,
-            film,
+            kept,
             instants,
             discrete,
             spectra,
             filtered,
+            series,
+            raster,
             errors,
             totals,
             wall,
@@ -83,11 +87,13 @@ impl Results {
             (Some(histories), Some(impacts), sent.unwrap_or_default()),
         )?;
         results.curves.go_on(traces);
-        results.film = film;
+        results.stills.go_on(kept);
         results.instants.go_on(instants);
         results.discrete = discrete;
         results.spectra.go_on(spectra);
         results.filtered.go_on(filtered);
+        results.series.series = series;
+        results.raster.go_on(raster);
         if let (Some(comparison), Some(errors)) = (&mut results.comparison, errors) {
             comparison.errors = errors;
         }
@@ -123,11 +129,13 @@ impl Results {
             self.impacts.keep()?,
             fields.transpose()?,
             self.curves.kept(),
-            &self.film,
+            self.stills.settled(&self.system),
             self.instants.kept(),
             &self.discrete,
             self.spectra.kept(),
             self.filtered.kept(),
+            &self.series.series,
+            &self.raster,
             self.comparison.as_ref().map(|c| &c.errors),
             &self.totals,
             self.earlier + self.begin.elapsed(),

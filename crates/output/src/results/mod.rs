@@ -24,10 +24,12 @@ mod instants;
 mod keeping;
 mod lines;
 pub(crate) mod outlines;
+pub(crate) mod page;
 mod reduced;
 pub(crate) mod sensor;
 mod settings;
 mod spectra;
+pub(crate) mod stills;
 mod totals;
 pub(crate) mod trace;
 mod zoning;
@@ -43,17 +45,21 @@ use due::Due;
 use exact::Comparison;
 use fields::FieldOutput;
 use figures::Curves;
-use film::Film;
 use filtered::Filtered;
 use histories::Histories;
 use impacts::Impacts;
 use instants::Instants;
+use page::raster::RasterOf;
+use page::series::SeriesOf;
 use sensor::ContactPoint;
 
+pub use page::quality::BodyQuality;
+pub use page::tiles::Tile;
 pub use settings::{
     Checkpoints, Ending, Fields, LevelSettings, Probe, Reference, Settings, Spectrum,
 };
 use spectra::Spectra;
+use stills::Stills;
 use totals::{Last, Totals};
 pub use zoning::Zoning;
 
@@ -70,7 +76,9 @@ pub struct Results {
     impacts: Impacts,
     fields: Option<FieldOutput>,
     curves: Curves,
-    film: Film,
+    stills: Stills,
+    series: SeriesOf,
+    raster: RasterOf,
     instants: Instants,
     discrete: DiscretePeaks,
     spectra: Spectra,
@@ -123,6 +131,7 @@ impl Results {
         let curves = Curves::new(&system, &settings, point.as_ref(), &probes);
         let spectra = Spectra::new(&settings, &probes);
         let filtered = Filtered::new(&settings, &probes);
+        let series = SeriesOf::new(&system, &probes);
         let histories =
             Histories::create(&mut folder, &columns, (&system, &settings), (probes, kept))?;
         let impacts = match told {
@@ -140,7 +149,9 @@ impl Results {
         };
         Ok(Results {
             curves,
-            film: Film::new(settings.end),
+            stills: Stills::new(&system, settings.end),
+            series,
+            raster: RasterOf::new(&system, settings.end),
             instants: Instants::new(&system, &settings.levels),
             discrete: DiscretePeaks::default(),
             spectra,
@@ -174,7 +185,10 @@ impl Results {
         self.histories.push(&self.system, (state, report), point)?;
         self.impacts.take(&self.system, state, report)?;
         self.curves.push(&self.system, state, report);
-        self.film.push(&self.system, state);
+        self.stills.push(&self.system, state, report);
+        self.series
+            .push(&self.system, (state, report), &self.impacts.told.contacts);
+        self.raster.push(&self.system, state, report);
         self.instants.push(&self.system, state, report);
         self.discrete.push(&self.system, state);
         self.spectra.push(&self.system, state, report);
@@ -219,7 +233,7 @@ impl Results {
             velocities: velocities(&self.system, &state.motion.v),
             closed: (0..self.system.contacts.len()).map(forces).collect(),
         };
-        self.film.finish(&self.system, state);
+        self.stills.finish(&self.system, state);
         let outcomes = [
             self.histories.finish(),
             self.impacts.finish(&self.system, state),

@@ -124,6 +124,11 @@ impl Outlines {
         nodes
     }
 
+    /// Nodes in turn around each cell or face with an area, and its cell among those of all bodies.
+    pub(crate) fn patches(&self) -> impl Iterator<Item = (&[u32], usize)> {
+        self.patches.iter().map(|(nodes, cell)| (&nodes[..], *cell))
+    }
+
     /// Whether there are cells or faces with an area.
     pub(crate) fn has_patches(&self) -> bool {
         !self.patches.is_empty()
@@ -177,7 +182,7 @@ fn mirror(frame: &mut Frame) {
 }
 
 /// An edge from end to end: its middle, which comes last in the list of its nodes, between the ends.
-fn along(edge: &[u32]) -> Vec<u32> {
+pub(crate) fn along(edge: &[u32]) -> Vec<u32> {
     match edge {
         [from, to, middle] => vec![*from, *middle, *to],
         _ => edge.to_vec(),
@@ -185,7 +190,7 @@ fn along(edge: &[u32]) -> Vec<u32> {
 }
 
 /// The nodes around a cell or a face, with those in the middle of its edges.
-fn ring<'a>(edges: impl Iterator<Item = &'a [usize]>, nodes: &[u32]) -> Vec<u32> {
+pub(crate) fn ring<'a>(edges: impl Iterator<Item = &'a [usize]>, nodes: &[u32]) -> Vec<u32> {
     let mut ring = Vec::new();
     for edge in edges {
         // the end of an edge is the beginning of the next

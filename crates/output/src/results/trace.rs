@@ -4,22 +4,37 @@ use serde::{Deserialize, Serialize};
 
 use crate::plot::thin;
 
-/// Most samples that a trace holds: 1 MB.
+/// Most samples that a trace holds, if nothing else is said: 1 MB.
 const LIMIT: usize = 1 << 16;
 
-/// Samples of a quantity over time. When it is full it is thinned to the first, lowest, highest and last sample of
-/// [`LIMIT`] / 8 equal parts of the time so far: no extreme is lost, and a figure, a few thousand dots wide, does not
+/// Samples of a quantity over time. When it is full it is thinned to the first, lowest, highest and last sample of equal parts of the
+/// time so far, an eighth of its limit in number: no extreme is lost, and a figure, a few thousand dots wide, does not
 /// change.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Trace {
     points: Vec<(f64, f64)>,
+    limit: usize,
+}
+
+impl Default for Trace {
+    fn default() -> Trace {
+        Trace::of(LIMIT)
+    }
 }
 
 impl Trace {
+    /// With room for this many samples, eight at least.
+    pub(crate) fn of(limit: usize) -> Trace {
+        Trace {
+            points: Vec::new(),
+            limit: limit.max(8),
+        }
+    }
+
     /// Adds a sample, not before the last one. What is not finite cannot be drawn and is left out.
     pub(crate) fn push(&mut self, time: f64, value: f64) {
-        if self.points.len() == LIMIT {
-            self.points = thin(&self.points, LIMIT / 8);
+        if self.points.len() >= self.limit {
+            self.points = thin(&self.points, self.limit / 8);
         }
         if value.is_finite() {
             self.points.push((time, value));
@@ -29,6 +44,11 @@ impl Trace {
     /// Whether there is nothing to draw.
     pub(crate) fn is_empty(&self) -> bool {
         self.points.is_empty()
+    }
+
+    /// The samples.
+    pub(crate) fn points(&self) -> &[(f64, f64)] {
+        &self.points
     }
 
     /// Abscissae and ordinates.

@@ -156,6 +156,9 @@ fn page(summary: &Summary, impacts: &[ImpactRow], figures: &[String]) -> String 
         impacts,
         figures,
         case: "title = \"<b>\" # & more",
+        tiles: &[],
+        quality: &[],
+        data: None,
     }
     .html()
     .unwrap()
@@ -183,11 +186,13 @@ fn the_report_says_what_the_summary_says() {
     assert!(!html.contains("Impacts"), "no table without rows");
     let bad = page(&sample(verdict(1.0)), &[], &figures);
     assert!(bad.contains("Not to be relied on") && bad.contains("Remedy: a smaller step"));
-    assert!(bad.contains(">bad</b> energy residual") && html.contains(">good</b> energy residual"));
+    // each line leads to the plot of its quantity
+    let line = |grade| format!(">{grade}</b> <a href=\"#plot-residual\">energy residual");
+    assert!(bad.contains(&line("bad")) && html.contains(&line("good")));
 }
 
 #[test]
-fn the_report_is_one_file_that_runs_nothing_and_asks_for_nothing() {
+fn the_report_without_its_program_runs_nothing_and_asks_for_nothing() {
     let html = page(&sample(Verdict::default()), &[], &[]);
     assert!(!html.contains("<script") && !html.contains("http") && !html.contains("src="));
     assert!(

@@ -1,0 +1,89 @@
+//! Plots before their curves are thinned and stand in the block.
+
+use crate::page::block::Block;
+use crate::page::schema::{Curve, Plot};
+use crate::plot::thin;
+
+/// Samples of all curves together: single precision, twice, makes some 4 bytes each in the page.
+const SAMPLES: usize = 160_000;
+
+/// Fewest and most samples of one curve.
+const OF_CURVE: [usize; 2] = [256, 6000];
+
+/// A curve before it is thinned.
+pub(crate) struct Line {
+    pub(crate) name: String,
+    /// As of [`Curve`].
+    pub(crate) role: &'static str,
+    pub(crate) points: Vec<(f64, f64)>,
+}
+
+/// A plot with curves before they are thinned.
+pub(crate) struct Draft {
+    pub(crate) plot: Plot,
+    pub(crate) lines: Vec<Line>,
+}
+
+/// A linear plot over time in a section of the page.
+pub(crate) fn draft(
+    id: &'static str,
+    title: impl Into<String>,
+    (quantity, unit): (&'static str, &'static str),
+    lines: Vec<Line>,
+) -> Draft {
+    Draft {
+        plot: Plot {
+            id,
+            title: title.into(),
+            abscissa: "time",
+            quantity,
+            unit,
+            scale: "linear",
+            rounding: None,
+            folded: false,
+            curves: Vec::new(),
+            note: None,
+        },
+        lines,
+    }
+}
+
+/// A curve.
+pub(crate) fn line(name: impl Into<String>, role: &'static str, points: Vec<(f64, f64)>) -> Line {
+    Line {
+        name: name.into(),
+        role,
+        points,
+    }
+}
+
+/// Points from abscissae and ordinates.
+pub(crate) fn zipped((x, y): &(Vec<f64>, Vec<f64>)) -> Vec<(f64, f64)> {
+    x.iter().copied().zip(y.iter().copied()).collect()
+}
+
+/// The plots with their curves in the block, thinned so that no extreme is lost; those without a curve are left out.
+pub(crate) fn plots(mut drafts: Vec<Draft>, block: &mut Block) -> Vec<Plot> {
+    for draft in &mut drafts {
+        draft.lines.retain(|line| !line.points.is_empty());
+    }
+    drafts.retain(|draft| !draft.lines.is_empty());
+    let count: usize = drafts.iter().map(|draft| draft.lines.len()).sum();
+    let most = (SAMPLES / count.max(1)).clamp(OF_CURVE[0], OF_CURVE[1]);
+    let finished = |draft: Draft| {
+        let curves = draft.lines.iter().map(|line| {
+            let points = thin(&line.points, most / 4);
+            Curve {
+                name: line.name.clone(),
+                role: line.role,
+                x: block.reals(points.iter().map(|p| p.0)),
+                y: block.reals(points.iter().map(|p| p.1)),
+            }
+        });
+        Plot {
+            curves: curves.collect(),
+            ..draft.plot
+        }
+    };
+    drafts.into_iter().map(finished).collect()
+}

@@ -1,0 +1,81 @@
+//! What the interactive report shows of a run: gathered while it goes ([`series`], [`raster`]), put together when it has ended.
+
+mod model;
+mod obstacles;
+mod plots;
+pub(crate) mod quality;
+pub(crate) mod raster;
+pub(crate) mod series;
+mod surface;
+pub(crate) mod tiles;
+
+use crate::page::Data;
+use crate::page::block::Block;
+use crate::page::schema::{Event, Page, Quantity, Raster, RasterRows, SCHEMA};
+use crate::plot::PSEUDO_TIME;
+use crate::results::Results;
+use model::{CLOSING, LARGEST, RELEASE};
+
+pub(crate) use plots::Sources;
+
+/// The head of the page with its arrays. `qualities`: of the cells of all bodies.
+pub(crate) fn data(sources: &Sources, qualities: &[f64]) -> Data {
+    let results = sources.results;
+    let mut block = Block::default();
+    let model = model::model(results, qualities, &mut block);
+    let plots = plots::plots(sources, &mut block);
+    let (name, unit) = match results.is_static() {
+        true => (PSEUDO_TIME.quantity, PSEUDO_TIME.unit),
+        false => ("time", "s"),
+    };
+    let page = Page {
+        schema: SCHEMA,
+        abscissa: Quantity {
+            name: name.to_owned(),
+            unit,
+        },
+        end: results.last.time,
+        events: events(results),
+        plots,
+        raster: raster(results, &mut block),
+        model,
+    };
+    Data { page, block }
+}
+
+/// Instants that the plots mark: those that were kept for a reason of the contacts.
+fn events(results: &Results) -> Vec<Event> {
+    let instants = model::instants(results);
+    let named = instants.iter().flat_map(|(still, kinds)| {
+        let own = kinds
+            .iter()
+            .filter(|kind| [CLOSING, LARGEST, RELEASE].contains(kind));
+        own.map(|kind| Event {
+            time: still.time,
+            name: (*kind).to_owned(),
+        })
+    });
+    named.collect()
+}
+
+fn raster(results: &Results, block: &mut Block) -> Option<Raster> {
+    let (system, own) = (&results.system, &results.raster);
+    let ever = own.cells.iter().any(|cell| *cell > 1);
+    if own.cells.is_empty() || !ever {
+        return None;
+    }
+    let contacts = system.contacts.iter().zip(&own.rows);
+    let rows = contacts.map(|(contact, rows)| RasterRows {
+        name: contact.name.clone(),
+        rows: *rows,
+        points: contact.points.len(),
+    });
+    Some(Raster {
+        id: "plot-status",
+        columns: raster::COLUMNS,
+        end: own.end(),
+        contacts: rows.collect(),
+        cells: block.bytes(own.cells.iter().copied()),
+        note: "a row is a contact point, or neighbours in the order of the mesh of which one at least is closed".to_owned(),
+    })
+}

@@ -1,0 +1,190 @@
+//! The instants that a run keeps for its pictures: at equal times, where a contact first closes, at the largest force, at the last
+//! release, and the end.
+//!
+//! The stress of all cells costs as much as some twenty explicit steps. Instants at equal times are therefore chosen beforehand. The
+//! largest force and the last release are not known before the end: their states are copied, seldom enough
+//! to cost little, and turned into pictures when the run ends or a checkpoint is written. Memory is bounded by the number of instants.
+
+mod seen;
+mod still;
+
+use carom_dynamics::{InterfaceState, Motion, State, StepReport, System};
+use serde::{Deserialize, Serialize};
+
+pub(crate) use seen::Seen;
+pub(crate) use still::{Still, slips};
+
+/// Equal parts of the run at whose ends states are kept: this many times the pictures of the film less one.
+const PARTS: [usize; 2] = [3, 6];
+
+/// Pictures of the film less one.
+pub(crate) const FILM: usize = 5;
+
+/// Most bytes of the instants at equal times, of a model so large that [`PARTS`] allows fewer.
+const BYTES: usize = 64 << 20;
+
+/// Explicit steps to an instant at least: an instant costs twenty, so that all cost less than a tenth of the run.
+const STEPS: f64 = 250.0;
+
+/// Growth of the force from one copy to the next: the state of the largest force is that of one 2 % below it at the least.
+const GROWTH: f64 = 1.02;
+
+/// Releases that follow each other faster than this part of the run are one: the first.
+const RELEASES: f64 = 1.0 / 400.0;
+
+/// The instants kept, and what decides of further ones.
+#[derive(Debug)]
+pub(crate) struct Stills {
+    pub(crate) seen: Seen,
+    pub(crate) kept: Kept,
+    end: f64,
+    /// Time from one to the next of those at equal times, s.
+    every: f64,
+}
+
+/// What was kept so far.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Kept {
+    /// At equal times, and the last state.
+    pub(crate) equal: Vec<Still>,
+    /// The first state with a contact force.
+    pub(crate) closing: Option<Still>,
+    largest: Candidate,
+    release: Candidate,
+    /// Whether the last state had a contact force.
+    closed: bool,
+}
+
+/// A state that a later one may replace.
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct Candidate {
+    /// Force (N) or time (s) that decides whether another one replaces it.
+    measure: f64,
+    still: Option<Still>,
+    #[serde(skip)]
+    copy: Option<Copy>,
+}
+
+/// What a picture needs of a state.
+#[derive(Debug, Default)]
+struct Copy {
+    step: u64,
+    time: f64,
+    motion: Motion,
+    interface: InterfaceState,
+}
+
+impl Stills {
+    /// Of a run up to the time `end`, s.
+    pub(crate) fn new(system: &System, end: f64) -> Stills {
+        let seen = Seen::new(system);
+        let bytes = 24 * seen.nodes.len() + 12 * seen.cells.len() + seen.body_of_cell.len() / 4;
+        let by_memory = BYTES / bytes.max(1) / FILM;
+        let is_explicit = system.schemes.iter().all(|s| s.get().is_explicit());
+        let by_steps = match is_explicit {
+            true => (end / system.dt / STEPS) as usize / FILM,
+            false => PARTS[1],
+        };
+        let parts = by_memory.min(by_steps).clamp(PARTS[0], PARTS[1]);
+        Stills {
+            seen,
+            kept: Kept::default(),
+            end,
+            every: end / (FILM * parts) as f64,
+        }
+    }
+
+    /// Goes on from what was kept.
+    pub(crate) fn go_on(&mut self, kept: Kept) {
+        self.kept = kept;
+    }
+
+    /// Keeps the state if it is one of those to be kept.
+    pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
+        // a step that ends there to within rounding is there
+        let number = |time: f64| (time / self.every + 1e-6).floor();
+        let last = self.kept.equal.last();
+        if last.is_none_or(|still| number(state.time) > number(still.time)) {
+            self.keep(system, state);
+        }
+        let force = report.contacts.iter().map(|contact| contact.force);
+        let force = force.fold(0.0, f64::max);
+        let (closed, kept) = (force > 0.0, &mut self.kept);
+        if closed && kept.closing.is_none() {
+            kept.closing = Some(of(system, &self.seen, state));
+        }
+        if closed && force > kept.largest.measure * GROWTH {
+            kept.largest.take(force, state);
+        }
+        let pause = RELEASES * self.end;
+        let again = kept.release.is_none() || state.time > kept.release.measure + pause;
+        if kept.closed && !closed && again {
+            kept.release.take(state.time, state);
+        }
+        kept.closed = closed;
+    }
+
+    /// Keeps the last state, whatever its turn, and turns what was copied into pictures.
+    pub(crate) fn finish(&mut self, system: &System, state: &State) {
+        let last = self.kept.equal.last().map(|still| still.step);
+        if last != Some(state.step) {
+            self.keep(system, state);
+        }
+        self.settled(system);
+    }
+
+    /// What was kept so far, all of it as pictures.
+    pub(crate) fn settled(&mut self, system: &System) -> &Kept {
+        for candidate in [&mut self.kept.largest, &mut self.kept.release] {
+            candidate.settle(system, &self.seen);
+        }
+        &self.kept
+    }
+
+    fn keep(&mut self, system: &System, state: &State) {
+        let still = of(system, &self.seen, state);
+        self.kept.equal.push(still);
+    }
+}
+
+impl Kept {
+    /// The state nearest below the largest force, and that of the last release; once settled.
+    pub(crate) fn extremes(&self) -> [Option<&Still>; 2] {
+        [self.largest.still.as_ref(), self.release.still.as_ref()]
+    }
+}
+
+impl Candidate {
+    fn is_none(&self) -> bool {
+        self.still.is_none() && self.copy.is_none()
+    }
+
+    fn take(&mut self, measure: f64, state: &State) {
+        self.measure = measure;
+        self.still = None;
+        let copy = self.copy.get_or_insert_default();
+        (copy.step, copy.time) = (state.step, state.time);
+        copy.motion.u.clone_from(&state.motion.u);
+        copy.motion.v.clone_from(&state.motion.v);
+        copy.motion.frames.clone_from(&state.motion.frames);
+        copy.motion.history.clone_from(&state.motion.history);
+        copy.interface.force.clone_from(&state.interface.force);
+        copy.interface
+            .friction
+            .clone_from(&state.interface.friction);
+        copy.interface.status.clone_from(&state.interface.status);
+    }
+
+    fn settle(&mut self, system: &System, seen: &Seen) {
+        if let Some(copy) = self.copy.take() {
+            let instant = (copy.step, copy.time);
+            let of = (&copy.motion, &copy.interface);
+            self.still = Some(Still::of(system, seen, instant, of));
+        }
+    }
+}
+
+fn of(system: &System, seen: &Seen, state: &State) -> Still {
+    let instant = (state.step, state.time);
+    Still::of(system, seen, instant, (&state.motion, &state.interface))
+}

@@ -1,0 +1,167 @@
+//! A state as pictures need it: motion of the nodes that are seen, fields of the cells that are seen.
+
+use carom_contact::law::Status;
+use carom_dynamics::{InterfaceState, Motion, Order, System};
+use serde::{Deserialize, Serialize};
+
+use crate::results::cells::{ShellFields, cell_stresses, cell_von_mises, deleted, plastic_strains};
+use crate::results::stills::Seen;
+
+/// A state that is kept, in single precision but for its largest values.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Still {
+    pub(crate) step: u64,
+    /// s.
+    pub(crate) time: f64,
+    /// Displacement of the nodes, m.
+    pub(crate) moved: Vec<[f32; 3]>,
+    /// Speed of the nodes, m/s.
+    pub(crate) speed: Vec<f32>,
+    /// Contact pressure at the nodes, Pa, and what they do: 0 no contact point, 1 open, 2 closed, 3 slipping; empty without contacts.
+    pub(crate) contact: Vec<(f32, u8)>,
+    /// Equivalent stress of the cells, Pa.
+    pub(crate) von_mises: Vec<f32>,
+    /// Mean pressure of the cells, positive in compression, Pa.
+    pub(crate) pressure: Vec<f32>,
+    /// Equivalent plastic strain of the cells; none without plasticity.
+    pub(crate) plastic: Option<Vec<f32>>,
+    /// Whether each cell of all bodies is deleted; none where no body has deletion.
+    pub(crate) deleted: Option<Vec<bool>>,
+    /// Largest equivalent stress (Pa) and plastic strain of all cells, with the cell among those of all bodies.
+    pub(crate) largest: [Option<(f64, u32)>; 2],
+    /// Kinetic energy ½ Σ m |v|² of each body with lumped masses, J.
+    pub(crate) kinetic: Vec<f64>,
+    /// Places with a contact force in the plane, m.
+    pub(crate) marks: Vec<[f64; 3]>,
+}
+
+impl Still {
+    /// Of an accepted state.
+    pub(crate) fn of(
+        system: &System,
+        seen: &Seen,
+        (step, time): (u64, f64),
+        (motion, interface): (&Motion, &InterfaceState),
+    ) -> Still {
+        let moved = seen.nodes.iter().map(|node| {
+            let u = system.of_node(*node, motion, Order::Displacement);
+            u.map(|u| u as f32)
+        });
+        let speed = seen.nodes.iter().map(|node| {
+            let v = system.of_node(*node, motion, Order::Velocity);
+            v.iter().map(|v| v * v).sum::<f64>().sqrt() as f32
+        });
+        let stress = cell_stresses(system, &motion.u, &motion.history);
+        let shells = ShellFields::new(system, motion, &stress);
+        let von_mises = cell_von_mises(&stress, shells.as_ref());
+        let plastic = plastic_strains(system, &motion.history);
+        let deleted = deleted(system, &motion.history);
+        let shown = |values: &[f64]| -> Vec<f32> {
+            let cells = seen.cells.iter();
+            cells.map(|cell| values[*cell as usize] as f32).collect()
+        };
+        let pressure: Vec<f64> = stress.iter().map(|s| -(s[0] + s[1] + s[2]) / 3.0).collect();
+        let is_there = |cell: usize| deleted.as_ref().is_none_or(|deleted| !deleted[cell]);
+        Still {
+            step,
+            time,
+            moved: moved.collect(),
+            speed: speed.collect(),
+            contact: contact(system, seen, interface),
+            von_mises: shown(&von_mises),
+            pressure: shown(&pressure),
+            plastic: plastic.as_deref().map(shown),
+            largest: [
+                largest(&von_mises, is_there),
+                plastic.and_then(|plastic| largest(&plastic, is_there)),
+            ],
+            kinetic: kinetic(system, motion),
+            marks: marks(system, motion, interface, time),
+            deleted,
+        }
+    }
+}
+
+/// The largest of the values of the cells that are there, and its cell; the first of equals.
+fn largest(values: &[f64], is_there: impl Fn(usize) -> bool) -> Option<(f64, u32)> {
+    let cells = values.iter().enumerate();
+    let cells = cells.filter(|(cell, value)| value.is_finite() && is_there(*cell));
+    let larger = |best: (f64, u32), (cell, value): (usize, &f64)| match *value > best.0 {
+        true => (*value, cell as u32),
+        false => best,
+    };
+    let best = cells.fold((f64::NEG_INFINITY, 0), larger);
+    best.0.is_finite().then_some(best)
+}
+
+/// Pressure and status of the nodes: of a node that carries several points the mean of their pressures, weighted by shape functions,
+/// and the last of open, closed, slipping.
+fn contact(system: &System, seen: &Seen, interface: &InterfaceState) -> Vec<(f32, u8)> {
+    if system.contacts.is_empty() {
+        return Vec::new();
+    }
+    let mut found = vec![(0.0, 0.0, 0_u8); seen.nodes.len()];
+    let points = system.contacts.iter().flat_map(|contact| &contact.points);
+    for (number, point) in points.enumerate() {
+        let force = interface.force[number];
+        let friction = interface.friction.get(number).copied();
+        let closed = force != 0.0 || interface.status[number] != Status::Open;
+        // with friction below its bound a point sticks; the bound itself is not kept
+        let slips = closed && friction.is_some() && slips(system, number, interface);
+        let status = match (closed, slips) {
+            (false, _) => 1,
+            (true, false) => 2,
+            (true, true) => 3,
+        };
+        let pressure = match point.area > 0.0 {
+            true => force / point.area,
+            false => 0.0,
+        };
+        for (node, weight) in point.carriers().filter(|(_, weight)| *weight > 0.0) {
+            let Some(place) = seen.node(node) else {
+                continue;
+            };
+            let entry = &mut found[place];
+            entry.0 += weight * pressure;
+            entry.1 += weight;
+            entry.2 = entry.2.max(status);
+        }
+    }
+    let mean = |(sum, weight, status): (f64, f64, u8)| match weight > 0.0 {
+        true => ((sum / weight) as f32, status),
+        false => (0.0, status),
+    };
+    found.into_iter().map(mean).collect()
+}
+
+/// Whether the friction force of a point is at its bound μ P, to a millionth of it.
+pub(crate) fn slips(system: &System, point: usize, interface: &InterfaceState) -> bool {
+    let Some([one, other]) = interface.friction.get(point) else {
+        return false;
+    };
+    let bound = system.friction[system.contact_of(point)] * interface.force[point];
+    bound > 0.0 && one.hypot(*other) >= bound * (1.0 - 1e-6)
+}
+
+/// Kinetic energy of each body, J.
+fn kinetic(system: &System, motion: &Motion) -> Vec<f64> {
+    let of_body = |masses: &Vec<(u32, f64)>| {
+        let terms = masses.iter().map(|(node, m)| {
+            let v = system.of_node(*node, motion, Order::Velocity);
+            0.5 * m * v.iter().map(|v| v * v).sum::<f64>()
+        });
+        terms.sum()
+    };
+    system.body_masses.iter().map(of_body).collect()
+}
+
+/// Places of the points with a force, in the plane.
+fn marks(system: &System, motion: &Motion, interface: &InterfaceState, time: f64) -> Vec<[f64; 3]> {
+    if system.dim != 2 {
+        return Vec::new();
+    }
+    let places = system.places(time, &motion.u, &motion.frames);
+    let points = system.contacts.iter().flat_map(|contact| &contact.points);
+    let closed = points.zip(&interface.force).filter(|(_, f)| **f != 0.0);
+    closed.map(|(point, _)| point.place(&places)).collect()
+}

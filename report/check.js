@@ -1,0 +1,86 @@
+// Runs inside of a page in a browser (`cargo xtask check page`): tries what a reader does, and leaves the outcome in the page.
+
+(async () => {
+  const problems = [];
+  const wrong = (condition, text) => condition && problems.push(text);
+  const root = document.documentElement;
+  const pause = (time) => new Promise((resolve) => setTimeout(resolve, time));
+  for (let k = 0; k < 100 && !root.dataset.state; k += 1) await pause(50);
+  wrong(root.dataset.state !== "ready", `the page is ${root.dataset.state ?? "not ready"}`);
+
+  const head = JSON.parse(document.getElementById("carom-page").textContent);
+  const shown = head.plots.filter((plot) => !plot.folded).length;
+  const plots = [...document.querySelectorAll(".plot .uplot canvas")];
+  wrong(plots.length !== shown, `${plots.length} plots, not ${shown}`);
+  const colours = (canvas) => {
+    const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height });
+    const context = copy.getContext("2d");
+    context.drawImage(canvas, 0, 0);
+    return new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
+  };
+  for (const [k, canvas] of plots.entries()) wrong(new Set(colours(canvas)).size < 4, `plot ${k} is blank`);
+  for (const more of document.querySelectorAll("details")) more.open = true;
+  await pause(100);
+  const all = document.querySelectorAll(".plot .uplot canvas").length;
+  wrong(all !== head.plots.length, `${all} plots when all is opened, not ${head.plots.length}`);
+  wrong(Boolean(head.raster) !== Boolean(document.querySelector(".raster canvas")), "the raster of the statuses");
+
+  wrong(document.querySelectorAll(".tile").length < 3, "tiles are missing");
+  for (const link of document.querySelectorAll('a[href^="#"]')) {
+    const target = link.getAttribute("href").slice(1);
+    wrong(!document.getElementById(target), `a link leads to ${target}, which is not there`);
+  }
+  wrong(document.documentElement.scrollWidth > innerWidth, "the page is wider than its window");
+
+  const withoutModel = root.classList.contains("no-model");
+  wrong(withoutModel !== WITHOUT_WEBGL, `the model ${withoutModel ? "cannot be" : "is"} drawn`);
+  if (withoutModel) {
+    const figures = [...document.querySelectorAll(".still figure")];
+    wrong(!figures.some((figure) => figure.offsetHeight > 0), "no figure stands for the model");
+    wrong(document.getElementById("model-note").hidden, "nothing says why there is no model");
+  } else if (head.model) {
+    const viewer = window.carom;
+    const picture = () => {
+      viewer.renderer.render(viewer.scene, viewer.camera);
+      return colours(viewer.renderer.domElement);
+    };
+    const differ = (a, b) => a.length !== b.length || a.some((pixel, k) => pixel !== b[k]);
+    const last = head.model.frames.length - 1;
+    viewer.go(0);
+    const first = picture();
+    wrong(new Set(first).size < 3, "the model is blank");
+    viewer.go(last);
+    wrong(!differ(first, picture()), "the first and the last instant look the same");
+    document.getElementById("model-play").click();
+    await pause(700);
+    wrong(viewer.choice.frame === last, "playing does not move the model");
+    document.getElementById("model-play").click();
+    const [colour] = document.querySelectorAll("#model-settings select");
+    for (const { value } of [...colour.options]) {
+      colour.value = value;
+      colour.dispatchEvent(new Event("change"));
+      wrong(viewer.choice.field !== value, `the field ${value} is not chosen`);
+      picture();
+    }
+    for (const jump of document.querySelectorAll(".jumps button")) jump.click();
+    const boxes = [...document.querySelectorAll('#model-settings input[type="checkbox"]')];
+    for (const box of boxes) box.click();
+    picture();
+    for (const box of boxes) box.click();
+    const section = document.getElementById("model-section");
+    if (section && head.model.triangles.count > 0) {
+      const whole = picture();
+      section.value = "0";
+      section.dispatchEvent(new Event("change"));
+      wrong(!differ(whole, picture()), "the section cuts nothing off");
+    }
+    await pause(100);
+  }
+  const asked = performance.getEntriesByType("resource").map((entry) => entry.name);
+  wrong(asked.length > 0, `the page asks for ${asked.join(", ")}`);
+  problems.push(...window.faults);
+  const outcome = document.createElement("pre");
+  outcome.id = "outcome";
+  outcome.textContent = problems.length === 0 ? "GOOD" : problems.map((problem) => `WRONG ${problem}`).join("\n");
+  document.body.append(outcome);
+})();

@@ -1,0 +1,140 @@
+// The buttons and sliders of the model.
+
+import { digits, quantity } from "./format.js";
+
+const element = (tag, properties = {}, ...children) => {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...children);
+  return made;
+};
+
+const button = (text, title, onclick) => element("button", { type: "button", textContent: text, title, onclick });
+
+function select(label, options, onchange) {
+  const choice = element("select", { onchange: (e) => onchange(e.target.value) });
+  for (const [value, text] of options) choice.append(element("option", { value, textContent: text }));
+  return element("label", {}, `${label} `, choice);
+}
+
+function check(label, checked, onchange) {
+  const box = element("input", { type: "checkbox", checked, onchange: (e) => onchange(e.target.checked) });
+  return element("label", {}, box, ` ${label}`);
+}
+
+/** Builds the controls of a viewer; how it tells them what it shows. */
+export function controls(viewer) {
+  const { instants, model, parts, choice, page } = viewer;
+  const time = document.getElementById("model-time");
+  const settings = document.getElementById("model-settings");
+
+  const play = button("▶ play", "play the kept instants", () => viewer.play());
+  play.id = "model-play";
+  const slider = element("input", {
+    type: "range",
+    min: 0,
+    max: instants.frames.length - 1,
+    value: choice.frame,
+    ariaLabel: "instant",
+    oninput: (e) => viewer.go(Number(e.target.value)),
+  });
+  const caption = element("output", { id: "model-caption" });
+  time.append(play, button("‹", "the instant before", () => viewer.go(choice.frame - 1)), slider);
+  time.append(button("›", "the next instant", () => viewer.go(choice.frame + 1)), caption);
+  const jumps = element("span", { className: "jumps" });
+  instants.frames.forEach((frame, k) => {
+    for (const kind of frame.kinds) {
+      if (kind === "equal times" || kind === "start") continue;
+      jumps.append(button(kind, `go to ${quantity(frame.time, page.abscissa.unit)}`, () => viewer.go(k)));
+    }
+  });
+  time.append(jumps);
+
+  const factor = element("input", {
+    type: "number",
+    min: 0,
+    step: "any",
+    value: viewer.factor,
+    onchange: (e) => {
+      viewer.factor = Math.max(0, Number(e.target.value)) || 0;
+      viewer.show();
+      viewer.box();
+      viewer.fit();
+    },
+  });
+  settings.append(
+    select("colour", instants.fields.map((f) => [f.id, f.name]), (id) => {
+      choice.field = id;
+      viewer.show();
+    }),
+    select("range", [["run", "of all instants"], ["frame", "of this instant"]], (range) => {
+      choice.range = range;
+      viewer.show();
+    }),
+    element("label", {}, "displacements × ", factor),
+  );
+  const drawing = (change) => (on) => {
+    change(on);
+    viewer.render();
+  };
+  settings.append(
+    check("mesh", choice.edges, drawing((on) => {
+      parts.net.visible = on;
+      if (parts.other) parts.other.children[1].visible = on;
+    })),
+    check("undeformed", false, drawing((on) => (parts.ghost.visible = on))),
+  );
+  if (model.contacts.length > 0) {
+    const title = "secondary side red, primary side blue";
+    const surfaces = check("contact surfaces", false, drawing((on) => (parts.surfaces.visible = on)));
+    surfaces.title = title;
+    settings.append(surfaces, check("contact forces", true, drawing((on) => (parts.forces.visible = on))));
+  }
+  if (model.obstacles.length > 0) {
+    settings.append(check("obstacles", true, drawing((on) => (parts.obstacles.visible = on))));
+  }
+  if (model.dimension === 3) {
+    const section = { axis: null, part: 0.5, flip: false };
+    const cut = () => viewer.cut(section.axis, section.part, section.flip);
+    const place = element("input", {
+      type: "range",
+      min: 0,
+      max: 1,
+      step: 0.005,
+      value: 0.5,
+      disabled: true,
+      ariaLabel: "place of the section",
+      oninput: (e) => {
+        section.part = Number(e.target.value);
+        cut();
+      },
+    });
+    const axes = select("section", [["", "none"], ["0", "x"], ["1", "y"], ["2", "z"]], (axis) => {
+      section.axis = axis === "" ? null : Number(axis);
+      place.disabled = section.axis === null;
+      cut();
+    });
+    axes.firstElementChild.id = "model-section";
+    settings.append(axes, place, check("other side", false, (on) => {
+      section.flip = on;
+      cut();
+    }));
+    const views = element("span", {}, "view ");
+    for (const side of ["oblique", "x", "y", "z"]) views.append(button(side, `look along ${side}`, () => viewer.look(side)));
+    settings.append(views);
+  } else {
+    settings.append(button("whole model", "show the whole model", () => viewer.look("front")));
+  }
+
+  return {
+    at(still, frame) {
+      slider.value = frame;
+      const kinds = still.kinds.filter((kind) => kind !== "equal times");
+      const reason = kinds.length > 0 ? ` – ${kinds.join(", ")}` : "";
+      const scale = viewer.factor === 1 ? "" : ` – displacements × ${digits(viewer.factor)}`;
+      caption.textContent = `${quantity(still.time, page.abscissa.unit, 5)}${reason}${scale}`;
+    },
+    playing(on) {
+      play.textContent = on ? "❚❚ stop" : "▶ play";
+    },
+  };
+}
