@@ -4,9 +4,8 @@
 pub fn section(line: &str) -> &'static str {
     match line {
         "energy-residual" | "momentum-residual" | "contact-impulse" | "resizing" => "plot-residual",
-        "energy-gain" | "scheme-made" | "contact-work" | "scheme-energy" | "hourglass" => {
-            "plot-energy"
-        }
+        "energy-gain" | "scheme-made" | "contact-work" | "contact-loss" | "scheme-energy"
+        | "hourglass" => "plot-energy",
         "chatter" => "plot-status",
         "penetration" => "plot-gap",
         "step-in-contact" | "force-error" | "not-finite" => "plot-force",

@@ -27,6 +27,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     energy::gain,
     energy::made,
     energy::of_contact,
+    energy::lost,
     energy::of_scheme,
     finite::states,
     explicit::hourglass,

@@ -75,11 +75,14 @@ fn peaks(evidence: &Evidence) -> Vec<Impact> {
 
 /// Whether something gives an impact of this contact a duration: waves in a body, or the stiffness of the law.
 fn has_duration(system: &System, contact: usize) -> bool {
+    system.contacts[contact].law.get().level() == Level::GapAndRate || has_waves(system, contact)
+}
+
+/// Whether waves run in a body of a contact.
+pub(super) fn has_waves(system: &System, contact: usize) -> bool {
     let (secondary, primary) = system.sides[contact];
-    let bodies = [Some(secondary), primary];
-    let mut bodies = bodies.into_iter().flatten();
-    system.contacts[contact].law.get().level() == Level::GapAndRate
-        || bodies.any(|body| system.bodies[body].wave_speed().is_some())
+    let mut bodies = [Some(secondary), primary].into_iter().flatten();
+    bodies.any(|body| system.bodies[body].wave_speed().is_some())
 }
 
 fn name<'a>(evidence: &'a Evidence, impact: &Impact) -> &'a str {
