@@ -11,8 +11,8 @@ use carom_quantities::{Coordinate, Length, Vector};
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend("anyOf" = [{ "required": ["file"] }, { "required": ["generate"] }], "dependentRequired" = { "unit": ["file"] }))]
 pub struct Mesh {
-    /// Path of a Gmsh file (MSH 2.2 or 4.1, ASCII or binary), from the folder of the case file. Its physical groups are the names that
-    /// bodies, supports, contacts and probes use.
+    /// Path of a Gmsh file (MSH 2.2 or 4.1, ASCII or binary) or of one of Abaqus or CalculiX (`.inp`), from the folder of the case file. Its physical
+    /// groups, or its sets and surfaces, are the names that bodies, supports, contacts and probes use.
     pub file: Option<String>,
     /// Unit of the coordinates in `file`.
     #[serde(default)]

@@ -7,6 +7,7 @@
 mod error;
 pub mod file;
 pub mod gmsh;
+pub mod inp;
 
 use std::path::Path;
 
@@ -14,17 +15,19 @@ use crate::Mesh;
 pub use error::{Place, ReadError};
 
 /// Extensions of the files that [`read`] takes.
-pub const EXTENSIONS: &[&str] = &["msh"];
+pub const EXTENSIONS: &[&str] = &["msh", "inp"];
 
 /// Most bytes of a mesh file: 16 GiB, some hundred million nodes.
 const LARGEST: u64 = 16 << 30;
 
-/// Reads the mesh in a file; the extension, in any case, says the format: `.msh` is Gmsh's ([`gmsh`]).
+/// Reads the mesh in a file; the extension, in any case, says the format: `.msh` is Gmsh's ([`gmsh`]), `.inp` that of
+/// Abaqus and CalculiX ([`inp`]).
 ///
 /// Fails if the file cannot be read or its content refused; see [`ReadError`].
 pub fn read(path: &Path) -> Result<Mesh, ReadError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
-    if !EXTENSIONS.contains(&extension.to_lowercase().as_str()) {
+    let format = extension.to_lowercase();
+    if !EXTENSIONS.contains(&format.as_str()) {
         return Err(ReadError::Extension {
             path: path.to_owned(),
             found: extension.into_owned(),
@@ -35,5 +38,20 @@ pub fn read(path: &Path) -> Result<Mesh, ReadError> {
         path: path.to_owned(),
         source,
     })?;
-    gmsh::parse(path, &bytes)
+    match format.as_str() {
+        "inp" => inp::parse(path, &bytes),
+        _ => gmsh::parse(path, &bytes),
+    }
+}
+
+/// Sets to zero what is round-off and gives the dimension of the space: the last direction in which a coordinate is
+/// not zero, at least `least` and 1.
+fn flatten(nodes: &mut [[f64; 3]], least: usize) -> usize {
+    let largest = nodes.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let extends = |&i: &usize| nodes.iter().any(|x| x[i].abs() > 1e-12 * largest);
+    let dim = (0..3).rev().find(extends).map_or(1, |i| i + 1).max(least);
+    for x in nodes {
+        x[dim..].fill(0.0);
+    }
+    dim
 }

@@ -87,10 +87,10 @@ fn a_file_that_is_not_there_or_of_another_kind_is_refused() {
             .to_string()
             .starts_with("cannot read no/such/mesh.msh: ")
     );
-    let other = read("no/such/mesh.inp".as_ref()).unwrap_err().to_string();
+    let other = read("no/such/mesh.unv".as_ref()).unwrap_err().to_string();
     assert_eq!(
         other,
-        "no/such/mesh.inp: found the extension \"inp\", expected one of: msh"
+        "no/such/mesh.unv: found the extension \"unv\", expected one of: msh, inp"
     );
 }
 

@@ -6,6 +6,7 @@ use std::collections::btree_map::Entry;
 use carom_elements::{Kind, MAX_NODES};
 
 use super::cursor::Fault;
+use crate::read::flatten;
 use crate::{Block, ElementId, Group, Mesh};
 
 /// A physical group: its dimension and its tag.
@@ -156,18 +157,6 @@ impl Builder {
         }
         names
     }
-}
-
-/// Sets to zero what is round-off and gives the dimension of the space: the last direction in which a coordinate is
-/// not zero, at least `least` and 1.
-fn flatten(nodes: &mut [[f64; 3]], least: usize) -> usize {
-    let largest = nodes.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
-    let extends = |&i: &usize| nodes.iter().any(|x| x[i].abs() > 1e-12 * largest);
-    let dim = (0..3).rev().find(extends).map_or(1, |i| i + 1).max(least);
-    for x in nodes {
-        x[dim..].fill(0.0);
-    }
-    dim
 }
 
 /// Keeps one of the elements that are on the same nodes, the first. Returns the nodes of those kept and, for each
