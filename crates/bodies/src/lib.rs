@@ -60,4 +60,5 @@ pub use scratch::Scratch;
 pub use shell::{LAYERS as SHELL_LAYERS, Resultants, Shell, ShellPlate, ShellSection, plates};
 pub use size::{height, smallest as smallest_size};
 pub use solid::{BodySpec, Solid};
+pub use turning::balanced;
 pub use weights::CellWeights;

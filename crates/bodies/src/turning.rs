@@ -4,7 +4,7 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::{Mat3, Vec3};
 
 /// Moments about the axes at the start of a step in those in which they balance: A z of forces over the step, `cay(θ)ᵀ z` of others.
-pub(crate) fn balanced(moment: &Vec3, increment: &Vec3, between: bool) -> Vec3 {
+pub fn balanced(moment: &Vec3, increment: &Vec3, between: bool) -> Vec3 {
     match between {
         true => moment - (increment * 0.5).cross(moment),
         false => Rotation::cayley(increment).matrix().tr_mul(moment),

@@ -463,7 +463,7 @@ pub fn assembled(
 /// Adds the unknowns of each row of constraints inside `range`, counted from its start: the pattern that [`add_rows`] needs. Nothing without a static
 /// stage.
 pub(crate) fn push_rows(system: &System, range: &Range<usize>, cliques: &mut Cliques) {
-    for row in rows_within(system, range) {
+    for row in rows_within((system, &system.link_rows), range) {
         let own: Vec<u32> = row.iter().map(|(i, _)| i - range.start as u32).collect();
         cliques.push(&own);
     }
@@ -472,9 +472,14 @@ pub(crate) fn push_rows(system: &System, range: &Range<usize>, cliques: &mut Cli
 /// Adds ρ Cᵀ C of the rows of constraints inside `range` to the matrix of a static step, which has no mass: a body that constraints alone hold has a matrix that is
 /// positive definite then, and with C x = 0 the solution is the same for each ρ > 0. ρ is the least stiffness of an unknown of the row along it, so that
 /// the condition stays that of the bodies. `begin`: the unknown of the first row of `a`.
-pub(crate) fn add_rows(system: &System, range: &Range<usize>, begin: usize, a: &mut Csr) {
-    for row in rows_within(system, range) {
-        let stiffness = row.iter().map(|&(i, c)| {
+pub(crate) fn add_rows(
+    rows: (&System, &[LinkRow]),
+    range: &Range<usize>,
+    begin: usize,
+    a: &mut Csr,
+) {
+    for row in rows_within(rows, range) {
+        let stiffness = row.iter().filter(|(_, c)| *c != 0.0).map(|&(i, c)| {
             let i = i as usize - begin;
             a.get(i, i) / (c * c)
         });
@@ -489,14 +494,10 @@ pub(crate) fn add_rows(system: &System, range: &Range<usize>, begin: usize, a: &
 }
 
 fn rows_within<'a>(
-    system: &'a System,
+    (system, rows): (&'a System, &'a [LinkRow]),
     range: &'a Range<usize>,
 ) -> impl Iterator<Item = &'a LinkRow> + 'a {
     let staged = system.nonlinear.preload.is_some();
     let inside = |row: &&LinkRow| row.iter().all(|(i, _)| range.contains(&(*i as usize)));
-    system
-        .link_rows
-        .iter()
-        .filter(move |_| staged)
-        .filter(inside)
+    rows.iter().filter(move |_| staged).filter(inside)
 }

@@ -59,7 +59,7 @@ pub(crate) fn groups(system: &System) -> Vec<Group> {
             .map(|(dof, _)| system.part_of(*dof as usize))
             .collect()
     };
-    for row in &system.link_rows {
+    for row in system.link_rows.iter() {
         let parts = part_of_row(row);
         for pair in parts.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|part| root(&mut leader, part));

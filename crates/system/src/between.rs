@@ -7,9 +7,10 @@ use carom_contact::law::Level;
 use carom_contact::{Contact, Integration};
 
 use crate::error::Error;
+use crate::link_row::LinkRow;
 use crate::maps::Maps;
 use crate::refused::Refused;
-use crate::system::{LinkRow, System};
+use crate::system::System;
 use carom_schemes::Scheme;
 use carom_schemes::step_map::{Impulse, StepMap};
 

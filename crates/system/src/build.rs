@@ -14,13 +14,15 @@ use crate::contacts::{numbered, renumbered, sides};
 use crate::error::Error;
 use crate::initial::settle;
 use crate::levers::Levers;
+use crate::link_row::LinkRow;
 use crate::mass::Mass;
 use crate::massless::redistribute;
 use crate::modal::NumberedModal;
-use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete};
+use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelLink};
 use crate::numbered::NumberedNonlinear;
 use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
-use crate::system::{LinkRow, System, part_of};
+use crate::system::{System, part_of};
+use crate::turning::TurningRows;
 
 impl System {
     /// Numbers the nodes by connected part and builds bodies, masses and contacts.
@@ -188,12 +190,12 @@ impl System {
         });
         let part_of_body: Vec<usize> = part_of_body.collect();
         let (schemes, zone_of_body, spans) = schemes(&model, &bodies, &part_of_body, &parts)?;
-        let (links, link_rows) = links(&model, &number, &unknowns)?;
-        let rows = model.links.iter().flat_map(|link| &link.rows);
-        let inner_terms = rows.map(|row| row.inner.len());
-        let constrained = model.constraints.iter().flat_map(|some| &some.rows);
-        // what a constraint holds is on one side
-        let inner_terms = inner_terms.chain(constrained.map(Vec::len)).collect();
+        let Links {
+            named: links,
+            rows: link_rows,
+            inner_terms,
+            turning: turning_rows,
+        } = links(&model, &number, (&unknowns, &x))?;
         let undeformed = undeformed(&bodies, &part_of_body, parts.len());
         let system = System {
             levers: Levers::new(&unknowns, parts.iter().zip(&undeformed)),
@@ -229,7 +231,8 @@ impl System {
             schemes,
             zone_of_body,
             links,
-            link_rows,
+            link_rows: Arc::new(link_rows),
+            turning_rows,
             inner_terms,
             spans,
             dt: model.dt,
@@ -282,6 +285,11 @@ fn numbering(model: &Model, centres: &[Option<u32>]) -> (Vec<u32>, Vec<u32>, Vec
             let nodes: Vec<u32> = row.iter().map(|(node, ..)| *node).collect();
             joined.join(&nodes);
         }
+        for row in model.links.iter().flat_map(|some| &some.rows) {
+            let terms = row.inner.iter().chain(&row.outer);
+            let nodes: Vec<u32> = terms.map(|term| term.node).collect();
+            joined.join(&nodes);
+        }
     }
     // parts come in the order of their first node, which leads
     let mut nodes: Vec<(u32, u32)> = (0..count as u32)
@@ -323,32 +331,39 @@ fn nearest_corner(x: &[[f64; 3]]) -> [f64; 3] {
     })
 }
 
-/// Name and range of the rows of each link, and the rows.
-type Links = (Vec<(String, Range<usize>)>, Vec<LinkRow>);
+/// The rows of links and constraints.
+#[derive(Default)]
+struct Links {
+    /// Name and range of the rows of each.
+    named: Vec<(String, Range<usize>)>,
+    rows: Vec<LinkRow>,
+    /// Number of terms on the inner side of each row.
+    inner_terms: Vec<usize>,
+    turning: TurningRows,
+}
 
-/// Name and range of the rows of each link and of each constraint, and the rows.
+/// Numbers the rows of each link and of each constraint.
 ///
 /// # Errors
-/// A constraint of an unknown that a node does not have.
-fn links(model: &Model, number: &[u32], unknowns: &Unknowns) -> Result<Links, Error> {
-    let mut rows: Vec<LinkRow> = Vec::new();
-    let mut links = Vec::new();
+/// A constraint of an unknown that a node does not have; rows that turn without those of the same node.
+fn links(
+    model: &Model,
+    number: &[u32],
+    (unknowns, x): (&Unknowns, &[[f64; 3]]),
+) -> Result<Links, Error> {
+    let mut links = Links::default();
     for link in &model.links {
-        let first = rows.len();
-        for row in &link.rows {
-            let term = |sign: f64| {
-                move |term: &carom_arlequin::Term| {
-                    let first = unknowns.first(number[term.node as usize]) as u32;
-                    (first + term.component, sign * term.coefficient)
-                }
-            };
-            let inner = row.inner.iter().map(term(1.0));
-            rows.push(inner.chain(row.outer.iter().map(term(-1.0))).collect());
+        let first = links.rows.len();
+        let turning = &mut links.turning;
+        match turning.add(link, (number, unknowns, x), &mut links.rows)? {
+            Some(inner) => links.inner_terms.extend(inner),
+            None => links.add_fixed(link, number, unknowns),
         }
-        links.push((link.name.clone(), first..rows.len()));
+        let range = first..links.rows.len();
+        links.named.push((link.name.clone(), range));
     }
     for constraint in &model.constraints {
-        let first = rows.len();
+        let first = links.rows.len();
         for given in &constraint.rows {
             let mut row: LinkRow = Vec::new();
             for &(node, kind, c) in given {
@@ -360,11 +375,32 @@ fn links(model: &Model, number: &[u32], unknowns: &Unknowns) -> Result<Links, Er
                 })?;
                 row.push((unknown as u32, c));
             }
-            rows.push(row);
+            // what a constraint holds is on one side
+            links.inner_terms.push(row.len());
+            links.rows.push(row);
         }
-        links.push((constraint.name.clone(), first..rows.len()));
+        let range = first..links.rows.len();
+        links.named.push((constraint.name.clone(), range));
     }
-    Ok((links, rows))
+    Ok(links)
+}
+
+impl Links {
+    /// Adds the rows of a link as they are.
+    fn add_fixed(&mut self, link: &ModelLink, number: &[u32], unknowns: &Unknowns) {
+        for row in &link.rows {
+            let term = |sign: f64| {
+                move |term: &carom_arlequin::Term| {
+                    let first = unknowns.first(number[term.node as usize]) as u32;
+                    (first + term.component, sign * term.coefficient)
+                }
+            };
+            let inner = row.inner.iter().map(term(1.0));
+            let all = inner.chain(row.outer.iter().map(term(-1.0))).collect();
+            self.rows.push(all);
+            self.inner_terms.push(row.inner.len());
+        }
+    }
 }
 
 /// The schemes, each once, the number of each body's, and the unknowns by scheme.

@@ -54,6 +54,16 @@ pub enum Error {
         /// Name of the body.
         body: String,
     },
+    /// Rows between finite rotations and a solid of which some are missing.
+    #[error(
+        "link '{link}': the rows of node {node} of the mesh are not complete: with finite rotations the rows of places and moments of a node hold together"
+    )]
+    TurningRows {
+        /// Name of the link.
+        link: String,
+        /// The node of the mediator.
+        node: u32,
+    },
     /// A constraint of an unknown that a node does not have.
     #[error(
         "constraint '{constraint}': node {node} of the mesh does not have this unknown: only nodes of bodies move, and only those of beams and of rigid bodies turn"

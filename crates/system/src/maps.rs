@@ -22,8 +22,9 @@ pub struct Maps {
     factors: Vec<f64>,
     /// Weights of the multipliers of links at the start and the end of the step in the balance of each.
     weights: Vec<[f64; 2]>,
-    /// Whether there are links.
+    /// Whether there are links, and whether rows of them turn.
     linked: bool,
+    turning: bool,
     /// Unknowns that follow each other and have one map, and its number; ascending.
     spans: Vec<(Range<usize>, usize)>,
 }
@@ -40,6 +41,7 @@ impl Maps {
             factors: vec![0.0; system.schemes.len()],
             weights: vec![[0.0, 1.0]; system.schemes.len()],
             linked: !system.link_rows.is_empty(),
+            turning: !system.turning_rows.is_empty(),
             spans: system.spans.clone(),
         };
         maps.resize(&system.schemes, (dt, next));
@@ -106,9 +108,9 @@ impl Maps {
     }
 
     /// The velocity that links join: that of the end, or where the unknown is not in it the rate that contact laws constrain; in a
-    /// static step the way. Accelerations that forces give by themselves satisfy the links and are left out.
+    /// static step, and where rows turn, the way. Accelerations that forces give by themselves satisfy the links and are left out.
     pub fn link_row(&self, map: &StepMap) -> Row {
-        let row = match (self.is_static(), map.velocity.x == 0.0) {
+        let row = match (self.is_static() || self.turning, map.velocity.x == 0.0) {
             (true, _) => map.displacement.since(&Row::START),
             (false, true) => map.rate,
             (false, false) => map.velocity,

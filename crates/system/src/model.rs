@@ -101,6 +101,18 @@ pub struct ModelLink {
     pub rows: Vec<Row>,
 }
 
+impl ModelLink {
+    /// Whether a row joins translations with rotations of nodes that turn by any angle, in a mesh of the dimension `dim`: its coefficients are then
+    /// arms, which turn too.
+    pub fn has_arms(&self, dim: usize, turns: &dyn Fn(u32) -> bool) -> bool {
+        self.rows.iter().any(|row| {
+            let all = || row.inner.iter().chain(&row.outer);
+            let rotates = |term: &carom_arlequin::Term| term.component as usize >= dim;
+            all().any(|term| rotates(term) && turns(term.node)) && !all().all(rotates)
+        })
+    }
+}
+
 /// Linear constraints `Σ c v = 0` between the velocities of unknowns, held by multipliers.
 #[derive(Clone, Debug)]
 pub struct ModelConstraint {

@@ -11,6 +11,9 @@ pub enum Refused {
     /// A body of beams or shells with finite rotations, by its name.
     #[error("body '{0}' with finite rotations")]
     FiniteRotations(String),
+    /// A link whose rows turn, by its name.
+    #[error("link '{0}' of bodies with finite rotations")]
+    TurningLink(String),
     /// The damping of a body, by its name.
     #[error("damping of body '{0}'")]
     Damping(String),

@@ -316,7 +316,43 @@ impl System {
                 why: "an explicit step would take the moment W × J W at the velocity before it and keep neither energy nor \
                       angular momentum; take energy-momentum, theta, newmark, generalised-alpha or hht",
             }),
-            _ => self.check_rigid(),
+            _ => self.check_turning_rows().and_then(|()| self.check_rigid()),
+        }
+    }
+
+    /// Refuses what rows that turn do not take.
+    fn check_turning_rows(&self) -> Result<(), Error> {
+        let Some(row) = self.turning_rows.first() else {
+            return Ok(());
+        };
+        let mut links = self.links.iter();
+        let link = links.find(|(_, rows)| rows.contains(&row));
+        let refuse = |why| {
+            let name = link.map_or(String::new(), |(name, _)| name.clone());
+            let what = Refused::TurningLink(name);
+            Err(Error::Nonlinear { what, why })
+        };
+        let scheme = self.scheme.get();
+        let staged = scheme.projects_predictor()
+            || scheme.restores_contact_work()
+            || scheme.step_map(self.dt).uses_contact_acceleration();
+        let projects = |contact: &Contact| contact.law.projects();
+        if self.schemes.len() > 1 {
+            return refuse("the rows hold at the end of the step; give both bodies one scheme");
+        }
+        if staged || self.contacts.iter().any(projects) {
+            return refuse(
+                "stages of the step that use the mass alone take rows as they are at the start; take energy-momentum, theta, newmark, hht or \
+                 generalised-alpha, and laws without projection",
+            );
+        }
+        let linked = self.link_rows.iter().flatten();
+        let mut parts = linked.map(|(unknown, _)| self.part_of(*unknown as usize));
+        match parts.any(|part| self.undeformed[part]) {
+            true => {
+                refuse("a body at small strain does not turn; give it a material at finite strain")
+            }
+            false => Ok(()),
         }
     }
 

@@ -1,6 +1,7 @@
 //! What never changes during a run: bodies, numbering, masses, supports, loads, contacts, scheme.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::Unknowns;
@@ -11,17 +12,11 @@ use carom_schemes::Scheme;
 
 use crate::adaptive::Adaptive;
 use crate::levers::Levers;
+use crate::link_row::LinkRow;
 use crate::mass::Mass;
 use crate::modal::NumberedModal;
 use crate::numbered::NumberedNonlinear;
-
-/// One row of C, which couples velocities: unknowns and coefficients, with the sign of the side.
-pub type LinkRow = Vec<(u32, f64)>;
-
-/// A row applied to a vector.
-pub fn on(row: &LinkRow, vector: &[f64]) -> f64 {
-    row.iter().map(|&(dof, c)| c * vector[dof as usize]).sum()
-}
+use crate::turning::TurningRows;
 
 /// The immutable side of a run.
 #[derive(Debug)]
@@ -91,7 +86,9 @@ pub struct System {
     /// Name and range of the rows of each link.
     pub links: Vec<(String, Range<usize>)>,
     /// The rows of all links, of both sides, those of the inner side first.
-    pub link_rows: Vec<LinkRow>,
+    pub link_rows: Arc<Vec<LinkRow>>,
+    /// Those of them that turn with their nodes; their coefficients in [`System::link_rows`] are those of the reference position.
+    pub turning_rows: TurningRows,
     /// Number of terms on the inner side of each row.
     pub inner_terms: Vec<usize>,
     /// Unknowns that follow each other and have one scheme, and its number; ascending.

@@ -1,9 +1,11 @@
 //! Models of a beam whose end is a solid, glued over a length.
 
 use carom_arlequin::{Region, Weighting, mean_motion};
-use carom_bodies::{BeamSection, BeamTheory, CellWeights, Kinematics, MassKind, SectionShape};
+use carom_bodies::{
+    BeamSection, BeamTheory, CellWeights, Kinematics, MassKind, Rotations, SectionShape,
+};
 use carom_dynamics::{ModelBody, ModelConstraint};
-use carom_materials::Elastic;
+use carom_materials::{Elastic, Law as Material, NeoHooke};
 use carom_mesh::{Mesh, generate, raise};
 use carom_zones::{Glued, glue_thin};
 
@@ -139,10 +141,32 @@ impl Spliced {
 
     /// The bodies, solid first, with consistent mass (a lumped one has too much inertia in torsion where few cells are across), and the overlap.
     pub(crate) fn glued(&self, mesh: &Mesh) -> Result<([ModelBody; 2], Glued), Error> {
-        let [solid, beam] = self.bodies(mesh)?;
-        let specs = [&solid.spec, &beam.spec];
+        self.glue(mesh, self.bodies(mesh)?)
+    }
+
+    /// The same of bodies that turn by any angle: the beam with finite rotations, the solid of neo-Hooke's material,
+    /// plane ones in plane strain.
+    pub(crate) fn glued_turning(&self, mesh: &Mesh) -> Result<([ModelBody; 2], Glued), Error> {
+        let [mut solid, mut beam] = self.bodies(mesh)?;
+        let initial = self.material;
+        solid.spec.material = Material::NeoHooke(NeoHooke { initial });
+        if let Kinematics::PlaneStress { thickness } = solid.spec.kinematics {
+            solid.spec.kinematics = Kinematics::PlaneStrain { thickness };
+        }
+        beam.spec.kinematics = Kinematics::Beam(BeamSection {
+            rotations: Rotations::Finite,
+            ..self.beam_section()
+        });
+        self.glue(mesh, [solid, beam])
+    }
+
+    fn glue(
+        &self,
+        mesh: &Mesh,
+        mut bodies: [ModelBody; 2],
+    ) -> Result<([ModelBody; 2], Glued), Error> {
+        let specs = [&bodies[0].spec, &bodies[1].spec];
         let glued = glue_thin(mesh, specs, &Region::Intersection, &self.weighting)?;
-        let mut bodies = [solid, beam];
         let weights = [&glued.weights.inner, &glued.weights.outer];
         for ((part, cells), weights) in bodies.iter_mut().zip(&glued.cells).zip(weights) {
             part.mass = MassKind::Consistent;

@@ -63,6 +63,7 @@ mod beam_on_stop;
 mod beam_pulse;
 mod beam_solid;
 mod beam_solid_impact;
+mod beam_solid_large;
 mod beam_solid_patch;
 mod beam_solid_waves;
 mod beams;
@@ -214,6 +215,7 @@ registry! {
     beam_on_stop
     beam_pulse
     beam_solid_impact
+    beam_solid_large
     beam_solid_patch
     beam_solid_waves
     block_drop

@@ -1,5 +1,8 @@
 //! What zones that step apart do not take.
 
+use std::collections::BTreeSet;
+
+use carom_bodies::Rotations;
 use carom_contact::Integration;
 use carom_contact::law::Level;
 
@@ -40,8 +43,32 @@ impl Zoned {
             .into());
         }
         self.check_discrete()?;
+        self.check_turning()?;
         self.check_schemes()?;
         self.check_steps()
+    }
+
+    /// Refuses links whose rows turn.
+    fn check_turning(&self) -> Result<(), Error> {
+        let mesh = &self.model.mesh;
+        let bodies = self.model.bodies.iter();
+        let finite =
+            bodies.filter(|body| body.spec.kinematics.rotations() == Some(Rotations::Finite));
+        let cells = finite.flat_map(|body| &body.spec.cells);
+        let nodes: BTreeSet<u32> = cells
+            .flat_map(|&cell| mesh.element_nodes(cell))
+            .copied()
+            .collect();
+        let turns = |node: u32| nodes.contains(&node);
+        let mut links = self.links.iter();
+        match links.find(|link| link.has_arms(mesh.dim, &turns)) {
+            None => Ok(()),
+            Some(link) => Err(system::Error::Nonlinear {
+                what: Refused::TurningLink(link.name.clone()),
+                why: "rows that turn join places, not velocities; take equal steps and one scheme",
+            }
+            .into()),
+        }
     }
 
     /// Refuses schemes whose velocities the multipliers of links between zones that step apart cannot hold.

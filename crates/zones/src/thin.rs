@@ -4,7 +4,7 @@ use carom_arlequin::{
     BeamCell, BeamModels, BeamOverlap, Model, Region, Rows, ShellCell, ShellModels, ShellOverlap,
     Weighting, Weights,
 };
-use carom_bodies::{BeamAxis, BeamSection, BodySpec, Kinematics, ShellSection, plates};
+use carom_bodies::{BeamAxis, BeamSection, BodySpec, Kinematics, Rotations, ShellSection, plates};
 use carom_mesh::{ElementId, Mesh};
 
 use crate::error::Error;
@@ -77,7 +77,10 @@ fn beam(
         second_moment: axis.second_moment(),
     });
     let cells: Vec<BeamCell> = cells.collect();
-    let motion = |element: usize, xi: f64| axes[element].motion(xi);
+    let motion = |element: usize, xi: f64| match section.rotations {
+        Rotations::Small => axes[element].motion(xi),
+        Rotations::Finite => axes[element].motion_of_directors(xi),
+    };
     let overlap = BeamOverlap::new(
         BeamModels {
             mesh,

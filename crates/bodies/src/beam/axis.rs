@@ -63,6 +63,23 @@ impl BeamAxis {
         [1, 2].map(|i| self.axes.row(i).transpose().into())
     }
 
+    /// [`BeamAxis::motion`] of elements with finite rotations, linear in places and directors: `x = Σ N_a (x_a + R_a r) + L ξ (1 - ξ)/2 (R₁ - R₂) e`,
+    /// e along the axis, here for small turns. Uniform tension and pure bending are in it; the axis of an element has no offset.
+    pub fn motion_of_directors(&self, xi: f64) -> [[f64; 12]; 6] {
+        let n = [1.0 - xi, xi];
+        let along = self.axes.row(0).transpose() * (0.5 * self.length * n[0] * n[1]);
+        let mut rows = [[0.0; 12]; 6];
+        for (node, sign) in [(0, 1.0), (1, -1.0)] {
+            for i in 0..3 {
+                rows[i][6 * node + i] = n[node];
+                rows[3 + i][6 * node + 3 + i] = n[node];
+                let bent = unit(i).cross(&along) * sign;
+                (0..3).for_each(|k| rows[k][6 * node + 3 + i] = bent[k]);
+            }
+        }
+        rows
+    }
+
     /// Translation of the centroid and rotation at ξ in [0, 1] along the element, in the axes of coordinates, by the displacement
     /// and the rotation of the first node, then of the second one: six rows of twelve. The shapes are those of the stiffness, so
     /// a rotation is N_θ: with Euler and Bernoulli's theory the slope of the axis.

@@ -71,6 +71,19 @@ impl EndWeights {
         inertia: [1.0; 2],
         stiffness: [1.0; 2],
     };
+
+    /// `∫ α N_a dξ` of the linear functions of both ends.
+    pub(super) fn shares(&self) -> [f64; 2] {
+        let [a, b] = self.inertia;
+        [a / 3.0 + b / 6.0, a / 6.0 + b / 3.0]
+    }
+
+    /// `∫ α N_a N_b dξ`.
+    pub(super) fn products(&self) -> [[f64; 2]; 2] {
+        let [a, b] = self.inertia;
+        let mixed = (a + b) / 12.0;
+        [[a / 4.0 + b / 12.0, mixed], [mixed, a / 12.0 + b / 4.0]]
+    }
 }
 
 /// An element of a length (m) with a section, a material and weights.

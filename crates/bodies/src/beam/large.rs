@@ -17,6 +17,8 @@
 //!
 //! Mass: of translations linear between the nodes (consistent) or half at each (lumped); of rotations at both half of ρ L I about the axes
 //! of the section, also with Euler-Bernoulli: a constant tensor J about the axes of the node.
+//!
+//! Weights that are linear along an element are its mean in the stiffness, since its strains are uniform, and `∫ α N_a N_b`, `∫ α N_a` in the mass.
 
 use std::ops::Range;
 
@@ -45,8 +47,8 @@ pub struct LargeBeam {
     ways: Vec<Vec3>,
     /// Frames of the nodes of each element.
     frames: Vec<[usize; 2]>,
-    /// Tensor of inertia of half an element about the axes of coordinates, kg m².
-    inertia: Vec<Mat3>,
+    /// Tensors of inertia of an element at its two nodes about the axes of coordinates, kg m².
+    inertia: Vec<[Mat3; 2]>,
 }
 
 /// The state of an element's nodes.
@@ -61,7 +63,7 @@ impl LargeBeam {
     /// The same beams with finite rotations. `x`: reference places by system number, m.
     ///
     /// # Errors
-    /// Weights, an eccentric axis, hinges, a foundation.
+    /// An eccentric axis, hinges, a foundation.
     pub(crate) fn new(
         mut small: Beam,
         x: &dyn Fn(u32) -> [f64; 3],
@@ -72,11 +74,6 @@ impl LargeBeam {
             body: small.name.clone(),
             what,
         };
-        if small.weights.iter().any(|w| *w != EndWeights::ONE) {
-            return Err(Error::BeamWeights {
-                body: small.name.clone(),
-            });
-        }
         if small.section.offset != [0.0; 2] {
             return Err(refused("an offset"));
         }
@@ -89,7 +86,9 @@ impl LargeBeam {
         let properties = &small.section.properties;
         let (young, shear) = (small.material.young, small.material.shear_modulus());
         let [about_y, about_z] = properties.second_moments;
-        let element = |&length: &f64| {
+        let element = |(&length, weights): (&f64, &EndWeights)| {
+            // the strains of an element are uniform
+            let weight = 0.5 * (weights.stiffness[0] + weights.stiffness[1]);
             let across = |area: f64, second: f64| {
                 let bends = length * length / (12.0 * young * second);
                 match small.section.theory {
@@ -107,13 +106,15 @@ impl LargeBeam {
                     shear * properties.torsion,
                     young * about_y,
                     young * about_z,
-                ],
+                ]
+                .map(|stiffness| weight * stiffness),
             }
         };
-        let half = |(axes, length): (&Mat3, &f64)| {
+        let half = |((axes, length), weights): ((&Mat3, &f64), &EndWeights)| {
             let local = Vec3::new(about_y + about_z, about_y, about_z);
-            let local = Mat3::from_diagonal(&(local * (0.5 * small.material.density * length)));
-            axes.transpose() * local * axes
+            let local = Mat3::from_diagonal(&(local * (small.material.density * length)));
+            let whole = axes.transpose() * local * axes;
+            weights.shares().map(|share| whole * share)
         };
         let way = |nodes: &[u32; 2]| {
             let [from, to] = nodes.map(|node| Vec3::from(x(node)));
@@ -123,8 +124,19 @@ impl LargeBeam {
             |nodes: &[u32; 2]| nodes.map(|node| unknowns.frame(node).unwrap_or(usize::MAX));
         Ok(LargeBeam {
             section,
-            elements: small.lengths.iter().map(element).collect(),
-            inertia: small.axes.iter().zip(&small.lengths).map(half).collect(),
+            elements: small
+                .lengths
+                .iter()
+                .zip(&small.weights)
+                .map(element)
+                .collect(),
+            inertia: small
+                .axes
+                .iter()
+                .zip(&small.lengths)
+                .zip(&small.weights)
+                .map(half)
+                .collect(),
             ways: small.nodes.iter().map(way).collect(),
             frames: small.nodes.iter().map(frames).collect(),
             small,
@@ -301,9 +313,12 @@ impl LargeBeam {
         if self.small.dim < 3 {
             return;
         }
-        for first in self.small.first[element] {
+        let own = self.small.first[element]
+            .into_iter()
+            .zip(&self.inertia[element]);
+        for (first, inertia) in own {
             let [_, spin] = self.of_node(first, v);
-            let moment = spin.cross(&(self.inertia[element] * spin));
+            let moment = spin.cross(&(inertia * spin));
             self.add_node(first, [&Vec3::zeros(), &moment], f);
         }
     }
@@ -346,7 +361,7 @@ impl LargeBeam {
         }
         for (node, first) in self.small.first[element].into_iter().enumerate() {
             let [_, spin] = self.of_node(first, v);
-            let inertia = &self.inertia[element];
+            let inertia = &self.inertia[element][node];
             let slope = spin.cross_matrix() * inertia - (inertia * spin).cross_matrix();
             let mean = (slope + slope.transpose()) * (0.5 * by_v);
             self.add_block(element, [(node, 1), (node, 1)], &mean, matrix);
@@ -389,13 +404,14 @@ impl LargeBeam {
                 continue;
             }
             let whole = mass * self.weight(element);
+            let products = self.small.weights[element].products();
             let nodes = first.map(|first| first - part.start);
             for (a, &row) in nodes.iter().enumerate() {
                 for (b, &column) in nodes.iter().enumerate() {
-                    let m = if a == b { whole / 3.0 } else { whole / 6.0 };
+                    let m = whole * products[a][b];
                     (0..dim).for_each(|i| matrix.add(row + i, column + i, m));
                 }
-                let inertia = self.inertia[element] * mass;
+                let inertia = self.inertia[element][a] * mass;
                 match dim {
                     2 => matrix.add(row + 2, row + 2, inertia[(2, 2)]),
                     _ => {
@@ -419,11 +435,12 @@ impl LargeBeam {
     pub(crate) fn add_lumped_mass(&self, mass: &mut [f64]) {
         let dim = self.small.dim;
         for (element, first) in self.small.first.iter().enumerate() {
-            for &first in first {
+            let shares = self.small.weights[element].shares();
+            for (a, &first) in first.iter().enumerate() {
                 for m in &mut mass[first..first + dim] {
-                    *m += 0.5 * self.weight(element);
+                    *m += shares[a] * self.weight(element);
                 }
-                let inertia = &self.inertia[element];
+                let inertia = &self.inertia[element][a];
                 match dim {
                     2 => mass[first + 2] += inertia[(2, 2)],
                     _ => (0..3).for_each(|i| mass[first + 3 + i] += inertia[(i, i)]),
@@ -435,7 +452,7 @@ impl LargeBeam {
     /// Whether the lumped mass is diagonal in the axes of coordinates.
     pub(crate) fn lumps(&self) -> bool {
         self.small.dim == 2
-            || self.inertia.iter().all(|inertia| {
+            || self.inertia.iter().flatten().all(|inertia| {
                 let off = [inertia[(0, 1)], inertia[(1, 2)], inertia[(0, 2)]];
                 off.iter()
                     .all(|i| i.abs() <= super::ROUNDING * inertia.trace())
@@ -476,7 +493,10 @@ impl LargeBeam {
             let s = self.invariants(element, &self.ends(element, frames, u));
             let elastic = &self.elements[element];
             let f = match &self.section {
-                None => elastic.stresses(&s),
+                None => {
+                    let [one, two] = self.small.weights[element].stiffness;
+                    elastic.stresses(&s).map(|f| f / (0.5 * (one + two)))
+                }
                 Some(section) => {
                     let strains = elastic.strains(&s);
                     let history = &history[self.history_of(section, element)];

@@ -106,7 +106,11 @@ impl Builder<'_> {
         name: &str,
     ) -> Option<Surface> {
         let group = self.group(mesh, path, name)?;
-        match Surface::new(mesh, group, cells) {
+        // beams beside solids: only cells of one dimension more can have the sides
+        let dim = |cell: &&ElementId| mesh.kind(**cell).table().dim == group.dim + 1;
+        let over: Vec<ElementId> = cells.iter().filter(dim).copied().collect();
+        let over = if over.is_empty() { cells } else { &over };
+        match Surface::new(mesh, group, over) {
             Ok(surface) => Some(surface),
             Err(error) => {
                 let problem = Problem::new(path, error.to_string()).found(name);

@@ -150,7 +150,8 @@ impl Builder<'_> {
         discrete.extend(self.fluids(&mut mesh));
         let mut constraints = self.constraints(&mesh, &bodies);
         let turning = self.nodes_with_rotations(&mesh);
-        constraints.extend(self.transitions(&mesh, &bodies, &turning));
+        let (transitions, links) = self.transitions(&mesh, &bodies, &turning);
+        constraints.extend(transitions);
         let (supports, motions, turns) = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
         let loads = self.loads(&mesh, &bodies);
@@ -189,7 +190,7 @@ impl Builder<'_> {
             scheme: self.outer_scheme(),
             dt: f64::MIN_POSITIVE,
             zones: Vec::new(),
-            links: Vec::new(),
+            links,
             constraints,
             adaptive: None,
             critical_fraction: None,

@@ -128,6 +128,10 @@ impl Builder<'_> {
             Refusal::SchemesOfPart { body, .. } => {
                 Problem::new(format!("body.{body}"), error.to_string())
             }
+            Refusal::TurningRows { link, .. } => {
+                let problem = Problem::new(self.path_of_link(link), error.to_string());
+                problem.accepted(["supports that hold no node of the link in both bodies"])
+            }
             Refusal::Nonlinear { what, why } => self.refused_nonlinear(what, why),
             other => Problem::new("time", other.to_string()),
         }
@@ -142,6 +146,7 @@ impl Builder<'_> {
             Refused::ModalDamping(body) => format!("body.{body}.damping.modal"),
             Refused::Motion { .. } => "support".to_string(),
             Refused::Load { .. } => "load".to_string(),
+            Refused::TurningLink(link) => self.path_of_link(link),
             Refused::NodalLoad(load) => format!("load.{load}"),
             Refused::Rigid(body) => format!("body.{body}.rigid"),
             Refused::FiniteRotations(body) => {
@@ -154,6 +159,13 @@ impl Builder<'_> {
             }
         };
         Problem::new(path, format!("{what}: {why}"))
+    }
+
+    fn path_of_link(&self, link: &str) -> String {
+        match self.case.transition.get(link) {
+            Some(_) => format!("transition.{link}"),
+            None => format!("arlequin.{link}"),
+        }
     }
 
     /// The problem behind an error of a zone's system.

@@ -30,11 +30,7 @@ impl Builder<'_> {
         let axes = axes(mesh, bodies, group);
         let flat = group.dim == 0 && axes.iter().all(|axes| axes.section.radius == Some(0.0));
         if axes.is_empty() || flat {
-            // beams beside solids: only cells of one dimension more can have the sides
-            let dim = |cell: &&ElementId| mesh.kind(**cell).table().dim == group.dim + 1;
-            let over: Vec<ElementId> = cells.iter().filter(dim).copied().collect();
-            let over = if over.is_empty() { cells } else { &over };
-            return self.surface(mesh, over, path, name);
+            return self.surface(mesh, cells, path, name);
         }
         let known: Vec<bool> = axes.iter().map(|axes| self.has_surface(axes)).collect();
         if known.contains(&false) {

@@ -100,6 +100,7 @@ impl Builder<'_> {
         let refused = thin_body
             .refuse_other((&keys[1 - thin], other), &bodies[solid])
             .or_else(|| thin_body.refuse_own((&keys[thin], name), &bodies[body]))
+            .or_else(|| refuse_turns((&keys[1 - thin], other), [&bodies[body], &bodies[solid]]))
             .or_else(|| thin_body.refuse_choice(path, given));
         match refused {
             None => Some(()),
@@ -193,7 +194,7 @@ impl Thin {
         Some(Problem::new(path, message).found(name).accepted(accepted))
     }
 
-    /// Refuses thin bodies that turn by any angle or flow.
+    /// Refuses shells that turn by any angle, and thin bodies that flow.
     fn refuse_own(self, (path, name): (&str, &str), body: &ModelBody) -> Option<Problem> {
         let thin = self.name();
         let rotations = match body.spec.kinematics {
@@ -202,7 +203,7 @@ impl Thin {
             _ => return None,
         };
         let problem = |message| Problem::new(path, message).found(name);
-        if rotations == Rotations::Finite {
+        if rotations == Rotations::Finite && matches!(self, Thin::Shell) {
             let message = format!("{thin}s with finite rotations cannot be glued in volume");
             let accepted = format!("rotations = \"small\" in the section of the {thin}");
             return Some(problem(message).accepted([accepted]));
@@ -235,4 +236,18 @@ impl Thin {
         }
         None
     }
+}
+
+/// Refuses solids at small strain beside beams that turn by any angle.
+fn refuse_turns((path, name): (&str, &str), [thin, solid]: [&ModelBody; 2]) -> Option<Problem> {
+    let turns = thin.spec.kinematics.rotations() == Some(Rotations::Finite);
+    if !turns || solid.spec.material.finite().is_some() {
+        return None;
+    }
+    let message = "a solid at small strain does not turn with a beam of finite rotations";
+    let problem = Problem::new(path, message).found(name);
+    Some(problem.accepted([
+        "a body of a material at finite strain, such as neo-hooke",
+        "rotations = \"small\" in the section of the beam",
+    ]))
 }

@@ -1,8 +1,8 @@
 //! Ends of beams and edges of shells on faces of solids, and surfaces on each other.
 
-use carom_arlequin::{EdgeCell, edge_mean_motion, edge_rigid_motion, mean_motion};
+use carom_arlequin::{EdgeCell, Rows, edge_mean_motion, edge_rigid_motion, mean_motion};
 use carom_bodies::{Kinematics, ShellPlate, plates};
-use carom_dynamics::{ModelBody, ModelConstraint};
+use carom_dynamics::{ModelBody, ModelConstraint, ModelLink};
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Mesh, Surface};
 
@@ -19,20 +19,20 @@ struct Given<'a> {
 }
 
 impl Builder<'_> {
-    /// The constraints between ends of beams or edges of shells and faces. `turning`: nodes with rotations, sorted.
+    /// The constraints between ends of beams or edges of shells and faces, and the links of those that turn by any angle. `turning`: nodes with rotations, sorted.
     pub(super) fn transitions(
         &mut self,
         mesh: &Mesh,
         bodies: &[ModelBody],
         turning: &[u32],
-    ) -> Vec<ModelConstraint> {
+    ) -> (Vec<ModelConstraint>, Vec<ModelLink>) {
         let case = self.case;
         let cells = bodies.iter().flat_map(|body| body.spec.cells.iter());
         let sides: Vec<ElementId> = cells
             .copied()
             .filter(|&cell| mesh.kind(cell).table().dim == mesh.dim)
             .collect();
-        let mut all = Vec::new();
+        let (mut all, mut links) = (Vec::new(), Vec::new());
         for (name, given) in case.transition.iter() {
             let path = format!("transition.{name}");
             if let Some(surfaces) = &given.surfaces {
@@ -48,6 +48,10 @@ impl Builder<'_> {
             };
             let face = self.surface(mesh, &sides, &format!("{path}.face"), given.face);
             let of = (name, given, path.as_str());
+            if self.both_turn(mesh, bodies, of, face.as_ref()) {
+                links.extend(self.end_turns_on(mesh, of, face));
+                continue;
+            }
             if self.turns_by_any_angle(mesh, bodies, of, face.as_ref()) {
                 continue;
             }
@@ -57,18 +61,75 @@ impl Builder<'_> {
             };
             all.extend(found);
         }
-        if let (Some(first), false) = (all.first(), self.plan.zones.is_empty()) {
+        let names = all.iter().map(|one| &one.name);
+        let mut names = names.chain(links.iter().map(|one| &one.name));
+        if let (Some(first), false) = (names.next(), self.plan.zones.is_empty()) {
             let message = "transitions are not available in zones";
-            let problem = Problem::new(format!("transition.{}", first.name), message);
+            let problem = Problem::new(format!("transition.{first}"), message);
             self.problems.push(problem.accepted([
                 "a case without zones",
                 "[arlequin.<name>] between the two bodies",
             ]));
         }
-        all
+        (all, links)
     }
 
-    /// Refuses ends and faces of bodies that turn by any angle: the rows are those of small turns.
+    /// Whether the end of a beam and the face that has its motion in the mean both turn by any angle.
+    fn both_turn(
+        &self,
+        mesh: &Mesh,
+        bodies: &[ModelBody],
+        (_, given, _): (&str, &Given, &str),
+        face: Option<&Surface>,
+    ) -> bool {
+        let end = mesh.groups.get(given.end);
+        let end = end.map_or(Vec::new(), |group| mesh.group_nodes(group));
+        let face = face.map_or(&[][..], |face| &face.nodes);
+        let turns = |nodes: &[u32]| any_angle(mesh, bodies, nodes).is_some();
+        given.motion == TransitionMotion::Distributing
+            && !self.is_edge(mesh, &given.end)
+            && turns(&end)
+            && turns(face)
+    }
+
+    /// The end of a beam with finite rotations on a face of a solid at finite strain.
+    fn end_turns_on(
+        &mut self,
+        mesh: &Mesh,
+        (name, given, path): (&str, &Given, &str),
+        face: Option<Surface>,
+    ) -> Option<ModelLink> {
+        let end = self.single(mesh, &format!("{path}.end"), given.end);
+        let (end, face) = (end?, face?);
+        self.apart_from_face(&[end], &face, (given, path))?;
+        let rows = self.mean_rows(mesh, (end, &face), (given, path))?;
+        Some(ModelLink {
+            name: name.to_owned(),
+            zones: [0, 0],
+            rows: rows.rows,
+        })
+    }
+
+    /// The rows of the mean motion of a face.
+    fn mean_rows(
+        &mut self,
+        mesh: &Mesh,
+        (end, face): (u32, &Surface),
+        (given, path): (&Given, &str),
+    ) -> Option<Rows> {
+        match mean_motion(mesh, &face.faces, end) {
+            Ok(rows) => Some(rows),
+            Err(error) => {
+                let problem = Problem::new(format!("{path}.face"), error.to_string());
+                let problem = problem.found(given.face);
+                self.problems
+                    .push(problem.accepted(["faces that are not on one line"]));
+                None
+            }
+        }
+    }
+
+    /// Refuses ends and faces of bodies that turn by any angle where the rows are those of small turns.
     fn turns_by_any_angle(
         &mut self,
         mesh: &Mesh,
@@ -90,7 +151,9 @@ impl Builder<'_> {
             "a transition holds for small rotations, and body '{name}' may turn by any angle"
         );
         let problem = Problem::new(format!("{path}.{key}"), message).found(found);
-        self.problems.push(problem.accepted(SMALL_TURNS));
+        let both = "motion = \"distributing\", of a beam with finite rotations and a solid at finite strain";
+        let accepted = SMALL_TURNS.into_iter().chain([both]);
+        self.problems.push(problem.accepted(accepted));
         true
     }
 
@@ -127,16 +190,10 @@ impl Builder<'_> {
                     .collect();
                 ModelConstraint::rigid_link(name, mesh, end, &nodes, true)
             }
-            TransitionMotion::Distributing => match mean_motion(mesh, &face.faces, end) {
-                Ok(rows) => ModelConstraint::of_rows(name, &rows.rows, mesh.dim),
-                Err(error) => {
-                    let problem = Problem::new(format!("{path}.face"), error.to_string());
-                    let problem = problem.found(given.face);
-                    self.problems
-                        .push(problem.accepted(["faces that are not on one line"]));
-                    return None;
-                }
-            },
+            TransitionMotion::Distributing => {
+                let rows = self.mean_rows(mesh, (end, &face), (given, path))?;
+                ModelConstraint::of_rows(name, &rows.rows, mesh.dim)
+            }
         })
     }
 

@@ -5,6 +5,7 @@
 //! between two of them, these parts have one matrix together.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::rotation::Rotation;
@@ -20,7 +21,7 @@ use crate::costs::Work;
 use crate::error::Error;
 use crate::operator::{Operator, Operators, factored, single};
 use crate::step_map::StepMap;
-use crate::system::{Maps, NumberedModal, System};
+use crate::system::{LinkRow, Maps, NumberedModal, System};
 
 /// Sizes of the step and stages whose factors are kept beside those of the present one.
 const KEPT: usize = 3;
@@ -92,6 +93,8 @@ pub(super) struct At<'a> {
     pub(super) frames: &'a [Rotation],
     /// Histories at the start of the step.
     pub(super) history: &'a [f64],
+    /// The rows of the links there.
+    pub(super) rows: &'a Arc<Vec<LinkRow>>,
     /// Parts with a proximal term, and its part of the diagonal.
     pub(super) proximal: (&'a [Range<usize>], f64),
 }
@@ -326,7 +329,8 @@ impl Matrices {
                     coupled: false,
                     version: compliance.version,
                 };
-                let links = Linking::new(system, (maps, between), (&mut operators, &made));
+                let rows = (system, &system.link_rows);
+                let links = Linking::new(rows, (maps, between), (&mut operators, &made));
                 Some(links?)
             }
         };

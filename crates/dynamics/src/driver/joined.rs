@@ -121,7 +121,7 @@ impl<'a> Joined<'a> {
                 held.add(self.row(row.iter().copied()));
             });
         }
-        for row in &self.system.link_rows {
+        for row in self.system.link_rows.iter() {
             held.add(self.row(row.iter().map(|&(unknown, c)| (unknown as usize, c))));
         }
         let mut motions = Vec::new();

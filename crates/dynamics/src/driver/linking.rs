@@ -8,6 +8,8 @@
 //! with r' the forces and the multipliers without contact. So contact and links are one problem, exact with its signs, and a row may
 //! end on the surface in contact.
 
+use std::sync::Arc;
+
 use carom_algebra::csr::Csr;
 use carom_algebra::dense::DenseCholesky;
 use carom_contact::Rows;
@@ -22,6 +24,8 @@ use crate::system::{LinkRow, System};
 
 /// What the rows of links make of the matrices of one size of the step.
 pub(super) struct Linking {
+    /// The rows, as they are where it was made.
+    rows: Arc<Vec<LinkRow>>,
     /// H.
     condensed: Condensed,
     /// w of each part, and ν.
@@ -60,9 +64,9 @@ fn factors(system: &System, maps: &Maps) -> Vec<[f64; 2]> {
 }
 
 /// The parts of a row's terms, and the terms of each.
-fn by_part(system: &System) -> Vec<Vec<(u32, LinkRow)>> {
+fn by_part((system, rows): (&System, &[LinkRow])) -> Vec<Vec<(u32, LinkRow)>> {
     let mut by_part: Vec<Vec<(u32, LinkRow)>> = vec![Vec::new(); system.parts.len()];
-    for (number, row) in system.link_rows.iter().enumerate() {
+    for (number, row) in rows.iter().enumerate() {
         for &(dof, c) in row {
             let of_part = &mut by_part[system.part_of(dof as usize)];
             match of_part.last_mut() {
@@ -88,14 +92,14 @@ pub(super) struct Made<'a> {
 
 /// H from the matrices of the parts where there are many rows, from their answers where there are few or `matrix` is none.
 fn condensed(
-    system: &System,
+    (system, rows): (&System, &[LinkRow]),
     factors: &[[f64; 2]],
     operators: &mut Operators,
     matrix: Option<&dyn Fn(usize) -> Matrix>,
 ) -> Result<Condensed, Error> {
-    let count = system.link_rows.len();
+    let count = rows.len();
     if let (true, Some(matrix)) = (count > DENSE, matrix) {
-        let linked = by_part(system).into_iter().enumerate();
+        let linked = by_part((system, rows)).into_iter().enumerate();
         let linked = linked.filter(|(_, rows)| !rows.is_empty());
         let answers = linked.map(|(part, rows)| Answer {
             system,
@@ -114,11 +118,11 @@ fn condensed(
     for column in 0..count {
         unit[column] = 1.0;
         force.fill(0.0);
-        add_forces(system, factors, &unit, &mut force);
+        add_forces((system, rows), factors, &unit, &mut force);
         unit[column] = 0.0;
         operators.begin(&force, &mut half);
         operators.end(&mut half, &mut x);
-        for (row, terms) in system.link_rows.iter().enumerate() {
+        for (row, terms) in rows.iter().enumerate() {
             h[row * count + column] = velocity(system, factors, terms, &x);
         }
     }
@@ -134,7 +138,10 @@ fn condensed(
 }
 
 /// H of the mass alone, and M⁻¹ in `operators`.
-pub(super) fn of_mass(system: &System, operators: &mut Operators) -> Result<Condensed, Error> {
+pub(super) fn of_mass(
+    (system, rows): (&System, &[LinkRow]),
+    operators: &mut Operators,
+) -> Result<Condensed, Error> {
     let factors = vec![[1.0; 2]; system.parts.len()];
     let matrix = |part: usize| {
         let span = &system.parts[part];
@@ -148,7 +155,7 @@ pub(super) fn of_mass(system: &System, operators: &mut Operators) -> Result<Cond
             )),
         }
     };
-    condensed(system, &factors, operators, Some(&matrix))
+    condensed((system, rows), &factors, operators, Some(&matrix))
 }
 
 /// Adds Cᵀ L to a system vector, held unknowns included.
@@ -161,8 +168,13 @@ pub(super) fn add_all_forces(system: &System, l: &[f64], force: &mut [f64]) {
 }
 
 /// Adds w Cᵀ L to a system vector; nothing on held unknowns.
-pub(super) fn add_forces(system: &System, factors: &[[f64; 2]], l: &[f64], force: &mut [f64]) {
-    for (row, l) in system.link_rows.iter().zip(l).filter(|(_, l)| **l != 0.0) {
+pub(super) fn add_forces(
+    (system, rows): (&System, &[LinkRow]),
+    factors: &[[f64; 2]],
+    l: &[f64],
+    force: &mut [f64],
+) {
+    for (row, l) in rows.iter().zip(l).filter(|(_, l)| **l != 0.0) {
         for &(dof, c) in row.iter().filter(|(dof, _)| !system.fixed[*dof as usize]) {
             let [weight, _] = factors[system.part_of(dof as usize)];
             force[dof as usize] += c * weight * l;
@@ -185,19 +197,21 @@ impl Linking {
     /// Rows that say the same twice.
     pub(super) fn of_mass(system: &System, operators: &mut Operators) -> Result<Linking, Error> {
         let factors = vec![[1.0; 2]; system.parts.len()];
-        let condensed = of_mass(system, operators)?;
-        Ok(Linking::with(condensed, factors, system, 0))
+        let rows = Arc::clone(&system.link_rows);
+        let condensed = of_mass((system, &rows), operators)?;
+        Ok(Linking::with(condensed, factors, (system, rows), 0))
     }
 
     fn with(
         condensed: Condensed,
         factors: Vec<[f64; 2]>,
-        system: &System,
+        (system, rows): (&System, Arc<Vec<LinkRow>>),
         versions: u64,
     ) -> Linking {
         let n = system.unknowns();
         let points = system.points() * (1 + system.tangents());
         Linking {
+            rows,
             condensed,
             factors,
             points: (0..points).map(|_| None).collect(),
@@ -211,12 +225,12 @@ impl Linking {
         }
     }
 
-    /// With the matrices of linear parts, and those that the iterations have made of the others.
+    /// With the matrices of linear parts, and those that the iterations have made of the others. `rows`: as they are now.
     ///
     /// # Errors
     /// Rows that say the same twice.
     pub(super) fn new(
-        system: &System,
+        (system, rows): (&System, &Arc<Vec<LinkRow>>),
         (maps, between): (&Maps, bool),
         (operators, made): (&mut Operators, &Made),
     ) -> Result<Linking, Error> {
@@ -236,8 +250,9 @@ impl Linking {
             }
         };
         let matrix: Option<&dyn Fn(usize) -> Matrix> = (!made.coupled).then_some(&matrix);
-        let condensed = condensed(system, &factors, operators, matrix)?;
-        Ok(Linking::with(condensed, factors, system, made.version))
+        let condensed = condensed((system, rows), &factors, operators, matrix)?;
+        let own = (system, Arc::clone(rows));
+        Ok(Linking::with(condensed, factors, own, made.version))
     }
 
     /// The last version of its compliances.
@@ -256,7 +271,7 @@ impl Linking {
     ) {
         self.half.copy_from_slice(half);
         operators.end(&mut self.half, &mut self.x);
-        for (defect, row) in defect.iter_mut().zip(&system.link_rows) {
+        for (defect, row) in defect.iter_mut().zip(self.rows.iter()) {
             *defect += velocity(system, &self.factors, row, &self.x);
         }
         self.condensed.solve(defect);
@@ -264,7 +279,7 @@ impl Linking {
             *l = -*l;
             *change += *l;
         }
-        add_forces(system, &self.factors, defect, work);
+        add_forces((system, &self.rows), &self.factors, defect, work);
         operators.begin(work, half);
     }
 
@@ -334,7 +349,7 @@ impl Linking {
         self.half.fill(0.0);
         compliance.add(point, 1.0, operators, &mut self.half);
         operators.end(&mut self.half, &mut self.x);
-        let left = system.link_rows.iter();
+        let left = self.rows.iter();
         let left = left.map(|row| velocity(system, &self.factors, row, &self.x));
         let mut left: Vec<f64> = left.collect();
         if left.iter().all(|b| *b == 0.0) {
@@ -362,7 +377,7 @@ impl Linking {
     ) {
         operators.begin(force, &mut self.half);
         operators.end(&mut self.half, &mut self.x);
-        for (l, row) in l.iter_mut().zip(&system.link_rows) {
+        for (l, row) in l.iter_mut().zip(self.rows.iter()) {
             *l = -velocity(system, &self.factors, row, &self.x);
         }
         self.condensed.solve(l);
@@ -390,7 +405,12 @@ impl Linking {
             *change += moved;
         }
         self.force.fill(0.0);
-        add_forces(system, &self.factors, &self.moved, &mut self.force);
+        add_forces(
+            (system, &self.rows),
+            &self.factors,
+            &self.moved,
+            &mut self.force,
+        );
         operators.begin(&self.force, &mut self.half);
         for (half, more) in half.iter_mut().zip(&self.half) {
             *half += more;

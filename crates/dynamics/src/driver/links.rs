@@ -50,11 +50,11 @@ impl Driver {
     }
 
     /// The force of the multipliers as they stand, Σ_z C_zᵀ (w₀ L_k + w₁ L_{k+1}).
-    fn set_links(&mut self) {
+    pub(super) fn set_links(&mut self) {
         self.link_force.fill(0.0);
         let system = &*self.system;
         let (before, now) = (&self.state.links.multipliers, &self.multipliers.now);
-        for (i, row) in system.link_rows.iter().enumerate() {
+        for (i, row) in self.rows.iter().enumerate() {
             for &(dof, c) in row {
                 let [old, new] = self.maps.link_weights(system.zone_at(dof as usize));
                 self.link_force[dof as usize] += c * (old * before[i] + new * now[i]);
@@ -67,6 +67,7 @@ impl Driver {
         if !self.has_links() {
             return;
         }
+        let bent = self.bent_rows();
         let (system, maps) = (Arc::clone(&self.system), &self.maps);
         let (motion, vectors) = (&self.state.motion, &mut self.vectors);
         let of_row = |row: &LinkRow| -> f64 {
@@ -83,8 +84,11 @@ impl Driver {
             defect,
             ..
         } = &mut self.multipliers;
-        for (defect, row) in defect.iter_mut().zip(&system.link_rows) {
+        for (defect, row) in defect.iter_mut().zip(self.rows.iter()) {
             *defect = of_row(row);
+        }
+        for (row, h) in bent {
+            defect[row] = h;
         }
         pushed.fill(0.0);
         if let Some((operators, _, Some(linking))) = self.effective.all() {
@@ -121,7 +125,9 @@ impl Driver {
         }
         let system = Arc::clone(&self.system);
         let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
-        let mut condensed = of_mass(&system, &mut mass)?;
+        self.turn_rows_at_start();
+        let rows = Arc::clone(&self.rows);
+        let mut condensed = of_mass((&system, &rows), &mut mass)?;
         let ones = vec![[1.0; 2]; system.parts.len()];
         let n = system.unknowns();
         let (mut half, mut x) = (vec![0.0; n], vec![0.0; n]);
@@ -131,14 +137,10 @@ impl Driver {
             x.clone()
         };
         let velocities = &mut self.state.motion.v;
-        let mut l: Vec<f64> = system
-            .link_rows
-            .iter()
-            .map(|row| on(row, velocities))
-            .collect();
+        let mut l: Vec<f64> = rows.iter().map(|row| on(row, velocities)).collect();
         condensed.solve(&mut l);
         let mut force = vec![0.0; n];
-        add_forces(&system, &ones, &l, &mut force);
+        add_forces((&system, &rows), &ones, &l, &mut force);
         for (v, change) in velocities.iter_mut().zip(solve(&force)) {
             *v -= change;
         }
@@ -152,15 +154,14 @@ impl Driver {
         };
         let balance: Vec<f64> = (0..n).map(free).collect();
         let accelerations = solve(&balance);
-        let mut l: Vec<f64> = system
-            .link_rows
-            .iter()
-            .map(|row| -on(row, &accelerations))
-            .collect();
+        let mut l: Vec<f64> = rows.iter().map(|row| -on(row, &accelerations)).collect();
+        for (row, own) in self.centripetal_rows() {
+            l[row] -= own;
+        }
         condensed.solve(&mut l);
         self.link_force.fill(0.0);
         // held unknowns feel the links too
-        for (row, l) in system.link_rows.iter().zip(&l) {
+        for (row, l) in rows.iter().zip(&l) {
             for &(dof, c) in row {
                 self.link_force[dof as usize] += c * l;
             }
@@ -193,7 +194,7 @@ impl Driver {
                     let [l, mixed] = [old.multipliers[row], old.mixed[zone][row]];
                     let now = weights[0] * l + weights[1] * next.multipliers[row];
                     let mean = of_work.old * mixed + of_work.new * now;
-                    let terms = &system.link_rows[row];
+                    let terms = &self.rows[row];
                     let (inner, outer) = terms.split_at(system.inner_terms[row]);
                     for (work, terms) in next.works[link].iter_mut().zip([inner, outer]) {
                         let terms = terms.iter().filter(|(dof, _)| own(*dof as usize));

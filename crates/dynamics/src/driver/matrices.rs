@@ -67,6 +67,7 @@ impl Driver {
             from: self.between().then_some(&motion.u[..]),
             frames: &motion.frames,
             history: &motion.history,
+            rows: &self.rows,
             proximal: (floats, self.floating.weight),
         };
         let forces = self.next.interface.force.iter().enumerate();

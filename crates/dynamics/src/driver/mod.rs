@@ -62,6 +62,7 @@ mod start;
 mod step;
 mod supports;
 mod tangents;
+mod turned;
 mod weak;
 
 use std::sync::Arc;
@@ -78,7 +79,7 @@ use crate::scheme::EnergyIdentity;
 use crate::shapes::Rates;
 use crate::state::State;
 use crate::step_map::StepMap;
-use crate::system::{Maps, System};
+use crate::system::{LinkRow, Maps, System};
 use crate::watch::Watch;
 use active::Active;
 use carried::Carried;
@@ -173,6 +174,8 @@ pub struct Driver {
     /// Forces of links in the step, N; empty without links.
     link_force: Vec<f64>,
     multipliers: Multipliers,
+    /// The rows of the links; those that turn as they are in the iteration.
+    rows: Arc<Vec<LinkRow>>,
     /// Whether the residual without the forces of links, and the pairing, are those of the step.
     prepared: bool,
     /// Norm of the forces that the iterations of the step may leave unbalanced, N.

@@ -39,7 +39,7 @@ pub(super) fn part_matrix(
         mass.add_to(rate, part, part.start, &mut a);
     }
     if map.inertia.x == 0.0 {
-        add_rows(system, part, part.start, &mut a);
+        add_rows((system, &system.link_rows), part, part.start, &mut a);
     }
     Some(a)
 }

@@ -60,7 +60,7 @@ impl Matrices {
             version: before.unwrap_or(self.compliance.version),
         };
         let maps = (at.maps, at.between);
-        let linking = Linking::new(system, maps, (&mut self.operators, &made))?;
+        let linking = Linking::new((system, at.rows), maps, (&mut self.operators, &made))?;
         self.linking = Some(linking);
         Ok(())
     }
@@ -243,7 +243,7 @@ impl Matrices {
         {
             let inertia = at.maps.of(part.start).inertia.x;
             match inertia == 0.0 {
-                true => add_rows(system, part, 0, a),
+                true => add_rows((system, at.rows), part, 0, a),
                 false => system.mass.add_to(inertia, part, 0, a),
             }
             if let Some(mass) = &system.damping_mass {

@@ -35,6 +35,7 @@ impl Driver {
             let (xc, motion) = ([&vectors.x[..], &vectors.push], &self.state.motion);
             let place = &mut vectors.place;
             self.maps.whole(|map| map.force, motion, xc, place);
+            self.turn_rows();
             let (between, dt) = (self.between(), self.dt);
             self.stored = self.internal((Which::Place, between), |map| match between {
                 true => dt,
@@ -115,7 +116,10 @@ impl Driver {
         Standing {
             imbalance,
             rounding,
-            defect: self.worst_point().map_or(0.0, |(_, defect)| defect),
+            defect: self
+                .worst_point()
+                .map_or(0.0, |(_, defect)| defect)
+                .max(self.worst_row()),
             scale,
         }
     }

@@ -143,6 +143,7 @@ impl Driver {
                 false => zeros(),
             },
             multipliers: Multipliers::new(&system),
+            rows: Arc::clone(&system.link_rows),
             prepared: false,
             left_over: 0.0,
             phases: Phases::default(),

@@ -6,7 +6,7 @@ use std::collections::btree_map::Entry;
 use carom_elements::{Kind, MAX_NODES};
 
 use super::cursor::Fault;
-use crate::read::flatten;
+use crate::read::flatten::flatten;
 use crate::{Block, ElementId, Group, Mesh};
 
 /// A physical group: its dimension and its tag.

@@ -6,8 +6,9 @@ use std::collections::btree_map::Entry;
 use carom_elements::Kind;
 
 use super::card::{Card, Data};
-use super::{Fault, kinds};
-use crate::read::flatten;
+use super::fault::Fault;
+use super::kinds;
+use crate::read::flatten::flatten;
 use crate::{ElementId, Group, Mesh};
 
 /// The most numbers that one line of a generated set may give.

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::Fault;
+use super::fault::Fault;
 
 /// A keyword with its parameters and data.
 #[derive(Debug)]

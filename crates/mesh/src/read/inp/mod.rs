@@ -20,6 +20,7 @@
 
 mod builder;
 mod card;
+mod fault;
 mod kinds;
 
 use std::path::Path;
@@ -28,34 +29,7 @@ use super::{Place, ReadError};
 use crate::Mesh;
 use builder::Builder;
 use card::{Card, cards};
-
-/// What is wrong in a line.
-#[derive(Debug)]
-struct Fault {
-    line: usize,
-    found: String,
-    expected: String,
-    /// Whether it is sound, but not read.
-    unsupported: bool,
-}
-
-impl Fault {
-    fn new(line: usize, found: impl ToString, expected: impl Into<String>) -> Fault {
-        Fault {
-            line,
-            found: found.to_string(),
-            expected: expected.into(),
-            unsupported: false,
-        }
-    }
-
-    fn unsupported(line: usize, found: impl ToString, accepted: impl Into<String>) -> Fault {
-        Fault {
-            unsupported: true,
-            ..Fault::new(line, found, accepted)
-        }
-    }
-}
+use fault::Fault;
 
 /// Reads the mesh in the content of a file; `path` is only for messages.
 ///
