@@ -77,17 +77,14 @@ export function controls(viewer) {
     viewer.render();
   };
   settings.append(
-    check("mesh", choice.edges, drawing((on) => {
-      parts.net.visible = on;
-      if (parts.other) parts.other.children[1].visible = on;
-    })),
+    check("mesh", choice.edges, drawing((on) => parts.toggle(parts.net, on))),
     check("undeformed", false, drawing((on) => (parts.ghost.visible = on))),
   );
   if (model.contacts.length > 0) {
     const title = "secondary side red, primary side blue";
-    const surfaces = check("contact surfaces", false, drawing((on) => (parts.surfaces.visible = on)));
+    const surfaces = check("contact surfaces", false, drawing((on) => parts.toggle(parts.surfaces, on)));
     surfaces.title = title;
-    settings.append(surfaces, check("contact forces", true, drawing((on) => (parts.forces.visible = on))));
+    settings.append(surfaces, check("contact forces", true, drawing((on) => parts.toggle(parts.forces, on))));
   }
   if (model.obstacles.length > 0) {
     settings.append(check("obstacles", true, drawing((on) => (parts.obstacles.visible = on))));

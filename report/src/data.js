@@ -38,6 +38,6 @@ function words(bytes, array, size) {
 export function numbers(bytes, array) {
   const found = words(bytes, array, SIZES[array.type]);
   if (array.low === undefined) return found;
-  const step = (array.high - array.low) / 65535;
+  const step = (array.high - array.low) / array.most;
   return Float32Array.from(found, (q) => array.low + q * step);
 }

@@ -24,13 +24,16 @@ function largest(arrays) {
   return size;
 }
 
-/** Marks of a logarithmic axis: a label at powers of ten that are far enough apart. */
-function powers(splits) {
-  const whole = splits.filter((v) => v > 0 && Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9);
-  const every = Math.max(1, Math.ceil(whole.length / 6));
-  const kept = new Set(whole.filter((v) => Math.round(Math.log10(v)) % every === 0));
-  return splits.map((v) => (kept.has(v) ? `1e${Math.round(Math.log10(v))}`.replace("1e0", "1").replace("-", "−") : ""));
+/** Powers of ten on an axis, six or so. Those of uPlot end at 1e-16. */
+function powers(low, high) {
+  const [first, last] = [Math.ceil(Math.log10(low) - 1e-9), Math.floor(Math.log10(high) + 1e-9)];
+  const every = Math.max(1, Math.ceil((last - first) / 6));
+  const all = [];
+  for (let k = Math.ceil(first / every) * every; k <= last; k += every) all.push(10 ** k);
+  return all;
 }
+
+const power = (value) => (value === 1 ? "1" : `1e${Math.round(Math.log10(value))}`.replace("-", "−"));
 
 /** The look of a curve by its role. */
 function look(curve, number) {
@@ -172,7 +175,9 @@ class Plot {
           label: name(axis.name, this.xSign, axis.unit),
           labelSize: 18,
           size: 34,
-          values: (_, splits) => (this.overTime ? splits.map((t) => digits(t / this.xFactor)) : powers(splits)),
+          ...(this.overTime
+            ? { values: (_, splits) => splits.map((t) => digits(t / this.xFactor)) }
+            : { splits: (_, axis, low, high) => powers(low, high), values: (_, splits) => splits.map(power) }),
         },
         {
           stroke: ink,
@@ -181,7 +186,9 @@ class Plot {
           label: name(spec.quantity, this.sign, spec.unit),
           labelSize: 20,
           size: 56,
-          values: (_, splits) => (logarithmic ? powers(splits) : splits.map((y) => digits(y))),
+          ...(logarithmic
+            ? { splits: (_, axis, low, high) => powers(low, high), values: (_, splits) => splits.map(power) }
+            : { values: (_, splits) => splits.map((y) => digits(y)) }),
         },
       ],
       series: [

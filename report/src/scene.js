@@ -97,6 +97,8 @@ export class ModelScene {
     this.places = new Float32Array(3 * model.nodes);
     this.shared = new BufferAttribute(this.places, 3);
     this.root = new Group();
+    /** What is drawn once more on the other side of the axis. */
+    this.twins = new Map();
     this.#faces();
     this.#edges();
     this.#bars();
@@ -238,8 +240,11 @@ export class ModelScene {
   #mirror() {
     const half = new Group();
     half.applyMatrix4(new Matrix4().makeScale(-1, 1, 1));
-    for (const object of [this.faces, this.net]) half.add(object.clone());
-    this.other = half;
+    for (const object of [this.faces, this.net, this.forces, this.surfaces]) {
+      const other = object.clone();
+      half.add(other);
+      this.twins.set(object, other);
+    }
     this.root.add(half);
   }
 
@@ -309,6 +314,13 @@ export class ModelScene {
       tint.toArray(colours, 3 * k);
     }
     this.bars.geometry.setColors(colours);
+  }
+
+  /** Shows or hides an object and its twin. */
+  toggle(object, on) {
+    object.visible = on;
+    const twin = this.twins.get(object);
+    if (twin) twin.visible = on;
   }
 
   /** Marks the nodes with a contact force. */

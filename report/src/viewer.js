@@ -50,10 +50,10 @@ class Viewer {
       field: this.instants.fields[0].id,
       range: "run",
       section: null,
-      edges: this.model.edges.count < 60000,
+      edges: !this.model.decimated_from,
     };
     this.controls = controls(this);
-    this.parts.net.visible = this.choice.edges;
+    this.parts.toggle(this.parts.net, this.choice.edges);
     new ResizeObserver(() => this.fit()).observe(this.holder);
     onTheme(() => {
       this.parts.recolour();

@@ -14,6 +14,11 @@ use serde::Serialize;
 
 use crate::Error;
 
+/// Levels of displacements, and of fields, which colours show: 16 and 12 bits.
+pub const FINE: u16 = u16::MAX;
+/// See [`FINE`].
+pub const COARSE: u16 = (1 << 12) - 1;
+
 /// An array in the block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Array {
@@ -24,12 +29,15 @@ pub struct Array {
     /// `f32`, `u32`, `u16` or `u8`.
     #[serde(rename = "type")]
     pub kind: &'static str,
-    /// Value of 0 in an array of `u16` that stands for real numbers; 65535 is `high`.
+    /// Value of 0 in an array of `u16` that stands for real numbers; that of `most` is `high`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub low: Option<f64>,
     /// See `low`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub high: Option<f64>,
+    /// See `low`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub most: Option<u16>,
 }
 
 /// The arrays so far.
@@ -71,9 +79,9 @@ impl Block {
         self.planes("u8", values.into_iter().map(|value| [value]).collect())
     }
 
-    /// Adds real numbers in 65 536 equal levels from the least to the largest. What is not finite becomes the least.
-    /// Error: half a level, (high - low) / 131 070.
-    pub fn levels(&mut self, values: impl Iterator<Item = f64> + Clone) -> Array {
+    /// Adds real numbers in `most` + 1 equal levels from the least to the largest. What is not finite becomes the least.
+    /// Error: half a level, (high - low) / (2 `most`).
+    pub fn levels(&mut self, values: impl Iterator<Item = f64> + Clone, most: u16) -> Array {
         let finite = values.clone().filter(|value| value.is_finite());
         let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
             [low.min(value), high.max(value)]
@@ -83,7 +91,7 @@ impl Block {
             false => (0.0, 0.0),
         };
         let scale = match high > low {
-            true => f64::from(u16::MAX) / (high - low),
+            true => f64::from(most) / (high - low),
             false => 0.0,
         };
         let mut last = 0_u16;
@@ -97,6 +105,7 @@ impl Block {
         Array {
             low: Some(low),
             high: Some(high),
+            most: Some(most),
             ..self.planes("u16", values.collect())
         }
     }
@@ -189,7 +198,7 @@ mod tests {
     fn levels_are_off_by_half_a_level_at_most_and_keep_both_ends() {
         let mut block = Block::default();
         let values = (0..1000).map(|k| (0.37 * f64::from(k)).sin() * 250e6);
-        let array = block.levels(values.clone());
+        let array = block.levels(values.clone(), FINE);
         let (low, high) = (array.low.unwrap(), array.high.unwrap());
         let found = sums(&read(&block, &array), 1 << 16);
         let value = |level: &u32| low + f64::from(*level) * (high - low) / 65535.0;
@@ -203,9 +212,9 @@ mod tests {
     #[test]
     fn a_constant_and_what_is_not_finite_have_a_level() {
         let mut block = Block::default();
-        let constant = block.levels([5.0, 5.0].into_iter());
+        let constant = block.levels([5.0, 5.0].into_iter(), COARSE);
         assert_eq!((constant.low, constant.high), (Some(5.0), Some(5.0)));
-        let none = block.levels([f64::NAN, f64::INFINITY].into_iter());
+        let none = block.levels([f64::NAN, f64::INFINITY].into_iter(), COARSE);
         assert_eq!((none.low, none.high), (Some(0.0), Some(0.0)));
     }
 }

@@ -8,6 +8,7 @@ mod files;
 mod grids;
 mod large;
 mod models;
+mod page;
 mod pages;
 mod runs;
 mod tables;

@@ -54,7 +54,8 @@ fn attempt(
     (reports.0, outcome.map(|_| ()), results.conclude(&ending))
 }
 
-fn run(system: &Arc<System>, settings: Settings, end: f64) -> (Vec<StepReport>, Summary) {
+/// A run that comes to its end.
+pub fn run(system: &Arc<System>, settings: Settings, end: f64) -> (Vec<StepReport>, Summary) {
     let (reports, outcome, summary) = attempt(system, settings, end);
     outcome.unwrap();
     (reports, summary.unwrap())

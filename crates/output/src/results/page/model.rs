@@ -6,7 +6,7 @@ use carom_contact::Target;
 use carom_dynamics::System;
 use carom_mesh::Face;
 
-use crate::page::block::{Array, Block};
+use crate::page::block::{Array, Block, COARSE, FINE};
 use crate::page::schema::{Field, Frame, Model, Obstacle, Side, Sides};
 use crate::results::Results;
 use crate::results::outlines::size;
@@ -15,7 +15,7 @@ use crate::results::page::surface::Surface;
 use crate::results::stills::{Seen, Still};
 
 /// Numbers of all fields at all instants together, two bytes each before compression. A page of 100 000 nodes stays below 5 MB.
-const NUMBERS: usize = 2_400_000;
+const NUMBERS: usize = 2_000_000;
 
 /// Fewest nodes that a large surface is drawn with.
 const FEWEST: usize = 3000;
@@ -83,7 +83,7 @@ pub(crate) fn model(results: &Results, qualities: &[f64], block: &mut Block) -> 
     // displacement, speed, contact; cells have twice as many values, as many triangles as there are
     let of_node = 5 + 2 * (2 + usize::from(has_plastic));
     let most = (NUMBERS / instants.len() / of_node).max(FEWEST);
-    let became = surface.decimate(&x, &body, most);
+    let became = surface.decimate(&x, &body, (most, &extremes(system, seen, &stills)));
     let chosen = Chosen::new(&surface, seen, became.as_deref());
     let zoning = results.settings.zoning.as_ref();
     let mut constants = BTreeMap::new();
@@ -151,23 +151,17 @@ fn fields(system: &System, has_plastic: bool) -> Vec<Field> {
     let mut fields = vec![
         field(
             "von_mises",
-            "von Mises stress (mean of the cell)",
+            "von Mises stress of cells",
             "Pa",
             "cell",
             false,
         ),
-        field(
-            "pressure",
-            "pressure (mean of the cell)",
-            "Pa",
-            "cell",
-            true,
-        ),
+        field("pressure", "pressure of cells", "Pa", "cell", true),
     ];
     if has_plastic {
         fields.push(field(
             "plastic",
-            "plastic strain (mean of the cell)",
+            "plastic strain of cells",
             "",
             "cell",
             false,
@@ -240,6 +234,18 @@ impl<'a> Chosen<'a> {
     }
 }
 
+/// Nodes of the cells with the largest stress and plastic strain of each instant, by their places in [`Seen`].
+fn extremes(system: &System, seen: &Seen, stills: &[&Still]) -> BTreeSet<u32> {
+    let elements = system.bodies.iter().flat_map(|body| body.cells());
+    let elements: Vec<_> = elements.collect();
+    let cells = stills
+        .iter()
+        .flat_map(|still| still.largest.iter().flatten());
+    let nodes = cells.flat_map(|(_, cell)| system.mesh.element_nodes(*elements[*cell as usize]));
+    let places = nodes.filter_map(|node| seen.node(system.number[*node as usize]));
+    places.map(|place| place as u32).collect()
+}
+
 /// The body of each node that is seen; of a node of several the first.
 fn bodies_of_nodes(system: &System, seen: &Seen) -> Vec<u32> {
     let mut of = vec![u32::MAX; seen.nodes.len()];
@@ -286,7 +292,7 @@ fn frame(
             f64::from(still.moved[*n as usize][i]) - offsets[body[*n as usize] as usize][i]
         })
     };
-    let moved = [0, 1, 2].map(|i| block.levels(along(i)));
+    let moved = [0, 1, 2].map(|i| block.levels(along(i), FINE));
     let mut values: BTreeMap<&'static str, Array> = BTreeMap::new();
     let of_nodes = |values: &'_ [f32]| -> Vec<f64> {
         chosen
@@ -302,24 +308,30 @@ fn frame(
             .map(|c| f64::from(values[*c as usize]))
             .collect()
     };
-    values.insert("speed", block.levels(of_nodes(&still.speed).into_iter()));
+    values.insert(
+        "speed",
+        block.levels(of_nodes(&still.speed).into_iter(), COARSE),
+    );
     values.insert(
         "von_mises",
-        block.levels(of_cells(&still.von_mises).into_iter()),
+        block.levels(of_cells(&still.von_mises).into_iter(), COARSE),
     );
     values.insert(
         "pressure",
-        block.levels(of_cells(&still.pressure).into_iter()),
+        block.levels(of_cells(&still.pressure).into_iter(), COARSE),
     );
     if let Some(plastic) = &still.plastic {
-        values.insert("plastic", block.levels(of_cells(plastic).into_iter()));
+        values.insert(
+            "plastic",
+            block.levels(of_cells(plastic).into_iter(), COARSE),
+        );
     }
     if !still.contact.is_empty() {
         let pressure = chosen
             .nodes
             .iter()
             .map(|n| f64::from(still.contact[*n as usize].0));
-        values.insert("contact", block.levels(pressure));
+        values.insert("contact", block.levels(pressure, COARSE));
         let status = chosen.nodes.iter().map(|n| still.contact[*n as usize].1);
         values.insert("status", block.bytes(status));
     }

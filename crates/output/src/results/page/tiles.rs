@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use carom_dynamics::System;
 use serde::Serialize;
 
 use crate::form::percent;
 use crate::plot::quantity;
 use crate::results::Results;
+use crate::results::outlines::size;
 use crate::results::page::model;
 use crate::summary::{Contact, Energy, Summary};
 use crate::verdict::Grade;
@@ -167,19 +169,21 @@ fn energy(energy: &Energy) -> Tile {
     places.insert("contact".to_owned(), -contact);
     let lost: f64 = places.values().sum();
     let supplied = supplied(energy);
-    let part = |value: f64| match supplied > 0.0 {
+    // what rounding and the shown digits leave
+    let is_none = |value: f64| value.abs() < 5e-5 * supplied;
+    let part = |value: f64| match supplied > 0.0 && !is_none(value) {
         true => percent(value / supplied),
         false => percent(0.0),
     };
     let mut sorted: Vec<(&String, f64)> =
         places.iter().map(|(name, value)| (name, *value)).collect();
     sorted.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let told = sorted.iter().filter(|(_, value)| *value != 0.0).take(3);
+    let told = sorted.iter().filter(|(_, value)| !is_none(*value)).take(3);
     let told: Vec<String> = told
         .map(|(name, value)| format!("{name} {}", part(*value)))
         .collect();
     let note = match told.is_empty() {
-        true => format!("of {} put in", quantity(supplied, "J")),
+        true => format!("less than 0.005 % of {} put in", quantity(supplied, "J")),
         false => {
             let [lost, supplied] = [lost, supplied].map(|energy| quantity(energy, "J"));
             format!("{lost} of {supplied} put in: {}", told.join(", "))
@@ -225,7 +229,7 @@ fn of_fields(results: &Results) -> Vec<Tile> {
                     let x = system.mesh.nodes[*node as usize];
                     [0, 1, 2].map(|i| sum[i] + x[i] / n)
                 });
-                format!(" at {}", coordinates(&middle[..system.dim]))
+                format!(" at {}", coordinates(system, &middle))
             });
         let at = quantity(time, "s");
         let note = format!("mean of a cell of {}{place}, t = {at}; {kept}", body.name());
@@ -240,7 +244,7 @@ fn of_fields(results: &Results) -> Vec<Tile> {
     });
     let best = moved.reduce(|best, other| if other.0 > best.0 { other } else { best });
     if let Some((length, node, time)) = best {
-        let place = coordinates(&system.x[node as usize][..system.dim]);
+        let place = coordinates(system, &system.x[node as usize]);
         let note = format!(
             "of the node at {place}, t = {}; {kept}",
             quantity(time, "s")
@@ -256,7 +260,12 @@ fn of_fields(results: &Results) -> Vec<Tile> {
 }
 
 /// A place in the reference configuration.
-fn coordinates(x: &[f64]) -> String {
-    let all: Vec<String> = x.iter().map(|x| quantity(*x, "m")).collect();
+fn coordinates(system: &System, x: &[f64; 3]) -> String {
+    // what rounding leaves of a zero
+    let least = 1e-9 * size(system);
+    let own = x[..system.dim].iter();
+    let all: Vec<String> = own
+        .map(|x| quantity(if x.abs() < least { 0.0 } else { *x }, "m"))
+        .collect();
     format!("({})", all.join(", "))
 }
