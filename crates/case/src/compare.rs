@@ -182,7 +182,7 @@ fn finest(base: &Job, input: &Input) -> Result<(Job, Refined), SweepError> {
                 let refined = Refined {
                     factor,
                     same_mesh: None,
-                    from_file: mesh.file.is_some(),
+                    from_file: mesh.file.is_some() || !mesh.part.is_empty(),
                 };
                 return Ok((job, refined));
             }
@@ -194,7 +194,7 @@ fn finest(base: &Job, input: &Input) -> Result<(Job, Refined), SweepError> {
     let refined = Refined {
         factor,
         same_mesh: Some(sentence(&problems)),
-        from_file: mesh.file.is_some(),
+        from_file: mesh.file.is_some() || !mesh.part.is_empty(),
     };
     Ok((Job::new(FINEST, input, vec![step])?, refined))
 }

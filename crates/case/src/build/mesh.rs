@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use carom_mesh::{Mesh, generate, halve_bars, read, refine};
-use carom_quantities::units;
+use carom_mesh::{Mesh, Placement, generate, halve_bars, read, refine};
+use carom_quantities::{Vector, units};
 
 use super::{Builder, dimensions};
 use crate::error::Problem;
 use crate::input::Input;
 use crate::rules::MOST_NODES;
-use crate::schema::{Count, Part};
+use crate::schema::{Count, Part, Placed};
 
 impl Builder<'_> {
     /// The mesh in metres.
@@ -21,8 +21,13 @@ impl Builder<'_> {
             parts.push((
                 "mesh.file".to_string(),
                 file.clone(),
-                self.read(&input.folder, file, scale)?,
+                self.read("mesh.file", &input.folder, file, scale)?,
             ));
+        }
+        for (name, part) in mesh.part.iter() {
+            let path = format!("mesh.part.{name}");
+            let part = self.placed(&path, name, part, &input.folder)?;
+            parts.push((path, name.to_string(), part));
         }
         for (name, part) in mesh.generate.iter() {
             parts.push((
@@ -43,7 +48,7 @@ impl Builder<'_> {
             }
             let problem = Problem::new("mesh", "no mesh");
             self.problems
-                .push(problem.accepted(["`file`", "`generate`"]));
+                .push(problem.accepted(["`file`", "`part`", "`generate`"]));
             return None;
         };
         for (path, name, part) in parts {
@@ -107,7 +112,30 @@ impl Builder<'_> {
         Some(mesh)
     }
 
-    fn read(&mut self, folder: &Path, file: &str, scale: f64) -> Option<Mesh> {
+    /// A part from a file where it belongs.
+    fn placed(&mut self, path: &str, name: &str, part: &Placed, folder: &Path) -> Option<Mesh> {
+        let unit = units::length_of_unit(&part.unit.0).unwrap_or(1.0);
+        let scale = unit * part.scale.unwrap_or(1.0);
+        let mut mesh = self.read(&format!("{path}.file"), folder, &part.file, scale)?;
+        let mut turn = ([0.0, 0.0, 1.0], 0.0);
+        if let Some(given) = &part.turn {
+            turn.1 = given.angle.0;
+            if let Some(axis) = &given.axis {
+                let axis = axis.components();
+                let length = axis.iter().map(|a| a * a).sum::<f64>().sqrt();
+                turn.0 = axis.map(|a| a / length);
+            }
+        }
+        mesh.place(&Placement {
+            turn,
+            shift: part.shift.as_ref().map_or([0.0; 3], Vector::si),
+        });
+        mesh.prefix(name);
+        Some(mesh)
+    }
+
+    /// `key`: where the case names the file.
+    fn read(&mut self, key: &str, folder: &Path, file: &str, scale: f64) -> Option<Mesh> {
         let path = folder.join(file);
         match read::read(&path) {
             Ok(mut mesh) => {
@@ -115,8 +143,7 @@ impl Builder<'_> {
                 Some(mesh)
             }
             Err(error) => {
-                self.problems
-                    .push(Problem::new("mesh.file", error.to_string()));
+                self.problems.push(Problem::new(key, error.to_string()));
                 None
             }
         }

@@ -3,13 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Named;
-use carom_quantities::{Coordinate, Length, Vector};
+use super::{Named, NormalVector};
+use carom_quantities::{Angle, Coordinate, Length, Vector};
 
-/// The mesh: a file, generated parts, or both. Their groups keep their names.
+/// The mesh: a file, parts from further files, generated parts. Groups of the file keep their names.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(extend("anyOf" = [{ "required": ["file"] }, { "required": ["generate"] }], "dependentRequired" = { "unit": ["file"] }))]
+#[schemars(extend("anyOf" = [{ "required": ["file"] }, { "required": ["part"] }, { "required": ["generate"] }], "dependentRequired" = { "unit": ["file"] }))]
 pub struct Mesh {
     /// Path of a Gmsh file (MSH 2.2 or 4.1, ASCII or binary) or of one of Abaqus or CalculiX (`.inp`), from the folder of the case file. Its physical
     /// groups, or its sets and surfaces, are the names that bodies, supports, contacts and probes use.
@@ -28,6 +28,9 @@ pub struct Mesh {
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 10))]
     pub refine: u32,
+    /// Parts from files of their own, each placed where it belongs; a file may serve several parts. The group `g` of the part `a` is called `a.g`.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub part: Named<Placed>,
     /// Generated parts. The part `a` has a group `a` of its cells, and groups of its sides: `a.left` and `a.right` (ends in x),
     /// `a.bottom` and `a.top` (in y in two dimensions, in z in three), `a.front` and `a.back` (in y in three dimensions).
     #[serde(default, skip_serializing_if = "Named::is_empty")]
@@ -61,6 +64,34 @@ impl JsonSchema for LengthUnit {
     fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
         schemars::json_schema!({ "type": "string", "x-length-unit": true, "x-example": "mm" })
     }
+}
+
+/// A part from a file: its coordinates times their unit and `scale`, then turned, then moved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Placed {
+    /// Path of the file, as `mesh.file`.
+    pub file: String,
+    /// Unit of its coordinates.
+    #[serde(default)]
+    pub unit: LengthUnit,
+    /// Factor of its coordinates. Default: 1.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub scale: Option<f64>,
+    /// Rotation about an axis through the origin of the file.
+    pub turn: Option<PartTurn>,
+    /// Translation.
+    pub shift: Option<Vector<Coordinate>>,
+}
+
+/// A rotation of a part.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct PartTurn {
+    /// Angle, counter-clockwise for who looks against the axis.
+    pub angle: Angle,
+    /// Direction of the axis, of any length except zero. Default: that of z.
+    pub axis: Option<NormalVector>,
 }
 
 /// A generated part: one shape.

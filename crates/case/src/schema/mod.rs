@@ -56,7 +56,7 @@ pub use load::{
     AmplitudeCourse, AmplitudePoint, BaseAcceleration, DensityPoint, Load, RandomForce,
 };
 pub use material::Material;
-pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, Rectangle};
+pub use mesh::{BoxPart, Count, LengthUnit, Line, Mesh, Part, PartTurn, Placed, Rectangle};
 pub use named::Named;
 pub use obstacle::{
     Cylinder, NormalVector, Obstacle, ObstacleMotion, ObstaclePoint, Plane, PolarColumns,

@@ -6,7 +6,7 @@
 
 mod error;
 pub mod file;
-mod flatten;
+pub(crate) mod flatten;
 pub mod gmsh;
 pub mod inp;
 
