@@ -1,12 +1,13 @@
 //! A clamped plate, half a shell and half a solid, and a wave that runs from one half into the other.
 //!
-//! Clamped plate: a square of side L = 100 h under its weight q per area, the left half a solid, the right one a shell, overlap L/12 about the middle. Half of the
-//! plate, by symmetry. Closed form of the thin plate: deflection of the middle 0.00126532 q L⁴/D (Taylor and Govindjee 2004, Commun. Numer. Methods
-//! Eng. 20, 757); shear adds 0.2 % at L/h = 100. Tolerance 1 %, as it is asked.
+//! Clamped plate: a square of side L = 100 h, the left half a solid, the right one a shell, overlap of at least L/24 about the middle. Half of the plate, by symmetry. Deflection of the middle under
+//! its weight q per area: 0.00126532 q L⁴/D of the thin plate (Taylor and Govindjee 2004, Commun. Numer. Methods Eng. 20, 757) and 0.19 % by shear. Frequencies of the thin plate (Leissa 1973, J. Sound
+//! Vib. 31, 257), which shear lowers by 0.1 to 0.3 %. Tolerance 1 %, as it is asked.
 //!
-//! Wave: a strip in cylindrical bending, a packet of right-going waves of Mindlin's plate, a Gauss curve of wave numbers about 2π/λ of the standard
-//! deviation 1/(1.5 λ), λ = 8 h and 16 h, elements of h/2; with elements of h, eight to a wave, what comes back is shown. What comes back is the root of the energy in the zone of the shell over that at the start,
-//! when the packet is five of its lengths beyond the overlap. Closed form: none comes back; bound 2 %, the project's own, stated beforehand.
+//! Wave: a strip in cylindrical bending, a packet of right-going waves of Mindlin's plate on the mesh of the shell, a Gauss curve of wave numbers about 2π/λ of the standard
+//! deviation 1/(1.5 λ), λ = 8 h and 16 h, elements of h/2 and of h, eight to a wave. What comes back is the root of the energy in the zone of the shell over that at the start,
+//! when the packet is five of its lengths beyond the overlap. Closed form: none comes back; bound 2 %, as it is asked. (A packet with the frequencies of the continuum left 5.4 % with elements of h,
+//! whatever the width of the overlap: a part of it went back from the start on, since the waves of that mesh are 7 % faster.)
 //!
 //! Ledger of the same run, the trapezoidal rule in both zones. One step: no energy is made, residual and work of the link 1e-10 of the energy (rounding of
 //! the iterations of the link in 10³ steps). Four steps of the solid to one of the shell: at most 0.2 %, what the project's theory note gives for this link.
@@ -31,8 +32,13 @@ const MATERIAL: Elastic = Elastic {
     poisson: 0.3,
 };
 const THICKNESS: f64 = 0.01;
+/// Part by which shear raises the deflection of a clamped plate of L/h = 100: 0.185 of 0.00150 at L/h = 10, and as the square of h/L.
+const BY_SHEAR: f64 = 1.85e-3;
 /// Shear correction of a plate.
 const SHEAR: f64 = 5.0 / 6.0;
+
+/// The first five frequencies of a thin clamped square plate that are even in y, ω L² √(ρ h/D).
+const CLAMPED: [f64; 5] = [35.992, 73.413, 131.64, 132.24, 165.15];
 
 /// E h³/(12 (1 - ν²)), N m.
 fn bending() -> f64 {
@@ -43,7 +49,7 @@ fn bending() -> f64 {
 fn square(n: usize) -> Plate {
     let side = 100.0 * THICKNESS;
     let size = side / n as f64;
-    let (half, over) = (n / 2, n / 24);
+    let (half, over) = (n / 2, n.div_ceil(48));
     Plate {
         thickness: THICKNESS,
         width: 0.5 * side,
@@ -61,11 +67,11 @@ fn square(n: usize) -> Plate {
     }
 }
 
-/// Deflection of the middle of the clamped plate over q L⁴/D.
-fn clamped(plate: &Plate) -> Result<f64, Error> {
+/// The clamped plate, half of it by symmetry.
+fn clamped(plate: &Plate) -> Result<Model, Error> {
     let mesh = plate.mesh()?;
     let (bodies, glued) = plate.glued(&mesh)?;
-    let (side, half) = (2.0 * plate.width, 0.5 * plate.width);
+    let half = 0.5 * plate.width;
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
     let grid = plate.grid();
     let symmetry = |x: &[f64; 3]| near(x[1], -half);
@@ -85,29 +91,44 @@ fn clamped(plate: &Plate) -> Result<f64, Error> {
             [true, false, true],
         ),
     ];
-    let first = plate.first(&mesh);
-    let middle = grid.row(0).into_iter().map(|node| node + first);
-    let middle = middle
-        .min_by(|a, b| {
-            let off = |node: &u32| (mesh.nodes[*node as usize][0] - 0.5 * side).abs();
-            off(a).total_cmp(&off(b))
-        })
-        .unwrap_or(first);
     let rows = &glued.rows.rows;
-    let mut model = Model {
+    Ok(Model {
         supports,
         constraints: vec![ModelConstraint::of_rows("overlap", rows, 3)],
-        gravity: [0.0, 0.0, -1.0],
         ..Model::new(bodies.to_vec(), mesh, newmark(0.25, 0.5), 1e-3)
-    };
+    })
+}
+
+/// Deflection of the middle of the clamped plate under its weight over q L⁴/D.
+fn deflection(plate: &Plate) -> Result<f64, Error> {
+    let mut model = clamped(plate)?;
+    model.gravity = [0.0, 0.0, -1.0];
     model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });
-    let mut driver = Driver::new(System::new(model)?)?;
+    let side = 2.0 * plate.width;
+    let first = plate.first(&model.mesh);
+    let middle = plate.grid().row(0).into_iter().map(|node| node + first);
+    let off = |node: &u32| (model.mesh.nodes[*node as usize][0] - 0.5 * side).abs();
+    let middle = middle.min_by(|a, b| off(a).total_cmp(&off(b)));
+    let mut driver = Driver::new(System::new(model.clone())?)?;
     driver.step()?;
     let system = driver.system();
-    let number = system.number[middle as usize];
+    let number = system.number[middle.unwrap_or(first) as usize];
     let found = system.of_node(number, &driver.state().motion, Order::Displacement);
     let pressure = MATERIAL.density * THICKNESS;
     Ok(-found[2] * bending() / (pressure * side.powi(4)))
+}
+
+/// Frequencies of the clamped plate, ω L² √(ρ h/D).
+fn frequencies(plate: &Plate) -> Result<Vec<Row>, Error> {
+    let system = System::new(clamped(plate)?)?;
+    let found = carom_reduction::modes(&system, CLAMPED.len(), &mut |_, _| ())?;
+    let side = 2.0 * plate.width;
+    let unit = TAU * side * side * (MATERIAL.density * THICKNESS / bending()).sqrt();
+    let rows = CLAMPED.iter().enumerate().map(|(mode, &exact)| {
+        let label = format!("clamped plate: frequency {}, ω L² √(ρ h/D)", mode + 1);
+        Row::relative(label, found[0].frequency(mode) * unit, exact, 1e-2).published()
+    });
+    Ok(rows.collect())
 }
 
 /// A strip of some wave lengths of solid and of shell, `parts` elements of the shell to a thickness.
@@ -158,6 +179,7 @@ fn crossing(
             ]),
         },
         wave,
+        element: Some(THICKNESS / parts as f64),
     };
     let dt = TAU / packet.frequency() / 80.0;
     let supports = plate.symmetric(&mesh);
@@ -182,26 +204,28 @@ fn crossing(
 }
 
 fn rows(size: Size) -> Result<Vec<Row>, Error> {
-    let found = clamped(&square(24))?;
+    let plate = square(match size {
+        Size::Quick => 32,
+        Size::Full => 48,
+    });
     let mut rows = vec![Row::relative(
         "clamped plate: deflection of the middle over q L^4/D",
-        found,
-        0.001_265_32,
+        deflection(&plate)?,
+        0.001_265_32 * (1.0 + BY_SHEAR),
         1e-2,
     )];
-    let cases: &[(f64, usize)] = match size {
-        Size::Quick => &[(8.0, 2)],
-        Size::Full => &[(8.0, 2), (16.0, 2)],
-    };
-    for &(thicknesses, overlap) in cases {
-        let label = format!("wave of {thicknesses} h, overlap {overlap} h");
-        rows.extend(crossing(thicknesses, (overlap, 2), 1)?.rows(&label));
+    if size == Size::Full {
+        rows.extend(frequencies(&plate)?);
+        for thicknesses in [8.0, 16.0] {
+            let label = format!("wave of {thicknesses} h, elements of h/2");
+            rows.extend(crossing(thicknesses, (2, 2), 1)?.rows(&label));
+        }
     }
+    let label = "wave of 8 h, elements of h";
+    rows.extend(crossing(8.0, (2, 1), 1)?.rows(label));
     if size == Size::Quick {
         return Ok(rows);
     }
-    let label = "wave of 8 h, elements of h: amplitude that comes back";
-    rows.push(Row::shown(label, crossing(8.0, (2, 1), 1)?.back));
     let four = crossing(8.0, (2, 2), 4)?;
     let label = "wave of 8 h, four steps of the solid";
     rows.push(Row::at_most(
