@@ -124,6 +124,7 @@ mod sdnl111_bars;
 mod self_contact;
 mod shapes;
 mod shell_benchmarks;
+mod shell_sections;
 mod shell_self_contact;
 mod shell_solid;
 mod shell_solid_impact;
@@ -273,6 +274,7 @@ registry! {
     sdnl111
     sdnl111_bars
     self_contact
+    shell_sections
     shell_self_contact
     shapes
     shell_benchmarks
