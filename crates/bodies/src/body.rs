@@ -268,8 +268,11 @@ impl Body {
         match self {
             Body::Beam(beam) => beam.lumps(),
             Body::LargeBeam(beam) => beam.lumps(),
-            Body::Shell(shell) => shell.lumps(),
-            Body::Solid(_) | Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => true,
+            Body::Solid(_)
+            | Body::Shell(_)
+            | Body::Rigid(_)
+            | Body::Discrete(_)
+            | Body::Reduced(_) => true,
         }
     }
 

@@ -57,7 +57,10 @@ pub use release::Release;
 pub use rigid::{Inertia, Rigid};
 pub use scaling::{MARGIN, MassScaling};
 pub use scratch::Scratch;
-pub use shell::{LAYERS as SHELL_LAYERS, Resultants, Shell, ShellPlate, ShellSection, plates};
+pub use shell::{
+    LAYERS as SHELL_LAYERS, Ply, Resultants, Shell, ShellDefect, ShellPlate, ShellSection, Taper,
+    plates, shell_defects,
+};
 pub use size::{height, smallest as smallest_size};
 pub use solid::{BodySpec, Solid};
 pub use turning::balanced;

@@ -20,6 +20,7 @@ use crate::nodes::Nodes;
 use crate::release::Release;
 use crate::scaling::MassScaling;
 use crate::scratch::Scratch;
+use crate::shell::Ply;
 use crate::weights::CellWeights;
 use crate::{Kinematics, size};
 
@@ -50,6 +51,9 @@ pub struct BodySpec {
     pub deletion: Option<f64>,
     /// Hinges of beams.
     pub releases: Vec<Release>,
+    /// Layers of shells of several materials, from the side against which the normal points; `material` is then one of them that flows, if any does.
+    /// None: one material.
+    pub plies: Vec<Ply>,
 }
 
 impl BodySpec {
@@ -72,6 +76,7 @@ impl BodySpec {
             scaling: None,
             deletion: None,
             releases: Vec::new(),
+            plies: Vec::new(),
         }
     }
 }

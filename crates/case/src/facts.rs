@@ -217,6 +217,10 @@ fn beam_fact(system: &System, body: usize, beam: &Beam) -> Fact {
 /// A line for shells: section, mass, waves.
 fn shell_fact(system: &System, body: usize, shell: &Shell) -> Fact {
     let section = shell.section();
+    let thickness = match section.taper {
+        Some(_) => "largest thickness",
+        None => "thickness",
+    };
     let rotations = match shell.turns() {
         true => "finite",
         false => "small",
@@ -224,7 +228,7 @@ fn shell_fact(system: &System, body: usize, shell: &Shell) -> Fact {
     fact(
         format!("body {}", shell.name()),
         format!(
-            "shell of {} elements, thickness {:.6e} m, {rotations} rotations, {:.6} kg, membrane waves at {:.5} m/s, smallest element {:.4e} m",
+            "shell of {} elements, {thickness} {:.6e} m, {rotations} rotations, {:.6} kg, membrane waves at {:.5} m/s, smallest element {:.4e} m",
             shell.cells().len(),
             section.thickness,
             system.body_mass(body),

@@ -333,7 +333,7 @@ macro_rules! flows {
 
         impl $crate::PlaneStress for $law {
             fn history_len(&self) -> usize {
-                $crate::plane_stress::PLASTIC + 1 + $crate::hardening::Hardening::further(self)
+                $crate::plane_points::PLASTIC + 1 + $crate::hardening::Hardening::further(self)
             }
 
             fn stress(&self, strain: &[f64; 3], history: &[f64]) -> [f64; 3] {

@@ -11,17 +11,8 @@
 
 use std::fmt::Debug;
 
-use crate::PlaneStressPoints;
 use crate::hardening::Hardening;
-
-/// Place of ε_p in the history.
-pub(crate) const PLASTIC: usize = 3;
-
-/// Iterations on the strain across, at most; three to five are usual.
-pub(crate) const ITERATIONS: usize = 50;
-
-/// Stress across that is rounding, over the trial stress.
-pub(crate) const ROUNDING: f64 = 1e-14;
+use crate::plane_points::{ITERATIONS, PLASTIC, PlaneStressPoints, ROUNDING};
 
 /// What a law answers under plane stress at one point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

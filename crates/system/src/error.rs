@@ -102,7 +102,7 @@ pub enum Error {
     },
     /// A lumped mass of beams that is not diagonal.
     #[error(
-        "body '{body}': the lumped mass of shells is diagonal only without offset, that of beams in space where in addition their axes and those of their sections are parallel to the axes of coordinates; take a consistent mass"
+        "body '{body}': the lumped mass of beams in space is diagonal only without offset, where their axes and those of their sections are parallel to the axes of coordinates; take a consistent mass"
     )]
     LumpedBeam {
         /// Name of the body.

@@ -126,6 +126,7 @@ mod sdnl111_bars;
 mod self_contact;
 mod shapes;
 mod shell_benchmarks;
+mod shell_sections;
 mod shell_self_contact;
 mod shell_solid;
 mod shell_solid_impact;
@@ -278,6 +279,7 @@ registry! {
     sdnl111
     sdnl111_bars
     self_contact
+    shell_sections
     shell_self_contact
     shapes
     shell_benchmarks

@@ -11,7 +11,9 @@
 //! - Raasch's hook (Knight 1997, AIAA J. 35, 375): two arcs of R = 14, 60°, and R = 46, 150°, width 20, h = 2, E = 3300, ν = 0.35, force 1
 //!   across at the end: 4.9352.
 //!
-//! Tolerance: 2 %, the spread of published values. Triangles, whose membrane strain is constant, on meshes twice as fine: 3 %.
+//! Tolerance: 2 %, the spread of published values. Triangles, whose membrane strain is constant, on meshes twice as fine, those of the twisted beam, which bends in its plane, four times. Errors fall from mesh to
+//! mesh, but where they are below 1 %, to which published values agree. The value of the hook is that of solids, and fine meshes of these shells go beyond it by 1 to 2 %:
+//! there changes fall.
 
 use carom_bodies::Rotations;
 use carom_materials::Elastic;
@@ -188,23 +190,51 @@ pub(crate) fn hook(grid: &Grid) -> Result<Loaded, Error> {
     Ok(Loaded::new((mesh, made), load, end, [0.0, 0.0, 1.0]))
 }
 
+/// To what published values are known: where the error is below, it need not fall with the mesh.
+const DIGITS: f64 = 0.01;
+
 /// What is computed on meshes of growing fineness.
 struct Problem<'a> {
     name: &'a str,
     published: f64,
     meshes: &'a [[usize; 2]],
+    /// How much finer those of triangles are.
+    triangles: usize,
+    /// Whether finer meshes tend to the published value.
+    is_limit: bool,
     solve: &'a dyn Fn(&Grid) -> Result<Loaded, Error>,
 }
 
 impl Problem<'_> {
+    /// The error over that of the mesh before; where the published value is no limit the change over that before.
+    fn falls(&self, name: &str, before: &[f64], found: f64) -> Option<Row> {
+        let error = |found: f64| (found / self.published - 1.0).abs();
+        match before {
+            [.., last] if self.is_limit => {
+                let of = error(found) / error(*last).max(DIGITS);
+                let name = format!("{name}, error over that of the mesh before");
+                Some(Row::at_most(name, of, 1.0).published())
+            }
+            [.., first, second] if !self.is_limit => {
+                let of = (found - second).abs() / (second - first).abs();
+                let name = format!("{name}, change over that before");
+                Some(Row::at_most(name, of, 1.0).second_formulation())
+            }
+            _ => None,
+        }
+    }
+
     fn rows(&self, triangles: bool, part: f64, rows: &mut Vec<Row>) -> Result<(), Error> {
         let kind = if triangles { "tri3" } else { "quad4" };
-        let finer = if triangles { 2 } else { 1 };
+        let finer = if triangles { self.triangles } else { 1 };
+        let mut before: Vec<f64> = Vec::new();
         for (k, mesh) in self.meshes.iter().enumerate() {
             let [n, m] = mesh.map(|count| finer * count);
             let grid = Grid { n, m, triangles };
             let found = (self.solve)(&grid)?.deflection()?;
             let name = format!("{}, {kind} {n} x {m}: displacement", self.name);
+            rows.extend(self.falls(&name, &before, found));
+            before.push(found);
             rows.push(match k + 1 == self.meshes.len() {
                 true => Row::relative(name, found, self.published, part).published(),
                 false => Row::shown(name, found),
@@ -221,48 +251,64 @@ fn run(size: Size) -> Result<Vec<Row>, Error> {
     let problems = [
         Problem {
             name: "Scordelis-Lo roof",
+            triangles: 2,
+            is_limit: true,
             published: 0.3024,
             meshes: meshes(&[[4, 4], [8, 8], [16, 16]], 2),
             solve: &roof,
         },
         Problem {
             name: "pinched cylinder",
+            triangles: 2,
+            is_limit: true,
             published: 1.8248e-5,
             meshes: meshes(&[[8, 8], [16, 16], [32, 32]], 2),
             solve: &cylinder,
         },
         Problem {
             name: "hemisphere",
+            triangles: 2,
+            is_limit: true,
             published: 0.0940,
             meshes: meshes(&[[4, 4], [8, 8], [16, 16]], 2),
             solve: &hemisphere,
         },
         Problem {
             name: "twisted beam, h = 0.32, in plane",
+            triangles: 4,
+            is_limit: true,
             published: 5.424e-3,
             meshes: meshes(&[[12, 2], [24, 4]], 1),
             solve: &|grid| twisted(grid, 0.32, 1.0, 2),
         },
         Problem {
             name: "twisted beam, h = 0.32, across",
+            triangles: 4,
+            is_limit: true,
             published: 1.754e-3,
             meshes: meshes(&[[12, 2], [24, 4]], 1),
             solve: &|grid| twisted(grid, 0.32, 1.0, 1),
         },
         Problem {
             name: "twisted beam, h = 0.0032, in plane",
+            triangles: 4,
+            is_limit: true,
             published: 5.256e-3,
             meshes: meshes(&[[12, 2], [24, 4]], 1),
             solve: &|grid| twisted(grid, 0.0032, 1e-6, 2),
         },
         Problem {
             name: "twisted beam, h = 0.0032, across",
+            triangles: 4,
+            is_limit: true,
             published: 1.294e-3,
             meshes: meshes(&[[12, 2], [24, 4]], 1),
             solve: &|grid| twisted(grid, 0.0032, 1e-6, 1),
         },
         Problem {
             name: "Raasch's hook",
+            triangles: 2,
+            is_limit: false,
             published: 4.9352,
             meshes: meshes(&[[18, 4], [36, 8], [72, 16]], 1),
             solve: &hook,
@@ -274,7 +320,7 @@ fn run(size: Size) -> Result<Vec<Row>, Error> {
     }
     if full {
         for problem in &problems {
-            problem.rows(true, 0.03, &mut rows)?;
+            problem.rows(true, 0.02, &mut rows)?;
         }
     }
     Ok(rows)

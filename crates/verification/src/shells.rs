@@ -103,6 +103,13 @@ pub(crate) fn shell(
     Ok(made)
 }
 
+/// Changes the section of a shell.
+pub(crate) fn section_of(made: &mut ModelBody, change: &dyn Fn(&mut ShellSection)) {
+    if let Kinematics::Shell(section) = &mut made.spec.kinematics {
+        change(section);
+    }
+}
+
 /// The same force on each of some nodes.
 pub(crate) fn force(nodes: Vec<u32>, force: [f64; 3]) -> NodalLoad {
     NodalLoad {
@@ -201,9 +208,9 @@ impl Loaded {
 
     /// The same with one point and finite rotations, under a small part of the loads.
     pub(crate) fn with_one_point(mut self, hourglass: f64, part: f64) -> Result<f64, Error> {
-        if let Kinematics::Shell(section) = &mut self.made.spec.kinematics {
-            section.rotations = Rotations::Finite;
-        }
+        section_of(&mut self.made, &|section| {
+            section.rotations = Rotations::Finite
+        });
         self.made.spec.formulation = Formulation::Reduced { hourglass };
         let loads = self.held.loads.iter_mut();
         loads.for_each(|load| load.force = load.force.map(|force| part * force));

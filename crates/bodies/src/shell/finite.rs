@@ -9,12 +9,13 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::{Mat3, Vec3};
 use rayon::prelude::*;
 
+use super::Shell;
+use super::element::{Element, PER_NODE};
 use super::layers::Layers;
-use super::products::{Configuration, MOST};
+use super::products::{Configuration, DIRECTOR, MOST};
 use super::section::STRAINS;
 use super::small::{add_product, diagonal};
-use super::strain::Strains;
-use super::{Element, PER_NODE, Shell};
+use super::strain::{AddBlock, Strains};
 use crate::scratch::{Scratch, ShellForces};
 use crate::turning::{balanced, spatial};
 use crate::{Placement, Stored};
@@ -24,6 +25,7 @@ const ELEMENTS: usize = 256;
 
 /// The state of the nodes of an element.
 pub(super) struct Now {
+    /// Of the middle surface.
     pub configuration: Configuration,
     /// R at the start of the step, and θ since.
     starts: [Mat3; MOST],
@@ -48,6 +50,9 @@ impl Element {
             for axis in &mut now.configuration.axes[node] {
                 *axis = turned * *axis;
             }
+        }
+        if self.offset != 0.0 {
+            now.configuration = now.configuration.beside(self.offset);
         }
         now
     }
@@ -91,7 +96,9 @@ impl Element {
         };
         let found = self.form.gradient(&place, &forces);
         for (node, [force, moment]) in found.iter().enumerate().take(self.count) {
-            let moment = end.starts[node].tr_mul(moment);
+            // the middle moves by u + (Rθ) × e d
+            let moment = moment + place.axes[node][DIRECTOR].cross(force) * self.offset;
+            let moment = end.starts[node].tr_mul(&moment);
             let moment = balanced(&moment, &end.increments[node], at.from.is_some());
             out.nodes[node][..3].copy_from_slice(force.as_slice());
             out.nodes[node][3..].copy_from_slice(moment.as_slice());
@@ -112,7 +119,8 @@ impl Element {
             let mut rows = [[0.0; MOST * PER_NODE]; STRAINS];
             for (row, gradient) in rows.iter_mut().zip(&found) {
                 for (node, [by_place, by_turn]) in gradient.iter().enumerate().take(self.count) {
-                    let by_turn = turns[node].tr_mul(by_turn);
+                    let beside = place.axes[node][DIRECTOR].cross(by_place) * self.offset;
+                    let by_turn = turns[node].tr_mul(&(by_turn + beside));
                     let own = &mut row[PER_NODE * node..PER_NODE * (node + 1)];
                     own[..3].copy_from_slice(by_place.as_slice());
                     own[3..].copy_from_slice(by_turn.as_slice());
@@ -122,7 +130,7 @@ impl Element {
         };
         for (point, area) in self.form.areas.iter().enumerate() {
             let section = match flow {
-                None => self.elastic.tangent(),
+                None => self.sections[point].tangent(),
                 Some((layers, old)) => {
                     let (own, section) = self.flowing(layers, point, (&strains[point], at.dt), old);
                     forces[point] = own.map(|force| force * area);
@@ -134,11 +142,11 @@ impl Element {
         for (list, stiffness) in (1..).zip(self.unseen()) {
             add_product(&rows(&place, list), &diagonal(&stiffness), 1.0, &mut k);
         }
-        let to = |(node, part): (usize, usize)| match part {
-            0 => Mat3::identity(),
-            _ => turns[node],
-        };
-        self.form.curvature(&place, &forces, &mut |[a, b], block| {
+        self.curve(&place, &forces, &mut |[a, b], block| {
+            let to = |(node, part): (usize, usize)| match part {
+                0 => Mat3::identity(),
+                _ => turns[node],
+            };
             let block = to(a).transpose() * block * to(b);
             let [row, column] = [a, b].map(|(node, part)| PER_NODE * node + 3 * part);
             for i in 0..3 {
@@ -148,6 +156,38 @@ impl Element {
             }
         });
         k
+    }
+
+    /// [`Form::curvature`](super::strain::Form::curvature) by places and rotations of the nodes, beside which the middle surface is.
+    fn curve(&self, place: &Configuration, forces: &Strains, add: &mut AddBlock) {
+        let offset = self.offset;
+        if offset == 0.0 {
+            self.form.curvature(place, forces, add);
+            return;
+        }
+        let arm = |node: usize| place.axes[node][DIRECTOR] * offset;
+        // what a rotation ω moves: ω × e d
+        let by_turn = |node: usize| -arm(node).cross_matrix();
+        self.form.curvature(place, forces, &mut |[a, b], block| {
+            add([a, b], block);
+            if a.1 == 0 {
+                add([(a.0, 1), b], &(by_turn(a.0).transpose() * block));
+            }
+            if b.1 == 0 {
+                add([a, (b.0, 1)], &(block * by_turn(b.0)));
+            }
+            if a.1 == 0 && b.1 == 0 {
+                let both = by_turn(a.0).transpose() * block * by_turn(b.0);
+                add([(a.0, 1), (b.0, 1)], &both);
+            }
+        });
+        let found = self.form.gradient(place, forces);
+        for (node, [force, _]) in found.iter().enumerate().take(self.count) {
+            let outer = arm(node) * force.transpose();
+            let turning =
+                (outer + outer.transpose()) * 0.5 - Mat3::identity() * arm(node).dot(force);
+            add([(node, 1), (node, 1)], &turning);
+        }
     }
 }
 

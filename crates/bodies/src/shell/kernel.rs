@@ -8,8 +8,9 @@ use carom_algebra::packed::Packed;
 use carom_materials::{PlaneStressPoints, SIDE};
 use pulp::{Simd, WithSimd};
 
+use super::chunk::{Chunk, Constants};
 use super::layers::Layers;
-use super::pass::{Chunk, Constants};
+
 use super::products::MOST;
 use crate::Stored;
 
@@ -115,11 +116,17 @@ struct Now<T> {
 
 impl<T: Number> Now<T> {
     #[inline(always)]
-    fn new(c: &Constants<T>, x: &[Vector<T>; MOST], turned: &[[Vector<T>; 3]; MOST]) -> Now<T> {
+    fn new(
+        c: &Constants<T>,
+        (x, offset): (&[Vector<T>; MOST], f64),
+        turned: &[[Vector<T>; 3]; MOST],
+    ) -> Now<T> {
         let zero = c.area.like(0.0);
         let none = [zero; 3];
         let mut axes = [[none; 3]; MOST];
         let mut directors = [none; MOST];
+        // of the middle surface
+        let mut middle = *x;
         for a in 0..MOST {
             for i in 0..3 {
                 axes[a][0][i] = dot(&turned[a][i], &c.first[a]);
@@ -127,8 +134,9 @@ impl<T: Number> Now<T> {
             }
             axes[a][1] = cross(&axes[a][2], &axes[a][0]);
             directors[a] = axes[a][2];
+            add(&mut middle[a], zero.like(offset), &directors[a]);
         }
-        let (x, d) = (patterns(x), patterns(&directors));
+        let (x, d) = (patterns(&middle), patterns(&directors));
         let [[a, b], [e, f]] = c.to;
         let mut tangents = [none; 2];
         for i in 0..3 {
@@ -211,6 +219,9 @@ impl<T: Number> Acting<T> {
         let (mut acting, mut energies) = Acting::beside(c, now);
         acting.membrane = plane(c.membrane, now.membrane);
         acting.bending = plane(c.bending, now.curvature);
+        let one = c.area.like(1.0);
+        add(&mut acting.membrane, one, &plane(c.coupling, now.curvature));
+        add(&mut acting.bending, one, &plane(c.coupling, now.membrane));
         let seen = dot(&acting.membrane, &now.membrane) + dot(&acting.bending, &now.curvature);
         energies[0] += seen.scale(0.5);
         (acting, energies)
@@ -245,7 +256,7 @@ impl<T: Number> Acting<T> {
 
     /// Forces and moments on the nodes.
     #[inline(always)]
-    fn forces(&self, c: &Constants<T>, now: &Now<T>) -> [[Vector<T>; 2]; MOST] {
+    fn forces(&self, c: &Constants<T>, (now, offset): (&Now<T>, f64)) -> [[Vector<T>; 2]; MOST] {
         let zero = c.area.like(0.0);
         let ([_, r, s, h], [dm, dr, ds, dh]) = (&now.x, &now.d);
         let ([cr, cs], [lr, ls]) = (c.twist, c.inverse);
@@ -296,7 +307,9 @@ impl<T: Number> Acting<T> {
             let axes = &now.axes[node];
             let quarter = self.drilling[node].scale(0.25);
             // an axis changes by ω × a
-            let mut moment = cross(&axes[2], &on_directors[node]);
+            let mut on_director = on_directors[node];
+            add(&mut on_director, zero.like(offset), &forces[node]);
+            let mut moment = cross(&axes[2], &on_director);
             add(&mut moment, quarter, &cross(&axes[1], &now.tangents[0]));
             add(&mut moment, -quarter, &cross(&axes[0], &now.tangents[1]));
             found[node] = [forces[node], moment];
@@ -331,7 +344,7 @@ impl WithSimd for Sweep<'_> {
             let first = place * S::F64_LANES;
             let (x, turned) = self.gathered(batch, zero);
             let c = self.chunk.constants(first, zero);
-            let now = Now::new(&c, &x, &turned);
+            let now = Now::new(&c, (&x, self.chunk.offset), &turned);
             let (acting, [strain, hourglass]) = match self.layers {
                 None => Acting::elastic(&c, &now),
                 Some(layers) => {
@@ -347,7 +360,7 @@ impl WithSimd for Sweep<'_> {
                     (acting, energies)
                 }
             };
-            let forces = acting.forces(&c, &now);
+            let forces = acting.forces(&c, (&now, self.chunk.offset));
             for k in 0..batch.len() {
                 stored.strain += strain.lanes()[k];
                 stored.hourglass += hourglass.lanes()[k];
@@ -401,43 +414,47 @@ impl Sweep<'_> {
         (acting, points): (&mut Acting<T>, &mut PlaneStressPoints),
         stored: &mut Stored,
     ) {
-        let lanes = c.area.lanes().len();
-        let (kept, heights) = (layers.kept(), layers.points());
-        let of_element = kept * heights.len();
-        for (group, some) in heights.chunks(SIDE / lanes).enumerate() {
-            for (place, [z, _]) in some.iter().enumerate() {
-                let point = group * (SIDE / lanes) + place;
+        let (lanes, kept) = (c.area.lanes().len(), layers.kept());
+        let of_element = layers.history_len();
+        for (start, some) in layers.groups(SIDE / lanes) {
+            let law = some.first().map_or(0, |station| station.law);
+            let own = layers.kept_by(law);
+            for (place, station) in some.iter().enumerate() {
+                let point = start + place;
+                let z = c.thickness.scale(station.height);
                 for i in 0..3 {
-                    let strain = now.curvature[i].scale_add(*z, now.membrane[i]);
+                    let strain = now.curvature[i].mul_add(z, now.membrane[i]);
                     points.strain[i][place * lanes..][..lanes].copy_from_slice(strain.lanes());
                 }
                 for k in 0..lanes {
                     let from = (first + k.min(count - 1)) * of_element + point * kept;
-                    for (row, old) in points.old.iter_mut().zip(&self.old[from..from + kept]) {
+                    for (row, old) in points.old.iter_mut().zip(&self.old[from..from + own]) {
                         row[place * lanes + k] = *old;
                     }
                 }
             }
-            layers.side_by_side(self.dt, points);
-            for (place, [z, w]) in some.iter().enumerate() {
-                let point = group * (SIDE / lanes) + place;
+            layers.side_by_side(law, self.dt, points);
+            for (place, station) in some.iter().enumerate() {
+                let point = start + place;
+                let z = c.thickness.scale(station.height);
+                let volume = (c.thickness * c.area).scale(station.weight);
                 for i in 0..3 {
                     let mut stress = c.area;
                     let found = &points.stress[i][place * lanes..][..lanes];
                     stress.lanes_mut().copy_from_slice(found);
-                    let force = (stress * c.area).scale(*w);
+                    let force = stress * volume;
                     acting.membrane[i] += force;
-                    acting.bending[i] += force.scale(*z);
+                    acting.bending[i] += force * z;
                 }
                 for k in 0..count {
                     let at = place * lanes + k;
-                    let volume = w * c.area.lanes()[k];
+                    let volume = volume.lanes()[k];
                     let [strain, hardening, dissipated] = points.energies.map(|row| row[at]);
                     stored.strain += volume * strain;
                     stored.hardening += volume * hardening;
                     stored.dissipated += volume * dissipated;
                     let from = (first + k) * of_element + point * kept;
-                    for (row, new) in points.new.iter().zip(&mut self.new[from..from + kept]) {
+                    for (row, new) in points.new.iter().zip(&mut self.new[from..from + own]) {
                         *new = row[at];
                     }
                 }

@@ -5,7 +5,8 @@ use std::ops::Range;
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Mat3;
 
-use super::{Element, PER_NODE, Shell};
+use super::Shell;
+use super::element::{Element, PER_NODE};
 use crate::stability::largest_eigenvalue;
 
 /// Least square of the radius of gyration of lumped rotations over the area of an element: no rotation is then faster than the fastest
@@ -20,9 +21,10 @@ impl Element {
     }
 
     /// ∫ ρ h N_a dA of each node, kg.
-    pub(super) fn shares(&self, density: f64) -> [f64; 4] {
+    pub(super) fn shares(&self) -> [f64; 4] {
         let mut shares = [0.0; 4];
-        for (shapes, area) in self.form.shapes.iter().zip(self.inert()) {
+        let points = self.form.shapes.iter().zip(&self.density);
+        for ((shapes, density), area) in points.zip(self.inert()) {
             for (share, n) in shares.iter_mut().zip(shapes) {
                 *share += density * area * n;
             }
@@ -31,26 +33,23 @@ impl Element {
     }
 
     /// ∫ ρ h N_a N_b dA, kg.
-    fn shared(&self, density: f64, a: usize, b: usize) -> f64 {
-        let points = self.form.shapes.iter().zip(self.inert());
-        points.map(|(n, area)| density * area * n[a] * n[b]).sum()
+    fn shared(&self, a: usize, b: usize) -> f64 {
+        let points = self.form.shapes.iter().zip(&self.density);
+        let points = points.zip(self.inert());
+        points
+            .map(|((n, density), area)| density * area * n[a] * n[b])
+            .sum()
+    }
+
+    /// From the nodes to the centre of the mass of a section along the directors, m.
+    fn arm(&self) -> f64 {
+        self.offset + self.inertia.centre
     }
 }
 
 impl Shell {
-    /// ρ h, kg/m².
-    pub(super) fn density(&self) -> f64 {
-        self.material.density * self.section.thickness
-    }
-
-    /// Square of the radius of gyration of a section, m².
-    fn gyration(&self) -> f64 {
-        self.section.thickness.powi(2) / 12.0
-    }
-
-    /// Adds `mass` M: translations and small rotations with the shape functions, finite rotations at each node, h²/12 of its mass.
+    /// Adds `mass` M: translations and small rotations with the shape functions; finite rotations at each node, with the moment of inertia of its mass about it.
     pub(super) fn add_mass(&self, mass: f64, part: &Range<usize>, matrix: &mut Csr) {
-        let (density, offset) = (mass * self.density(), self.section.offset);
         for (number, element) in self.elements.iter().enumerate() {
             let n = PER_NODE * element.count;
             let mut own = vec![0.0; n * n];
@@ -61,23 +60,24 @@ impl Shell {
                     }
                 }
             };
-            let shares = element.shares(density);
+            let shares = element.shares();
+            let arm = element.arm();
             for a in 0..element.count {
                 for b in 0..element.count {
-                    let m = element.shared(density, a, b);
+                    let m = element.shared(a, b);
                     let (row, column) = (PER_NODE * a, PER_NODE * b);
                     add((row, column), &(Mat3::identity() * m));
+                    let gyration = element.inertia.gyration;
                     let turning = match self.turns() {
                         true if a != b => 0.0,
-                        true => shares[a],
-                        false => m,
+                        true => shares[a] * (gyration + arm * arm),
+                        false => m * gyration,
                     };
-                    let turning = Mat3::identity() * (turning * self.gyration());
-                    add((row + 3, column + 3), &turning);
-                    if offset != 0.0 {
+                    add((row + 3, column + 3), &(Mat3::identity() * turning));
+                    if arm != 0.0 && !self.turns() {
                         // the middle moves by u + θ × e D
                         let [left, right] = [a, b].map(|node| element.reference.axes[node][2]);
-                        let (left, right) = (left * offset, right * offset);
+                        let (left, right) = (left * arm, right * arm);
                         add((row, column + 3), &(right.cross_matrix() * -m));
                         add((row + 3, column), &(left.cross_matrix() * m));
                         let both = Mat3::identity() * left.dot(&right) - right * left.transpose();
@@ -85,15 +85,15 @@ impl Shell {
                     }
                 }
             }
-            self.add(number, 1.0, &own, part, matrix);
+            self.add(number, mass, &own, part, matrix);
         }
     }
 
-    /// Lumped mass of a translation and of a rotation of each node of an element.
+    /// Lumped mass of a translation and of a rotation of each node of an element: all mass is in the nodes, with its moment of inertia about them.
     fn lumped(&self, element: &Element) -> [[f64; 2]; 4] {
-        let gyration = self.gyration().max(GYRATION * element.area());
-        let shares = element.shares(self.density());
-        shares.map(|m| [m, m * gyration])
+        let own = element.inertia.gyration + element.arm().powi(2);
+        let gyration = own.max(GYRATION * element.area());
+        element.shares().map(|m| [m, m * gyration])
     }
 
     /// Adds the diagonal of the lumped mass.
@@ -109,15 +109,10 @@ impl Shell {
         }
     }
 
-    /// Whether the lumped mass is diagonal: the middle surface is in the nodes.
-    pub(crate) fn lumps(&self) -> bool {
-        self.section.offset == 0.0
-    }
-
     /// Upper bound of the angular frequencies (rad/s) with lumped mass: the largest of an element in the reference configuration.
     pub(crate) fn frequency_bound(&self) -> f64 {
         let of = |element: &Element| {
-            let mut k = element.stiffness(self.section.offset);
+            let mut k = element.stiffness();
             let n = PER_NODE * element.count;
             let lumped = self.lumped(element);
             let root = |i: usize| lumped[i / PER_NODE][i % PER_NODE / 3].sqrt();

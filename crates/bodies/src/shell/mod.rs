@@ -9,6 +9,9 @@
 //! Methods Appl. Mech. Eng. 110, 343); the error of this factor is of the order of that of the element.
 
 mod build;
+mod chunk;
+mod defects;
+mod element;
 mod finite;
 mod kernel;
 mod layers;
@@ -22,6 +25,7 @@ mod shares;
 mod small;
 mod strain;
 mod surface;
+mod through;
 mod tying;
 
 use std::ops::Range;
@@ -30,95 +34,27 @@ use carom_algebra::csr::Csr;
 use carom_materials::Elastic;
 use carom_mesh::ElementId;
 
+pub use self::defects::{ShellDefect, shell_defects};
 pub use self::results::Resultants;
-pub use self::section::{LAYERS, ShellSection};
+pub use self::section::{LAYERS, Ply, ShellSection, Taper};
 pub use self::surface::{ShellPlate, plates};
 
+use self::element::{Element, PER_NODE};
 use self::layers::Layers;
-use self::one_point::Hourglass;
 use self::pass::Pass;
-use self::products::{Configuration, MOST};
-use self::section::ElasticSection;
-use self::shares::PointWeights;
-use self::strain::{Form, Strains};
+use self::products::MOST;
 use crate::scratch::Scratch;
 use crate::{Error, Placement, Rotations, Stored};
-
-/// Unknowns of a node.
-const PER_NODE: usize = 6;
-
-/// An element.
-#[derive(Debug)]
-struct Element {
-    /// Nodes: three or four.
-    count: usize,
-    /// Their numbers in the system, first unknowns and frames.
-    nodes: [u32; MOST],
-    first: [usize; MOST],
-    frames: [usize; MOST],
-    /// Places of the nodes and the axes that turn with them.
-    reference: Configuration,
-    form: Form,
-    elastic: ElasticSection,
-    weights: PointWeights,
-    /// With one point.
-    hourglass: Option<Hourglass>,
-}
-
-impl Element {
-    /// The unknowns in a system vector.
-    fn unknowns(&self) -> impl Iterator<Item = usize> + '_ {
-        let first = self.first[..self.count].iter();
-        first.flat_map(|&first| first..first + PER_NODE)
-    }
-
-    fn area(&self) -> f64 {
-        self.form.inert.iter().sum()
-    }
-
-    /// Area of each point times its weight of internal work, m².
-    fn working(&self) -> impl Iterator<Item = f64> + '_ {
-        let points = self.form.areas.iter().zip(&self.weights.stiffness);
-        points.map(|(area, delta)| area * delta)
-    }
-
-    /// Forces and moments per length at all points, times their areas, and what holds the motions that one point does not see.
-    fn weighted(&self, strains: &Strains) -> Strains {
-        let mut forces = Strains::default();
-        let points = forces.iter_mut().zip(strains).zip(self.working());
-        for ((forces, strains), area) in points {
-            *forces = self.elastic.forces(strains).map(|force| force * area);
-        }
-        if let Some(hourglass) = &self.hourglass {
-            hourglass.force(strains, &mut forces);
-        }
-        forces
-    }
-
-    /// Energies of an elastic section.
-    fn stored(&self, strains: &Strains) -> Stored {
-        let points = strains.iter().zip(self.working());
-        let seen: f64 = points
-            .map(|(strains, area)| area * self.elastic.energy(strains))
-            .sum();
-        let [unseen, hourglass] = match &self.hourglass {
-            Some(hourglass) => hourglass.force(strains, &mut Strains::default()),
-            None => [0.0; 2],
-        };
-        Stored {
-            strain: seen + unseen,
-            hourglass,
-            ..Stored::default()
-        }
-    }
-}
 
 /// A body of shell elements on a system.
 #[derive(Debug)]
 pub struct Shell {
     name: String,
     section: ShellSection,
-    material: Elastic,
+    /// Undeformed materials at its faces, that to which the normal points first.
+    faces: [Elastic; 2],
+    /// Speed of membrane waves, m/s.
+    wave_speed: f64,
     cells: Vec<ElementId>,
     elements: Vec<Element>,
     /// K of each element over its unknowns, row-major, with small rotations; and where each begins.
@@ -149,7 +85,7 @@ impl Shell {
 
     /// Speed of waves that stretch a plate, m/s.
     pub fn wave_speed(&self) -> f64 {
-        self.material.wave_speed(carom_materials::Plane::Stress)
+        self.wave_speed
     }
 
     /// Smallest size of an element, m: its area over its longest edge or diagonal.

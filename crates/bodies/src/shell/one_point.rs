@@ -20,7 +20,6 @@ use carom_algebra::tensor::Vec3;
 
 use super::products::{Configuration, DIRECTOR, MOST, Row, Rows};
 use super::section::{AtPoint, ElasticSection, STRAINS};
-use super::strain::Strains;
 use super::tying::{self, Covariant, Point};
 
 /// Coefficients of the nodes in g_r, g_s and x_h.
@@ -146,7 +145,11 @@ impl Hourglass {
     }
 
     /// Adds the forces on the lists after that of the centre, and returns their energy and that without rotations about the normal, J.
-    pub(super) fn force(&self, strains: &Strains, forces: &mut Strains) -> [f64; 2] {
+    pub(super) fn force(
+        &self,
+        strains: &[AtPoint; MOST],
+        forces: &mut [AtPoint; MOST],
+    ) -> [f64; 2] {
         let (mut all, mut turning) = (0.0, 0.0);
         let lists = self.diagonals();
         for ((stiffness, strain), force) in lists.iter().zip(&strains[1..]).zip(&mut forces[1..]) {

@@ -2,10 +2,12 @@
 
 use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::{Mat3, Vec3};
+use carom_materials::Elastic;
 
+use super::Shell;
+use super::element::Element;
 use super::section::AtPoint;
 use super::strain::Strains;
-use super::{Element, Shell};
 use crate::distortion::{Distortion, Extreme};
 
 /// Forces and moments per length in the middle of an element, and stresses at its faces, as tensors over the axes of coordinates, per length and area of the
@@ -33,7 +35,7 @@ impl Shell {
         for element in &self.elements {
             let strains = match self.turns() {
                 true => element.form.strains(&element.now(frames, u).configuration),
-                false => element.small_strains(self.section.offset, u),
+                false => element.small_strains(u),
             };
             visit(element, &strains);
         }
@@ -60,15 +62,16 @@ impl Shell {
                 let strain = &strains[point];
                 let (forces, faces) = match &self.layers {
                     None => {
-                        let forces = element.elastic.forces(strain);
-                        (forces, self.faces(&forces))
+                        let forces = element.sections[point].forces(strain);
+                        (forces, self.at_faces(strain, element.thickness[point]))
                     }
                     Some(layers) => {
                         let own = &history[self.history_of(all.len())];
                         let kept = layers.history_len();
                         let own = &own[kept * point..kept * (point + 1)];
-                        let forces = element.beside(strain, &layers.forces(strain, own));
-                        (forces, layers.outermost(strain, own))
+                        let of = (strain, element.thickness[point]);
+                        let forces = element.beside(point, strain, &layers.forces(of, own));
+                        (forces, layers.outermost(of, own))
                     }
                 };
                 let (tangents, part) = (form.tangents(&now, point), area / whole);
@@ -85,21 +88,31 @@ impl Shell {
         all
     }
 
-    /// Stresses at both faces of an elastic section, N/h ± 6 M/h².
-    fn faces(&self, forces: &AtPoint) -> [[f64; 3]; 2] {
-        let h = self.section.thickness;
-        [1.0, -1.0]
-            .map(|side| [0, 1, 2].map(|i| forces[i] / h + side * 6.0 * forces[3 + i] / (h * h)))
+    /// Stresses at both faces of an elastic section, C (e ± h/2 κ) with C of the material there.
+    fn at_faces(&self, strain: &AtPoint, thickness: f64) -> [[f64; 3]; 2] {
+        let of = |(material, z): (&Elastic, f64)| {
+            let [x, y, xy] = [0, 1, 2].map(|i| strain[i] + z * strain[3 + i]);
+            let plane = material.young / (1.0 - material.poisson.powi(2));
+            [
+                plane * (x + material.poisson * y),
+                plane * (y + material.poisson * x),
+                material.shear_modulus() * xy,
+            ]
+        };
+        let [top, bottom] = &self.faces;
+        [of((top, 0.5 * thickness)), of((bottom, -0.5 * thickness))]
     }
 
     /// Volume (m³) and mean stress (Pa) of each element: the membrane forces over the thickness. Bending has no mean.
     pub(crate) fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
-        let thickness = self.section.thickness;
         // membrane strains do not depend on rotations
         let found = self.resultants(&[], u, history);
         let elements = self.elements.iter().zip(found);
         elements
-            .map(|(element, found)| (element.area() * thickness, found.membrane / thickness))
+            .map(|(element, found)| {
+                let thickness = element.mean_thickness();
+                (element.area() * thickness, found.membrane / thickness)
+            })
             .collect()
     }
 
@@ -109,13 +122,14 @@ impl Shell {
             return None;
         }
         let (mut found, mut cell) = (*before, 0);
-        let half = 0.5 * self.section.thickness;
         self.each_strain(&[], u, &mut |element, strains| {
             for &first in &element.first[..element.count] {
                 let value = Vec3::new(u[first + 3], u[first + 4], u[first + 5]).norm();
                 found.rotation = found.rotation.or(Extreme { value, cell });
             }
-            for s in &strains[..element.form.areas.len()] {
+            let points = strains.iter().zip(&element.thickness);
+            for (s, thickness) in points.take(element.form.areas.len()) {
+                let half = 0.5 * thickness;
                 let of = |face: f64| largest([0, 1, 2].map(|i| s[i] + face * s[3 + i]));
                 let value = of(half).max(of(-half));
                 found.strain = found.strain.or(Extreme { value, cell });

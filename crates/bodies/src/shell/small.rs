@@ -6,24 +6,27 @@ use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Vec3;
 use rayon::prelude::*;
 
+use super::Shell;
+use super::element::{Element, PER_NODE};
 use super::layers::Layers;
 use super::products::{Configuration, DIRECTOR, MOST};
 use super::section::{AtPoint, STRAINS};
 use super::strain::Strains;
-use super::{Element, PER_NODE, Shell};
 use crate::scratch::ShellForces;
 use crate::{Placement, Stored};
 
 impl Element {
     /// Derivatives of the strains of a point by the unknowns, row by row: a rotation of a node moves the middle surface beside it by
     /// `θ × e D`.
-    pub(super) fn rows(&self, point: usize, offset: f64) -> [[f64; 4 * PER_NODE]; STRAINS] {
+    pub(super) fn rows(&self, point: usize) -> [[f64; 4 * PER_NODE]; STRAINS] {
         let mut rows = [[0.0; 4 * PER_NODE]; STRAINS];
-        let found = self.form.derivatives(&self.reference.beside(offset), point);
+        let found = self
+            .form
+            .derivatives(&self.reference.beside(self.offset), point);
         for (row, gradient) in rows.iter_mut().zip(&found) {
             for (node, [by_place, by_turn]) in gradient.iter().enumerate().take(self.count) {
                 let director = self.reference.axes[node][DIRECTOR];
-                let by_turn = by_turn + director.cross(by_place) * offset;
+                let by_turn = by_turn + director.cross(by_place) * self.offset;
                 let own = &mut row[PER_NODE * node..PER_NODE * (node + 1)];
                 own[..3].copy_from_slice(by_place.as_slice());
                 own[3..].copy_from_slice(by_turn.as_slice());
@@ -39,23 +42,23 @@ impl Element {
     }
 
     /// K over the unknowns, row-major.
-    pub(super) fn stiffness(&self, offset: f64) -> Vec<f64> {
+    pub(super) fn stiffness(&self) -> Vec<f64> {
         let n = PER_NODE * self.count;
         let mut k = vec![0.0; n * n];
-        let section = self.elastic.tangent();
         for (point, area) in self.working().enumerate() {
-            add_product(&self.rows(point, offset), &section, area, &mut k);
+            let section = self.sections[point].tangent();
+            add_product(&self.rows(point), &section, area, &mut k);
         }
         for (list, stiffness) in (1..).zip(self.unseen()) {
             let section = diagonal(&stiffness);
-            add_product(&self.rows(list, offset), &section, 1.0, &mut k);
+            add_product(&self.rows(list), &section, 1.0, &mut k);
         }
         k
     }
 
     /// Strains at a displacement.
-    pub(super) fn small_strains(&self, offset: f64, u: &[f64]) -> Strains {
-        let middle = self.reference.beside(offset);
+    pub(super) fn small_strains(&self, u: &[f64]) -> Strains {
+        let middle = self.reference.beside(self.offset);
         let mut change = Configuration {
             x: [Vec3::zeros(); MOST],
             axes: [[Vec3::zeros(); 3]; MOST],
@@ -65,7 +68,7 @@ impl Element {
             let (moved, turned) = (of(0), of(3));
             let axes = &self.reference.axes[node];
             change.axes[node] = axes.map(|axis| turned.cross(&axis));
-            change.x[node] = moved + change.axes[node][DIRECTOR] * offset;
+            change.x[node] = moved + change.axes[node][DIRECTOR] * self.offset;
         }
         self.form.changes(&middle, &change)
     }
@@ -83,11 +86,12 @@ impl Element {
         let histories = old.chunks_exact(kept).zip(new.chunks_exact_mut(kept));
         for ((point, area), history) in self.form.areas.iter().enumerate().zip(histories) {
             let strain = &strains[point];
-            let (found, own) = layers.update(strain, dt, history);
-            forces[point] = self.beside(strain, &found).map(|force| force * area);
+            let section = (strain, self.thickness[point]);
+            let (found, own) = layers.update(section, dt, history);
+            forces[point] = self.beside(point, strain, &found).map(|force| force * area);
             let mut alone = *strain;
             alone[..6].fill(0.0);
-            let beside = self.elastic.energy(&alone);
+            let beside = self.sections[point].energy(&alone);
             stored.strain += area * (own.strain + beside);
             stored.hardening += area * own.hardening;
             stored.dissipated += area * own.dissipated;
@@ -101,8 +105,8 @@ impl Element {
     }
 
     /// Membrane forces and moments of the layers beside elastic shear and drilling.
-    pub(super) fn beside(&self, strain: &AtPoint, layers: &AtPoint) -> AtPoint {
-        let elastic = self.elastic.forces(strain);
+    pub(super) fn beside(&self, point: usize, strain: &AtPoint, layers: &AtPoint) -> AtPoint {
+        let elastic = self.sections[point].forces(strain);
         std::array::from_fn(|i| if i < 6 { layers[i] } else { elastic[i] })
     }
 
@@ -116,31 +120,33 @@ impl Element {
     ) -> (AtPoint, [AtPoint; STRAINS]) {
         let kept = layers.history_len();
         let old = &old[kept * point..kept * (point + 1)];
-        let (forces, mut section) = layers.tangent(strain, dt, old);
-        let elastic = self.elastic.tangent();
+        let (forces, mut section) = layers.tangent((strain, self.thickness[point]), dt, old);
+        let elastic = self.sections[point].tangent();
         section[6..].copy_from_slice(&elastic[6..]);
-        (self.beside(strain, &forces), section)
+        (self.beside(point, strain, &forces), section)
     }
 
     /// Forces and moments on the nodes of a section that flows, with small rotations.
     fn flowed(
         &self,
-        (layers, offset): (&Layers, f64),
+        layers: &Layers,
         at: &Placement,
         history: (&[f64], &mut [f64]),
     ) -> ShellForces {
-        let strains = self.small_strains(offset, at.u);
+        let strains = self.small_strains(at.u);
         let (forces, stored) = self.flow(layers, &strains, at.dt, history);
         let mut out = ShellForces {
             stored,
             ..ShellForces::default()
         };
-        let by = self.form.gradient(&self.reference.beside(offset), &forces);
+        let by = self
+            .form
+            .gradient(&self.reference.beside(self.offset), &forces);
         for ((out, [by_place, by_turn]), axes) in
             out.nodes.iter_mut().zip(&by).zip(&self.reference.axes)
         {
             out[..3].copy_from_slice(by_place.as_slice());
-            let by_turn = by_turn + axes[DIRECTOR].cross(by_place) * offset;
+            let by_turn = by_turn + axes[DIRECTOR].cross(by_place) * self.offset;
             out[3..].copy_from_slice(by_turn.as_slice());
         }
         out
@@ -196,13 +202,13 @@ impl Shell {
         (scratch, f): (&mut Vec<ShellForces>, &mut [f64]),
     ) -> Stored {
         scratch.resize_with(self.elements.len(), ShellForces::default);
-        let (kept, offset) = (self.kept_of_element(), self.section.offset);
+        let kept = self.kept_of_element();
         let histories = at.old.par_chunks(kept).zip(new.par_chunks_mut(kept));
         let elements = self.elements.par_iter().zip(&mut scratch[..]);
         elements
             .zip(histories)
             .for_each(|((element, out), history)| {
-                *out = element.flowed((layers, offset), at, history);
+                *out = element.flowed(layers, at, history);
             });
         self.gathered(scratch, f)
     }
@@ -215,18 +221,17 @@ impl Shell {
         by_u: f64,
         matrix: &mut Csr,
     ) {
-        let offset = self.section.offset;
         for (number, element) in self.elements.iter().enumerate() {
             let n = PER_NODE * element.count;
             let mut k = vec![0.0; n * n];
             let (strains, old) = (
-                element.small_strains(offset, at.u),
+                element.small_strains(at.u),
                 &at.old[self.history_of(number)],
             );
             for (point, area) in element.form.areas.iter().enumerate() {
                 let strain = (&strains[point], at.dt);
                 let (_, section) = element.flowing(layers, point, strain, old);
-                add_product(&element.rows(point, offset), &section, *area, &mut k);
+                add_product(&element.rows(point), &section, *area, &mut k);
             }
             self.add(number, by_u, &k, &(0..usize::MAX), matrix);
         }

@@ -38,7 +38,11 @@ pub fn plates(
         ShellPlate {
             x: nodes.clone().map(|a| middle.x[a].into()).collect(),
             directors: nodes.map(|a| reference.axes[a][DIRECTOR].into()).collect(),
-            thickness: section.thickness,
+            thickness: section.mean_thickness(
+                mesh.element_nodes(cell)
+                    .iter()
+                    .map(|&node| &mesh.nodes[node as usize]),
+            ),
             offset: section.offset,
         }
     });

@@ -5,10 +5,10 @@ use carom_algebra::pattern::Cliques;
 use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Vec3;
 use carom_bodies::{
-    Body, BodySpec, Error, Formulation, Kinematics, Placement, Rotations, Scratch, ShellSection,
-    Stored,
+    Body, BodySpec, Error, Formulation, Kinematics, Placement, Ply, Rotations, Scratch,
+    ShellSection, Stored, Taper,
 };
-use carom_materials::{J2Plasticity, Law};
+use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_mesh::{ElementId, Mesh};
 use carom_testing::Random;
 
@@ -29,6 +29,36 @@ fn made(
 
 fn elastic(made_of: &(Mesh, Vec<ElementId>)) -> Body {
     made(made_of, STEEL, section(Rotations::Finite, 0.0)).unwrap()
+}
+
+/// In the nodes; beside them with a taper; beside them of two plies.
+fn sections(made_of: &(Mesh, Vec<ElementId>), formulation: Formulation) -> [Body; 3] {
+    let taper = Taper {
+        along: [0.6, 0.8, 0.0],
+        from: [0.2, THICKNESS],
+        to: [1.1, 0.5 * THICKNESS],
+    };
+    let ply = |young, thickness| Ply {
+        material: Law::Elastic(Elastic { young, ..STEEL }),
+        thickness,
+    };
+    let plies = vec![ply(2e11, 0.4 * THICKNESS), ply(7e10, 0.6 * THICKNESS)];
+    [
+        (0.0, None, vec![]),
+        (0.03, Some(taper), vec![]),
+        (-0.02, None, plies),
+    ]
+    .map(|(offset, taper, plies)| {
+        let section = ShellSection {
+            taper,
+            ..section(Rotations::Finite, offset)
+        };
+        let cells = made_of.1.clone();
+        let mut spec = BodySpec::new("s", cells, Kinematics::Shell(section), STEEL);
+        (spec.formulation, spec.plies) = (formulation, plies);
+        let number: Vec<u32> = (0..9).collect();
+        Body::new(&made_of.0, spec, &number, &map(Rotations::Finite)).unwrap()
+    })
 }
 
 fn metal(made_of: &(Mesh, Vec<ElementId>)) -> Body {
@@ -70,27 +100,36 @@ fn start(random: &mut Random) -> Vec<f64> {
 fn elements_side_by_side_are_those_alone() {
     let mut random = Random(41);
     let made_of = mesh(false, 0.05);
-    let body = elastic(&made_of);
     let (frames, u) = (frames(&mut random), start(&mut random));
     let still = vec![0.0; 54];
-    let (f, stored) = forces(&body, &placement(&u, None, &frames, &still));
-    let (g, other) = forces(&body, &placement(&u, Some(&u), &frames, &still));
-    let scale = f.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
-    assert!(f.iter().zip(&g).all(|(f, g)| (f - g).abs() < 1e-12 * scale));
-    assert!((stored.strain / other.strain - 1.0).abs() < 1e-12);
-    assert!((stored.hourglass / other.hourglass - 1.0).abs() < 1e-12);
-    assert!(stored.hourglass > 0.0);
+    for body in sections(&made_of, FULL_WEIGHT) {
+        let (f, stored) = forces(&body, &placement(&u, None, &frames, &still));
+        let (g, other) = forces(&body, &placement(&u, Some(&u), &frames, &still));
+        let scale = f.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+        assert!(f.iter().zip(&g).all(|(f, g)| (f - g).abs() < 1e-12 * scale));
+        assert!((stored.strain / other.strain - 1.0).abs() < 1e-12);
+        assert!((stored.hourglass / other.hourglass - 1.0).abs() < 1e-12);
+        assert!(stored.hourglass > 0.0);
+    }
 }
 
 #[test]
 fn forces_are_the_derivative_of_the_energy_and_tangents_that_of_forces() {
     let mut random = Random(43);
-    let body = elastic(&mesh(false, 0.05));
-    let (frames, u) = (frames(&mut random), start(&mut random));
-    let (way, still) = (random_motion(&mut random, 1.0), vec![0.0; 54]);
+    let made_of = mesh(false, 0.05);
+    for formulation in [FULL_WEIGHT, Formulation::Full] {
+        for body in sections(&made_of, formulation) {
+            differentiates(&body, &mut random);
+        }
+    }
+}
+
+fn differentiates(body: &Body, random: &mut Random) {
+    let (frames, u) = (frames(random), start(random));
+    let (way, still) = (random_motion(random, 1.0), vec![0.0; 54]);
     let at = |step: f64| {
         let moved: Vec<f64> = u.iter().zip(&way).map(|(u, w)| u + step * w).collect();
-        forces(&body, &placement(&moved, None, &frames, &still))
+        forces(body, &placement(&moved, None, &frames, &still))
     };
     let energies = |step: f64| [step, 0.0, -step].map(|step| at(step).1.strain);
     let step = 1e-6;
@@ -99,7 +138,7 @@ fn forces_are_the_derivative_of_the_energy_and_tangents_that_of_forces() {
     let work: f64 = at(0.0).0.iter().zip(&way).map(|(f, w)| f * w).sum();
     // the square of the step over the motion of 0.03
     assert!((work / slope - 1.0).abs() < 1e-7, "{work} {slope}");
-    let second = product(&body, &placement(&u, None, &frames, &still), &way);
+    let second = product(body, &placement(&u, None, &frames, &still), &way);
     let second: f64 = second.iter().zip(&way).map(|(k, w)| k * w).sum();
     let step = 1e-5;
     let [after, middle, before] = energies(step);
@@ -173,18 +212,40 @@ fn forces_of_metal_have_its_tangent() {
 #[test]
 fn a_warped_shell_turned_by_any_angle_stores_nothing() {
     let made_of = mesh(false, 0.05);
-    let body = elastic(&made_of);
     let turn = Rotation::cayley(&Vec3::new(1.5, -0.8, 2.0));
     let moved = Vec3::new(3.0, 1.0, -2.0);
     let u = field(&made_of.0, &|x| {
         [turn.matrix() * x + moved - x, Vec3::zeros()]
     });
     let (frames, still) = ([turn; 9], vec![0.0; 54]);
-    let (f, stored) = forces(&body, &placement(&u, None, &frames, &still));
-    // rounding of products of places, 10, times membrane stiffness
-    let scale = STEEL.young * THICKNESS;
-    assert!(stored.strain.abs() < 1e-24 * scale, "{}", stored.strain);
-    assert!(f.iter().all(|f| f.abs() < 1e-13 * scale));
+    for body in sections(&made_of, FULL_WEIGHT) {
+        let (f, stored) = forces(&body, &placement(&u, None, &frames, &still));
+        // rounding of products of places, 10, times membrane stiffness
+        let scale = STEEL.young * THICKNESS;
+        assert!(stored.strain.abs() < 1e-24 * scale, "{}", stored.strain);
+        assert!(f.iter().all(|f| f.abs() < 1e-13 * scale));
+    }
+}
+
+/// A plate whose thickness falls linearly from 0.02 to 0.01 over a side has the mean of both.
+#[test]
+fn the_mass_of_a_taper_is_that_of_its_mean() {
+    let made_of = mesh(false, 0.0);
+    let section = ShellSection {
+        taper: Some(Taper {
+            along: [1.0, 0.0, 0.0],
+            from: [0.0, THICKNESS],
+            to: [1.0, 0.5 * THICKNESS],
+        }),
+        ..section(Rotations::Finite, 0.0)
+    };
+    let body = made(&made_of, STEEL, section).unwrap();
+    let mut mass = vec![0.0; 54];
+    body.add_lumped_mass(&mut mass);
+    let whole: f64 = mass.chunks_exact(6).map(|own| own[0]).sum();
+    let exact = STEEL.density * 0.75 * THICKNESS;
+    // linear between nodes: exact
+    assert!((whole / exact - 1.0).abs() < 1e-12, "{whole} {exact}");
 }
 
 /// Small motions: what is quadratic in them is the square of 1e-7, of membrane forces that of slopes.
@@ -232,6 +293,53 @@ fn a_patch_has_constant_membrane_forces_and_constant_moments_without_hourglass()
             stored.strain
         );
         assert!(stored.hourglass < 1e-10 * exact, "{}", stored.hourglass);
+    }
+}
+
+/// A thin ply of metal that flows on an elastic one: the law of each goes to its own points.
+#[test]
+fn an_elastic_ply_under_metal_does_not_flow() {
+    let made_of = mesh(false, 0.0);
+    let metal = J2Plasticity {
+        initial: STEEL,
+        yield_stress: 3e8,
+        hardening: 0.0,
+    };
+    let ply = |material| Ply {
+        material,
+        thickness: 0.5 * THICKNESS,
+    };
+    let kinematics = Kinematics::Shell(section(Rotations::Finite, 0.0));
+    let mut spec = BodySpec::new("s", made_of.1.clone(), kinematics, Law::J2Plasticity(metal));
+    spec.formulation = FULL_WEIGHT;
+    spec.plies = vec![ply(Law::Elastic(STEEL)), ply(Law::J2Plasticity(metal))];
+    let number: Vec<u32> = (0..9).collect();
+    let body = Body::new(&made_of.0, spec, &number, &map(Rotations::Finite)).unwrap();
+    // stretched by ε in x and free across as far as metal and elastic part are alike: no stress but σ_x
+    let strain = 1e-2;
+    let u = field(&made_of.0, &|x| {
+        [Vec3::new(strain * x.x, 0.0, 0.0), Vec3::zeros()]
+    });
+    let (frames, still) = ([Rotation::default(); 9], vec![0.0; 54]);
+    let old = vec![0.0; body.history_len()];
+    let mut new = old.clone();
+    let at = Placement {
+        old: &old,
+        ..placement(&u, None, &frames, &still)
+    };
+    let (mut f, mut scratch) = (vec![0.0; 54], Scratch::default());
+    body.force(&at, &mut new, &mut scratch, &mut f).unwrap();
+    let shell = body.as_shell().unwrap();
+    let plane = STEEL.young / (1.0 - STEEL.poisson.powi(2));
+    // strain of Green and Lagrange
+    let elastic = plane * (strain + 0.5 * strain * strain);
+    for found in shell.resultants(&frames, &u, &new) {
+        let [top, bottom] = found
+            .faces
+            .map(|face| face[(0, 0)] / (1.0 + strain).powi(2));
+        assert!((bottom / elastic - 1.0).abs() < 1e-10, "{bottom} {elastic}");
+        // between the yield stress in uniaxial and that in plane strain
+        assert!(top > 3e8 && top < 3e8 * 2.0 / 3.0_f64.sqrt(), "{top}");
     }
 }
 

@@ -458,7 +458,7 @@ fn mass_is_that_of_the_plate_and_moves_rigidly() {
         body.add_lumped_mass(&mut lumped);
         let sum: f64 = lumped.chunks_exact(6).map(|own| own[0]).sum();
         assert!((sum / m - 1.0).abs() < 1e-13);
-        assert_eq!(body.lumps(), offset == 0.0);
+        assert!(body.lumps());
     }
 }
 

@@ -32,12 +32,17 @@ impl Builder<'_> {
             let Some(group) = self.group(mesh, &format!("{path}.region"), &body.region) else {
                 continue;
             };
+            let (mut material, mut plies) = (material, Vec::new());
             let kinematics = match (&body.section, material) {
                 (Some(Section::Beam(section)), Some(material)) => {
                     self.beam(mesh, &path, section, material)
                 }
-                (Some(Section::Shell(section)), Some(material)) => {
-                    self.shell(&path, section, material)
+                (Some(Section::Shell(section)), Some(own)) => {
+                    let made = self.shell(mesh, &path, (section, own), materials);
+                    made.map(|(kinematics, of_section, law)| {
+                        (plies, material) = (of_section, Some(law));
+                        kinematics
+                    })
                 }
                 (Some(Section::Beam(_) | Section::Shell(_)), None) => None,
                 (section, _) => Some(kinematics(section.as_ref())),
@@ -76,6 +81,7 @@ impl Builder<'_> {
                 scaling: body.mass_scaling.map(Into::into),
                 deletion: body.deletion.map(|deletion| deletion.plastic_strain),
                 releases: Vec::new(),
+                plies,
             };
             let spec = self.hinged(mesh, (&path, body), spec);
             let spin = self.initial_spin(mesh, (&path, body), &spec);
@@ -98,6 +104,7 @@ impl Builder<'_> {
             });
         }
         self.one_plane(&bodies);
+        self.sound_shells(mesh, &bodies);
         bodies
     }
 

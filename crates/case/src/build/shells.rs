@@ -1,76 +1,237 @@
 //! Shells: sections, and what shells refuse.
 
-use carom_bodies::{Kinematics, Rotations, SHELL_LAYERS, ShellSection};
+use std::collections::BTreeMap;
+
+use carom_bodies::{
+    Kinematics, Ply, Rotations, SHELL_LAYERS, ShellDefect, ShellSection, Taper, shell_defects,
+};
 use carom_dynamics::ModelBody;
 use carom_materials::Law;
 use carom_mesh::{ElementId, Group, Mesh, Surface};
 
 use super::Builder;
 use crate::error::Problem;
+use crate::offenders::Offenders;
 use crate::schema::{self, Body, Section};
 
 impl Builder<'_> {
-    /// The kinematics of shells with this section; `path`: of the body.
+    /// The kinematics of shells with this section, its plies, and a material of it, one that flows if any does. `material`: of the body; `path`: of the body.
     pub(super) fn shell(
         &mut self,
+        mesh: &Mesh,
         path: &str,
-        given: &schema::ShellSection,
-        material: Law,
-    ) -> Option<Kinematics> {
-        let flows = material.plane_stress().is_some();
-        if material.finite().is_some() && !flows {
+        (given, material): (&schema::ShellSection, Law),
+        materials: &BTreeMap<String, Law>,
+    ) -> Option<(Kinematics, Vec<Ply>, Law)> {
+        let plies = self.plies(path, (given, material), materials)?;
+        let laws: Vec<Law> = match plies.is_empty() {
+            true => vec![material],
+            false => plies.iter().map(|ply| ply.material).collect(),
+        };
+        let flows = |law: &&Law| law.plane_stress().is_some();
+        let material = *laws.iter().find(flows).or(laws.first())?;
+        let rubber = laws
+            .iter()
+            .find(|law| law.finite().is_some() && !flows(law));
+        if let Some(rubber) = rubber {
             let problem = Problem::new(
                 format!("{path}.material"),
                 "shells have small strains; with rotations = \"finite\" they turn by any angle",
             );
             let accepted = ["elastic", "j2", "j2-table", "johnson-cook"];
             self.problems
-                .push(problem.found(material.key()).accepted(accepted));
+                .push(problem.found(rubber.key()).accepted(accepted));
             return None;
         }
-        let layers = match (given.layers, flows) {
-            (None, _) => SHELL_LAYERS,
-            (Some(layers), true) if layers % 2 == 0 => layers,
-            (Some(layers), _) => {
-                let (message, found, accepted) = match flows {
-                    true => (
-                        "no layer may lie across the middle of the section",
-                        layers.to_string(),
-                        "an even number",
-                    ),
-                    false => (
-                        "the section of an elastic shell has no layers",
-                        material.key().to_owned(),
-                        "a material that flows: j2, j2-table, johnson-cook",
-                    ),
-                };
-                let problem = Problem::new(format!("{path}.section.shell.layers"), message);
-                self.problems
-                    .push(problem.found(found).accepted([accepted]));
-                return None;
-            }
-        };
+        let layers = self.shell_layers(path, given, material)?;
         let rotations = match given.rotations {
             schema::Rotations::Small => Rotations::Small,
             schema::Rotations::Finite => Rotations::Finite,
         };
-        let offset = given.offset.map_or(0.0, |offset| offset.0);
-        if offset != 0.0 && rotations == Rotations::Finite {
-            let message = "shells with finite rotations have their middle surface in the nodes";
-            let problem = Problem::new(format!("{path}.section.shell.offset"), message);
+        let whole = plies.iter().map(|ply| ply.thickness).sum();
+        let constant = given.thickness.map_or(whole, |thickness| thickness.0);
+        let taper = match &given.taper {
+            Some(taper) => Some(self.taper(mesh, path, (taper, constant))?),
+            None => None,
+        };
+        let section = ShellSection {
+            rotations,
+            taper,
+            offset: given.offset.map_or(0.0, |offset| offset.0),
+            layers,
+            ..ShellSection::new(taper.map_or(constant, |taper| taper.to[1].max(constant)))
+        };
+        Some((Kinematics::Shell(section), plies, material))
+    }
+
+    /// Layers through the thickness.
+    fn shell_layers(
+        &mut self,
+        path: &str,
+        given: &schema::ShellSection,
+        material: Law,
+    ) -> Option<u32> {
+        let flows = material.plane_stress().is_some();
+        let Some(layers) = given.layers else {
+            return Some(SHELL_LAYERS);
+        };
+        let (message, found, accepted) = match (&given.plies, flows) {
+            (Some(_), _) => (
+                "each ply is one layer",
+                layers.to_string(),
+                "no `layers`, and thinner plies",
+            ),
+            (None, true) if layers % 2 == 0 => return Some(layers),
+            (None, true) => (
+                "no layer may lie across the middle of the section",
+                layers.to_string(),
+                "an even number",
+            ),
+            (None, false) => (
+                "the section of an elastic shell has no layers",
+                material.key().to_owned(),
+                "a material that flows: j2, j2-table, johnson-cook",
+            ),
+        };
+        let problem = Problem::new(format!("{path}.section.shell.layers"), message);
+        self.problems
+            .push(problem.found(found).accepted([accepted]));
+        None
+    }
+
+    /// The plies of a section; none of one material.
+    fn plies(
+        &mut self,
+        path: &str,
+        (given, material): (&schema::ShellSection, Law),
+        materials: &BTreeMap<String, Law>,
+    ) -> Option<Vec<Ply>> {
+        let path = format!("{path}.section.shell");
+        let plies = match (&given.plies, given.thickness) {
+            (None, Some(_)) => return Some(Vec::new()),
+            (Some(plies), None) if given.taper.is_none() => plies,
+            (Some(_), Some(thickness)) => {
+                let message = "the thickness of plies is their sum";
+                let problem = Problem::new(format!("{path}.thickness"), message);
+                let problem = problem.found(format!("{} m", thickness.0));
+                self.problems
+                    .push(problem.accepted(["`thickness`, or `plies`"]));
+                return None;
+            }
+            (Some(_), None) => {
+                let message = "the thickness of plies does not change along the shell";
+                let problem = Problem::new(format!("{path}.taper"), message);
+                self.problems
+                    .push(problem.accepted(["no `taper`", "one material, and no `plies`"]));
+                return None;
+            }
+            (None, None) => {
+                let problem = Problem::new(path, "a shell without thickness");
+                self.problems
+                    .push(problem.accepted(["`thickness`, or `plies`"]));
+                return None;
+            }
+        };
+        let mut all = Vec::with_capacity(plies.len());
+        for (number, ply) in plies.iter().enumerate() {
+            let named = ply.material.as_ref();
+            let Some(&law) = named.map_or(Some(&material), |name| materials.get(name)) else {
+                let at = format!("{path}.plies[{number}].material");
+                let problem = Problem::new(at, "no material of this name");
+                let found = ply.material.as_deref().unwrap_or_default();
+                self.problems
+                    .push(problem.unknown(found, materials.keys().map(String::as_str)));
+                return None;
+            };
+            all.push(Ply {
+                material: law,
+                thickness: ply.thickness.0,
+            });
+        }
+        Some(all)
+    }
+
+    /// A taper that begins with a thickness, m.
+    fn taper(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        (given, thickness): (&schema::ShellTaper, f64),
+    ) -> Option<Taper> {
+        let path = format!("{path}.section.shell.taper");
+        let along = self.normal(mesh, &format!("{path}.along"), &given.along)?;
+        if given.to.0 <= given.from.0 {
+            let problem = Problem::new(format!("{path}.to"), "a taper that ends before it begins");
             self.problems.push(
                 problem
-                    .found(format!("{offset} m"))
-                    .accepted(["no `offset`", "rotations = \"small\""]),
+                    .found(format!("{} m", given.to.0))
+                    .accepted([format!("above {} m", given.from.0)]),
             );
             return None;
         }
-        Some(Kinematics::Shell(ShellSection {
-            rotations,
-            offset,
-            layers,
-            ..ShellSection::new(given.thickness.0)
-        }))
+        Some(Taper {
+            along,
+            from: [given.from.0, thickness],
+            to: [given.to.0, given.thickness.0],
+        })
+    }
+
+    /// Refuses cells that no shell can be on, of one body, and normals of bodies that share edges.
+    pub(super) fn sound_shells(&mut self, mesh: &Mesh, bodies: &[ModelBody]) {
+        let is_shell = |body: &&ModelBody| matches!(body.spec.kinematics, Kinematics::Shell(_));
+        let shells: Vec<&ModelBody> = bodies.iter().filter(is_shell).collect();
+        let mut sound = true;
+        for body in &shells {
+            let name = &body.spec.name;
+            let found = shell_defects(mesh, &body.spec.cells);
+            sound &= found.is_empty();
+            self.refuse_cells(mesh, (&format!("body.{name}.region"), name), &found);
+        }
+        let all: Vec<ElementId> = shell_cells(bodies);
+        if sound && shells.len() > 1 {
+            let found = shell_defects(mesh, &all);
+            let owner = found.first().and_then(|first| {
+                let has = |body: &&&ModelBody| body.spec.cells.contains(&first.cell);
+                shells.iter().find(has)
+            });
+            if let Some(body) = owner {
+                let name = &body.spec.name;
+                self.refuse_cells(mesh, (&format!("body.{name}.region"), name), &found);
+            }
+        }
+    }
+
+    /// A problem with all cells that no shell can be on.
+    fn refuse_cells(&mut self, mesh: &Mesh, (path, name): (&str, &str), found: &[ShellDefect]) {
+        let Some(first) = found.first() else {
+            return;
+        };
+        let nodes = mesh.element_nodes(first.cell);
+        let mean = |i: usize| {
+            let sum: f64 = nodes.iter().map(|&node| mesh.nodes[node as usize][i]).sum();
+            sum / nodes.len() as f64
+        };
+        let more = match found.len() {
+            1 => String::new(),
+            count => format!("; no shell can be on {count} cells in all"),
+        };
+        let message = format!(
+            "the cell about ({:.6}, {:.6}, {:.6}) m {}{more}",
+            mean(0),
+            mean(1),
+            mean(2),
+            first.why
+        );
+        let cells: Vec<ElementId> = found.iter().map(|defect| defect.cell).collect();
+        let offenders = Offenders::new(format!("shell-{name}"), mesh, &cells);
+        let file = offenders.path(&self.file);
+        let note = format!("`carom check` writes the cells to {}", file.display());
+        let accepted = "flat convex cells, all of a shell with their normals to the same side";
+        let problem = Problem::new(path, message).accepted([accepted]).note(note);
+        self.problems.push(Problem {
+            offenders: Some(offenders),
+            ..problem
+        });
     }
 
     /// Refuses keys that shells do not take.
@@ -114,7 +275,10 @@ impl Builder<'_> {
                     && body.spec.cells.contains(&cell)
             });
             match owner.map(|body| body.spec.kinematics) {
-                Some(Kinematics::Shell(section)) => 0.5 * section.thickness,
+                Some(Kinematics::Shell(section)) => {
+                    let nodes = mesh.element_nodes(cell).iter();
+                    0.5 * section.mean_thickness(nodes.map(|&node| &mesh.nodes[node as usize]))
+                }
                 _ => 0.0,
             }
         });

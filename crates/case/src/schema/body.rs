@@ -7,6 +7,7 @@ use super::axis::Axis;
 use super::beam::{BeamSection, Rotations};
 use super::explicit::{BulkViscosity, Deletion, MassScaling};
 use super::joint::Hinge;
+use super::obstacle::NormalVector;
 use carom_quantities::{
     Angle, AngularVelocity, Area, Coordinate, Delay, Frequency, Length, MomentOfInertia, Rate,
     Vector, Velocity, Weight,
@@ -195,8 +196,14 @@ pub struct BarSection {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ShellSection {
-    /// Thickness.
-    pub thickness: Length,
+    /// Thickness; with `taper` that before it. Required without `plies`.
+    pub thickness: Option<Length>,
+    /// Change of the thickness along an axis, linear between nodes. Default: none.
+    pub taper: Option<ShellTaper>,
+    /// Layers of several materials, in the order in which the normal of the cells passes them, in place of `thickness`; metal has two points in each. Default: one
+    /// material.
+    #[schemars(extend("minItems" = 1))]
+    pub plies: Option<Vec<ShellPly>>,
     /// Middle surface from the nodes, along the normal of the cells. Default: in the nodes.
     pub offset: Option<Coordinate>,
     /// How far the nodes turn.
@@ -205,6 +212,30 @@ pub struct ShellSection {
     /// Layers through the thickness of a metal that flows, an even number; each has two points. Default: 4.
     #[schemars(extend("minimum" = 2, "maximum" = 50))]
     pub layers: Option<u32>,
+}
+
+/// Thickness along an axis: constant before `from` and beyond `to`, linear between.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ShellTaper {
+    /// Direction of the axis through the origin, of any length except zero.
+    pub along: NormalVector,
+    /// Coordinate along the axis up to which the section has its `thickness`.
+    pub from: Coordinate,
+    /// Coordinate along the axis from which it has that of the taper, above `from`.
+    pub to: Coordinate,
+    /// Thickness beyond `to`.
+    pub thickness: Length,
+}
+
+/// A layer of one material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ShellPly {
+    /// Thickness.
+    pub thickness: Length,
+    /// Name of a material of this file. Default: that of the body.
+    pub material: Option<String>,
 }
 
 /// Section of plane cells.

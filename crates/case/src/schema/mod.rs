@@ -33,7 +33,7 @@ pub use beam::{
 pub use body::{
     AxisymmetricSection, BarSection, Body, Damping as BodyDamping, Formulation, FormulationName,
     FormulationWith, Initial, Mass, ModalDamping, Movement, MovementCourse, MovementPoint,
-    PlaneSection, Reduced, Rigid, Section, ShellSection, Support,
+    PlaneSection, Reduced, Rigid, Section, ShellPly, ShellSection, ShellTaper, Support,
 };
 pub use carom_laws::GivenLaw;
 pub use carom_quantities::{
