@@ -35,6 +35,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             scaling: None,
             deletion: None,
             releases: Vec::new(),
+            plies: Vec::new(),
         },
         mass: MassKind::Lumped,
         velocity: [0.0; 3],

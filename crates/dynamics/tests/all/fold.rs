@@ -28,6 +28,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             scaling: None,
             deletion: None,
             releases: Vec::new(),
+            plies: Vec::new(),
         },
         mass: MassKind::Lumped,
         velocity: [0.0; 3],

@@ -23,15 +23,20 @@ const fn axis(quantity: &'static str, unit: &'static str) -> Axis {
     Axis { quantity, unit }
 }
 
-/// File names and figures as SVG; a quantity that no variant has is left out.
-pub(crate) fn figures(comparison: &Comparison) -> Vec<(&'static str, Result<String, Error>)> {
+/// The variants that ran. What chatters is drawn first, under the others, which it would hide.
+fn drawn(comparison: &Comparison) -> Vec<(&str, &Done)> {
     let done = comparison.variants.iter();
     let mut done: Vec<(&str, &Done)> = done
         .filter_map(|v| Some((v.name.as_str(), v.done()?)))
         .collect();
-    // what chatters is drawn first, under the others, which it would hide
     let changes = |done: &Done| done.contact().map(|contact| contact.status_changes);
     done.sort_by_key(|(_, done)| std::cmp::Reverse(changes(done)));
+    done
+}
+
+/// File names and figures as SVG; a quantity that no variant has is left out.
+pub(crate) fn figures(comparison: &Comparison) -> Vec<(&'static str, Result<String, Error>)> {
+    let done = drawn(comparison);
     let end = done.iter().map(|(_, d)| d.summary.time.end);
     let end = end.fold(0.0, f64::max);
     let force = axis("contact force", "N");
@@ -76,10 +81,7 @@ pub(crate) fn figures(comparison: &Comparison) -> Vec<(&'static str, Result<Stri
 
 /// The plots of the page: what the figures show, without their clipping.
 pub(crate) fn page(comparison: &Comparison) -> Data {
-    let done = comparison.variants.iter();
-    let done: Vec<(&str, &Done)> = done
-        .filter_map(|v| Some((v.name.as_str(), v.done()?)))
-        .collect();
+    let done = drawn(comparison);
     let end = done.iter().map(|(_, d)| d.summary.time.end);
     let end = end.fold(0.0, f64::max);
     let all = [
