@@ -99,10 +99,8 @@ pub enum Error {
         /// What is wrong with it.
         why: &'static str,
     },
-    /// Beams that share their volume with another model, and flow or turn by finite rotations.
-    #[error(
-        "body '{body}': beams of metal that flows, or with finite rotations, cannot be glued to another model in volume"
-    )]
+    /// Beams of metal that share their volume with another model.
+    #[error("body '{body}': beams of metal that flows cannot be glued to another model in volume")]
     BeamWeights {
         /// Name of the body.
         body: String,

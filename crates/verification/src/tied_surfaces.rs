@@ -94,7 +94,7 @@ fn started(system: Arc<System>, velocity: impl Fn(&[f64; 3]) -> [f64; 3]) -> Res
 /// The largest difference of the displacements of two bars at the same x, over the largest displacement.
 fn wave(law: Law, scheme: Scheme, steps: usize) -> Result<f64, Error> {
     let pulse = |x: &[f64; 3]| [(-((x[0] - 0.5) / 0.15).powi(2)).exp(), 0.0, 0.0];
-    let mut planes = vec![0.0; 2 * ALONG + 1];
+    let mut planes = [0.0; 2 * ALONG + 1];
     let (mut difference, mut largest) = (0.0_f64, 0.0_f64);
     for tied in [false, true] {
         let mut driver = started(bar(tied, law, scheme)?, pulse)?;

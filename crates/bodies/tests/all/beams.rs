@@ -9,7 +9,7 @@ use carom_bodies::{
     SectionShape,
 };
 use carom_elements::Kind;
-use carom_materials::{Elastic, Law, NeoHooke};
+use carom_materials::{Elastic, J2Plasticity, Law, NeoHooke};
 use carom_mesh::{ElementId, Mesh};
 use carom_testing::Random;
 
@@ -323,6 +323,12 @@ fn what_is_no_beam_is_refused() {
     large.rotations = carom_bodies::Rotations::Finite;
     glued.kinematics = Kinematics::Beam(large);
     let unknowns = Unknowns::new(2, [NodeKind::Turning; 3]);
+    assert!(Body::new(&plane, glued.clone(), &[0, 1, 2], &unknowns).is_ok());
+    glued.material = Law::J2Plasticity(J2Plasticity {
+        initial: STEEL,
+        yield_stress: 4e8,
+        hardening: 1e9,
+    });
     let error = Body::new(&plane, glued, &[0, 1, 2], &unknowns).unwrap_err();
     assert!(matches!(error, Error::BeamWeights { .. }));
 }

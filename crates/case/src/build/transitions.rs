@@ -87,7 +87,7 @@ impl Builder<'_> {
         let face = face.map_or(&[][..], |face| &face.nodes);
         let turns = |nodes: &[u32]| any_angle(mesh, bodies, nodes).is_some();
         given.motion == TransitionMotion::Distributing
-            && !self.is_edge(mesh, &given.end)
+            && !self.is_edge(mesh, given.end)
             && turns(&end)
             && turns(face)
     }

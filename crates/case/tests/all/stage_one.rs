@@ -202,7 +202,7 @@ fn all_problems_are_told_at_once_in_the_order_of_the_file() {
         told(text),
         [
             "1:9 carom: this value is not known",
-            "2:2 mesh: one of `file` and `generate` is missing in `mesh`",
+            "2:2 mesh: one of `file`, `part` and `generate` is missing in `mesh`",
             "3:1 mesh.unit: `unit` without `file`, which it belongs to",
             "3:8 mesh.unit: a mass instead of a length",
             "5:1 material.a.densty: unknown key `densty` in `material.a`",
