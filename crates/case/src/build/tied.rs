@@ -1,7 +1,8 @@
 //! Surfaces that are tied to each other within one system.
 
+use carom_arlequin::{Row, Rows, Term};
 use carom_dynamics::{ModelBody, ModelConstraint};
-use carom_mesh::{ElementId, Mesh};
+use carom_mesh::{Bounds, ElementId, Face, Mesh, Surface};
 use carom_zones::mortar_rows;
 
 use super::Builder;
@@ -52,6 +53,51 @@ impl Builder<'_> {
             ));
             return None;
         }
+        let (gap, most) = (
+            gap(mesh, &rows),
+            APART * diagonal(mesh, &one).min(diagonal(mesh, &other)),
+        );
+        if gap > most {
+            let message = format!("these surfaces are {gap:.4e} m apart");
+            let accepted = format!(
+                "surfaces that lie on each other, within {most:.4e} m (a quarter of a face)"
+            );
+            self.problems.push(refuse(&message, &accepted));
+            return None;
+        }
         Some(ModelConstraint::of_rows(name, &rows.rows, mesh.dim))
     }
+}
+
+/// Distance of tied surfaces over the mean diagonal of their faces, above which they are not the same surface meshed twice: that of faceted round ones is
+/// below an eighth where a face spans less than a radius.
+const APART: f64 = 0.25;
+
+/// The largest component of the mean distance of two surfaces around a multiplier, m: |Σ c x - Σ c' x'|/Σ c of its row.
+fn gap(mesh: &Mesh, rows: &Rows) -> f64 {
+    let sum = |terms: &[Term], of: &dyn Fn(&Term) -> f64| {
+        terms
+            .iter()
+            .map(|term| term.coefficient * of(term))
+            .sum::<f64>()
+    };
+    let place = |term: &Term| mesh.nodes[term.node as usize][term.component as usize];
+    let of_row = |row: &Row| {
+        let weight = sum(&row.inner, &|_| 1.0);
+        ((sum(&row.inner, &place) - sum(&row.outer, &place)) / weight).abs()
+    };
+    rows.rows.iter().map(of_row).fold(0.0, f64::max)
+}
+
+/// The mean diagonal of the faces of a surface, m.
+fn diagonal(mesh: &Mesh, surface: &Surface) -> f64 {
+    let of_face = |face: &Face| {
+        let corners = face.corners().iter().map(|&node| mesh.nodes[node as usize]);
+        let bounds = Bounds::of(&corners.collect::<Vec<_>>());
+        let square = (0..3)
+            .map(|i| (bounds.max[i] - bounds.min[i]).powi(2))
+            .sum::<f64>();
+        square.sqrt()
+    };
+    surface.faces.iter().map(of_face).sum::<f64>() / surface.faces.len() as f64
 }
