@@ -78,6 +78,8 @@ impl Unknowns {
                 }
             }
         }
+        map.node.shrink_to_fit();
+        map.first.shrink_to_fit();
         map
     }
 

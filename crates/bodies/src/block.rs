@@ -112,6 +112,7 @@ impl Block {
                 let mut nodes = elements.to_vec();
                 nodes.sort_unstable();
                 nodes.dedup();
+                nodes.shrink_to_fit();
                 let place = |node: &u32| nodes.partition_point(|n| n < node) as u32;
                 Chunk {
                     connectivity: elements.iter().map(place).collect(),

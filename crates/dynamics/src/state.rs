@@ -209,26 +209,35 @@ impl State {
 
 /// At rest, nothing done yet.
 pub fn empty_state(system: &System) -> State {
-    let (zeros, points) = (vec![0.0; system.unknowns()], system.points());
+    let zeros = || vec![0.0; system.unknowns()];
     let remembers = |scheme: &Scheme| scheme.get().step_map(system.dt).has_memory();
     let remembers = system.schemes.iter().any(remembers);
     State {
-        step: 0,
-        time: 0.0,
         motion: Motion {
-            u: zeros.clone(),
-            v: zeros.clone(),
-            a: zeros.clone(),
+            u: zeros(),
+            v: zeros(),
+            a: zeros(),
             frames: system.initial_frames.clone(),
             memory: match remembers {
-                true => zeros.clone(),
+                true => zeros(),
                 false => Vec::new(),
             },
-            internal_force: zeros.clone(),
-            contact_force: zeros,
+            internal_force: zeros(),
+            contact_force: zeros(),
             link_force: Vec::new(),
             history: system.start_histories(),
         },
+        ..state_without_motion(system)
+    }
+}
+
+/// The same without the vectors of the motion.
+pub(crate) fn state_without_motion(system: &System) -> State {
+    let points = system.points();
+    State {
+        step: 0,
+        time: 0.0,
+        motion: Motion::default(),
         interface: InterfaceState {
             force: vec![0.0; points],
             friction: Vec::new(),

@@ -132,6 +132,17 @@ impl Mesh {
         }
     }
 
+    /// Gives up the room that it grew with.
+    pub fn shrink_to_fit(&mut self) {
+        self.nodes.shrink_to_fit();
+        for block in &mut self.blocks {
+            block.nodes.shrink_to_fit();
+        }
+        for group in self.groups.values_mut() {
+            group.elements.shrink_to_fit();
+        }
+    }
+
     /// Adds an element to the block of its kind, which is made if there is none. `nodes` has the length that the
     /// kind asks for.
     pub fn push(&mut self, kind: Kind, nodes: &[u32]) -> ElementId {

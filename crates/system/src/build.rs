@@ -68,6 +68,7 @@ impl System {
         model.remove_penetrations()?;
         let dim = model.mesh.dim;
         let centres = add_centres(&mut model);
+        model.mesh.shrink_to_fit();
         let (number, mesh_node, parts) = numbering(&model, &centres);
         let x: Vec<[f64; 3]> = mesh_node
             .iter()
@@ -465,10 +466,12 @@ fn node_masses(body: &Body, (number, unknowns): (&[u32], &Unknowns)) -> Vec<(u32
     let mut mass = vec![0.0; unknowns.len()];
     body.add_lumped_mass(&mut mass);
     let first = (0..unknowns.len()).filter(|&i| unknowns.kind(i) == Kind::Translation(0));
-    first
+    let masses = first
         .filter(|&first| mass[first] > 0.0)
-        .map(|first| (unknowns.node(first), mass[first]))
-        .collect()
+        .map(|first| (unknowns.node(first), mass[first]));
+    let mut masses: Vec<_> = masses.collect();
+    masses.shrink_to_fit();
+    masses
 }
 
 fn initial(

@@ -44,8 +44,10 @@ impl Levers {
             })
         };
         let amplitudes = unknowns.amplitudes();
+        let mut nodes: Vec<_> = parts.flat_map(of_part).collect();
+        nodes.shrink_to_fit();
         Levers {
-            nodes: parts.flat_map(of_part).collect(),
+            nodes,
             amplitudes: amplitudes.map(|(unknown, of)| (unknown, *of)).collect(),
         }
     }

@@ -1,4 +1,4 @@
-//! Counts the allocations of the thread that asks.
+//! Counts the allocations of the thread that asks, and the bytes that it holds.
 
 #![allow(
     unsafe_code,
@@ -10,6 +10,8 @@ use std::cell::Cell;
 
 thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };
+    static HELD: Cell<isize> = const { Cell::new(0) };
+    static MOST: Cell<isize> = const { Cell::new(0) };
 }
 
 /// The system's allocator with a count, for `#[global_allocator]` in a test binary.
@@ -20,10 +22,16 @@ pub struct Counter;
 unsafe impl GlobalAlloc for Counter {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.with(|count| count.set(count.get() + 1));
+        let held = HELD.with(|held| {
+            held.set(held.get() + layout.size() as isize);
+            held.get()
+        });
+        MOST.with(|most| most.set(most.get().max(held)));
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        HELD.with(|held| held.set(held.get() - layout.size() as isize));
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -31,6 +39,13 @@ unsafe impl GlobalAlloc for Counter {
 /// Allocations of this thread so far, where [`Counter`] is the allocator of the binary; zero elsewhere.
 pub fn allocations() -> usize {
     COUNT.with(Cell::get)
+}
+
+/// Bytes that this thread has taken and not given back, and the most of them since the last call, where [`Counter`] is the allocator
+/// of the binary; zeros elsewhere. What another thread gives back counts there.
+pub fn held() -> [isize; 2] {
+    let held = HELD.with(Cell::get);
+    [held, MOST.with(|most| most.replace(held))]
 }
 
 #[cfg(test)]
@@ -47,6 +62,16 @@ mod tests {
         assert_eq!(allocations() - before, 1);
         drop(one);
         assert_eq!(allocations() - before, 1);
+    }
+
+    #[test]
+    fn bytes_are_held_until_they_are_given_back() {
+        let [before, _] = held();
+        let list = std::hint::black_box(vec![0_u8; 1000]);
+        assert_eq!(held(), [before + 1000; 2]);
+        drop(list);
+        assert_eq!(held(), [before, before + 1000]);
+        assert_eq!(held(), [before; 2]);
     }
 
     #[test]

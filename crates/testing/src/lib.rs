@@ -3,5 +3,5 @@
 mod allocations;
 mod random;
 
-pub use allocations::{Counter, allocations};
+pub use allocations::{Counter, allocations, held};
 pub use random::Random;

@@ -30,6 +30,7 @@ impl Driver {
             return self.step_directly();
         }
         self.leave_direct();
+        self.vectors.make_room(&self.state.motion);
         if !self.prepared {
             self.project_predictor()?;
         }

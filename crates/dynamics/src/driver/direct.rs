@@ -64,7 +64,9 @@ impl Driver {
 
     fn leap(&mut self, direct: &mut Direct, clean: bool) -> Result<(), Error> {
         let (begin, before) = (Instant::now(), self.phases);
-        self.take_matrices()?;
+        if !self.weak.none() {
+            self.take_matrices()?;
+        }
         self.residuals.clear();
         self.residuals.push(0.0);
         (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
@@ -133,7 +135,8 @@ impl Driver {
     /// Loads at the end: those of `load` where they vary, otherwise what the dead loads are multiplied with.
     fn loads_of_end(&mut self, loaded: bool) -> Loads {
         if !self.system.nonlinear.loads.is_empty() {
-            self.vectors.place.copy_from_slice(&self.next.motion.u);
+            self.vectors.place.clone_from(&self.next.motion.u);
+            self.vectors.load.resize(self.system.unknowns(), 0.0);
             self.evaluate_loads_of_step();
             return Loads::Varying;
         }
@@ -172,6 +175,7 @@ impl Driver {
         let solved = match self.weak.none() {
             true => self.solve_apart(&mut direct.apart, |i| left(i) / system.mass.lumped[i]),
             false => {
+                self.vectors.make_room(&self.state.motion);
                 let residual = self.vectors.residual.iter_mut().enumerate();
                 residual.for_each(|(i, residual)| *residual = left(i));
                 self.solve_interface()

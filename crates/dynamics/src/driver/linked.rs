@@ -71,7 +71,9 @@ impl Driver {
     pub fn complete(&mut self) -> Result<(), Error> {
         self.report.attempts = 1;
         // all forces of a step are kept for the works of links
-        self.direct = None;
+        if self.direct.take().is_some() && self.state.step == 0 {
+            self.start()?;
+        }
         if self.prepared {
             self.take_stages()?;
             self.check_finite()?;

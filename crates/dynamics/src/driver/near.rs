@@ -82,6 +82,7 @@ impl Driver {
         if row != map.displacement {
             let xc = [&self.vectors.x[..], &self.vectors.push];
             let place = &mut self.vectors.place;
+            place.resize(system.unknowns(), 0.0);
             self.maps.whole(|_| row, &self.state.motion, xc, place);
         }
         let u = match row == map.displacement {
@@ -93,7 +94,8 @@ impl Driver {
         if contact.sliding == Sliding::Small && (initial.is_empty() || contact.moves()) {
             initial.clear();
             initial.span = pairing.span;
-            self.vectors.work.fill(0.0);
+            self.vectors.work.clear();
+            self.vectors.work.resize(system.unknowns(), 0.0);
             let reference = Places {
                 u: &self.vectors.work,
                 ..places

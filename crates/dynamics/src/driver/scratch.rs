@@ -1,6 +1,6 @@
 //! What stages of a step leave for the stages after them: scratch, which no step needs from the one before.
 
-use crate::system::System;
+use crate::system::{Motion, System};
 
 /// System vectors of the iterations.
 #[derive(Default)]
@@ -39,6 +39,71 @@ pub(super) struct Vectors {
     pub(super) work: Vec<f64>,
     /// Histories of the bodies at the end of the attempt.
     pub(super) history: Vec<f64>,
+}
+
+impl Vectors {
+    /// Makes room for a step with iterations from this motion; does nothing where there is room.
+    pub(super) fn make_room(&mut self, from: &Motion) {
+        self.make_room_for_start(from);
+        let n = from.u.len();
+        let Vectors {
+            dx,
+            jump,
+            balanced,
+            contact,
+            before,
+            ..
+        } = self;
+        for vector in [dx, jump, balanced, contact, before] {
+            vector.resize(n, 0.0);
+        }
+    }
+
+    /// The same for the start of a run or of its dynamics.
+    pub(super) fn make_room_for_start(&mut self, from: &Motion) {
+        let n = from.u.len();
+        self.x.resize(n, 0.0);
+        for vector in self.of_start() {
+            vector.resize(n, 0.0);
+        }
+        if self.history.len() != from.history.len() {
+            self.history.clone_from(&from.history);
+        }
+    }
+
+    /// Leaves no room but that of the unknown, for steps without iterations.
+    pub(super) fn give_up_room(&mut self) {
+        for vector in self.of_start() {
+            *vector = Vec::new();
+        }
+        self.history = Vec::new();
+        let Vectors {
+            dx,
+            jump,
+            balanced,
+            contact,
+            before,
+            ..
+        } = self;
+        for vector in [dx, jump, balanced, contact, before] {
+            *vector = Vec::new();
+        }
+    }
+
+    /// Those that a start needs too.
+    fn of_start(&mut self) -> [&mut Vec<f64>; 9] {
+        [
+            &mut self.load,
+            &mut self.inertia,
+            &mut self.internal,
+            &mut self.damping,
+            &mut self.residual,
+            &mut self.half,
+            &mut self.place,
+            &mut self.rate,
+            &mut self.work,
+        ]
+    }
 }
 
 /// Forces in the balance of a step by works, N.

@@ -31,7 +31,7 @@ use crate::records::Records;
 use crate::report::{ContactReport, StepReport};
 use crate::resultant::Resultant;
 use crate::shapes::Rates;
-use crate::state::{Links, State, empty_state};
+use crate::state::{Links, State, empty_state, state_without_motion};
 use crate::system::{Maps, System};
 use crate::watch::Watch;
 
@@ -44,7 +44,6 @@ impl Driver {
     pub fn new(system: Arc<System>) -> Result<Driver, Error> {
         let (n, points) = (system.unknowns(), system.points());
         let zeros = || vec![0.0; n];
-        let state = empty_state(&system);
         let scheme = system.scheme.get();
         let maps = Maps::new(&system, system.dt, system.dt);
         let projects = |contact: &Contact| contact.law.projects();
@@ -111,32 +110,13 @@ impl Driver {
                 ..StepReport::default()
             },
             vectors: Vectors {
-                x: zeros(),
-                dx: zeros(),
-                jump: zeros(),
-                jumps: false,
-                load: zeros(),
-                inertia: zeros(),
-                internal: zeros(),
-                damping: zeros(),
-                balanced: zeros(),
-                unlinked: Vec::new(),
                 push,
-                contact: zeros(),
-                residual: zeros(),
-                half: zeros(),
-                before: zeros(),
-                place: zeros(),
-                rate: zeros(),
-                end: Vec::new(),
-                ahead: Vec::new(),
-                work: zeros(),
-                history: state.motion.history.clone(),
+                ..Vectors::default()
             },
             works: Works::default(),
             rows_stand: false,
-            next: state.clone(),
-            state,
+            next: state_without_motion(&system),
+            state: state_without_motion(&system),
             stored: Stored::default(),
             link_force: match system.link_rows.is_empty() {
                 true => Vec::new(),
@@ -174,6 +154,9 @@ impl Driver {
     /// As [`Driver::new`].
     pub fn restart(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
+        // their room before that of new ones is taken
+        self.state = state_without_motion(&system);
+        self.next = state_without_motion(&system);
         self.state = empty_state(&system);
         if self.has_links() {
             self.link_force.fill(0.0);
@@ -196,16 +179,27 @@ impl Driver {
         self.start()
     }
 
+    /// Room for what the start of these steps computes.
+    fn make_room_for_start(&mut self) {
+        match self.is_direct() {
+            true => self.vectors.make_room_for_start(&self.state.motion),
+            false => self.vectors.make_room(&self.state.motion),
+        }
+    }
+
     /// Completes the initial state.
-    fn start(&mut self) -> Result<(), Error> {
+    pub(super) fn start(&mut self) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
         self.size(system.dt, system.dt);
         self.prepared = false;
         self.leave_direct();
         self.state.records = Records::of(&system);
+        self.make_room_for_start();
         self.vectors.x.fill(0.0);
         self.compress();
-        self.next.clone_from(&self.state);
+        if !self.is_direct() {
+            self.next.clone_from(&self.state);
+        }
         self.begin()?;
         if self.has_links() && self.is_static() {
             self.state.links = Links::at_rest(&system);
@@ -230,6 +224,7 @@ impl Driver {
     /// Gives the state the velocities, accelerations and balance with which a stage begins.
     fn begin(&mut self) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
+        self.make_room_for_start();
         self.vectors.place.clone_from(&self.state.motion.u);
         self.vectors.rate.clone_from(&self.state.motion.v);
         let stored = self.internal((Which::Place, false), |_| 0.0)?;
@@ -261,6 +256,12 @@ impl Driver {
         match system.is_nonlinear() {
             true => self.start_works(stored.strain, stored.hardening),
             false => self.start_identity(stored.strain),
+        }
+        if self.is_direct() {
+            // all that such steps need of the start: loads that vary
+            let loads = usize::from(!system.nonlinear.loads.is_empty());
+            self.state.forces.truncate(loads);
+            self.vectors.give_up_room();
         }
         Ok(())
     }
@@ -359,14 +360,27 @@ impl Driver {
             }
             false => 0.0,
         });
+        let reaction = reaction.collect();
+        // a direct step has neither damping nor links, and its ledger begins with resultants alone
+        let (internal, damping, links) = match self.is_direct() {
+            true => (Vec::new(), Vec::new(), Vec::new()),
+            false => {
+                let links = (0..system.unknowns()).map(|i| motion.link_of(i));
+                (
+                    internal.clone(),
+                    self.vectors.damping.clone(),
+                    links.collect(),
+                )
+            }
+        };
         self.state.forces = vec![
             load.clone(),
             motion.contact_force.clone(),
-            reaction.collect(),
+            reaction,
             inertia,
-            internal.clone(),
-            self.vectors.damping.clone(),
-            (0..system.unknowns()).map(|i| motion.link_of(i)).collect(),
+            internal,
+            damping,
+            links,
             springs,
         ];
     }
@@ -380,12 +394,11 @@ impl Driver {
         let system = &*self.system;
         let work = &mut self.vectors.work;
         system.mass.multiply(&self.state.motion.v, work);
-        let zero = vec![0.0; system.unknowns()];
-        let of = |k: usize| self.state.forces.get(k).unwrap_or(&zero);
-        let held = |i: usize| if system.fixed[i] { of(1)[i] } else { 0.0 };
-        let spring = |i: usize| of(7).get(i).unwrap_or(&0.0);
+        let forces = &self.state.forces;
+        let of = |k: usize, i: usize| forces.get(k).and_then(|f| f.get(i)).unwrap_or(&0.0);
+        let held = |i: usize| if system.fixed[i] { *of(1, i) } else { 0.0 };
         let own: Vec<f64> = (0..system.unknowns())
-            .map(|i| of(0)[i] + of(2)[i] + held(i) + of(6)[i] - of(5)[i] - spring(i))
+            .map(|i| of(0, i) + of(2, i) + held(i) + of(6, i) - of(5, i) - of(7, i))
             .collect();
         let held: Vec<f64> = (0..system.unknowns()).map(|i| -held(i)).collect();
         self.state.exchange = Exchange::start(system, work, [&own, &held]);

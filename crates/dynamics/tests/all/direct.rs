@@ -12,7 +12,7 @@ use carom_dynamics::{
 };
 use carom_materials::{Elastic, J2Plasticity, Law as Material, StVenantKirchhoff};
 use carom_mesh::{Surface, generate};
-use carom_testing::allocations;
+use carom_testing::{allocations, held};
 
 const SOFT: Elastic = Elastic {
     density: 1000.0,
@@ -311,4 +311,38 @@ fn any_number_of_threads_gives_the_same_bits() {
     let one = run(1);
     assert!(one.interface.force.iter().any(|force| *force != 0.0));
     assert_eq!(one, run(3));
+}
+
+/// Vectors with a number for each unknown that such a run has, 24 bytes a node each: five of each state, the displacement ahead, mass, loads,
+/// the start of the run (2), the unknown: 16, 384 bytes. The rest of a node: its place in the mesh and in the system (48), numbers (28),
+/// what forces act on (12), the mass of its body and that of the step (24), what is held (3): 115 bytes. A cell has its nodes twice (64), its
+/// names in group and body (16), and 2.4 nodes of the list of its chunk with place, place at the last look, force and numbers (88 each): 291 bytes. So
+/// 400 bytes a cell, which the requirement allows beside its nodes, and 520 a node leave a fifth for surfaces, sums and what was not thought of. A start takes the vectors of an
+/// iteration and the forces of its ledger besides, 16 at most.
+#[test]
+fn a_run_holds_the_vectors_of_its_steps_alone() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.unwrap().install(|| {
+        let material = Material::StVenantKirchhoff(StVenantKirchhoff { initial: SOFT });
+        let case = Case {
+            material,
+            formulation: Formulation::Reduced { hourglass: 0.1 },
+            cells: 24,
+            ..cases()[0]
+        };
+        let [before, _] = held();
+        let system = System::new(model(&case)).unwrap();
+        held();
+        let mut driver = Driver::new(system).unwrap();
+        let [_, most] = held();
+        for _ in 0..3 {
+            driver.step().unwrap();
+        }
+        let [held, _] = held();
+        let (cells, nodes) = (24_isize.pow(3), 25_isize.pow(3));
+        let room = 400 * cells + 520 * nodes;
+        assert!(held - before < room, "{} of {room}", held - before);
+        let room = room + 16 * 24 * nodes;
+        assert!(most - before < room, "{} of {room}", most - before);
+    });
 }
