@@ -18,11 +18,11 @@
 //! about ten passes; where many contacts jam a body of few freedoms (D of low rank, μ of one and more) some are not, and
 //! the error names the worst candidate.
 //!
-//! Where D is the product of the sparse rows of a lumped mass ([`crate::Lumped`]), sweeps are all, along conjugate directions (`conjugate.rs`): D is then as well conditioned as the
+//! Where D is the product of the sparse rows of a lumped mass ([`crate::Lumped`]), sweeps are all, mixed after Anderson (`anderson.rs`): D is then as well conditioned as the
 //! masses of the nodes that touch are alike, and nothing grows faster than the number of points.
 //! [`FrictionProblem::defect`] measures a solution by code that knows no solver.
 
-mod conjugate;
+mod anderson;
 mod defect;
 mod newton;
 mod posed;

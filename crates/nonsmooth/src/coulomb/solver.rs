@@ -2,7 +2,7 @@
 
 use carom_laws::Status;
 
-use super::conjugate::Conjugate;
+use super::anderson::Anderson;
 use super::posed::Alone;
 use super::sweep::Product;
 use super::trial::Trial;
@@ -83,7 +83,7 @@ pub struct Coulomb {
     kept: Vec<f64>,
     /// All entries of D where passes took over from sweeps.
     entries: Vec<f64>,
-    conjugate: Conjugate,
+    anderson: Anderson,
 }
 
 impl Coulomb {
@@ -163,7 +163,7 @@ impl Coulomb {
         Err(self.failure())
     }
 
-    /// Sweeps alone, along conjugate directions: of points of a lumped mass few are needed, and each costs no more than one product with D.
+    /// Sweeps alone, mixed after Anderson: of points of a lumped mass few are needed, and each costs no more than one product with D.
     /// `near`: whether the tolerance that is asked for will do.
     fn relax<D: Product + ?Sized>(
         &mut self,
@@ -178,12 +178,12 @@ impl Coulomb {
         let is_solution =
             |trial: &Trial| trial.worst.0 <= TOLERANCE || near && trial.is_near(problem);
         let alone = problem.len() == 1;
-        self.conjugate.begin(&self.trial.p, &self.kept);
+        self.anderson.begin(&self.trial.p);
         for _ in 0..most {
             self.sweeps += 1;
             let room = (&mut self.trial, &mut self.kept);
             if sweep::sweep((problem, d), room.0, room.1) > settled && !alone {
-                self.conjugate.go_on(&mut room.0.p, room.1);
+                self.anderson.go_on(&mut room.0.p, room.1);
                 continue;
             }
             self.trial.measure(problem, &self.reversals);
@@ -199,7 +199,7 @@ impl Coulomb {
             } else {
                 break;
             }
-            self.conjugate.note(&self.trial.p, &self.kept);
+            self.anderson.note(&self.trial.p);
         }
         self.trial.measure(problem, &self.reversals);
         self.best.copy_from(&self.trial);
