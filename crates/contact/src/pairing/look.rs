@@ -59,16 +59,17 @@ impl Contact {
         });
         for (group, looks) in groups.iter_mut().zip(&mut looks) {
             search.scratch.projections += std::mem::take(&mut group.scratch.projections);
-            for look in looks.drain(..) {
+            for look in looks.iter() {
                 let k = look.point as usize;
                 rest.lay(look.point, look.clearance);
-                if look.stencil.is_some() {
+                if let Some(stencil) = &look.stencil {
                     let (at, area) = (near.first + k, self.points[k].area);
-                    pairing.place(places, (at, area), look.stencil);
+                    pairing.place_rows(places, (at, area), stencil);
                     pairing.rows.shift(at, self.offset(k));
                     pairing.keep(at, area, reach.near);
                 }
             }
+            looks.clear();
         }
         pairing.work.looks = looks;
     }

@@ -196,6 +196,13 @@ impl Pairing {
         self.spans[at] = [begin, self.terms.len() as u32];
     }
 
+    /// Makes a point what one stencil is, without its second derivative, which explicit steps do not ask for.
+    fn place_rows(&mut self, places: &Places, (at, area): (usize, f64), stencil: &Stencil) {
+        self.begin(at, area);
+        stencil.place(places, at, &mut self.rows, &mut self.tangents);
+        self.spans[at] = [0; 2];
+    }
+
     /// Makes a point, or the one after the last, the mean of stencils with the given weights, standing for their sum. Where that is
     /// not above `least` the point faces nothing, and stands for `area`.
     fn place_sum(
