@@ -101,8 +101,8 @@ pub(crate) struct Update<'a> {
     pub(crate) reference: &'a [[f64; 3]],
     /// Weights of the forces of start and end in their means, of the works and of the resultants.
     pub(crate) weights: [[f64; 2]; 2],
-    /// Whether moments are those of the places reached: of momentum at the end, of forces in the middle of the way. Otherwise in the
-    /// reference configuration.
+    /// Whether moments are those of the places reached: of momentum at the end, of forces in the middle of the way. Otherwise, and in parts of small
+    /// displacements ([`System::undeformed`]), in the reference configuration.
     pub(crate) moves: bool,
 }
 
@@ -304,12 +304,13 @@ impl Update<'_> {
         buffers.mass.spread(dim, &self.mass[first..last]);
         buffers.place.fill(dim, &self.system.x[first..last]);
         let w = pattern(dim, &self.reference[block.part]);
+        let moves = self.moves && !self.system.undeformed[block.part];
         let [ahead, v1, a1] = out;
         let out = [ahead, v1, &mut *a1];
-        self.move_on::<LOADED, TOUCHED>((&within, &w), (buffers, sums), out);
+        self.move_on::<LOADED, TOUCHED>((&within, &w, moves), (buffers, sums), out);
         self.resultants::<LOADED, TOUCHED>(range.len(), buffers, sums);
         if block.held {
-            self.reactions::<LOADED, TOUCHED>((&within, buffers), sums, a1);
+            self.reactions::<LOADED, TOUCHED>((&within, moves), (buffers, sums), a1);
         }
     }
 
@@ -317,7 +318,7 @@ impl Update<'_> {
     #[inline(always)]
     fn move_on<const LOADED: bool, const TOUCHED: bool>(
         &self,
-        (of, w): (&Within, &[f64; blocks::LANES]),
+        (of, w, moves): (&Within, &[f64; blocks::LANES], bool),
         (buffers, sums): (&mut Buffers, &mut Sums),
         [ahead, v1, a1]: End,
     ) {
@@ -325,7 +326,7 @@ impl Update<'_> {
         let means = self.weights[1];
         // |v₊|², |a|², |a₊|², four works, |Δu|², five squares
         let mut lanes = [[0.0; LANES]; 13];
-        let moved = f64::from(u8::from(self.moves));
+        let moved = f64::from(u8::from(moves));
         for first in (0..v1.len()).step_by(LANES) {
             let (u, v, a) = (
                 take(of.u, first, 0.0),
@@ -441,8 +442,8 @@ impl Update<'_> {
     #[inline(always)]
     fn reactions<const LOADED: bool, const TOUCHED: bool>(
         &self,
-        (of, buffers): (&Within, &mut Buffers),
-        sums: &mut Sums,
+        (of, moves): (&Within, bool),
+        (buffers, sums): (&mut Buffers, &mut Sums),
         a1: &[f64],
     ) {
         let (dim, [old, new]) = (self.system.dim, self.weights[1]);
@@ -473,7 +474,7 @@ impl Update<'_> {
             }
             reaction.set(i, held);
             let way = self.way.v * of.v[i] + self.way.a * of.a[i];
-            let back = if self.moves { 0.5 * way } else { 0.0 };
+            let back = if moves { 0.5 * way } else { 0.0 };
             middle.set(i, place.get(i) - back);
         }
         sums.forces[2] = reaction.resultant(middle, dim, a1.len());

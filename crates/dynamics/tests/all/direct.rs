@@ -75,6 +75,11 @@ fn cases() -> Vec<Case> {
         },
         impact,
         Case {
+            name: "small, rubbing",
+            friction: Some(0.3),
+            ..impact
+        },
+        Case {
             name: "finite, hanging, shaken",
             material: svk,
             gravity: -100.0,
@@ -296,7 +301,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     let all = cases();
     let case = Case {
         cells: 17,
-        ..all[4]
+        ..all[5]
     };
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
