@@ -87,6 +87,7 @@ mod energy_identity;
 mod energy_identity_features;
 mod first_force;
 mod glued_rotating;
+mod glued_turning;
 mod hertz_cylinder;
 mod hertz_impact;
 mod hertz_spheres;
@@ -130,6 +131,7 @@ mod shell_sections;
 mod shell_self_contact;
 mod shell_solid;
 mod shell_solid_impact;
+mod shell_solid_large;
 mod shell_solid_patch;
 mod shell_solid_waves;
 mod shells;
@@ -284,6 +286,7 @@ registry! {
     shapes
     shell_benchmarks
     shell_solid_impact
+    shell_solid_large
     shell_solid_patch
     shell_solid_waves
     shock_front

@@ -33,8 +33,8 @@ impl Shell {
     ///
     /// # Errors
     /// No cell, cells that are neither tri3 nor quad4, a mesh that is not one of space; a cell without area or that is not convex, or too warped;
-    /// neighbours whose normals disagree; a material at finite strain that is no metal, a formulation; plies that taper; weights with finite
-    /// rotations or of a metal, too few of them, or negative ones.
+    /// neighbours whose normals disagree; a material at finite strain that is no metal, a formulation; plies that taper; weights of one
+    /// point or of a metal, too few of them, or negative ones.
     pub(crate) fn new(
         mesh: &Mesh,
         spec: BodySpec,
@@ -210,10 +210,10 @@ pub(super) fn check(mesh: &Mesh, spec: &BodySpec, section: &ShellSection) -> Res
     let plies = spec.plies.iter().map(|ply| &ply.material);
     let materials = || std::iter::once(&spec.material).chain(plies.clone());
     let flows = materials().any(|law| law.plane_stress().is_some());
-    if spec.weights.is_some() && (flows || section.rotations == Rotations::Finite) {
+    if spec.weights.is_some() && (flows || spec.formulation != Formulation::Full) {
         return Err(Error::ShellRefused {
             body: body(),
-            what: "a share of their volume with another model if they turn by any angle or flow",
+            what: "a share of their volume with another model if they flow or have one point",
         });
     }
     if materials().any(|law| law.finite().is_some() && law.plane_stress().is_none()) {
