@@ -3,6 +3,7 @@
 use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Vec3;
 use carom_algebra::unknowns::Kind;
+use carom_bodies::MassKind;
 use carom_dynamics::scheme::EnergyMomentum;
 use carom_dynamics::{
     Amplitude, Driver, Load, LoadKind, Model, ModelBody, ModelConstraint, ModelLink, NodalLoad,
@@ -36,6 +37,10 @@ pub(crate) fn model(
     let rows = glued.rows.rows;
     let dim = mesh.dim;
     let mut model = Model::new(bodies.to_vec(), mesh, scheme, dt);
+    if scheme.get().is_explicit() {
+        let bodies = model.bodies.iter_mut();
+        bodies.for_each(|body| body.mass = MassKind::Lumped);
+    }
     match joined {
         Joined::Turning => {
             model.links = vec![ModelLink {
@@ -70,10 +75,9 @@ impl TurnedPatch {
         (self.material.young / self.material.density).sqrt()
     }
 
-    /// The conserving scheme, and the step in which a wave runs through a part of the body, s.
-    pub(crate) fn stepping(&self) -> (Scheme, f64) {
-        let dt = self.size[0] / self.speed() / Self::STEPS as f64;
-        (CONSERVING, dt)
+    /// The step, s.
+    pub(crate) fn step(&self) -> f64 {
+        self.size[0] / self.speed() / Self::STEPS as f64
     }
 
     /// Largest speed over c ε while a wave runs through the body, and the energy without the strain over that of a strain of one. `end`: nodes at the

@@ -66,7 +66,7 @@ fn turned_patch(plate: &Plate, joined: Joined) -> Result<[f64; 2], Error> {
         material: plate.material,
         size: [plate.shell[1], plate.width, plate.thickness],
     };
-    let model = model(plate, patch.stepping(), joined)?;
+    let model = model(plate, (CONSERVING, patch.step()), joined)?;
     let grid = plate.grid();
     let nodes = plate.of_shell(&model.mesh, &grid.column(grid.n));
     let last = nodes.len() - 1;
