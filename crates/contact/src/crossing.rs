@@ -1,9 +1,10 @@
-//! What is opposite to a point, and where the axes of two beams that cross come nearest.
+//! What is opposite to a point, and where the axes of two beams, or sharp edges of two shells, come nearest that cross.
 //!
 //! Nodes see an axis that runs along theirs. One that crosses between two nodes is nearest to a place between them: there is one more
 //! point for each line of a secondary axis, at the place that is nearest to the target. It faces something only where the axes are
 //! nearer there than at the ends of the line, so that nodes and crossings do not hold the same twice.
 
+use carom_elements::Kind;
 use carom_mesh::{Face, Projection};
 
 use crate::search::faces::FaceTree;
@@ -55,16 +56,25 @@ impl FaceTree {
         let ends = [-1.0, 1.0].map(|xi| point.moved_to(xi).place(places));
         let middle = [0, 1, 2].map(|i| 0.5 * (ends[0][i] + ends[1][i]));
         let half = 0.5 * distance(&ends[0], &ends[1]);
-        let line_of = |item: u32| {
-            let x = places.of_face(&faces[item as usize]);
-            [x[0], x[1]]
+        let nearest = |item: u32| {
+            let face = &faces[item as usize];
+            match face.kind {
+                Kind::Bar2 => {
+                    let x = places.of_face(face);
+                    between(&ends, &[x[0], x[1]])
+                }
+                // a line over a face is nearest to it at an end of its own, or at an edge of the face
+                _ => (0.0, f64::INFINITY),
+            }
         };
-        let nearest = |item: u32| between(&ends, &line_of(item));
         // no place of the line is farther from its middle than its half
         let item = self.nearest(&middle, half, |item| nearest(item).1)?;
         let (along, least) = nearest(item);
         let face = &faces[item as usize];
         let radii = point.radius + face.radius.unwrap_or(0.0);
+        if least == f64::INFINITY {
+            return None;
+        }
         let at_end = |end: &[f64; 3]| {
             let measure = |item: u32| foot_on(places, faces, item, end).0.distance;
             self.nearest(end, 0.0, measure)

@@ -77,7 +77,9 @@ fn turned_patch(dim: usize, scheme: Scheme, joined: Joined) -> Result<[f64; 2], 
         material: bar.material,
         size: [length, height, width],
     };
-    let model = model(&bar, (scheme, patch.step()), joined)?;
+    // explicit steps are below the critical one
+    let step = if scheme.get().is_explicit() { 0.1 } else { 1.0 } * patch.step();
+    let model = model(&bar, (scheme, step), joined)?;
     let last = model.mesh.nodes.len() as u32 - 1;
     patch.run(model, &[(last, 1.0)])
 }

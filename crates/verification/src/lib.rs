@@ -127,6 +127,7 @@ mod sdnl111_bars;
 mod self_contact;
 mod shapes;
 mod shell_benchmarks;
+mod shell_edges;
 mod shell_sections;
 mod shell_self_contact;
 mod shell_solid;
@@ -282,6 +283,7 @@ registry! {
     sdnl111_bars
     self_contact
     shell_sections
+    shell_edges
     shell_self_contact
     shapes
     shell_benchmarks

@@ -149,7 +149,7 @@ impl Builder<'_> {
         };
         let [x, y, z] = mesh.nodes[first as usize];
         let message = format!(
-            "{} nodes have no line of the file, the first at ({x:.6}, {y:.6}, {z:.6}) m",
+            "nodes without a line in the file: {}, the first at ({x:.6}, {y:.6}, {z:.6}) m",
             without.len()
         );
         let problem = Problem::new(format!("{path}.file"), message);
