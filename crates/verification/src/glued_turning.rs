@@ -37,7 +37,7 @@ pub(crate) fn model(
     let rows = glued.rows.rows;
     let dim = mesh.dim;
     let mut model = Model::new(bodies.to_vec(), mesh, scheme, dt);
-    if scheme.get().is_explicit() {
+    if scheme.get().needs_lumped_mass() {
         let bodies = model.bodies.iter_mut();
         bodies.for_each(|body| body.mass = MassKind::Lumped);
     }

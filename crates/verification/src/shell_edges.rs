@@ -11,6 +11,7 @@
 //! Balances as in `shell-self-contact`: momenta 1e-10, energy 1e-8.
 
 use carom_bodies::Rotations;
+use carom_contact::Law;
 use carom_dynamics::scheme::EnergyMomentum;
 use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, Scheme, System};
 use carom_materials::Elastic;
@@ -30,15 +31,18 @@ const SOFT: Elastic = Elastic {
 const THICKNESS: f64 = 0.01;
 
 /// Two shells, and the surface around each.
-struct Pair {
+pub(crate) struct Pair {
     mesh: Mesh,
     bodies: [ModelBody; 2],
     around: [Surface; 2],
 }
 
 impl Pair {
-    /// Of two grids in the groups `one` and `other`.
-    fn new(one: Mesh, other: Mesh, rotations: Rotations) -> Result<Pair, Error> {
+    /// Of two grids, in the groups `one` and `other`, of the same thickness, rotations and material.
+    pub(crate) fn new(
+        [one, other]: [Mesh; 2],
+        (thickness, rotations, material): (f64, Rotations, Elastic),
+    ) -> Result<Pair, Error> {
         let mut mesh = one;
         let own = mesh.groups.remove("shell");
         mesh.groups
@@ -53,9 +57,9 @@ impl Pair {
             let mut named = mesh.clone();
             let of = group(&mesh, name)?.clone();
             named.groups.insert("shell".into(), of.clone());
-            let mut body = shell(&named, THICKNESS, rotations, SOFT)?;
+            let mut body = shell(&named, thickness, rotations, material)?;
             body.spec.name = name.into();
-            let radius = |_| 0.5 * THICKNESS;
+            let radius = |_| 0.5 * thickness;
             let around = Surface::of_axes(&mesh, &of, &body.spec.cells, radius)?;
             Ok((body, around))
         };
@@ -67,15 +71,18 @@ impl Pair {
         })
     }
 
-    fn model(self, scheme: Scheme, dt: f64) -> Model {
+    /// Both in contact, the nodes of the first on the second.
+    pub(crate) fn model(self, law: Law, (scheme, dt): (Scheme, f64)) -> Model {
         let [one, other] = self.around;
-        let mut model = Model {
-            contacts: vec![contact(one, ModelTarget::Surface(other), NOW)],
+        Model {
+            contacts: vec![contact(one, ModelTarget::Surface(other), law)],
             ..Model::new(self.bodies.to_vec(), self.mesh, scheme, dt)
-        };
-        model.nonlinear.iteration.tolerance = 1e-12;
-        model
+        }
     }
+}
+
+fn section(rotations: Rotations) -> (f64, Rotations, Elastic) {
+    (THICKNESS, rotations, SOFT)
 }
 
 /// Mean force over that of two bars, and velocities of the strips at the end over that of the first at the start.
@@ -87,8 +94,11 @@ fn strips(elements: usize) -> Result<[f64; 3], Error> {
     let wave = (SOFT.young / SOFT.density).sqrt();
     let dt = length / elements as f64 / wave;
     let gap = 1e-3 * THICKNESS;
-    let pair = Pair::new(at(0.0), at(length + THICKNESS + gap), Rotations::Small)?;
-    let mut model = pair.model(theta(0.5), dt);
+    let pair = Pair::new(
+        [at(0.0), at(length + THICKNESS + gap)],
+        section(Rotations::Small),
+    )?;
+    let mut model = pair.model(NOW, (theta(0.5), dt));
     model.bodies[0].velocity = [SPEED, 0.0, 0.0];
     let mut driver = Driver::new(System::new(model)?)?;
     let steps = 4 * elements;
@@ -147,8 +157,9 @@ fn crossing() -> Result<[f64; 2], Error> {
     let conserving = || Scheme::EnergyMomentum(EnergyMomentum {});
     let beside = 0.5 * (THICKNESS + gap);
     let [upper, lower] = [upright(false, beside, 1.0), upright(true, -beside, -1.0)];
-    let pair = Pair::new(upper.clone(), lower, Rotations::Finite)?;
-    let mut model = pair.model(conserving(), dt);
+    let pair = Pair::new([upper.clone(), lower], section(Rotations::Finite))?;
+    let mut model = pair.model(NOW, (conserving(), dt));
+    model.nonlinear.iteration.tolerance = 1e-12;
     model.bodies[0].velocity = [0.0, 0.0, -SPEED];
     model.bodies[1].velocity = [0.0, 0.0, SPEED];
     let mut both = Driver::new(System::new(model)?)?;
@@ -189,8 +200,10 @@ fn crossing() -> Result<[f64; 2], Error> {
 fn askew(steps: usize) -> Result<Vec<Row>, Error> {
     let beside = 0.5 * (THICKNESS + 1e-3);
     let [upper, lower] = [upright(false, beside, 1.0), upright(true, -beside, -1.0)];
-    let pair = Pair::new(upper, lower, Rotations::Finite)?;
-    let model = pair.model(Scheme::EnergyMomentum(EnergyMomentum {}), 1e-4);
+    let pair = Pair::new([upper, lower], section(Rotations::Finite))?;
+    let conserving = Scheme::EnergyMomentum(EnergyMomentum {});
+    let mut model = pair.model(NOW, (conserving, 1e-4));
+    model.nonlinear.iteration.tolerance = 1e-12;
     let system = System::new(model)?;
     let spin = [3.0, 5.0, -4.0];
     let mut velocity = vec![0.0; system.unknowns()];
