@@ -371,6 +371,7 @@ impl<'a> Assembly<'a> {
                     component: k as u32,
                     inner: terms(&mut inner),
                     outer: terms(&mut outer),
+                    ..Row::default()
                 });
             }
         }

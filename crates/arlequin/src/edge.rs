@@ -153,6 +153,7 @@ pub fn edge_mean_motion(mesh: &Mesh, faces: &[Face], edge: &[EdgeCell]) -> Resul
                 component: component as u32,
                 inner,
                 outer,
+                ..Row::default()
             });
         }
     }
@@ -192,6 +193,7 @@ pub fn edge_rigid_motion(mesh: &Mesh, faces: &[Face], edge: &[EdgeCell]) -> Resu
                 component: i as u32,
                 inner: vec![inner],
                 outer: terms(&mut sum),
+                ..Row::default()
             });
         }
     }

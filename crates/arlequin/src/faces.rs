@@ -145,5 +145,6 @@ fn row(
         component: component as u32,
         inner: inner.filter(|t| t.coefficient != 0.0).collect(),
         outer: outer.filter(|t| t.coefficient != 0.0).collect(),
+        ..Row::default()
     }
 }

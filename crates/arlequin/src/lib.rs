@@ -52,7 +52,7 @@ pub use edge::{EdgeCell, edge_mean_motion, edge_rigid_motion};
 pub use error::{Error, Model};
 pub use faces::mean_motion;
 pub use overlap::{Models, Overlap, Region};
-pub use rows::{Rank, Row, Rows, Sliver, Term};
+pub use rows::{AxisProducts, Rank, Row, Rows, Sliver, Term};
 pub use shell::{ShellCell, ShellModels, ShellOverlap};
 pub use trace::trace;
 pub use weights::{CellWeights, Profile, Warning, Weighting, Weights, means};

@@ -17,8 +17,25 @@ pub struct Term {
     pub coefficient: f64,
 }
 
+/// What the axes of a node do in a row whose mediator turns: Σ_ac G_ac (R_A e_a)·(R_B e_c), with the rotations R_A of the node of the mediator and R_B of
+/// this node, and the axes e of coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisProducts {
+    /// Node of the mesh, B.
+    pub node: u32,
+    /// G, in the unit of the coefficients times m.
+    pub factors: [[f64; 3]; 3],
+}
+
+impl AxisProducts {
+    /// Coefficients of small rotations of the node: for G = u ⊗ v they are v × u.
+    pub(crate) fn of_small_turns(factors: &[[f64; 3]; 3]) -> [f64; 3] {
+        [[2, 1], [0, 2], [1, 0]].map(|[a, c]: [usize; 2]| factors[a][c] - factors[c][a])
+    }
+}
+
 /// One row: Σ inner terms · v_c - Σ outer terms · v_s = 0.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
     /// Node of the mediator function.
     pub node: u32,
@@ -28,6 +45,8 @@ pub struct Row {
     pub inner: Vec<Term>,
     /// C_s = <μ, φ_s>, on nodes of the outer model, sorted.
     pub outer: Vec<Term>,
+    /// Of a shell, what the coefficients of rotations are the derivatives of, with the sign of inner less outer terms.
+    pub axes: Vec<AxisProducts>,
 }
 
 impl Row {
@@ -42,6 +61,7 @@ impl Row {
             component,
             inner: side(&self.inner),
             outer: side(&self.outer),
+            axes: Vec::new(),
         }
     }
 

@@ -47,6 +47,7 @@ pub fn trace(mesh: &Mesh, inner: &[u32], outer: &[u32], tolerance: f64) -> Resul
             component,
             inner: vec![term(inner, component)],
             outer: vec![term(outer, component)],
+            ..Row::default()
         })
     });
     Ok(Rows {

@@ -58,8 +58,8 @@ pub use rigid::{Inertia, Rigid};
 pub use scaling::{MARGIN, MassScaling};
 pub use scratch::Scratch;
 pub use shell::{
-    LAYERS as SHELL_LAYERS, Ply, Resultants, Shell, ShellDefect, ShellPlate, ShellSection, Taper,
-    plates, shell_defects,
+    LAYERS as SHELL_LAYERS, Ply, Resultants, Shell, ShellDefect, ShellPlate, ShellSection, plates,
+    shell_defects,
 };
 pub use size::{height, smallest as smallest_size};
 pub use solid::{BodySpec, Solid};

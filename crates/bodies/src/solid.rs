@@ -20,7 +20,7 @@ use crate::nodes::Nodes;
 use crate::release::Release;
 use crate::scaling::MassScaling;
 use crate::scratch::Scratch;
-use crate::shell::Ply;
+use crate::shell::{Ply, ShellSection};
 use crate::weights::CellWeights;
 use crate::{Kinematics, size};
 
@@ -54,6 +54,8 @@ pub struct BodySpec {
     /// Layers of shells of several materials, from the side against which the normal points; `material` is then one of them that flows, if any does.
     /// None: one material.
     pub plies: Vec<Ply>,
+    /// Thickness of shells at each node of the mesh, m, linear between them; a number at nodes of the body. None: that of the section.
+    pub nodal_thickness: Option<Vec<f64>>,
 }
 
 impl BodySpec {
@@ -77,7 +79,20 @@ impl BodySpec {
             deletion: None,
             releases: Vec::new(),
             plies: Vec::new(),
+            nodal_thickness: None,
         }
+    }
+
+    /// Thickness of a shell at a node of the mesh, m. `section`: its own.
+    pub fn thickness_at(&self, section: &ShellSection, node: u32) -> f64 {
+        let nodal = self.nodal_thickness.as_ref();
+        nodal.map_or(section.thickness, |all| all[node as usize])
+    }
+
+    /// Mean thickness of a shell over some nodes, m. `section`: its own.
+    pub fn mean_thickness(&self, section: &ShellSection, nodes: &[u32]) -> f64 {
+        let all = nodes.iter().map(|&node| self.thickness_at(section, node));
+        all.sum::<f64>() / nodes.len() as f64
     }
 }
 

@@ -216,10 +216,10 @@ fn beam_fact(system: &System, body: usize, beam: &Beam) -> Fact {
 
 /// A line for shells: section, mass, waves.
 fn shell_fact(system: &System, body: usize, shell: &Shell) -> Fact {
-    let section = shell.section();
-    let thickness = match section.taper {
-        Some(_) => "largest thickness",
-        None => "thickness",
+    let [least, most] = shell.thickness_range();
+    let thickness = match most - least > 1e-9 * most {
+        true => format!("mean thickness {least:.6e} to {most:.6e} m"),
+        false => format!("thickness {:.6e} m", shell.section().thickness),
     };
     let rotations = match shell.turns() {
         true => "finite",
@@ -228,9 +228,8 @@ fn shell_fact(system: &System, body: usize, shell: &Shell) -> Fact {
     fact(
         format!("body {}", shell.name()),
         format!(
-            "shell of {} elements, {thickness} {:.6e} m, {rotations} rotations, {:.6} kg, membrane waves at {:.5} m/s, smallest element {:.4e} m",
+            "shell of {} elements, {thickness}, {rotations} rotations, {:.6} kg, membrane waves at {:.5} m/s, smallest element {:.4e} m",
             shell.cells().len(),
-            section.thickness,
             system.body_mass(body),
             shell.wave_speed(),
             shell.smallest_size()

@@ -11,6 +11,8 @@
 
 use std::fmt::Debug;
 
+use carom_algebra::number::Number;
+
 use crate::hardening::Hardening;
 use crate::plane_points::{ITERATIONS, PLASTIC, PlaneStressPoints, ROUNDING};
 
@@ -67,60 +69,77 @@ pub(crate) fn stress<H: Hardening>(law: &H, strain: &[f64; 3], history: &[f64]) 
 }
 
 /// The return of a trial elastic strain 11, 22, 33, 2·12.
-struct Return {
+struct Return<T> {
     /// σ₁₁, σ₂₂, σ₃₃, σ₁₂.
-    stress: [f64; 4],
+    stress: [T; 4],
     /// s/|s|.
-    normal: [f64; 4],
-    /// q at the end, Δε_p and H.
-    size: f64,
-    slip: f64,
-    slope: f64,
-    /// θ.
-    kept: f64,
+    normal: [T; 4],
+    /// q at the end, and Δε_p.
+    size: T,
+    slip: T,
+    /// θ, and θ̄, none where nothing flows.
+    kept: T,
+    turned: T,
 }
 
-fn returned<H: Hardening>(law: &H, strain: &[f64; 4], old: &[f64], dt: f64) -> Return {
-    let elastic = law.elastic();
-    let shear = elastic.shear_modulus();
-    let bulk = elastic.young / (3.0 * (1.0 - 2.0 * elastic.poisson));
-    let trace = strain[0] + strain[1] + strain[2];
-    let direct = |e: f64| 2.0 * shear * (e - trace / 3.0);
+#[inline(always)]
+fn returned<H: Hardening, T: Number>(law: &H, strain: &[T; 4], old: &[T], dt: f64) -> Return<T> {
+    let shear = law.elastic().shear_modulus();
+    let [x, y, z, xy] = *strain;
+    let trace = x + y + z;
+    let third = trace.scale(1.0 / 3.0);
     let s = [
-        direct(strain[0]),
-        direct(strain[1]),
-        direct(strain[2]),
-        shear * strain[3],
+        (x - third).scale(2.0 * shear),
+        (y - third).scale(2.0 * shear),
+        (z - third).scale(2.0 * shear),
+        xy.scale(shear),
     ];
-    let norm = (s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + 2.0 * s[3] * s[3]).sqrt();
-    let q = 1.5_f64.sqrt() * norm;
+    let square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + (s[3] * s[3]).scale(2.0);
+    let norm = square.sqrt();
+    let q = norm.scale(1.5_f64.sqrt());
+    let (one, tiny) = (q.like(1.0), q.like(f64::MIN_POSITIVE));
     let [slip, slope] = law.slip(q, 3.0 * shear, &old[PLASTIC..], dt);
-    let kept = if q > 0.0 {
-        1.0 - 3.0 * shear * slip / q
-    } else {
-        1.0
-    };
-    let mut stress = s.map(|s| kept * s);
-    stress[..3].iter_mut().for_each(|s| *s += bulk * trace);
+    let lost = slip.scale(3.0 * shear) / q.most(tiny);
+    let kept = one - lost;
+    let unit = one / norm.most(tiny);
+    let pressure = trace.scale(bulk(law));
+    let stress = [
+        s[0].mul_add(kept, pressure),
+        s[1].mul_add(kept, pressure),
+        s[2].mul_add(kept, pressure),
+        s[3] * kept,
+    ];
+    let flowing = q.like(3.0 * shear) / (slope + q.like(3.0 * shear)) - lost;
     Return {
         stress,
-        normal: s.map(|s| if norm > 0.0 { s / norm } else { 0.0 }),
-        size: q - 3.0 * shear * slip,
+        normal: s.map(|s| s * unit),
+        size: q * kept,
         slip,
-        slope,
         kept,
+        turned: q.like(0.0).if_below(slip, flowing, q.like(0.0)),
+    }
+}
+
+/// K.
+fn bulk<H: Hardening>(law: &H) -> f64 {
+    let elastic = law.elastic();
+    elastic.young / (3.0 * (1.0 - 2.0 * elastic.poisson))
+}
+
+impl<T: Number> Return<T> {
+    /// ∂σ₃₃/∂ε₃₃.
+    #[inline(always)]
+    fn across<H: Hardening>(&self, law: &H) -> T {
+        let shear = law.elastic().shear_modulus();
+        let n = self.normal[2];
+        self.kept.scale_add(4.0 / 3.0 * shear, n.like(bulk(law)))
+            - (self.turned * n * n).scale(2.0 * shear)
     }
 }
 
 /// C over 11, 22, 33 and 2·12.
-fn tangent<H: Hardening>(law: &H, at: &Return) -> [[f64; 4]; 4] {
-    let elastic = law.elastic();
-    let shear = elastic.shear_modulus();
-    let bulk = elastic.young / (3.0 * (1.0 - 2.0 * elastic.poisson));
-    let turned = match at.slip > 0.0 {
-        true => 3.0 * shear / (3.0 * shear + at.slope) - (1.0 - at.kept),
-        false => 0.0,
-    };
+fn tangent<H: Hardening>(law: &H, at: &Return<f64>) -> [[f64; 4]; 4] {
+    let (shear, bulk) = (law.elastic().shear_modulus(), bulk(law));
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {
             let identity = match (i == j, i == 3) {
@@ -130,9 +149,59 @@ fn tangent<H: Hardening>(law: &H, at: &Return) -> [[f64; 4]; 4] {
             };
             let trace = if i < 3 && j < 3 { 1.0 } else { 0.0 };
             bulk * trace + 2.0 * shear * at.kept * (identity - trace / 3.0)
-                - 2.0 * shear * turned * at.normal[i] * at.normal[j]
+                - 2.0 * shear * at.turned * at.normal[i] * at.normal[j]
         })
     })
+}
+
+/// The return without stress across, for one number or for one of each of several points; what elastic strain and hardening store and what is dissipated,
+/// J/m³. Iterations end where all have converged.
+#[inline(always)]
+fn ended<H: Hardening, T: Number>(
+    law: &H,
+    strain: &[T; 3],
+    dt: f64,
+    (old, new): (&[T], &mut [T]),
+) -> (Return<T>, [T; 3]) {
+    let elastic = law.elastic();
+    let (young, poisson) = (elastic.young, elastic.poisson);
+    let (x, y, xy) = (strain[0] - old[0], strain[1] - old[1], strain[2] - old[2]);
+    // elastic strain across without flow
+    let mut trial = [x, y, (x + y).scale(-poisson / (1.0 - poisson)), xy];
+    let mut at = returned(law, &trial, old, dt);
+    for _ in 0..ITERATIONS {
+        let [a, b, across, c] = at.stress;
+        let size = a.abs().most(b.abs()).most(c.abs());
+        if (across.abs() - size.scale(ROUNDING)).largest() <= 0.0 {
+            break;
+        }
+        trial[2] -= across / at.across(law);
+        at = returned(law, &trial, old, dt);
+    }
+    let flow = at.slip.scale(1.5_f64.sqrt());
+    new[0] = old[0] + flow * at.normal[0];
+    new[1] = old[1] + flow * at.normal[1];
+    new[2] = old[2] + (flow * at.normal[3]).scale(2.0);
+    new[PLASTIC] = old[PLASTIC] + at.slip;
+    let kept = (&old[PLASTIC..], &mut new[PLASTIC..]);
+    let [hardening, dissipated] = law.spent(at.slip, at.size, kept);
+    let [a, b, _, c] = at.stress;
+    let direct = a * a + b * b - (a * b).scale(2.0 * poisson);
+    let stored = direct.scale(0.5 / young) + (c * c).scale(0.5 / elastic.shear_modulus());
+    (at, [stored, hardening, dissipated])
+}
+
+/// Stress and energies at the end of the step, of one point in each lane.
+#[inline(always)]
+pub(crate) fn of_lanes<H: Hardening, T: Number>(
+    law: &H,
+    strain: &[T; 3],
+    dt: f64,
+    history: (&[T], &mut [T]),
+) -> ([T; 3], [T; 3]) {
+    let (at, energies) = ended(law, strain, dt, history);
+    let [a, b, _, c] = at.stress;
+    ([a, b, c], energies)
 }
 
 /// See [`PlaneStress::update`].
@@ -140,43 +209,14 @@ pub(crate) fn update<H: Hardening>(
     law: &H,
     strain: &[f64; 3],
     dt: f64,
-    (old, new): (&[f64], &mut [f64]),
+    history: (&[f64], &mut [f64]),
 ) -> PlaneStressResponse {
-    let elastic = law.elastic();
-    let [x, y, xy] = [0, 1, 2].map(|i| strain[i] - old[i]);
-    // elastic strain across without flow
-    let mut trial = [
-        x,
-        y,
-        -elastic.poisson / (1.0 - elastic.poisson) * (x + y),
-        xy,
-    ];
-    let mut at = returned(law, &trial, old, dt);
-    let mut whole = tangent(law, &at);
-    for _ in 0..ITERATIONS {
-        let size = at.stress.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
-        if at.stress[2].abs() <= ROUNDING * size {
-            break;
-        }
-        trial[2] -= at.stress[2] / whole[2][2];
-        at = returned(law, &trial, old, dt);
-        whole = tangent(law, &at);
-    }
-    let flow = 1.5_f64.sqrt() * at.slip;
-    new[0] = old[0] + flow * at.normal[0];
-    new[1] = old[1] + flow * at.normal[1];
-    new[2] = old[2] + 2.0 * flow * at.normal[3];
-    new[PLASTIC] = old[PLASTIC] + at.slip;
-    let kept = (&old[PLASTIC..], &mut new[PLASTIC..]);
-    let [hardening, dissipated] = law.spent(at.slip, at.size, kept);
-    let stress = [at.stress[0], at.stress[1], at.stress[3]];
-    let poisson = elastic.poisson;
-    let [a, b, c] = stress;
+    let (at, [stored, hardening, dissipated]) = ended(law, strain, dt, history);
+    let [a, b, _, c] = at.stress;
     PlaneStressResponse {
-        stress,
-        tangent: condensed(&whole),
-        stored: 0.5 * (a * a + b * b - 2.0 * poisson * a * b) / elastic.young
-            + 0.5 * c * c / elastic.shear_modulus(),
+        stress: [a, b, c],
+        tangent: condensed(&tangent(law, &at)),
+        stored,
         hardening,
         dissipated,
     }

@@ -144,17 +144,17 @@ pub(crate) fn numbered(
         let faces = surface.faces.iter();
         faces.map(|face| renumbered(face, number)).collect()
     };
+    let lines = crossed(contact, model);
     let (points, mortar) = match contact.integration {
         Integration::Node => {
-            let crosses = model.mesh.dim == 3
-                && matches!(&contact.primary, ModelTarget::Surface(other) if other.faces.iter().all(is_axis));
             let mut points = nodes(surface, &model.mesh, number, factor);
             if let Some(body) = solid.filter(|body| body.spec.deletion.is_some()) {
                 points.extend(inner_nodes(&body.spec.cells, surface, &model.mesh, number));
             }
+            let crosses = !lines.is_empty();
             if crosses {
-                let axes = surface.faces.iter().filter(|face| is_axis(face));
-                points.extend(axes.map(|face| crossing(&renumbered(face, number))));
+                let own = lines_of(surface, &model.mesh).into_iter();
+                points.extend(own.map(|line| crossing(&renumbered(&line, number))));
             }
             (shared(points), None)
         }
@@ -168,7 +168,12 @@ pub(crate) fn numbered(
     };
     let target = match &contact.primary {
         ModelTarget::Rigid(obstacle) => Target::Rigid(obstacle.clone()),
-        ModelTarget::Surface(surface) => Target::Surface(faces(surface)),
+        ModelTarget::Surface(surface) => {
+            let mut faces = faces(surface);
+            let edges = lines.iter().filter(|line| !surface.faces.contains(line));
+            faces.extend(edges.map(|line| renumbered(line, number)));
+            Target::Surface(faces)
+        }
     };
     let sight = match &target {
         Target::Surface(primary) => {
@@ -189,6 +194,27 @@ pub(crate) fn numbered(
         sight,
         offsets: Vec::new(),
     }
+}
+
+/// Lines of the primary side that lines of the other side may cross, at nodes in space: axes of beams, and of two surfaces of which none faces itself also sharp edges of shells.
+fn crossed(contact: &ModelContact, model: &Model) -> Vec<Face> {
+    let ModelTarget::Surface(other) = &contact.primary else {
+        return Vec::new();
+    };
+    let own = &contact.secondary.faces;
+    let alone = || contact.depth.is_none() && !Sight::is_needed(own, &other.faces);
+    let round = || own.iter().chain(&other.faces).all(Face::is_round);
+    let takes = other.faces.iter().all(is_axis) || round() && alone();
+    match model.mesh.dim == 3 && contact.integration == Integration::Node && takes {
+        true => lines_of(other, &model.mesh),
+        false => Vec::new(),
+    }
+}
+
+/// Axes of beams and sharp edges of shells.
+fn lines_of(surface: &Surface, mesh: &Mesh) -> Vec<Face> {
+    let axes = surface.faces.iter().filter(|face| is_axis(face)).copied();
+    axes.chain(surface.sharp_edges(mesh)).collect()
 }
 
 /// Whether a face is a part of the axis of a beam, not the end or a point of it.

@@ -340,6 +340,12 @@ impl System {
         if self.schemes.len() > 1 {
             return refuse("the rows hold at the end of the step; give both bodies one scheme");
         }
+        if scheme.step_map(self.dt).displacement.x == 0.0 {
+            return refuse(
+                "the rows hold places at the end of the step, which an explicit scheme knows before the forces; take energy-momentum, theta, \
+                 newmark, hht or generalised-alpha",
+            );
+        }
         if staged || self.contacts.iter().any(projects) {
             return refuse(
                 "stages of the step that use the mass alone take rows as they are at the start; take energy-momentum, theta, newmark, hht or \

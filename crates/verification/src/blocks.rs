@@ -26,7 +26,7 @@ pub(crate) const RUBBER: Elastic = Elastic {
     young: 1e9,
     poisson: 0.3,
 };
-const SPEED: f64 = 5.0;
+pub(crate) const SPEED: f64 = 5.0;
 /// Lower face of the upper block, m².
 pub(crate) const FACE: f64 = SIZES[0][0] * SIZES[0][1];
 const SIZES: [[f64; 3]; 2] = [[0.6, 0.6, 0.4], [1.0, 1.0, 0.5]];

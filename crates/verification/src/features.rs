@@ -1,27 +1,30 @@
 //! Small models with an impact, each with one feature: what batteries run over besides schemes and laws.
 //!
 //! A block of 0.6 m x 0.4 m comes down at 5 m/s and 1 m/s sideways on a block of 1 m x 0.5 m, in plane strain, meshes that do not match; where
-//! a surface faces itself, a hairpin whose prongs are flung at each other; with a static stage, a block that is held at one
+//! a surface faces itself, a hairpin whose prongs are flung at each other; of shells, a plate that falls on a plate; with a static stage, a block that is held at one
 //! side and pressed down by a traction after the stage.
 
 use std::sync::Arc;
 
 use carom_arlequin::trace;
+use carom_bodies::{MassKind, Rotations};
 use carom_contact::{Basis, Integration, Law, Sliding};
 use carom_dynamics::{
     Adaptive, Amplitude, Closing, Driver, Load, LoadKind, Model, ModelLink, Preload, Scheme, State,
     Stepper, System,
 };
-use carom_materials::{Branch, J2Plasticity, Law as Material, Maxwell, NeoHooke};
+use carom_materials::{Branch, Elastic, J2Plasticity, Law as Material, Maxwell, NeoHooke, Plane};
 use carom_mesh::{ElementId, Mesh};
 use carom_reduction::{Keep, Ratios, damp, reduce};
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
 use crate::Error;
 use crate::battery::laws;
-use crate::blocks::{Blocks, RUBBER, SMALLEST};
+use crate::blocks::{Blocks, RUBBER, SMALLEST, SPEED};
 use crate::build::{support, surface};
 use crate::hairpin::{self, Hairpin};
+use crate::shell_edges::Pair;
+use crate::shells::Grid;
 
 /// What a model has besides scheme and law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,10 +48,12 @@ pub(crate) enum Feature {
     ReducedZones,
     DampedModes,
     DampedModesZones,
+    Shells,
+    TurningShells,
 }
 
 impl Feature {
-    pub(crate) const ALL: [Feature; 19] = [
+    pub(crate) const ALL: [Feature; 21] = [
         Feature::Friction,
         Feature::FiniteStrain,
         Feature::Plasticity,
@@ -68,6 +73,8 @@ impl Feature {
         Feature::ReducedZones,
         Feature::DampedModes,
         Feature::DampedModesZones,
+        Feature::Shells,
+        Feature::TurningShells,
     ];
 
     pub(crate) fn name(self) -> &'static str {
@@ -91,6 +98,8 @@ impl Feature {
             Feature::ReducedZones => "reduced body, zones, m = 4",
             Feature::DampedModes => "damped modes",
             Feature::DampedModesZones => "damped modes, zones, m = 4",
+            Feature::Shells => "shells",
+            Feature::TurningShells => "shells, finite rotations",
         }
     }
 
@@ -158,6 +167,7 @@ impl Feature {
     /// Laws with their names, one of each kind and the displacement law with projection.
     pub(crate) fn laws(self) -> Result<Vec<(&'static str, Law)>, Error> {
         let all = match self {
+            Feature::Shells | Feature::TurningShells => laws(&SHEET, PLATE, 4.0 * PLATE * PLATE)?,
             Feature::SelfContact => laws(&hairpin::RUBBER, hairpin::THICKNESS, hairpin::LENGTH)?,
             // E, h, and the lower side of the upper block, 1 m thick
             _ => laws(&RUBBER, 0.2, 0.6)?,
@@ -180,8 +190,15 @@ impl Feature {
     /// # Errors
     /// A combination that is refused.
     pub(crate) fn built(self, scheme: Scheme, law: Law, refinement: usize) -> Result<Built, Error> {
-        if self == Feature::SelfContact {
-            return flung(scheme, law, refinement);
+        let rotations = match self {
+            Feature::SelfContact => return flung(scheme, law, refinement),
+            Feature::Shells => Some(Rotations::Small),
+            Feature::TurningShells => Some(Rotations::Finite),
+            _ => None,
+        };
+        if let Some(rotations) = rotations {
+            let model = plates(rotations, (scheme, law), refinement)?;
+            return Ok(Built::One(System::new(model)?, None));
         }
         let blocks = self.blocks(refinement);
         let mut model = blocks.model(scheme, law, self.sliding())?;
@@ -292,6 +309,46 @@ fn flung(scheme: Scheme, law: Law, refinement: usize) -> Result<Built, Error> {
     let system = System::new(pin.model()?)?;
     let velocity = pin.fling(&system);
     Ok(Built::One(system, Some(velocity)))
+}
+
+/// Of plates: soft, so that steps are long and the rounding of places, in the forces of stiff sections, is little of the momentum.
+const SHEET: Elastic = Elastic {
+    young: 1e8,
+    ..RUBBER
+};
+/// Elements of the upper plate, and thickness of both, m.
+const PLATE: f64 = 0.2;
+const THICKNESS: f64 = 0.05;
+
+/// A plate of two by two elements that falls on a plate of two by two wider ones, with a corner over a node and an edge across an edge of it.
+fn plates(
+    rotations: Rotations,
+    (scheme, law): (Scheme, Law),
+    refinement: usize,
+) -> Result<Model, Error> {
+    let dt = 0.09 * PLATE / refinement as f64 / SHEET.wave_speed(Plane::Stress);
+    let grid = Grid::new(2 * refinement, 2 * refinement);
+    let place = |side: f64, corner: [f64; 2], height: f64| {
+        let at = move |s: f64, t: f64| [corner[0] + s * side, corner[1] + t * side, height];
+        grid.mesh(&at)
+    };
+    let height = THICKNESS + 1.2 * dt * SPEED;
+    let upper = place(2.0 * PLATE, [0.1, 0.3], height);
+    let pair = Pair::new(
+        [upper, place(3.0 * PLATE, [0.0; 2], 0.0)],
+        (THICKNESS, rotations, SHEET),
+    )?;
+    let mut model = pair.model(law, (scheme, dt));
+    for body in &mut model.bodies {
+        body.mass = match scheme.get().needs_lumped_mass() {
+            true => MassKind::Lumped,
+            false => MassKind::Consistent,
+        };
+    }
+    model.bodies[0].velocity = [1.0, 0.0, -SPEED];
+    // what iterations leave of the forces is more of the momentum than in blocks
+    model.nonlinear.iteration.tolerance = 1e-11;
+    Ok(model)
 }
 
 /// A flight of some steps, which adapt themselves to its end.

@@ -87,6 +87,7 @@ mod energy_identity;
 mod energy_identity_features;
 mod first_force;
 mod glued_rotating;
+mod glued_turning;
 mod hertz_cylinder;
 mod hertz_impact;
 mod hertz_spheres;
@@ -126,10 +127,12 @@ mod sdnl111_bars;
 mod self_contact;
 mod shapes;
 mod shell_benchmarks;
+mod shell_edges;
 mod shell_sections;
 mod shell_self_contact;
 mod shell_solid;
 mod shell_solid_impact;
+mod shell_solid_large;
 mod shell_solid_patch;
 mod shell_solid_waves;
 mod shells;
@@ -280,10 +283,12 @@ registry! {
     sdnl111_bars
     self_contact
     shell_sections
+    shell_edges
     shell_self_contact
     shapes
     shell_benchmarks
     shell_solid_impact
+    shell_solid_large
     shell_solid_patch
     shell_solid_waves
     shock_front

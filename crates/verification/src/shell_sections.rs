@@ -3,6 +3,7 @@
 //! Problems, ν = 0:
 //! - A cantilever of L = 1, b = 0.1, E = 2e11 whose thickness falls from 0.04 to 0.02, force F at its end: with ξ from the end, h = h₁ + k ξ, the deflection is
 //!   12 F/(E b) ∫ ξ²/h³ dξ + 6/5 F/(G b) ∫ dξ/h = 12 F/(E b k³) [ln h + 2 h₁/h - h₁²/(2 h²)] + 6 F/(5 G b k) ln(h₀/h₁).
+//! - The same with the thickness h₁ exp(k ξ): 12 F/(E b h₁³) [2/c³ - exp(-c L) (L²/c + 2 L/c² + 2/c³)] + 6 F/(5 G b k) (1/h₁ - 1/h₀), c = 3 k.
 //! - A strip of two plies, E₁ = 2e11, h₁ = 3 mm below, E₂ = 7e10, h₂ = 5 mm above, moment M at its end: κ = M/(b (D - B²/A)), its middle stretches by -B/A κ, with A = Σ E h and so on; the end sinks
 //!   by κ L²/2.
 //! - A sandwich, faces of 1 mm with E = 7e10, a core of 20 mm with E = 7e7: the end of a cantilever of 0.5 m sinks by F L³/(3 b D) + F L/(b S). S is that of linear elasticity
@@ -11,11 +12,11 @@
 //! - A strip of one material beside its nodes by e, force N along it at its end: it is bent by N e and ends at N e L²/(2 E I) across; with small and with finite rotations.
 //! - A soft plate beside its nodes flies and tumbles, energy-momentum.
 //!
-//! Tolerance: 1e-3 of the taper, on 16 elements: the curvature of each is that of its middle, with errors of (h'/h)²/(24 n²) and of the shape of the deflection over an element, 1/(4 n²), 1e-3 at 16. 1e-6 of constant curvature, which
+//! Tolerance: 1e-3 of the taper, on 16 elements: the curvature of each is that of its middle, with errors of (h'/h)²/(24 n²) and of the shape of the deflection over an element, 1/(4 n²), 1e-3 at 16; and of the exponential thickness, on 32, whose chords are up to (k L)²/(8 n²), 6e-5, too thick. 1e-6 of constant curvature, which
 //! the elements have exactly; with finite rotations 1e-3, the square of the rotation and its product with the membrane force. 3 % of the sandwich: the core bends, and faces have a thickness, 1.5 % each. Balances as in
 //! `large-shells`.
 
-use carom_bodies::{Ply, Rotations, Taper};
+use carom_bodies::{Ply, Rotations};
 use carom_dynamics::NodalLoad;
 use carom_materials::Elastic;
 
@@ -61,15 +62,10 @@ fn tapered() -> Result<Row, Error> {
     let load = 100.0;
     let (grid, mesh, held) = strip(16, [length, width], [[0.0, 0.0, load], [0.0; 3]]);
     let mut made = shell(&mesh, thick, Rotations::Small, material(STEEL))?;
-    section_of(&mut made, &|section| {
-        section.taper = Some(Taper {
-            along: [1.0, 0.0, 0.0],
-            from: [0.0, thick],
-            to: [length, thin],
-        });
-    });
-    let found = deflection((mesh, made), held, grid.node(16, 0))?[2];
     let slope = (thick - thin) / length;
+    let nodes = mesh.nodes.iter();
+    made.spec.nodal_thickness = Some(nodes.map(|x| thick - slope * x[0]).collect());
+    let found = deflection((mesh, made), held, grid.node(16, 0))?[2];
     let primitive = |h: f64| h.ln() + 2.0 * thin / h - thin * thin / (2.0 * h * h);
     let bent = 12.0 * load / (STEEL * width * slope.powi(3)) * (primitive(thick) - primitive(thin));
     let sheared = 1.2 * load / (0.5 * STEEL * width * slope) * (thick / thin).ln();
@@ -79,6 +75,24 @@ fn tapered() -> Result<Row, Error> {
         bent + sheared,
         1e-3,
     ))
+}
+
+fn exponential() -> Result<Row, Error> {
+    let [thick, thin, length, width]: [f64; 4] = [0.04, 0.02, 1.0, 0.1];
+    let load = 100.0;
+    let (grid, mesh, held) = strip(32, [length, width], [[0.0, 0.0, load], [0.0; 3]]);
+    let mut made = shell(&mesh, thick, Rotations::Small, material(STEEL))?;
+    let rate = (thick / thin).ln() / length;
+    let nodes = mesh.nodes.iter();
+    made.spec.nodal_thickness = Some(nodes.map(|x| thick * (-rate * x[0]).exp()).collect());
+    let found = deflection((mesh, made), held, grid.node(32, 0))?[2];
+    let c = 3.0 * rate;
+    let end =
+        (-c * length).exp() * (length * length / c + 2.0 * length / (c * c) + 2.0 / c.powi(3));
+    let bent = 12.0 * load / (STEEL * width * thin.powi(3)) * (2.0 / c.powi(3) - end);
+    let sheared = 1.2 * load / (0.5 * STEEL * width * rate) * (1.0 / thin - 1.0 / thick);
+    let label = "cantilever of exponential thickness: deflection";
+    Ok(Row::relative(label, found, bent + sheared, 1e-3))
 }
 
 fn plies(made: &mut carom_dynamics::ModelBody, of: &[(f64, f64)]) {
@@ -199,7 +213,7 @@ fn resultants() -> Result<Vec<Row>, Error> {
 
 fn run(size: Size) -> Result<Vec<Row>, Error> {
     let mut rows = resultants()?;
-    rows.push(tapered()?);
+    rows.extend([tapered()?, exponential()?]);
     rows.extend(bimetal()?);
     rows.push(sandwich()?);
     rows.push(beside(Rotations::Small, 100.0, 1e-6)?);

@@ -1,10 +1,10 @@
 //! Models of a plate that is a solid to the left and a shell to the right, glued over a width.
 
 use carom_arlequin::{EdgeCell, Region, Rows, Weighting, edge_mean_motion, edge_rigid_motion};
-use carom_bodies::{CellWeights, Kinematics, MassKind, ShellSection};
+use carom_bodies::{CellWeights, Kinematics, MassKind, Rotations, ShellSection};
 use carom_dynamics::{ModelBody, Support};
 use carom_elements::Kind;
-use carom_materials::Elastic;
+use carom_materials::{Elastic, Law as Material, NeoHooke};
 use carom_mesh::{Group, Mesh, generate, raise};
 use carom_zones::{Glued, glue_thin};
 
@@ -153,7 +153,26 @@ impl Plate {
 
     /// The bodies, solid first, with consistent mass, and the overlap.
     pub(crate) fn glued(&self, mesh: &Mesh) -> Result<([ModelBody; 2], Glued), Error> {
-        let mut bodies = self.bodies(mesh)?;
+        self.glue(mesh, self.bodies(mesh)?)
+    }
+
+    /// The same of bodies that turn by any angle: the shell with finite rotations, the solid of neo-Hooke's material.
+    pub(crate) fn glued_turning(&self, mesh: &Mesh) -> Result<([ModelBody; 2], Glued), Error> {
+        let [mut solid, mut shell] = self.bodies(mesh)?;
+        let initial = self.material;
+        solid.spec.material = Material::NeoHooke(NeoHooke { initial });
+        shell.spec.kinematics = Kinematics::Shell(ShellSection {
+            rotations: Rotations::Finite,
+            ..ShellSection::new(self.thickness)
+        });
+        self.glue(mesh, [solid, shell])
+    }
+
+    fn glue(
+        &self,
+        mesh: &Mesh,
+        mut bodies: [ModelBody; 2],
+    ) -> Result<([ModelBody; 2], Glued), Error> {
         let specs = [&bodies[0].spec, &bodies[1].spec];
         let glued = glue_thin(mesh, specs, &Region::Intersection, &self.weighting)?;
         let weights = [&glued.weights.inner, &glued.weights.outer];

@@ -1,19 +1,20 @@
 //! A sphere strikes a plate that is a solid in the middle and a shell around it.
 //!
-//! Problem: a rigid sphere of steel, R = 10 mm, 32.7 g, strikes a plate of acrylic glass (E = 3 GPa, ν = 0.35, ρ = 1200 kg/m³) of 14 mm and a half side of 0.27 m
+//! Problem: a rigid sphere of steel, R = 10 mm, 32.7 g, strikes a plate of acrylic glass (E = 3 GPa, ν = 0.35, ρ = 1200 kg/m³) of 14 mm and a half side of 0.55 m
 //! at 5 m/s. A quarter, by symmetry. The solid: hexahedra of 20 nodes to 35 mm from the middle, 0.75 mm under the sphere, five through the thickness. The shell from
-//! 21 mm on, elements of 7 mm; the overlap is as wide as the plate is thick. The same plate as one solid, cells of 14 mm beyond 35 mm. The
-//! sphere is a cap of hexahedra 10⁴ times as stiff as the plate. Theta ½, velocity law with closure as it stands, mortar; 150 steps over the time that a half-space would
-//! have. No wave is back from the border when the force is largest.
+//! 21 mm on, elements of 7 mm to 49 mm, of 14 mm beyond; the overlap is as wide as the plate is thick. The same plate as one solid, cells of 14 mm beyond 35 mm, which keep the layers and the lines of the
+//! fine cells, as hexahedra do. The sphere is a cap of hexahedra 10⁴ times as stiff as the plate. Theta ½, velocity law with closure as it stands, mortar; 150 steps over the time that a half-space would
+//! have. No wave is back from the border when the force is largest; waves of bending of the duration are 0.16 m long, eleven elements.
 //!
 //! Closed form, of an infinite thin plate: Zener (1941, Phys. Rev. 59, 669): α̇ = v - F/(8 √(D ρ h)), m v̇ = -F, F = 4/3 E* √R α^1.5 of Hertz.
 //!
 //! Tolerance: largest force 3 % from the all-solid plate, as it is asked. 10 % from Zener's: the radius of the contact is an eighth of the thickness, over
 //! which the plate is no half-space, and its impedance is that of a thin plate under a point.
 //!
-//! Work: additions and multiplications of the factors and of the sweeps with them, in which the steps spend their time. The plate of solids takes 3.6 times that of the glued one, with cells
-//! twice as wide as the elements of the shell; bound 3, a regression. That is less than for a bar, whose solid is a twentieth of it: here both models have the fine cells under the sphere, and the
-//! larger the plate the more the ratio is.
+//! Work: additions and multiplications of the factors and of the sweeps with them, in which the steps spend their time. Counted beforehand: a line across the plate has 17 nodes of three unknowns to 14 mm in the
+//! plate of solids, 51, and one of six in the shell. Entries of the factor, with which sweeps go, grow with the square of that: beyond the overlap the shell costs 1/72. On a half side of 0.27 m, with elements of 7 mm
+//! (1/18), the plate of solids took 3.6 times the work, so its cells beyond the overlap took 3.3 of what both have in common. On four times the area, and a little more for the larger factor, they take 14 of it:
+//! (1 + 14)/(1 + 14/72) = 12.6 is expected. Bound: 10, as it is asked.
 
 use carom_algebra::solver::FactorStats;
 use carom_arlequin::{Region, Weighting};
@@ -70,6 +71,18 @@ fn in_plane(to: f64) -> Vec<f64> {
     all.extend([BEGIN + ELEMENT, BEGIN + 2.0 * ELEMENT]);
     while all[all.len() - 1] < to - 1e-9 {
         all.push(all[all.len() - 1] + 2.0 * ELEMENT);
+    }
+    all
+}
+
+/// Places of the nodes of the shell along x and y: twice as wide a thickness beyond the overlap.
+fn of_shell(to: f64) -> Vec<f64> {
+    let fine = BEGIN + 4.0 * ELEMENT;
+    let mut all = vec![0.0];
+    while all[all.len() - 1] < to - 1e-9 {
+        let last = all[all.len() - 1];
+        let wide = if last < fine - 1e-9 { 1.0 } else { 2.0 };
+        all.push(last + wide * ELEMENT);
     }
     all
 }
@@ -160,8 +173,10 @@ fn all_solid(side: f64) -> Result<Plate, Error> {
 fn spliced(side: f64) -> Result<Plate, Error> {
     let mut mesh = solid(BEGIN + 2.0 * ELEMENT)?;
     let mut supports = symmetric(&mesh, "solid")?.to_vec();
-    let n = (side / ELEMENT).round() as usize;
-    let mut shell = Grid::new(n, n).mesh(&|s, t| [s * side, t * side, 0.0]);
+    let along = of_shell(side);
+    let n = along.len() - 1;
+    let at = |part: f64| along[(part * n as f64).round() as usize];
+    let mut shell = Grid::new(n, n).mesh(&|s, t| [at(s), at(t), 0.0]);
     let cells = shell.groups["shell"].elements.clone();
     let outside = |cell: &ElementId| {
         let mut nodes = shell.element_nodes(*cell).iter();
@@ -306,8 +321,8 @@ fn operations(costs: &Costs) -> f64 {
 
 fn rows(size: Size) -> Result<Vec<Row>, Error> {
     let (side, steps) = match size {
-        Size::Quick => (11.0 * ELEMENT, 75.0),
-        Size::Full => (39.0 * ELEMENT, 150.0),
+        Size::Quick => (9.0 * ELEMENT, 40.0),
+        Size::Full => (79.0 * ELEMENT, 150.0),
     };
     let dt = pair().collision(MASS, SPEED).duration / steps;
     let [force, time] = zener();
@@ -320,7 +335,8 @@ fn rows(size: Size) -> Result<Vec<Row>, Error> {
             glued.force,
             whole.force,
             0.03,
-        ),
+        )
+        .second_formulation(),
         Row::relative(
             "largest force, N, against Zener's theory",
             glued.force,
@@ -338,7 +354,7 @@ fn rows(size: Size) -> Result<Vec<Row>, Error> {
         ),
         match size {
             Size::Quick => Row::shown(WORK, whole.work / glued.work),
-            Size::Full => Row::at_least(WORK, whole.work / glued.work, 3.0).regression(),
+            Size::Full => Row::at_least(WORK, whole.work / glued.work, 10.0),
         },
     ])
 }

@@ -44,6 +44,7 @@ pub fn mortar_rows(
             component,
             inner: terms(inner, component),
             outer: terms(outer, component),
+            ..Row::default()
         })
     });
     Rows {

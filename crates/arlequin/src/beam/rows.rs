@@ -113,6 +113,7 @@ impl BeamOverlap<'_> {
                     component: mode as u32,
                     inner,
                     outer,
+                    ..Row::default()
                 });
             }
         }

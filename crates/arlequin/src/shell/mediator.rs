@@ -18,6 +18,8 @@ const APART: f64 = 0.9;
 pub(super) struct Function {
     /// Its node.
     pub node: u32,
+    /// The director there.
+    pub director: [f64; 3],
     /// Axes of the rotations, across the director: in its order each is near one of those of coordinates, whose number it has.
     pub axes: [(usize, [f64; 3]); 2],
     /// Square root of h²/12, m.
@@ -114,6 +116,7 @@ impl Support {
     fn function(&self, node: u32) -> Function {
         Function {
             node,
+            director: self.director,
             axes: across(&self.director),
             gyration: self.gyration,
         }

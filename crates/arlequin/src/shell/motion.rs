@@ -3,20 +3,20 @@
 use carom_elements::{Kind, MAX_NODES};
 
 use super::model::ShellCell;
-use crate::polytope::{cross, sub};
+use crate::polytope::sub;
 
 pub(super) const MOST: usize = 4;
 
-/// A matrix.
-pub(super) type Mat = [[f64; 3]; 3];
-
-/// Shape functions of an element at a place: u = Σ N_b u_b + G_b θ_b.
+/// The motion of an element at a place: with places x_b of the nodes, their rotations R_b and directors d_b, the place is
+/// Σ N_b x_b + (e + z) N_b R_b d_b + R_b w_b, the last without what rotations about the normal do in it.
 pub(super) struct Motion {
     pub n: [f64; MOST],
-    /// z d.
+    /// z d, with d = Σ N_b d_b.
     pub arm: [f64; 3],
-    /// G_b = -N_b [e D_b + z d_b]× + d ℓ_bᵀ.
-    pub turned: [Mat; MOST],
+    /// (e + z) N_b d_b.
+    pub ends: [[f64; 3]; MOST],
+    /// w_b, whose sum is zero.
+    pub bent: [[f64; 3]; MOST],
 }
 
 impl ShellCell {
@@ -33,44 +33,38 @@ impl ShellCell {
             let table = kind.table();
             (table.shape)(&[*r, *s, 0.0], &mut out[..table.nodes]);
         }
-        let mut d = [0.0; 3];
-        for (n, own) in n.iter().zip(&self.directors) {
-            (0..3).for_each(|i| d[i] += n * own[i]);
-        }
-        let bent = self.bent(&quadratic);
         let mut motion = Motion {
             n: [0.0; MOST],
-            arm: d.map(|d| z * d),
-            turned: [[[0.0; 3]; 3]; MOST],
+            arm: [0.0; 3],
+            ends: [[0.0; 3]; MOST],
+            bent: self.bent(&quadratic),
         };
         for (b, own) in self.directors.iter().enumerate() {
             motion.n[b] = n[b];
-            let [x, y, w] = own.map(|d| n[b] * (self.offset + z) * d);
-            let spin = [[0.0, w, -y], [-w, 0.0, x], [y, -x, 0.0]];
-            motion.turned[b] = [0, 1, 2].map(|i| [0, 1, 2].map(|j| spin[i][j] + d[i] * bent[b][j]));
+            motion.ends[b] = own.map(|d| n[b] * (self.offset + z) * d);
+            (0..3).for_each(|i| motion.arm[i] += z * n[b] * own[i]);
         }
         motion
     }
 
-    /// ℓ_b: the deflection Σ ℓ_b·θ_b without shear beside that of the nodes. An edge e from i to j has in its middle
-    /// (θ_j·(d_j × e) - θ_i·(d_i × e))/8, a quadrilateral in its centre c Σ θ_a·(d_a × (x_a - c))/8. Exact for constant curvatures.
+    /// w_b: the deflection Σ R_b w_b without shear beside that of the nodes. An edge e from i to j has in its middle
+    /// (R_i - R_j) e/8, a quadrilateral in its centre c -Σ R_a (x_a - c)/8. Exact for constant curvatures.
     fn bent(&self, quadratic: &[f64; MAX_NODES]) -> [[f64; 3]; MOST] {
         let count = self.x.len();
         let mut bent = [[0.0; 3]; MOST];
         let mut add = |node: usize, way: &[f64; 3], factor: f64| {
-            let by = cross(&self.directors[node], way);
-            (0..3).for_each(|i| bent[node][i] += 0.125 * factor * by[i]);
+            (0..3).for_each(|i| bent[node][i] += 0.125 * factor * way[i]);
         };
         for i in 0..count {
             let j = (i + 1) % count;
             let edge = sub(&self.x[j], &self.x[i]);
-            add(j, &edge, quadratic[count + i]);
-            add(i, &edge, -quadratic[count + i]);
+            add(i, &edge, quadratic[count + i]);
+            add(j, &edge, -quadratic[count + i]);
         }
         if count == 4 {
             let centre = crate::polytope::Polytope::mean(&self.x);
             for (node, x) in self.x.iter().enumerate() {
-                add(node, &sub(x, &centre), quadratic[8]);
+                add(node, &sub(x, &centre), -quadratic[8]);
             }
         }
         bent
@@ -80,6 +74,7 @@ impl ShellCell {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::polytope::cross;
     use carom_mesh::generate;
 
     #[test]
@@ -102,12 +97,12 @@ mod tests {
                 let (mut at, mut found) = ([0.0; 3], [0.0; 3]);
                 for (b, x) in shell.x.iter().enumerate() {
                     let theta = turned(x);
+                    let ends = cross(&theta, &motion.ends[b]);
                     for i in 0..3 {
                         at[i] += motion.n[b] * x[i];
-                        let row = motion.turned[b][i];
-                        found[i] += (0..3).map(|j| row[j] * theta[j]).sum::<f64>();
+                        found[i] += ends[i];
                     }
-                    found[2] += motion.n[b] * w(x);
+                    found[2] += motion.n[b] * w(x) + cross(&theta, &motion.bent[b])[2];
                 }
                 let theta = turned(&at);
                 let z = 0.05 * place[2];

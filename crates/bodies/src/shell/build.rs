@@ -33,8 +33,8 @@ impl Shell {
     ///
     /// # Errors
     /// No cell, cells that are neither tri3 nor quad4, a mesh that is not one of space; a cell without area or that is not convex, or too warped;
-    /// neighbours whose normals disagree; a material at finite strain that is no metal, a formulation; plies that taper; weights with finite
-    /// rotations or of a metal, too few of them, or negative ones.
+    /// neighbours whose normals disagree; a material at finite strain that is no metal, a formulation; plies whose thickness changes; nodes without one; weights of one
+    /// point or of a metal, too few of them, or negative ones.
     pub(crate) fn new(
         mesh: &Mesh,
         spec: BodySpec,
@@ -72,7 +72,7 @@ impl Shell {
                 form = form.with_one_point(&middle, &centre);
                 centres.push(centre);
             }
-            let mut element = through.element((reference, form), nodes.len());
+            let mut element = through.element((reference, form), nodes);
             if let (Formulation::Reduced { hourglass }, Some(centre)) =
                 (spec.formulation, centres.last())
             {
@@ -210,10 +210,10 @@ pub(super) fn check(mesh: &Mesh, spec: &BodySpec, section: &ShellSection) -> Res
     let plies = spec.plies.iter().map(|ply| &ply.material);
     let materials = || std::iter::once(&spec.material).chain(plies.clone());
     let flows = materials().any(|law| law.plane_stress().is_some());
-    if spec.weights.is_some() && (flows || section.rotations == Rotations::Finite) {
+    if spec.weights.is_some() && (flows || spec.formulation != Formulation::Full) {
         return Err(Error::ShellRefused {
             body: body(),
-            what: "a share of their volume with another model if they turn by any angle or flow",
+            what: "a share of their volume with another model if they flow or have one point",
         });
     }
     if materials().any(|law| law.finite().is_some() && law.plane_stress().is_none()) {
@@ -233,16 +233,28 @@ pub(super) fn check(mesh: &Mesh, spec: &BodySpec, section: &ShellSection) -> Res
         }
         Formulation::BBar => return Err(Error::LinearFormulation { body: body() }),
     }
-    if spec.weights.is_some() && (section.taper.is_some() || !spec.plies.is_empty()) {
+    let varies = spec.nodal_thickness.is_some();
+    if spec.weights.is_some() && (varies || !spec.plies.is_empty()) {
         return Err(Error::ShellRefused {
             body: body(),
-            what: "a share of their volume with another model if they have plies or a taper",
+            what: "a share of their volume with another model if they have plies or a thickness that changes",
         });
     }
-    if section.taper.is_some() && !spec.plies.is_empty() {
+    if varies && !spec.plies.is_empty() {
         return Err(Error::ShellRefused {
             body: body(),
             what: "plies whose thickness changes",
+        });
+    }
+    let nodal = spec.nodal_thickness.iter();
+    let mut unfit = nodal.flat_map(|nodal| {
+        let nodes = spec.cells.iter().flat_map(|&cell| mesh.element_nodes(cell));
+        nodes.filter(|&&node| !nodal.get(node as usize).is_some_and(|h| *h > 0.0))
+    });
+    if unfit.next().is_some() {
+        return Err(Error::ShellRefused {
+            body: body(),
+            what: "a node without a thickness above zero",
         });
     }
     for &cell in &spec.cells {

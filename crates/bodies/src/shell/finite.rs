@@ -128,7 +128,7 @@ impl Element {
             }
             rows
         };
-        for (point, area) in self.form.areas.iter().enumerate() {
+        for (point, area) in self.working().enumerate() {
             let section = match flow {
                 None => self.sections[point].tangent(),
                 Some((layers, old)) => {
@@ -137,7 +137,7 @@ impl Element {
                     section
                 }
             };
-            add_product(&rows(&place, point), &section, *area, &mut k);
+            add_product(&rows(&place, point), &section, area, &mut k);
         }
         for (list, stiffness) in (1..).zip(self.unseen()) {
             add_product(&rows(&place, list), &diagonal(&stiffness), 1.0, &mut k);

@@ -36,7 +36,7 @@ use carom_mesh::ElementId;
 
 pub use self::defects::{ShellDefect, shell_defects};
 pub use self::results::Resultants;
-pub use self::section::{LAYERS, Ply, ShellSection, Taper};
+pub use self::section::{LAYERS, Ply, ShellSection};
 pub use self::surface::{ShellPlate, plates};
 
 use self::element::{Element, PER_NODE};
@@ -76,6 +76,14 @@ impl Shell {
     /// Its section.
     pub fn section(&self) -> &ShellSection {
         &self.section
+    }
+
+    /// Least and largest mean thickness of an element, m.
+    pub fn thickness_range(&self) -> [f64; 2] {
+        let all = self.elements.iter().map(Element::mean_thickness);
+        all.fold([f64::INFINITY, 0.0], |[least, most], own| {
+            [least.min(own), most.max(own)]
+        })
     }
 
     /// Cells of the mesh.

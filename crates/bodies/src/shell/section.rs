@@ -20,10 +20,8 @@ pub(super) type AtPoint = [f64; STRAINS];
 /// A plate or shell: its thickness, and how it stands to the surface of its nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShellSection {
-    /// m; of one that tapers the largest, of plies their sum.
+    /// m; of one that changes from node to node the largest, of plies their sum.
     pub thickness: f64,
-    /// How it changes from node to node.
-    pub taper: Option<Taper>,
     /// From the nodes to the middle surface along the normal, m.
     pub offset: f64,
     /// Layers through the thickness of a metal that flows, an even number; each has two points.
@@ -37,44 +35,10 @@ impl ShellSection {
     pub fn new(thickness: f64) -> ShellSection {
         ShellSection {
             thickness,
-            taper: None,
             offset: 0.0,
             layers: LAYERS,
             rotations: Rotations::Small,
         }
-    }
-}
-
-impl ShellSection {
-    /// Thickness at a place, m.
-    pub fn thickness_at(&self, x: &[f64; 3]) -> f64 {
-        self.taper.map_or(self.thickness, |taper| taper.at(x))
-    }
-
-    /// Mean thickness over places, m.
-    pub fn mean_thickness<'a>(&self, x: impl ExactSizeIterator<Item = &'a [f64; 3]>) -> f64 {
-        let count = x.len() as f64;
-        x.map(|x| self.thickness_at(x)).sum::<f64>() / count
-    }
-}
-
-/// A thickness that changes linearly along an axis between two places, and is constant beyond them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Taper {
-    /// Unit vector.
-    pub along: [f64; 3],
-    /// Coordinate along it, m, and thickness there, m.
-    pub from: [f64; 2],
-    /// The same at the other end.
-    pub to: [f64; 2],
-}
-
-impl Taper {
-    fn at(&self, x: &[f64; 3]) -> f64 {
-        let place: f64 = x.iter().zip(&self.along).map(|(x, a)| x * a).sum();
-        let part = (place - self.from[0]) / (self.to[0] - self.from[0]);
-        let part = part.clamp(0.0, 1.0);
-        (1.0 - part) * self.from[1] + part * self.to[1]
     }
 }
 

@@ -38,11 +38,7 @@ pub fn plates(
         ShellPlate {
             x: nodes.clone().map(|a| middle.x[a].into()).collect(),
             directors: nodes.map(|a| reference.axes[a][DIRECTOR].into()).collect(),
-            thickness: section.mean_thickness(
-                mesh.element_nodes(cell)
-                    .iter()
-                    .map(|&node| &mesh.nodes[node as usize]),
-            ),
+            thickness: spec.mean_thickness(section, mesh.element_nodes(cell)),
             offset: section.offset,
         }
     });

@@ -60,21 +60,25 @@ impl Through<'_> {
 
     /// Section and mass where it is this thick, m.
     fn at(&self, thickness: f64) -> (ElasticSection, Inertia) {
-        if self.section.taper.is_none() {
+        if self.spec.nodal_thickness.is_none() {
             return self.uniform;
         }
         let plies = plies(self.spec, thickness);
         (ElasticSection::new(&plies), Inertia::new(&plies))
     }
 
-    /// An element, whose nodes have no numbers yet.
+    /// An element on these nodes of the mesh, which have no numbers of the system yet.
     pub(super) fn element(
         &self,
         (reference, form): (Configuration, Form),
-        count: usize,
+        nodes: &[u32],
     ) -> Element {
+        let count = nodes.len();
         let longest = longest(&reference.x[..count]);
-        let nodal = reference.x.map(|x| self.section.thickness_at(&x.into()));
+        let mut nodal = [self.section.thickness; MOST];
+        for (nodal, &node) in nodal.iter_mut().zip(nodes) {
+            *nodal = self.spec.thickness_at(&self.section, node);
+        }
         let at = |n: &[f64; MOST]| n.iter().zip(&nodal).map(|(n, h)| n * h).sum::<f64>();
         let mean = nodal[..count].iter().sum::<f64>() / count as f64;
         let of_mass: Vec<f64> = form.shapes.iter().map(at).collect();

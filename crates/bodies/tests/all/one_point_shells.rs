@@ -6,7 +6,7 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Vec3;
 use carom_bodies::{
     Body, BodySpec, Error, Formulation, Kinematics, Placement, Ply, Rotations, Scratch,
-    ShellSection, Stored, Taper,
+    ShellSection, Stored,
 };
 use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_mesh::{ElementId, Mesh};
@@ -31,13 +31,11 @@ fn elastic(made_of: &(Mesh, Vec<ElementId>)) -> Body {
     made(made_of, STEEL, section(Rotations::Finite, 0.0)).unwrap()
 }
 
-/// In the nodes; beside them with a taper; beside them of two plies.
+/// In the nodes; beside them with a thickness that changes; beside them of two plies.
 fn sections(made_of: &(Mesh, Vec<ElementId>), formulation: Formulation) -> [Body; 3] {
-    let taper = Taper {
-        along: [0.6, 0.8, 0.0],
-        from: [0.2, THICKNESS],
-        to: [1.1, 0.5 * THICKNESS],
-    };
+    let nodes = made_of.0.nodes.iter();
+    let taper = nodes.map(|x| THICKNESS * (1.0 - 0.3 * x[0] - 0.2 * x[1] * x[1]));
+    let taper: Vec<f64> = taper.collect();
     let ply = |young, thickness| Ply {
         material: Law::Elastic(Elastic { young, ..STEEL }),
         thickness,
@@ -49,13 +47,11 @@ fn sections(made_of: &(Mesh, Vec<ElementId>), formulation: Formulation) -> [Body
         (-0.02, None, plies),
     ]
     .map(|(offset, taper, plies)| {
-        let section = ShellSection {
-            taper,
-            ..section(Rotations::Finite, offset)
-        };
+        let section = section(Rotations::Finite, offset);
         let cells = made_of.1.clone();
         let mut spec = BodySpec::new("s", cells, Kinematics::Shell(section), STEEL);
         (spec.formulation, spec.plies) = (formulation, plies);
+        spec.nodal_thickness = taper;
         let number: Vec<u32> = (0..9).collect();
         Body::new(&made_of.0, spec, &number, &map(Rotations::Finite)).unwrap()
     })
@@ -231,15 +227,13 @@ fn a_warped_shell_turned_by_any_angle_stores_nothing() {
 #[test]
 fn the_mass_of_a_taper_is_that_of_its_mean() {
     let made_of = mesh(false, 0.0);
-    let section = ShellSection {
-        taper: Some(Taper {
-            along: [1.0, 0.0, 0.0],
-            from: [0.0, THICKNESS],
-            to: [1.0, 0.5 * THICKNESS],
-        }),
-        ..section(Rotations::Finite, 0.0)
-    };
-    let body = made(&made_of, STEEL, section).unwrap();
+    let section = section(Rotations::Finite, 0.0);
+    let mut spec = BodySpec::new("s", made_of.1.clone(), Kinematics::Shell(section), STEEL);
+    let nodes = made_of.0.nodes.iter();
+    spec.nodal_thickness = Some(nodes.map(|x| THICKNESS * (1.0 - 0.5 * x[0])).collect());
+    spec.formulation = FULL_WEIGHT;
+    let number: Vec<u32> = (0..9).collect();
+    let body = Body::new(&made_of.0, spec, &number, &map(Rotations::Finite)).unwrap();
     let mut mass = vec![0.0; 54];
     body.add_lumped_mass(&mut mass);
     let whole: f64 = mass.chunks_exact(6).map(|own| own[0]).sum();

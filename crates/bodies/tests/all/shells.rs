@@ -6,7 +6,8 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::{Mat3, Vec3};
 use carom_algebra::unknowns::{NodeKind, Unknowns};
 use carom_bodies::{
-    Body, BodySpec, CellWeights, Error, Kinematics, Placement, Rotations, Scratch, ShellSection,
+    Body, BodySpec, CellWeights, Error, Formulation, Kinematics, Placement, Rotations, Scratch,
+    ShellSection,
 };
 use carom_elements::Kind;
 use carom_materials::{Elastic, J2Plasticity, Law, NeoHooke};
@@ -498,6 +499,7 @@ fn cells_that_make_no_shell_are_refused() {
     };
     let error = refused(mesh(false, 0.0), &|spec| {
         spec.kinematics = Kinematics::Shell(section(Rotations::Finite, 0.0));
+        spec.formulation = Formulation::Reduced { hourglass: 0.05 };
         spec.weights = Some(weights.clone())
     });
     assert!(matches!(error, Error::ShellRefused { .. }), "{error}");

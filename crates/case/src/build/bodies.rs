@@ -32,16 +32,18 @@ impl Builder<'_> {
             let Some(group) = self.group(mesh, &format!("{path}.region"), &body.region) else {
                 continue;
             };
-            let (mut material, mut plies) = (material, Vec::new());
+            let (mut material, mut plies, mut nodal_thickness) = (material, Vec::new(), None);
             let kinematics = match (&body.section, material) {
                 (Some(Section::Beam(section)), Some(material)) => {
                     self.beam(mesh, &path, section, material)
                 }
                 (Some(Section::Shell(section)), Some(own)) => {
-                    let made = self.shell(mesh, &path, (section, own), materials);
-                    made.map(|(kinematics, of_section, law)| {
-                        (plies, material) = (of_section, Some(law));
-                        kinematics
+                    let cells = &group.elements;
+                    let made = self.shell((mesh, cells), &path, (section, own), materials);
+                    made.map(|made| {
+                        (plies, material) = (made.plies, Some(made.material));
+                        nodal_thickness = made.nodal_thickness;
+                        made.kinematics
                     })
                 }
                 (Some(Section::Beam(_) | Section::Shell(_)), None) => None,
@@ -82,6 +84,7 @@ impl Builder<'_> {
                 deletion: body.deletion.map(|deletion| deletion.plastic_strain),
                 releases: Vec::new(),
                 plies,
+                nodal_thickness,
             };
             let spec = self.hinged(mesh, (&path, body), spec);
             let spin = self.initial_spin(mesh, (&path, body), &spec);

@@ -34,6 +34,7 @@ mod signals;
 mod stops;
 mod supports;
 mod surfaces;
+mod thickness;
 mod thin_overlaps;
 mod tied;
 mod ties;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use carom_bodies::{
-    Kinematics, Ply, Rotations, SHELL_LAYERS, ShellDefect, ShellSection, Taper, shell_defects,
+    Kinematics, Ply, Rotations, SHELL_LAYERS, ShellDefect, ShellSection, shell_defects,
 };
 use carom_dynamics::ModelBody;
 use carom_materials::Law;
@@ -14,15 +14,25 @@ use crate::error::Problem;
 use crate::offenders::Offenders;
 use crate::schema::{self, Body, Section};
 
+/// What a section of shells makes of a body.
+pub(super) struct BuiltShell {
+    pub(super) kinematics: Kinematics,
+    pub(super) plies: Vec<Ply>,
+    /// A material of it, one that flows if any does.
+    pub(super) material: Law,
+    /// Thickness at each node of the mesh, m, if it changes.
+    pub(super) nodal_thickness: Option<Vec<f64>>,
+}
+
 impl Builder<'_> {
-    /// The kinematics of shells with this section, its plies, and a material of it, one that flows if any does. `material`: of the body; `path`: of the body.
+    /// Shells on these cells with this section. `material`: of the body; `path`: of the body.
     pub(super) fn shell(
         &mut self,
-        mesh: &Mesh,
+        (mesh, cells): (&Mesh, &[ElementId]),
         path: &str,
         (given, material): (&schema::ShellSection, Law),
         materials: &BTreeMap<String, Law>,
-    ) -> Option<(Kinematics, Vec<Ply>, Law)> {
+    ) -> Option<BuiltShell> {
         let plies = self.plies(path, (given, material), materials)?;
         let laws: Vec<Law> = match plies.is_empty() {
             true => vec![material],
@@ -48,20 +58,22 @@ impl Builder<'_> {
             schema::Rotations::Small => Rotations::Small,
             schema::Rotations::Finite => Rotations::Finite,
         };
-        let whole = plies.iter().map(|ply| ply.thickness).sum();
-        let constant = given.thickness.map_or(whole, |thickness| thickness.0);
-        let taper = match &given.taper {
-            Some(taper) => Some(self.taper(mesh, path, (taper, constant))?),
-            None => None,
+        let (thickness, nodal_thickness) = match plies.is_empty() {
+            true => self.thickness((mesh, cells), path, given)?,
+            false => (plies.iter().map(|ply| ply.thickness).sum(), None),
         };
         let section = ShellSection {
             rotations,
-            taper,
             offset: given.offset.map_or(0.0, |offset| offset.0),
             layers,
-            ..ShellSection::new(taper.map_or(constant, |taper| taper.to[1].max(constant)))
+            ..ShellSection::new(thickness)
         };
-        Some((Kinematics::Shell(section), plies, material))
+        Some(BuiltShell {
+            kinematics: Kinematics::Shell(section),
+            plies,
+            material,
+            nodal_thickness,
+        })
     }
 
     /// Layers through the thickness.
@@ -107,30 +119,9 @@ impl Builder<'_> {
         materials: &BTreeMap<String, Law>,
     ) -> Option<Vec<Ply>> {
         let path = format!("{path}.section.shell");
-        let plies = match (&given.plies, given.thickness) {
-            (None, Some(_)) => return Some(Vec::new()),
-            (Some(plies), None) if given.taper.is_none() => plies,
-            (Some(_), Some(thickness)) => {
-                let message = "the thickness of plies is their sum";
-                let problem = Problem::new(format!("{path}.thickness"), message);
-                let problem = problem.found(format!("{} m", thickness.0));
-                self.problems
-                    .push(problem.accepted(["`thickness`, or `plies`"]));
-                return None;
-            }
-            (Some(_), None) => {
-                let message = "the thickness of plies does not change along the shell";
-                let problem = Problem::new(format!("{path}.taper"), message);
-                self.problems
-                    .push(problem.accepted(["no `taper`", "one material, and no `plies`"]));
-                return None;
-            }
-            (None, None) => {
-                let problem = Problem::new(path, "a shell without thickness");
-                self.problems
-                    .push(problem.accepted(["`thickness`, or `plies`"]));
-                return None;
-            }
+        self.one_thickness(&path, given)?;
+        let Some(plies) = &given.plies else {
+            return Some(Vec::new());
         };
         let mut all = Vec::with_capacity(plies.len());
         for (number, ply) in plies.iter().enumerate() {
@@ -149,31 +140,6 @@ impl Builder<'_> {
             });
         }
         Some(all)
-    }
-
-    /// A taper that begins with a thickness, m.
-    fn taper(
-        &mut self,
-        mesh: &Mesh,
-        path: &str,
-        (given, thickness): (&schema::ShellTaper, f64),
-    ) -> Option<Taper> {
-        let path = format!("{path}.section.shell.taper");
-        let along = self.normal(mesh, &format!("{path}.along"), &given.along)?;
-        if given.to.0 <= given.from.0 {
-            let problem = Problem::new(format!("{path}.to"), "a taper that ends before it begins");
-            self.problems.push(
-                problem
-                    .found(format!("{} m", given.to.0))
-                    .accepted([format!("above {} m", given.from.0)]),
-            );
-            return None;
-        }
-        Some(Taper {
-            along,
-            from: [given.from.0, thickness],
-            to: [given.to.0, given.thickness.0],
-        })
     }
 
     /// Refuses cells that no shell can be on, of one body, and normals of bodies that share edges.
@@ -274,10 +240,9 @@ impl Builder<'_> {
                 matches!(body.spec.kinematics, Kinematics::Shell(_))
                     && body.spec.cells.contains(&cell)
             });
-            match owner.map(|body| body.spec.kinematics) {
-                Some(Kinematics::Shell(section)) => {
-                    let nodes = mesh.element_nodes(cell).iter();
-                    0.5 * section.mean_thickness(nodes.map(|&node| &mesh.nodes[node as usize]))
+            match owner.map(|body| (body.spec.kinematics, &body.spec)) {
+                Some((Kinematics::Shell(section), spec)) => {
+                    0.5 * spec.mean_thickness(&section, mesh.element_nodes(cell))
                 }
                 _ => 0.0,
             }

@@ -240,14 +240,14 @@ impl Builder<'_> {
         })
     }
 
-    /// Two columns of a file in SI units, and the lines of their rows.
-    pub(super) fn file_columns(
+    /// Columns of a file in SI units, and the lines of their rows.
+    pub(super) fn file_columns<const N: usize>(
         &mut self,
         folder: &Path,
         path: &str,
         file: &str,
-        keys: [FileColumn; 2],
-    ) -> Option<(Vec<[f64; 2]>, Vec<usize>)> {
+        keys: [FileColumn; N],
+    ) -> Option<(Vec<[f64; N]>, Vec<usize>)> {
         let bytes = file::regular(&folder.join(file), LARGEST);
         let text = bytes.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
         let table = text
@@ -262,10 +262,16 @@ impl Builder<'_> {
                 return None;
             }
         };
-        let [one, other] = keys.map(|column| self.file_column(path, (file, &table), &column));
-        let ((one, lines), (other, _)) = (one?, other?);
-        let points = one.into_iter().zip(other);
-        Some((points.map(|(a, b)| [a, b]).collect(), lines))
+        let found = keys.map(|column| self.file_column(path, (file, &table), &column));
+        let mut columns = Vec::with_capacity(N);
+        let mut lines = Vec::new();
+        for column in found {
+            let (values, of_values) = column?;
+            columns.push(values);
+            lines = of_values;
+        }
+        let row = |k: usize| std::array::from_fn(|column| columns[column][k]);
+        Some(((0..lines.len()).map(row).collect(), lines))
     }
 
     /// The values of a column in SI units, and their lines.

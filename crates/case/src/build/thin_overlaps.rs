@@ -1,6 +1,6 @@
 //! Overlaps of beams or shells and solids.
 
-use carom_bodies::{Kinematics, Rotations};
+use carom_bodies::{Formulation, Kinematics, Rotations};
 use carom_dynamics::ModelBody;
 use carom_mesh::{ElementId, Mesh};
 use carom_zones::{Error, Glued, glue_thin};
@@ -194,18 +194,13 @@ impl Thin {
         Some(Problem::new(path, message).found(name).accepted(accepted))
     }
 
-    /// Refuses shells that turn by any angle, and thin bodies that flow.
+    /// Refuses shells with one point, and thin bodies that flow.
     fn refuse_own(self, (path, name): (&str, &str), body: &ModelBody) -> Option<Problem> {
         let thin = self.name();
-        let rotations = match body.spec.kinematics {
-            Kinematics::Beam(section) => section.rotations,
-            Kinematics::Shell(section) => section.rotations,
-            _ => return None,
-        };
         let problem = |message| Problem::new(path, message).found(name);
-        if rotations == Rotations::Finite && matches!(self, Thin::Shell) {
-            let message = format!("{thin}s with finite rotations cannot be glued in volume");
-            let accepted = format!("rotations = \"small\" in the section of the {thin}");
+        if body.spec.formulation != Formulation::Full {
+            let message = format!("a {thin} with one point cannot be glued in volume");
+            let accepted = format!("a {thin} without `formulation`");
             return Some(problem(message).accepted([accepted]));
         }
         let material = &body.spec.material;
@@ -238,16 +233,18 @@ impl Thin {
     }
 }
 
-/// Refuses solids at small strain beside beams that turn by any angle.
+/// Refuses solids at small strain beside thin bodies that turn by any angle.
 fn refuse_turns((path, name): (&str, &str), [thin, solid]: [&ModelBody; 2]) -> Option<Problem> {
     let turns = thin.spec.kinematics.rotations() == Some(Rotations::Finite);
     if !turns || solid.spec.material.finite().is_some() {
         return None;
     }
-    let message = "a solid at small strain does not turn with a beam of finite rotations";
+    let thin = Thin::of(thin)?.name();
+    let message =
+        format!("a solid at small strain does not turn with a {thin} of finite rotations");
     let problem = Problem::new(path, message).found(name);
     Some(problem.accepted([
-        "a body of a material at finite strain, such as neo-hooke",
-        "rotations = \"small\" in the section of the beam",
+        "a body of a material at finite strain, such as neo-hooke".to_owned(),
+        format!("rotations = \"small\" in the section of the {thin}"),
     ]))
 }

@@ -196,8 +196,10 @@ pub struct BarSection {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ShellSection {
-    /// Thickness; with `taper` that before it. Required without `plies`.
+    /// Thickness; with `taper` that before it. Required without `plies` and `nodal-thickness`.
     pub thickness: Option<Length>,
+    /// Thickness at the nodes from a text file, in place of `thickness`; linear between them.
+    pub nodal_thickness: Option<ThicknessColumns>,
     /// Change of the thickness along an axis, linear between nodes. Default: none.
     pub taper: Option<ShellTaper>,
     /// Layers of several materials, in the order in which the normal of the cells passes them, in place of `thickness`; metal has two points in each. Default: one
@@ -226,6 +228,22 @@ pub struct ShellTaper {
     pub to: Coordinate,
     /// Thickness beyond `to`.
     pub thickness: Length,
+}
+
+/// Columns of a text file with the thickness at places of nodes, as in signals. Each node of the body has a line; others are left out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ThicknessColumns {
+    /// Path of the file, from the folder of the case file.
+    pub file: String,
+    /// Columns of the coordinates of the node.
+    pub place: [String; 3],
+    /// Column of the thickness.
+    pub thickness: String,
+    /// Unit of the coordinates, if the columns do not say it. Default: m.
+    pub place_unit: Option<String>,
+    /// Unit of the thickness, if the column does not say it. Default: m.
+    pub unit: Option<String>,
 }
 
 /// A layer of one material.

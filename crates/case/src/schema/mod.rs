@@ -34,6 +34,7 @@ pub use body::{
     AxisymmetricSection, BarSection, Body, Damping as BodyDamping, Formulation, FormulationName,
     FormulationWith, Initial, Mass, ModalDamping, Movement, MovementCourse, MovementPoint,
     PlaneSection, Reduced, Rigid, Section, ShellPly, ShellSection, ShellTaper, Support,
+    ThicknessColumns,
 };
 pub use carom_laws::GivenLaw;
 pub use carom_quantities::{

@@ -36,6 +36,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             deletion: None,
             releases: Vec::new(),
             plies: Vec::new(),
+            nodal_thickness: None,
         },
         mass: MassKind::Lumped,
         velocity: [0.0; 3],

@@ -1,15 +1,17 @@
 //! Rows of links that turn with their nodes: between places and directors.
 //!
-//! A row of an overlap of beams with finite rotations and a solid is
+//! A row of an overlap of beams or shells with finite rotations and a solid is
 //!
-//! `h = Σ_n (D a_n)·x_n + Σ_B Σ_ac G_ac d_a·d_cᴮ = 0`
+//! `h = Σ_n (D a_n)·(x_n - x_A) + Σ_B Σ_ac G_ac d_a·d_cᴮ = h in the reference position`
 //!
-//! with places x, directors d_cᴮ, the columns of the rotation of node B, and D the rotation of the node of the mediator in rows of moments, the identity in rows of places, where d_a are
-//! the axes of coordinates. a and G follow from the linear row: of small turns from the reference position it has the same coefficients. With `x = Σ N_B (x_B + R_B P_B)` for the beam and
-//! `T = ∫ N_A ζ ⊗ P_B` its rotations have the coefficients `J = tr T - Tᵀ`, so `T = tr J/2 - Jᵀ`, and `G = ê_j T`. The own node's part of G does not change.
+//! with places x, directors d_cᴮ, the columns of the rotation of node B, and D the rotation of the node A of the mediator, whose directors are d_a: in the frame of A places and
+//! directors of the others are linear. Σ a_n is zero. The own node's part of G does not change. In the reference position the row has the coefficients of the linear one.
 //!
-//! h is linear in each of its factors, so that `h₊ - h` is the row at the means of places and directors times the change of both, which forces along the row over the step need to do no
-//! work; and h does not change where all turn, so that these forces have no moment.
+//! Of shells G is [given](carom_arlequin::Row::axes). Of beams it follows from the linear rows: with `x = Σ N_B (x_B + R_B P_B)` and
+//! `T = ∫ N_A ζ ⊗ P_B` rotations have the coefficients `J = tr T - Tᵀ` in rows of moments, so `T = tr J/2 - Jᵀ`, and `G = ê_j T`.
+//!
+//! h is linear in each of the factors of its products, so that `h₊ - h` is the row at the means of places and directors times the change of both, which forces along the row over the step need
+//! to do no work; and h does not change where all turn, so that these forces have no moment.
 
 #[cfg(test)]
 mod tests;
@@ -19,7 +21,7 @@ use std::collections::BTreeMap;
 use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::{Mat3, Vec3};
 use carom_algebra::unknowns::{Kind, Unknowns};
-use carom_arlequin::Row;
+use carom_arlequin::{AxisProducts, Row};
 use carom_bodies::balanced;
 
 use crate::error::Error;
@@ -48,8 +50,8 @@ pub struct TurningRows {
 struct Turning {
     /// Number among the rows of the links.
     row: usize,
-    /// The node of the mediator, in a row of moments.
-    lead: Option<u32>,
+    /// The node of the mediator.
+    lead: u32,
     /// Nodes with a.
     places: Vec<(u32, Vec3)>,
     /// Nodes with G.
@@ -105,7 +107,8 @@ impl TurningRows {
         let modes = if dim == 2 { 3 } else { 6 };
         let mut inner = Vec::new();
         for (node, group) in groups {
-            if group.len() != modes {
+            let given = group.values().any(|row| !row.axes.is_empty());
+            if !given && group.len() != modes {
                 return Err(Error::TurningRows {
                     link: link.name.clone(),
                     node,
@@ -113,16 +116,16 @@ impl TurningRows {
             }
             let parts = group.values().map(|row| parts(row, (number, unknowns)));
             let parts: Vec<Parts> = parts.collect();
-            let lead = number[node as usize];
-            for component in 0..modes {
-                let (lead, directors) = match component < dim {
-                    true => (None, of_place(&parts, component, dim)),
-                    false => (Some(lead), of_moment(&parts, component - dim, dim)),
+            for (k, row) in group.values().enumerate() {
+                let directors = match row.component as usize {
+                    _ if given => of_products(&row.axes, number),
+                    component if component < dim => of_place(&parts, component, dim),
+                    component => of_moment(&parts, component - dim, dim),
                 };
                 let mut made = Turning {
                     row: rows.len(),
-                    lead,
-                    places: parts[component]
+                    lead: number[node as usize],
+                    places: parts[k]
                         .0
                         .iter()
                         .map(|(n, part)| (*n, part.place))
@@ -131,21 +134,14 @@ impl TurningRows {
                     reference: 0.0,
                     terms: Vec::new(),
                 };
-                inner.push(made.find_terms(&parts[component], unknowns));
-                made.reference = made.value(
-                    &Turned {
-                        frames: &[],
-                        u: &[],
-                        from: None,
-                    },
-                    (unknowns, x),
-                );
-                let mut row = LinkRow::new();
+                inner.push(made.find_terms(&parts[k], unknowns));
                 let rest = Turned {
                     frames: &[],
                     u: &[],
                     from: None,
                 };
+                made.reference = made.value(&rest, (unknowns, x));
+                let mut row = LinkRow::new();
                 made.coefficients(&rest, (unknowns, x), &mut row);
                 rows.push(row);
                 self.rows.push(made);
@@ -246,6 +242,15 @@ fn turned(rows: &[Parts]) -> Vec<u32> {
     nodes
 }
 
+/// G as it is given.
+fn of_products(axes: &[AxisProducts], number: &[u32]) -> Vec<(u32, Mat3)> {
+    let of = |own: &AxisProducts| {
+        let g = Mat3::from_fn(|a, c| own.factors[a][c]);
+        (number[own.node as usize], g)
+    };
+    axes.iter().map(of).collect()
+}
+
 /// G of the row of a place: the row of axis i is p × e_i on the rotations of a node with the arm p.
 fn of_place(parts: &[Parts], axis: usize, dim: usize) -> Vec<(u32, Mat3)> {
     let arm = |node: u32| {
@@ -314,9 +319,7 @@ fn moved(node: u32, unknowns: &Unknowns, at: &Turned) -> Vec3 {
 impl Turning {
     /// Takes the own node from G, and lists the unknowns in the order of the parts; how many are inner ones.
     fn find_terms(&mut self, (parts, inner): &Parts, unknowns: &Unknowns) -> usize {
-        if let Some(lead) = self.lead {
-            self.directors.retain(|(node, _)| *node != lead);
-        }
+        self.directors.retain(|(node, _)| *node != self.lead);
         let mut count = 0;
         for (k, (node, _)) in parts.iter().enumerate() {
             for (i, unknown) in unknowns.translations_of(*node).enumerate() {
@@ -327,7 +330,7 @@ impl Turning {
                 let Kind::Rotation(axis) = unknowns.kind(unknown) else {
                     continue;
                 };
-                let source = match (self.lead == Some(*node), of_director) {
+                let source = match (self.lead == *node, of_director) {
                     (true, _) => Source::Lead(axis),
                     (false, Some(place)) => Source::Director(place, axis),
                     (false, None) => continue,
@@ -341,25 +344,14 @@ impl Turning {
         count
     }
 
-    fn lead_matrix(&self, unknowns: &Unknowns, at: &Turned) -> Mat3 {
-        let of = |lead| matrix(lead, unknowns, at);
-        self.lead.map_or(Mat3::identity(), of)
-    }
-
-    /// From the node of the mediator to a node; in rows of places its displacement, whose place is a part of the reference.
+    /// From the node of the mediator to a node.
     fn arm(&self, node: u32, (unknowns, x): (&Unknowns, &[[f64; 3]]), at: &Turned) -> Vec3 {
-        let own = moved(node, unknowns, at);
-        match self.lead {
-            None => own,
-            Some(lead) => {
-                let from = Vec3::from(x[node as usize]) - Vec3::from(x[lead as usize]);
-                from + own - moved(lead, unknowns, at)
-            }
-        }
+        let place = |node: u32| Vec3::from(x[node as usize]) + moved(node, unknowns, at);
+        place(node) - place(self.lead)
     }
 
     fn value(&self, at: &Turned, (unknowns, x): (&Unknowns, &[[f64; 3]])) -> f64 {
-        let d = self.lead_matrix(unknowns, at);
+        let d = matrix(self.lead, unknowns, at);
         let places = self.places.iter();
         let places = places.map(|(node, a)| (d * a).dot(&self.arm(*node, (unknowns, x), at)));
         let directors = self.directors.iter();
@@ -373,7 +365,7 @@ impl Turning {
         (unknowns, x): (&Unknowns, &[[f64; 3]]),
         row: &mut LinkRow,
     ) {
-        let d = self.lead_matrix(unknowns, at);
+        let d = matrix(self.lead, unknowns, at);
         let balance = |node: u32, moment: &Vec3| -> Vec3 {
             if at.u.is_empty() {
                 return *moment;
@@ -394,12 +386,10 @@ impl Turning {
             lead += moment;
             turns.push(balance(*node, &-moment));
         }
-        if let Some(own) = self.lead {
-            for (node, a) in &self.places {
-                lead += (d * a).cross(&self.arm(*node, (unknowns, x), at));
-            }
-            lead = balance(own, &lead);
+        for (node, a) in &self.places {
+            lead += (d * a).cross(&self.arm(*node, (unknowns, x), at));
         }
+        let lead = balance(self.lead, &lead);
         row.clear();
         row.extend(self.terms.iter().map(|&(unknown, source)| {
             let c = match source {
@@ -416,10 +406,10 @@ impl Turning {
             let own = matrix(node, unknowns, at);
             (own, own * Vec3::from(unknowns.spin(node, v)))
         };
-        let (d, w) = self.lead.map_or((Mat3::identity(), Vec3::zeros()), spin);
+        let (d, w) = spin(self.lead);
         let turn = w.cross_matrix();
         let rate = |node: u32| Vec3::from(unknowns.vector(node, v));
-        let origin = self.lead.map_or(Vec3::zeros(), rate);
+        let origin = rate(self.lead);
         let mut sum = 0.0;
         for (node, a) in &self.places {
             let a = d * a;

@@ -59,6 +59,7 @@ fn link() -> (ModelLink, Unknowns, Vec<[f64; 3]>) {
             component: mode as u32,
             inner,
             outer: outer.into_iter().map(|((n, k), c)| term(n, k, c)).collect(),
+            ..Row::default()
         });
     }
     let name = "overlap".to_owned();

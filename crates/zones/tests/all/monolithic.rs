@@ -197,6 +197,7 @@ impl Problem {
             component: 0,
             inner: terms(c, 0),
             outer: terms(s, inner.nodes()),
+            ..Row::default()
         };
         let [inside, outside] = self.schemes;
         let zone = |name: &str, body, scheme, substeps| ModelZone {
