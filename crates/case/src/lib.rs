@@ -8,6 +8,7 @@ pub mod schema;
 
 mod build;
 mod compare;
+mod convergence;
 mod describe;
 mod error;
 mod facts;

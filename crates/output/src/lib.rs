@@ -13,6 +13,7 @@ pub mod folder;
 pub mod form;
 pub mod history;
 pub mod impacts;
+pub mod maxima;
 pub mod modes;
 pub mod page;
 pub mod plot;

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::page::block::Array;
 
 /// The version of what is written here; `report/src/data.js` has the same.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// The head of a page.
 #[derive(Debug, Serialize)]
@@ -156,6 +156,8 @@ pub struct Model {
     pub constants: BTreeMap<&'static str, Array>,
     /// Surfaces of the contacts.
     pub contacts: Vec<Sides>,
+    /// Groups of the mesh.
+    pub groups: Vec<Group>,
     /// Rigid obstacles.
     pub obstacles: Vec<Obstacle>,
     /// Fields beside the displacement.
@@ -178,6 +180,17 @@ pub struct Sides {
 /// A surface.
 #[derive(Debug, Serialize)]
 pub struct Side {
+    /// Corners of triangles.
+    pub triangles: Array,
+    /// Ends of lines.
+    pub lines: Array,
+}
+
+/// A group of the mesh: of cells their part of the surface.
+#[derive(Debug, Serialize)]
+pub struct Group {
+    /// In the mesh.
+    pub name: String,
     /// Corners of triangles.
     pub triangles: Array,
     /// Ends of lines.

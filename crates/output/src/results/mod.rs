@@ -10,6 +10,7 @@
 mod beams;
 mod cells;
 mod conclusion;
+mod contacts;
 mod costs;
 mod discrete;
 mod due;
@@ -22,6 +23,7 @@ mod histories;
 mod impacts;
 mod instants;
 mod keeping;
+mod largest;
 mod lines;
 pub(crate) mod outlines;
 pub(crate) mod page;
@@ -130,7 +132,7 @@ impl Results {
         }
         let curves = Curves::new(&system, &settings, point.as_ref(), &probes);
         let spectra = Spectra::new(&settings, &probes);
-        let filtered = Filtered::new(&settings, &probes);
+        let filtered = Filtered::new(&system, &settings, &probes);
         let series = SeriesOf::new(&system, &probes);
         let histories =
             Histories::create(&mut folder, &columns, (&system, &settings), (probes, kept))?;

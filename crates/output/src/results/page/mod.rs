@@ -1,11 +1,13 @@
 //! What the interactive report shows of a run: gathered while it goes ([`series`], [`raster`]), put together when it has ended.
 
-mod model;
+mod decimate;
+pub(crate) mod model;
 mod obstacles;
 mod plots;
 pub(crate) mod quality;
 pub(crate) mod raster;
 pub(crate) mod series;
+mod sides;
 mod surface;
 pub(crate) mod tiles;
 
