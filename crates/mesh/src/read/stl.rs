@@ -269,12 +269,6 @@ mod tests {
                 sound.replace("vertex 1e0 0 0", "vertex nan 0 0"),
                 "expected finite coordinates",
             ),
-            (
-                sound
-                    .replacen("endfacet", "facet", 1)
-                    .replacen("    facet normal", "endfacet", 1),
-                "expected",
-            ),
             ("hello".to_owned(), "line 1"),
             (String::new(), "no triangle"),
             (

@@ -16,6 +16,8 @@ pub struct Page {
     pub schema: u32,
     /// Name and unit of what plots are drawn over: time, or the pseudo-time of a static run.
     pub abscissa: Quantity,
+    /// Time at which the dynamics begin, s: plots over time show what follows at first.
+    pub begin: f64,
     /// Time reached, s.
     pub end: f64,
     /// Instants that every plot over time marks.
@@ -91,8 +93,10 @@ pub struct Curve {
 pub struct Raster {
     /// The section of the page.
     pub id: &'static str,
-    /// Equal parts of the time from 0 to `end`.
+    /// Equal parts of the time from `begin` to `end`.
     pub columns: usize,
+    /// Time at the start of the first one, s.
+    pub begin: f64,
     /// Time at the end of the last one, s.
     pub end: f64,
     /// The contacts with their rows.

@@ -21,6 +21,7 @@ mod film;
 mod filtered;
 mod histories;
 mod impacts;
+pub(crate) mod inspect;
 mod instants;
 mod keeping;
 mod largest;
@@ -55,7 +56,8 @@ use page::raster::RasterOf;
 use page::series::SeriesOf;
 use sensor::ContactPoint;
 
-pub use page::quality::BodyQuality;
+pub use inspect::model_picture;
+pub use page::quality::{BodyQuality, qualities};
 pub use page::tiles::Tile;
 pub use settings::{
     Checkpoints, Ending, Fields, LevelSettings, Probe, Reference, Settings, Spectrum,

@@ -36,6 +36,7 @@ pub(crate) fn data(sources: &Sources, qualities: &[f64]) -> Data {
             name: name.to_owned(),
             unit,
         },
+        begin: results.stills.begin(),
         end: results.last.time,
         events: events(results),
         plots,
@@ -75,6 +76,7 @@ fn raster(results: &Results, block: &mut Block) -> Option<Raster> {
     Some(Raster {
         id: "plot-status",
         columns: raster::COLUMNS,
+        begin: own.begin(),
         end: own.end(),
         contacts: rows.collect(),
         cells: block.bytes(own.cells.iter().copied()),

@@ -43,7 +43,7 @@ pub(crate) fn tiles(results: &Results, summary: &Summary) -> Vec<Tile> {
     let mut tiles = vec![verdict(summary)];
     tiles.extend(of_contacts(results, summary));
     tiles.push(energy(&summary.energy));
-    tiles.extend(of_fields(&results.system, &summary.maxima));
+    tiles.extend(of_fields(results, &summary.maxima));
     tiles
 }
 
@@ -87,7 +87,7 @@ fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
     let number = system.contacts.iter().position(|c| c.name == *name);
     let record = number.and_then(|k| results.last.records.contacts.get(k));
     let at = record.map_or(String::new(), |r| {
-        format!("at {}, ", quantity(r.peak_time, "s"))
+        format!("at {}, ", clock(results, r.peak_time))
     });
     let of = match summary.contacts.len() {
         1 => String::new(),
@@ -107,7 +107,7 @@ fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
         "plot-force",
     )];
     if let Some(impulse) = contact.impulse {
-        let note = format!("{of}{}", closed(contact));
+        let note = format!("{of}{}", closed(results, contact));
         tiles.push(tile(
             "Impulse",
             quantity(impulse, "N s"),
@@ -119,16 +119,16 @@ fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
     tiles
 }
 
-fn closed(contact: &Contact) -> String {
+fn closed(results: &Results, contact: &Contact) -> String {
     let impacts = match contact.impacts {
         1 => "1 impact".to_owned(),
         count => format!("{count} impacts"),
     };
     let from = contact
         .first_closing
-        .map_or(String::new(), |t| format!(" from {}", quantity(t, "s")));
+        .map_or(String::new(), |t| format!(" from {}", clock(results, t)));
     match contact.last_release {
-        Some(release) => format!("{impacts}{from} to {}", quantity(release, "s")),
+        Some(release) => format!("{impacts}{from} to {}", clock(results, release)),
         None => format!("{impacts}{from}, closed at the end"),
     }
 }
@@ -191,7 +191,7 @@ fn energy(energy: &Energy) -> Tile {
 }
 
 /// Largest values of the fields at the kept instants.
-fn of_fields(system: &System, maxima: &Maxima) -> Vec<Tile> {
+fn of_fields(results: &Results, maxima: &Maxima) -> Vec<Tile> {
     let kept = format!("largest of {} kept instants", maxima.instants);
     let cells = "mean of a cell";
     let all = [
@@ -205,12 +205,24 @@ fn of_fields(system: &System, maxima: &Maxima) -> Vec<Tile> {
             "" => String::new(),
             name => format!(" of {name}"),
         };
-        let place = coordinates(system, &maximum.place);
-        let time = quantity(maximum.time, "s");
+        let place = coordinates(&results.system, &maximum.place);
+        let time = clock(results, maximum.time);
         let note = format!("{of}{body} at {place}, t = {time}; {kept}");
         Some(tile(label, quantity(maximum.value, unit), note, "model"))
     };
     all.into_iter().filter_map(one).collect()
+}
+
+/// A time; in a run that begins with a static stage, whose time is none, that since its end.
+fn clock(results: &Results, time: f64) -> String {
+    let begin = results.stills.begin();
+    match (begin > 0.0, time - begin) {
+        (false, _) => quantity(time, "s"),
+        (true, since) if since > 0.0 => {
+            format!("{} after the static stage", quantity(since, "s"))
+        }
+        (true, _) => "the static stage".to_owned(),
+    }
 }
 
 /// A place in the reference configuration.
