@@ -15,7 +15,7 @@ use crate::results::page::surface::Surface;
 use crate::results::stills::{Seen, Still};
 
 /// Numbers of all fields at all instants together, two bytes each before compression. A page of 100 000 nodes stays below 5 MB.
-const NUMBERS: usize = 2_800_000;
+const NUMBERS: usize = 2_000_000;
 
 /// Fewest nodes that a large surface is drawn with.
 const FEWEST: usize = 3000;
