@@ -66,6 +66,16 @@
       wrong(viewer.choice.field !== value, `the field ${value} is not chosen`);
       picture();
     }
+    const group = document.querySelector("#model-group select");
+    wrong(Boolean(group) !== (head.model.groups.length > 0), "the choice of a group");
+    if (group) {
+      group.value = head.model.groups[0].name;
+      group.dispatchEvent(new Event("change"));
+      picture();
+      wrong(!viewer.parts.chosen.visible && !viewer.parts.chosenLines.object.visible, "the chosen group is not drawn");
+      group.value = "";
+      group.dispatchEvent(new Event("change"));
+    }
     for (const jump of document.querySelectorAll(".jumps button")) jump.click();
     const boxes = [...document.querySelectorAll('#model-settings input[type="checkbox"]')];
     for (const box of boxes) box.click();

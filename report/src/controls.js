@@ -80,6 +80,16 @@ export function controls(viewer) {
     check("mesh", choice.edges, drawing((on) => parts.toggle(parts.net, on))),
     check("undeformed", false, drawing((on) => (parts.ghost.visible = on))),
   );
+  if (model.groups.length > 0) {
+    const names = model.groups.map((group) => [group.name, group.name]);
+    const group = select("group", [["", "none"], ...names], (name) => {
+      parts.choose(viewer.read, name);
+      viewer.render();
+    });
+    group.title = "a group of the mesh, in violet";
+    group.id = "model-group";
+    settings.append(group);
+  }
   if (model.contacts.length > 0) {
     const title = "secondary side red, primary side blue";
     const surfaces = check("contact surfaces", false, drawing((on) => parts.toggle(parts.surfaces, on)));

@@ -287,6 +287,8 @@ export function showPlots(page, read, shared) {
       place.append(more);
     }
   }
+  const first = plots.find((plot) => plot.overTime);
+  if (first && page.begin > 0 && page.end > page.begin) first.plot.setScale("x", { min: page.begin, max: page.end });
   shared.listen(() => plots.forEach((plot) => plot.overTime && plot.plot.redraw(false, false)));
   onTheme(() => plots.forEach((plot) => plot.draw()));
 }

@@ -12,6 +12,7 @@ export function showRaster(page, read, shared) {
   const { raster } = page;
   const cells = read(raster.cells);
   const columns = raster.columns;
+  const at = (part) => raster.begin + part * (raster.end - raster.begin);
   const place = document.getElementById(raster.id);
   const figure = document.createElement("figure");
   figure.className = "plot raster";
@@ -35,12 +36,12 @@ export function showRaster(page, read, shared) {
     body.append(row);
     canvas.addEventListener("click", (e) => {
       const { left, width } = canvas.getBoundingClientRect();
-      shared.set(((e.clientX - left) / width) * raster.end, canvas);
+      shared.set(at((e.clientX - left) / width), canvas);
     });
     canvas.addEventListener("mousemove", (e) => {
       const { left, width } = canvas.getBoundingClientRect();
       const column = Math.floor(((e.clientX - left) / width) * columns);
-      canvas.title = `${contact.name} at ${quantity((column / columns) * raster.end, page.abscissa.unit)}`;
+      canvas.title = `${contact.name} at ${quantity(at(column / columns), page.abscissa.unit)}`;
     });
     return { canvas, rows: contact.rows, first };
   });
@@ -48,7 +49,7 @@ export function showRaster(page, read, shared) {
   legend.className = "faint";
   legend.innerHTML =
     '<span class="swatch" style="background: var(--first)"></span> closed <span class="swatch" style="background: var(--second)"></span> closed and slipping ';
-  legend.append(`– from 0 to ${quantity(raster.end, page.abscissa.unit)}; ${raster.note}`);
+  legend.append(`– from ${quantity(raster.begin, page.abscissa.unit)} to ${quantity(raster.end, page.abscissa.unit)}; ${raster.note}`);
   figure.append(legend);
 
   const paint = () => {

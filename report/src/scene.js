@@ -103,6 +103,7 @@ export class ModelScene {
     this.#edges();
     this.#bars();
     this.#contacts(read);
+    this.#groups();
     this.#obstacles(read);
     this.#forces();
     if (model.axisymmetric) this.#mirror();
@@ -201,6 +202,38 @@ export class ModelScene {
     this.root.add(this.surfaces);
   }
 
+  /** The group that is chosen; `name` is empty for none. */
+  choose(read, name) {
+    const group = this.model.groups.find((one) => one.name === name);
+    const [triangles, lines] = group ? [read(group.triangles), read(group.lines)] : [new Uint32Array(), new Uint32Array()];
+    this.chosen.geometry.setIndex(new BufferAttribute(triangles, 1));
+    this.chosenLines.ends = lines;
+    this.toggle(this.chosen, triangles.length > 0);
+    this.chosenLines.object.visible = lines.length > 0;
+    this.#placeLines(this.chosenLines);
+  }
+
+  #groups() {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", this.shared);
+    const material = new MeshBasicMaterial({ side: DoubleSide, transparent: true, opacity: 0.85, clippingPlanes: [] });
+    Object.assign(material, { polygonOffset: true, polygonOffsetFactor: -3, polygonOffsetUnits: -3 });
+    this.chosen = new Mesh(geometry, material);
+    this.chosenLines = { object: new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ linewidth: 5 })), ends: new Uint32Array() };
+    for (const object of [this.chosen, this.chosenLines.object]) {
+      object.frustumCulled = false;
+      object.visible = false;
+      this.root.add(object);
+    }
+  }
+
+  #placeLines({ object, ends }) {
+    if (ends.length === 0) return;
+    const places = new Float32Array(3 * ends.length);
+    spread(this.places, ends, places);
+    object.geometry.setPositions(places);
+  }
+
   #obstacles(read) {
     this.obstacles = new Group();
     this.obstacleParts = this.model.obstacles.map((obstacle) => {
@@ -240,7 +273,7 @@ export class ModelScene {
   #mirror() {
     const half = new Group();
     half.applyMatrix4(new Matrix4().makeScale(-1, 1, 1));
-    for (const object of [this.faces, this.net, this.forces, this.surfaces]) {
+    for (const object of [this.faces, this.net, this.forces, this.surfaces, this.chosen]) {
       const other = object.clone();
       half.add(other);
       this.twins.set(object, other);
@@ -255,6 +288,7 @@ export class ModelScene {
     this.ghostMaterial.color.setStyle(colour("faint"));
     this.dotMaterial.color.setStyle(colour("ink"));
     this.forceMaterial.color.setStyle(colour("bad"));
+    for (const { material } of [this.chosen, this.chosenLines.object]) material.color.setStyle(colour("fourth"));
     const sides = ["second", "first"];
     this.surfaces.traverse(({ material }) => material?.color?.setStyle(colour(sides[material.userData.side])));
     this.obstacles.traverse(({ material }) => material?.color?.setStyle(colour("faint")));
@@ -275,11 +309,7 @@ export class ModelScene {
       spread(this.places, this.lines, this.linePlaces);
       this.bars.geometry.setPositions(this.linePlaces);
     }
-    for (const { object, ends } of this.surfaceLines) {
-      const places = new Float32Array(3 * ends.length);
-      spread(this.places, ends, places);
-      object.geometry.setPositions(places);
-    }
+    for (const lines of [...this.surfaceLines, this.chosenLines]) this.#placeLines(lines);
   }
 
   /** Hides the faces of deleted cells: `visible` has a number for each triangle, `null` shows all. */

@@ -26,6 +26,7 @@ class Viewer {
   constructor(page, read, shared) {
     this.page = page;
     this.model = page.model;
+    this.read = read;
     this.shared = shared;
     if (!document.createElement("canvas").getContext("webgl2")) throw new Error("it has no WebGL");
     this.instants = new Instants(page.model, read);

@@ -14,6 +14,7 @@ use carom_zones::{ModelZone, Whole};
 use thiserror::Error as ThisError;
 
 use crate::build::Built;
+use crate::convergence;
 use crate::describe::entries;
 use crate::input::Input;
 use crate::origin::Origin;
@@ -198,6 +199,7 @@ pub(crate) fn settings(
                 .collect::<Vec<_>>()
                 .join(", "),
         },
+        study: convergence::study(case, &built.system.mesh, &origin.overrides),
         end: built.end,
         probes: built
             .probes
@@ -207,6 +209,7 @@ pub(crate) fn settings(
                 Probe {
                     name: probe.name.clone(),
                     nodes: probe.nodes.clone(),
+                    cell: probe.cell,
                     displacement: has(Motion::Displacement),
                     velocity: has(Motion::Velocity),
                     acceleration: has(Motion::Acceleration),
@@ -214,6 +217,15 @@ pub(crate) fn settings(
                     spectrum: probe.spectrum.clone(),
                     filters: probe.filters.clone(),
                 }
+            })
+            .collect(),
+        contact_filters: case
+            .contact
+            .iter()
+            .filter(|(_, contact)| !contact.filter.is_empty())
+            .map(|(name, contact)| {
+                let classes = contact.filter.iter().map(|class| class.frequency());
+                (name.to_owned(), classes.collect())
             })
             .collect(),
         levels: built.levels.clone(),

@@ -1,8 +1,9 @@
-//! The executable: `carom run`, `resume`, `compare`, `study`, `modes`, `check`, `schema`, `new`, `verify`.
+//! The executable: `carom run`, `resume`, `compare`, `study`, `modes`, `check`, `convert`, `schema`, `new`, `verify`, `completion`, `man`.
 //!
 //! Exit codes: 0 done and the verdict `good` or `look`, 2 bad input, 3 the run failed with the last good state on disk, 4 done but
 //! the verdict bad, 130 interrupted. All that it prints goes through [`terminal`].
 
+mod check;
 mod compare;
 mod diagnostics;
 mod exit;
@@ -17,19 +18,28 @@ mod sweep;
 mod terminal;
 
 use std::io::IsTerminal;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::exit::{BAD, BAD_INPUT, FAILED};
-use crate::load::{keep_offenders, load_with};
-use crate::terminal::{err, line, out};
+use crate::terminal::{err, out};
 
-/// Computes the impact of deformable bodies: a case file, a run, a report.
+/// Computes the impact of deformable bodies: a case file, a run, a report
+///
+/// Carom solves the motion of bars, plane, axisymmetric and solid bodies, beams, shells and rigid bodies that hit each other,
+/// themselves or a rigid obstacle, at small or finite strain. A case file names the bodies, a contact law and a time scheme. A run
+/// writes histories, fields, figures and a report that says whether its result can be trusted.
+///
+/// To begin: `carom new two-bars`, then `carom run case.toml`.
 #[derive(Parser)]
 #[command(name = "carom", version)]
 struct Arguments {
+    /// Number of threads; default: as many as the machine has. Results do not depend on it
+    #[arg(long, value_name = "NUMBER", global = true)]
+    threads: Option<NonZeroUsize>,
     /// Messages on stderr: `warn`, or `debug` for factorisations with their reasons, halved steps, and points that change their
     /// faces
     #[arg(long, value_name = "LEVEL", default_value = "warn", global = true)]
@@ -51,12 +61,13 @@ enum Command {
     /// Compute frequencies, shapes and effective masses of the bodies of a case
     Modes(modes::Arguments),
     /// Check a case without running it: errors, warnings, sizes, wave speeds, first possible impact, steps
-    Check {
-        /// The case file
-        case: PathBuf,
-        /// Replace a value of the case: `--set time.scheme.theta.theta=0.6`
-        #[arg(long, value_name = "KEY=VALUE")]
-        set: Vec<String>,
+    Check(check::Arguments),
+    /// Write the mesh of a file in another format: `.vtu`, with a field for each group
+    Convert {
+        /// A mesh: `.msh`, `.inp`, `.stl` or `.vtu`
+        from: PathBuf,
+        /// The file to write: `.vtu`
+        to: PathBuf,
     },
     /// Print the JSON schema of the case file
     Schema {
@@ -80,6 +91,13 @@ enum Command {
         #[arg(long)]
         quick: bool,
     },
+    /// Print the completion of this command for a shell: `carom completion bash > ~/.local/share/bash-completion/completions/carom`
+    Completion {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page of this command and of its subcommands: `carom man | man -l -`
+    Man,
 }
 
 fn main() -> ExitCode {
@@ -97,38 +115,78 @@ fn main() -> ExitCode {
     ExitCode::from(terminal::close(code))
 }
 
-fn obey(Arguments { log, command }: Arguments) -> u8 {
+fn obey(arguments: Arguments) -> u8 {
+    let Arguments {
+        threads,
+        log,
+        command,
+    } = arguments;
     tracing_subscriber::fmt()
         .with_max_level(log)
         .with_ansi(std::io::stderr().is_terminal())
         .with_writer(|| terminal::StandardError)
         .init();
+    if let Some(threads) = threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
+        if let Err(error) = pool.build_global() {
+            err!("error: {error}");
+            return FAILED;
+        }
+    }
     match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Resume(arguments) => resume::resume(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Study(arguments) => study::study(&arguments),
         Command::Modes(arguments) => modes::modes(&arguments),
-        Command::Check { case, set } => check(&case, &set),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::Convert { from, to } => convert(&from, &to),
         Command::Schema { reference } => schema(reference),
         Command::New { template, file } => new::new(template.as_deref(), &file),
         Command::Verify { name, quick } => verify(name.as_deref(), quick),
+        Command::Completion { shell } => {
+            let command = &mut Arguments::command();
+            clap_complete::generate(shell, command, "carom", &mut terminal::StandardOutput);
+            0
+        }
+        Command::Man => man(),
     }
 }
 
-fn check(case: &Path, set: &[String]) -> u8 {
-    let built = match load_with(case, set, |problems| keep_offenders(case, problems)) {
-        Ok((_, _, built)) => built,
-        Err(code) => return code,
-    };
-    for fact in carom_case::facts(&built) {
-        out!("{:<18} {}", fact.name, line(&fact.value));
+/// Prints the manual page of the command, and those of its subcommands after it.
+fn man() -> u8 {
+    let mut command = Arguments::command();
+    // names and global arguments reach the subcommands
+    command.build();
+    let subcommands = command.get_subcommands().cloned();
+    let own = std::iter::once(command.clone()).chain(subcommands);
+    for page in own.filter(|page| page.get_name() != "help") {
+        if let Err(error) = clap_mangen::Man::new(page).render(&mut terminal::StandardOutput) {
+            err!("error: {error}");
+            return FAILED;
+        }
     }
-    for warning in &built.warnings {
-        out!("{:<18} {}", "warning", line(warning));
-    }
-    out!("{} can be run.", case.display());
     0
+}
+
+fn convert(from: &Path, to: &Path) -> u8 {
+    match carom_case::convert(from, to) {
+        Ok([nodes, elements, groups]) => {
+            out!(
+                "Wrote {}: {nodes} nodes, {elements} elements, {groups} groups.",
+                to.display()
+            );
+            0
+        }
+        Err(carom_case::NotConverted::Unwritten(error)) => {
+            err!("error: {error}");
+            FAILED
+        }
+        Err(error) => {
+            err!("error: {error}");
+            BAD_INPUT
+        }
+    }
 }
 
 fn schema(reference: bool) -> u8 {

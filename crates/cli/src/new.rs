@@ -16,7 +16,7 @@ struct Template {
     beside: &'static [(&'static str, &'static [u8])],
 }
 
-const TEMPLATES: [Template; 5] = [
+const TEMPLATES: [Template; 10] = [
     Template {
         name: "two-bars",
         shows: "two bars in impact, velocity law",
@@ -49,6 +49,63 @@ const TEMPLATES: [Template; 5] = [
                 include_bytes!("../../../cases/block-drop/block.msh"),
             ),
         ],
+    },
+    Template {
+        name: "drop-test",
+        shows: "a box of aluminium sheet that falls on its corner, explicit, shells",
+        case: include_str!("../../../cases/dropped-box/case.toml"),
+        beside: &[
+            (
+                "box.geo",
+                include_bytes!("../../../cases/dropped-box/box.geo"),
+            ),
+            (
+                "box.msh",
+                include_bytes!("../../../cases/dropped-box/box.msh"),
+            ),
+        ],
+    },
+    Template {
+        name: "friction",
+        shows: "a crate on a moving belt in the plane, with friction",
+        case: include_str!("../../../cases/conveyor/case.toml"),
+        beside: &[
+            (
+                "crate.geo",
+                include_bytes!("../../../cases/conveyor/crate.geo"),
+            ),
+            (
+                "crate.msh",
+                include_bytes!("../../../cases/conveyor/crate.msh"),
+            ),
+        ],
+    },
+    Template {
+        name: "rigid-hammer",
+        shows: "a rigid hammer strikes an elastic bar",
+        case: include_str!("../../../cases/rigid-hammer/case.toml"),
+        beside: &[
+            (
+                "hammer-and-bar.geo",
+                include_bytes!("../../../cases/rigid-hammer/hammer-and-bar.geo"),
+            ),
+            (
+                "hammer-and-bar.msh",
+                include_bytes!("../../../cases/rigid-hammer/hammer-and-bar.msh"),
+            ),
+        ],
+    },
+    Template {
+        name: "seismic-stops",
+        shows: "two buildings with stops between their floors in an earthquake",
+        case: include_str!("../../../cases/pounding/case.toml"),
+        beside: &[],
+    },
+    Template {
+        name: "preload",
+        shows: "a static preload, then an impact on it",
+        case: include_str!("../templates/preload.toml"),
+        beside: &[],
     },
     Template {
         name: "arlequin",

@@ -25,6 +25,9 @@ pub struct Arguments {
     /// Show no progress bar
     #[arg(long)]
     quiet: bool,
+    /// Print `summary.json` in place of a text
+    #[arg(long)]
+    json: bool,
 }
 
 /// Goes on with a run; returns the exit code.
@@ -51,5 +54,5 @@ pub fn resume(arguments: &Arguments) -> u8 {
     let ended = until_stopped(run.built.end, arguments.quiet, |progress, stop| {
         run.run(progress, stop)
     });
-    end(ended, &arguments.folder)
+    end(ended, &arguments.folder, arguments.json)
 }

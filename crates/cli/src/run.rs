@@ -30,6 +30,9 @@ pub struct Arguments {
     /// Show no progress bar
     #[arg(long)]
     quiet: bool,
+    /// Print `summary.json` in place of a text
+    #[arg(long)]
+    json: bool,
 }
 
 /// Runs a case; returns the exit code.
@@ -51,14 +54,21 @@ pub fn run(arguments: &Arguments) -> u8 {
     let ended = until_stopped(built.end, arguments.quiet, |progress, stop| {
         carom_case::run((&input, &case, &built), folder.clone(), progress, stop)
     });
-    end(ended, &folder)
+    end(ended, &folder, arguments.json)
 }
 
-/// Tells how a run ended; returns the exit code.
-pub fn end(ended: Result<Finished, carom_case::Failed>, folder: &Path) -> u8 {
+/// Tells how a run ended, by its summary as JSON if `json` says so; returns the exit code.
+pub fn end(ended: Result<Finished, carom_case::Failed>, folder: &Path, json: bool) -> u8 {
     match ended {
         Ok(finished) => {
-            print(&finished.summary, folder);
+            match json.then(|| finished.summary.to_json()) {
+                None => print(&finished.summary, folder),
+                Some(Ok(text)) => out!("{text}"),
+                Some(Err(error)) => {
+                    err!("error: {error}");
+                    return FAILED;
+                }
+            }
             if finished.interrupted {
                 err!("interrupted; `carom resume {}` goes on", folder.display());
             }

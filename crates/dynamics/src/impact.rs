@@ -15,6 +15,23 @@ const LONG: f64 = 10.0;
 /// surface that turns: 0.99 is a force that swings by 8 degrees in the mean square.
 const STEADY: f64 = 0.99;
 
+/// Why the restitution of an impact means nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum NoRestitution {
+    /// The contact is closed.
+    Unfinished,
+    /// The bodies did not approach.
+    NoApproach,
+    /// The bodies approach still, in the mean of their masses.
+    NoParting,
+    /// Supports, loads, joints or further contacts gave more than 1 % of the impulse.
+    OtherForces,
+    /// The direction of the force turned, as where bodies slide over each other.
+    TurnedForce,
+    /// The obstacle moves.
+    MovingObstacle,
+}
+
 /// One impact: from the first closing of a contact to the last release before a flight that lasts.
 ///
 /// A flight lasts if it is longer than a wave takes across the longer of the two bodies: a contact that closes again earlier does
@@ -50,6 +67,8 @@ pub struct Impact {
     /// 1 % of the impulse; the force turned, as where bodies slide over each other; the obstacle moves. A body that is held
     /// and at rest stands for the ground: the speeds are then those of the other one.
     pub restitution: Option<f64>,
+    /// Why there is no restitution; `None` where there is one.
+    pub no_restitution: Option<NoRestitution>,
     /// Kinetic energy of the approach, ½ m w² with the reduced mass m of what no support holds of the two bodies, J.
     pub energy_given: f64,
     /// Most energy that the contact has taken up at one time, J: the largest value of minus the work of its forces so far. A stop
@@ -207,7 +226,11 @@ impl OpenImpact {
         };
         let approach = along.before[1] - along.before[0];
         let inverse: f64 = along.masses.iter().map(|m| 1.0 / m).sum();
-        let told = norm(normal) >= STEADY * self.pushed.get() && !system.contacts[contact].moves();
+        let restitution = match norm(normal) >= STEADY * self.pushed.get() {
+            _ if system.contacts[contact].moves() => Err(NoRestitution::MovingObstacle),
+            false => Err(NoRestitution::TurnedForce),
+            true => along.restitution(),
+        };
         Impact {
             contact: contact as u32,
             start: self.start,
@@ -226,7 +249,8 @@ impl OpenImpact {
             },
             approach,
             rebound: along.after[0] - along.after[1],
-            restitution: along.restitution().filter(|_| told),
+            restitution: restitution.ok(),
+            no_restitution: restitution.err(),
             energy_given: match inverse > 0.0 {
                 true => 0.5 * approach * approach / inverse,
                 false => 0.0,
@@ -254,17 +278,21 @@ struct Along {
 }
 
 impl Along {
-    fn restitution(&self) -> Option<f64> {
+    fn restitution(&self) -> Result<f64, NoRestitution> {
         let ground = |side: usize| self.masses[side] == f64::INFINITY;
         let sides = match [self.alone(0), self.alone(1)] {
             [true, true] => [1.0, 1.0],
             [true, false] if ground(1) || self.stands(1) => [1.0, 0.0],
             [false, true] if self.stands(0) => [0.0, 1.0],
-            _ => return None,
+            _ => return Err(NoRestitution::OtherForces),
         };
         let opening = |v: [f64; 2]| sides[0] * v[0] - sides[1] * v[1];
         let (approach, rebound) = (-opening(self.before), opening(self.after));
-        (approach > 0.0 && rebound >= 0.0).then(|| rebound / approach)
+        match (approach > 0.0, rebound >= 0.0) {
+            (false, _) => Err(NoRestitution::NoApproach),
+            (true, false) => Err(NoRestitution::NoParting),
+            (true, true) => Ok(rebound / approach),
+        }
     }
 
     /// Whether the contact alone has changed the momentum of a side.

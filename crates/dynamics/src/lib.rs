@@ -45,7 +45,7 @@ pub use driver::paired;
 pub use driver::record::contact_report;
 pub use error::Error;
 pub use exchange::Exchange;
-pub use impact::Impact;
+pub use impact::{Impact, NoRestitution};
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Tolerated};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, go_on, march, step_count};
@@ -59,5 +59,6 @@ pub use step_map::{Impulse, Row, StepMap};
 pub use system::{
     Adaptive, Closing, Damping, Iteration, Load, LoadKind, Mass, Model, ModelBody, ModelConstraint,
     ModelContact, ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget, Motion,
-    NodalLoad, Nonlinear, Order, Preload, Prescribed, PrescribedTurn, Refused, Support, System,
+    NamedSupport, NodalLoad, Nonlinear, Order, Preload, Prescribed, PrescribedTurn, Refused,
+    ReportedSupport, Support, System,
 };

@@ -3,7 +3,7 @@
 use carom_bodies::Body;
 use serde::{Deserialize, Serialize};
 
-use crate::impact::{Given, Impact, OpenImpact};
+use crate::impact::{Given, Impact, NoRestitution, OpenImpact};
 use crate::report::ContactReport;
 use crate::small::Smallness;
 use crate::step_map::Impulse;
@@ -325,6 +325,7 @@ impl Records {
             open.released().is_none().then(|| Impact {
                 unfinished: true,
                 restitution: None,
+                no_restitution: Some(NoRestitution::Unfinished),
                 ..open.impact(system, contact, time, v)
             })
         });

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::ledger::Balance;
+use crate::resultant::Resultant;
 
 /// What one contact did in a step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -64,6 +65,10 @@ pub struct StepReport {
     pub contacts: Vec<ContactReport>,
     /// Energies, works and momentum at the end of the step.
     pub balance: Balance,
+    /// Forces of the named supports ([`System::supports`](crate::System::supports)) on the bodies, with the moments about their
+    /// centres, as the scheme has them in its balance: at the end of the step, or the mean over it of schemes that balance means. Empty
+    /// before the first step, and of zones that step apart.
+    pub supports: Vec<Resultant>,
     /// Passes of the status loop; in zones the passes over the step until the links hold.
     pub passes: usize,
     /// What the contacts did in the parts of the step, where it has some: the inner steps of zones, the halves of a nonlinear

@@ -38,6 +38,6 @@ pub use parts::Parts;
 pub use place::Placement;
 pub use project::{Projection, QUADS, project, project_quads};
 pub use raise::raise;
-pub use refine::refine;
+pub use refine::{is_refinable, refine};
 pub use search::BoxTree;
 pub use surface::{Face, Surface, face_nodes};

@@ -19,11 +19,8 @@ const OCTAHEDRON: [[usize; 6]; 3] = [[4, 9, 7, 8, 5, 6], [6, 8, 4, 5, 9, 7], [7,
 /// # Errors
 /// [`Error::NoRefinement`] for quadratic elements, wedges and pyramids.
 pub fn refine(mesh: &Mesh) -> Result<Mesh, Error> {
-    use Kind::{Bar2, Hex8, Point1, Quad4, Tet4, Tri3};
-    for Block { kind, .. } in &mesh.blocks {
-        if !matches!(kind, Point1 | Bar2 | Tri3 | Quad4 | Tet4 | Hex8) {
-            return Err(Error::NoRefinement { kind: *kind });
-        }
+    if let Some(kind) = without_parts(mesh) {
+        return Err(Error::NoRefinement { kind });
     }
     let raised = raise(mesh, true)?;
     let blocks = raised.blocks.iter().map(|block| cut(block, &raised.nodes));
@@ -43,6 +40,19 @@ pub fn refine(mesh: &Mesh) -> Result<Mesh, Error> {
         groups: groups.collect(),
         nodes: raised.nodes,
     })
+}
+
+/// Whether [`refine`] takes all elements of a mesh.
+pub fn is_refinable(mesh: &Mesh) -> bool {
+    without_parts(mesh).is_none()
+}
+
+/// A kind of the mesh whose elements are not cut.
+fn without_parts(mesh: &Mesh) -> Option<Kind> {
+    use Kind::{Bar2, Hex8, Point1, Quad4, Tet4, Tri3};
+    let is_cut = |kind: &Kind| matches!(kind, Point1 | Bar2 | Tri3 | Quad4 | Tet4 | Hex8);
+    let mut kinds = mesh.blocks.iter().map(|block| block.kind);
+    kinds.find(|kind| !is_cut(kind))
 }
 
 /// The linear parts of quadratic elements with nodes at these positions.

@@ -5,3 +5,4 @@
 
 mod gmsh;
 mod inp;
+mod vtu;

@@ -13,6 +13,7 @@ pub mod folder;
 pub mod form;
 pub mod history;
 pub mod impacts;
+pub mod maxima;
 pub mod modes;
 pub mod page;
 pub mod plot;
@@ -38,8 +39,8 @@ pub use impacts::{ImpactRow, ImpactTable};
 pub use pvd::Collection;
 pub use report::Report;
 pub use results::{
-    Checkpoints, Ending, Fields, LevelSettings, Probe, Reference, Results, Settings, Spectrum,
-    Zoning,
+    BodyQuality, Checkpoints, Ending, Fields, LevelSettings, Probe, Reference, Results, Settings,
+    Spectrum, Zoning, model_picture, qualities,
 };
 pub use statistics::{Allowable, Level, Statistics};
 pub use summary::Summary;

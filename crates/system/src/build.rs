@@ -20,6 +20,7 @@ use crate::massless::redistribute;
 use crate::modal::NumberedModal;
 use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelLink};
 use crate::numbered::NumberedNonlinear;
+use crate::reported::ReportedSupport;
 use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
 use crate::system::{System, part_of};
 use crate::turning::TurningRows;
@@ -59,7 +60,9 @@ impl System {
     ///
     /// # Errors
     /// A body that cannot be built.
-    pub fn whole(model: Model) -> Result<Arc<System>, Error> {
+    pub fn whole(mut model: Model) -> Result<Arc<System>, Error> {
+        // their forces are known to the drivers of the zones
+        model.named_supports.clear();
         let (system, ..) = System::assemble(model)?;
         Ok(Arc::new(system))
     }
@@ -198,7 +201,19 @@ impl System {
             turning: turning_rows,
         } = links(&model, &number, (&unknowns, &x))?;
         let undeformed = undeformed(&bodies, &part_of_body, parts.len());
+        let of_parts: Vec<(Range<usize>, bool)> = parts
+            .iter()
+            .cloned()
+            .zip(undeformed.iter().copied())
+            .collect();
+        let supports = ReportedSupport::all(
+            &model.named_supports,
+            (&number, &x),
+            (&unknowns, &fixed),
+            &of_parts,
+        );
         let system = System {
+            supports,
             levers: Levers::new(&unknowns, parts.iter().zip(&undeformed)),
             undeformed,
             part_of_body,

@@ -25,6 +25,7 @@ mod nonlinear;
 mod numbered;
 mod numbered_loads;
 mod refused;
+mod reported;
 mod rigid;
 mod stability;
 mod system;
@@ -42,13 +43,14 @@ pub use mass::Mass;
 pub use modal::{ModalDamping, NumberedModal};
 pub use model::{
     Model, ModelBody, ModelConstraint, ModelContact, ModelDiscrete, ModelLink, ModelRigid,
-    ModelScheme, ModelTarget, Support,
+    ModelScheme, ModelTarget, NamedSupport, Support,
 };
 pub use motion::Motion;
 pub use nonlinear::{Damping, Iteration, Nonlinear, Preload, Prescribed, PrescribedTurn};
 pub use numbered::{Follows, NumberedNonlinear};
 pub use numbered_loads::{NumberedForce, NumberedLoad};
 pub use refused::Refused;
+pub use reported::{HeldUnknown, ReportedSupport};
 pub use rigid::Order;
 pub use system::System;
 pub use turning::{Turned, TurningRows};

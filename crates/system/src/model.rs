@@ -24,6 +24,8 @@ pub struct Model {
     pub discrete: Vec<ModelDiscrete>,
     /// Supports.
     pub supports: Vec<Support>,
+    /// Supports and motions whose forces are reported, by their names.
+    pub named_supports: Vec<NamedSupport>,
     /// Acceleration of gravity, m/s².
     pub gravity: [f64; 3],
     /// Contacts.
@@ -54,6 +56,7 @@ impl Model {
             bodies,
             discrete: Vec::new(),
             supports: Vec::new(),
+            named_supports: Vec::new(),
             gravity: [0.0; 3],
             contacts: Vec::new(),
             scheme,
@@ -286,6 +289,19 @@ pub struct Support {
     pub fix: [bool; 3],
     /// Rotations held, of nodes that have any.
     pub fix_rotations: [bool; 3],
+}
+
+/// What a support of the case holds or moves.
+#[derive(Clone, Debug)]
+pub struct NamedSupport {
+    /// Name as in the case file.
+    pub name: String,
+    /// Nodes of the mesh.
+    pub nodes: Vec<u32>,
+    /// Translations that it holds or moves.
+    pub axes: [bool; 3],
+    /// Rotations that it holds or moves.
+    pub rotations: [bool; 3],
 }
 
 impl Support {

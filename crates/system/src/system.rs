@@ -16,6 +16,7 @@ use crate::link_row::LinkRow;
 use crate::mass::Mass;
 use crate::modal::NumberedModal;
 use crate::numbered::NumberedNonlinear;
+use crate::reported::ReportedSupport;
 use crate::turning::TurningRows;
 
 /// The immutable side of a run.
@@ -47,6 +48,8 @@ pub struct System {
     pub undeformed: Vec<bool>,
     /// What forces act on.
     pub levers: Levers,
+    /// Supports whose forces are reported.
+    pub supports: Vec<ReportedSupport>,
     /// Bodies.
     pub bodies: Vec<Body>,
     /// Whether there are springs: their forces may have a resultant.

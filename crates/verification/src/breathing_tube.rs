@@ -69,6 +69,7 @@ impl Tube {
             bodies: vec![body],
             discrete: Vec::new(),
             supports: Vec::new(),
+            named_supports: Vec::new(),
             gravity: [0.0; 3],
             contacts: Vec::new(),
             scheme: Scheme::EnergyMomentum(EnergyMomentum {}),

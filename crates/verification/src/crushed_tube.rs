@@ -65,6 +65,7 @@ fn newton(mesh: &str, facing_itself: bool) -> Result<Driver, Error> {
         bodies: vec![tube],
         discrete: Vec::new(),
         supports: Vec::new(),
+        named_supports: Vec::new(),
         gravity: [0.0; 3],
         scheme: Scheme::EnergyMomentum(EnergyMomentum {}),
         dt: STEP,

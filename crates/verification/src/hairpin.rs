@@ -98,6 +98,7 @@ impl Hairpin {
             bodies: vec![strip],
             discrete: Vec::new(),
             supports,
+            named_supports: Vec::new(),
             gravity: [0.0; 3],
             contacts: vec![touch],
             scheme: self.scheme,

@@ -123,6 +123,8 @@ impl Zoned {
                 .map(|&body| whole.bodies[body].clone())
                 .collect(),
             supports: whole.supports.clone(),
+            // a node of a link would have a part of its force in each zone
+            named_supports: Vec::new(),
             gravity: whole.gravity,
             contacts: contacts
                 .iter()

@@ -97,6 +97,8 @@ pub struct BuiltProbe {
     pub name: String,
     /// Nodes of the mesh, each with its weight in the mean, relative to the others.
     pub nodes: Vec<(u32, f64)>,
+    /// Cell whose stress is recorded.
+    pub cell: Option<carom_mesh::ElementId>,
     /// What is recorded.
     pub record: Vec<Motion>,
     /// Response spectrum of its absolute acceleration.
@@ -182,6 +184,7 @@ impl Builder<'_> {
             return None;
         }
         let mut model = Model {
+            named_supports: supports::named(self.case, &mesh),
             mesh,
             bodies,
             discrete,

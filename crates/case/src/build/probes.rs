@@ -12,7 +12,7 @@ use carom_signals::ChannelFilter;
 
 use super::{Builder, BuiltProbe};
 use crate::error::Problem;
-use crate::schema::Probe;
+use crate::schema::{Motion, Probe};
 
 impl Builder<'_> {
     pub(super) fn probes(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Vec<BuiltProbe> {
@@ -22,15 +22,36 @@ impl Builder<'_> {
         let mut probes = Vec::new();
         for (name, probe) in self.case.probe.iter() {
             let spectrum = self.spectrum(name, probe);
-            if let Some(group) = self.group(mesh, &format!("probe.{name}.on"), &probe.on) {
-                probes.push(BuiltProbe {
-                    name: name.to_string(),
-                    nodes: shares(mesh, group, axisymmetric),
-                    record: probe.record.clone(),
-                    spectrum,
-                    filters: probe.filter.iter().map(|class| class.frequency()).collect(),
-                });
+            let (nodes, cell) = match (&probe.on, &probe.at) {
+                (Some(on), _) => {
+                    let path = format!("probe.{name}.on");
+                    let Some(group) = self.group(mesh, &path, on) else {
+                        continue;
+                    };
+                    (shares(mesh, group, axisymmetric), None)
+                }
+                (None, Some(at)) => {
+                    let path = format!("probe.{name}.at");
+                    let at = self.vector(mesh, &path, at);
+                    let node = nearest_node(mesh, bodies, &at);
+                    (
+                        node.map(|node| (node, 1.0)).into_iter().collect(),
+                        nearest_cell(mesh, bodies, &at),
+                    )
+                }
+                (None, None) => continue,
+            };
+            if probe.record.contains(&Motion::Stress) && cell.is_none() {
+                self.problems.push(without_a_cell(name, probe));
             }
+            probes.push(BuiltProbe {
+                name: name.to_string(),
+                nodes,
+                cell: cell.filter(|_| probe.record.contains(&Motion::Stress)),
+                record: probe.record.clone(),
+                spectrum,
+                filters: probe.filter.iter().map(|class| class.frequency()).collect(),
+            });
         }
         probes
     }
@@ -55,11 +76,15 @@ impl Builder<'_> {
 
     /// Refuses filters for which the steps, of `dt` (s), are too long.
     pub(super) fn fine_enough(&mut self, dt: f64) {
-        for (name, probe) in self.case.probe.iter() {
-            for (place, class) in probe.filter.iter().enumerate() {
+        let probes = self.case.probe.iter();
+        let probes = probes.map(|(name, probe)| (format!("probe.{name}"), &probe.filter));
+        let contacts = self.case.contact.iter();
+        let contacts = contacts.map(|(name, contact)| (format!("contact.{name}"), &contact.filter));
+        for (owner, filters) in probes.chain(contacts) {
+            for (place, class) in filters.iter().enumerate() {
                 let longest = ChannelFilter::longest_step(f64::from(class.frequency()));
                 if dt > longest * (1.0 + 1e-9) {
-                    let path = format!("probe.{name}.filter[{place}]");
+                    let path = format!("{owner}.filter[{place}]");
                     let message = format!(
                         "the filter needs ten steps in the period of its class, and a step is {dt:.4e} s"
                     );
@@ -87,6 +112,16 @@ impl Builder<'_> {
             .flat_map(|&cell| mesh.element_nodes(cell));
         nodes.for_each(|&node| used[node as usize] = true);
         for probe in probes {
+            let is_there = |cell: ElementId| of.iter().any(|cells| cells.contains(&cell));
+            if probe.cell.is_some_and(|cell| !is_there(cell)) {
+                let path = format!("probe.{}.at", probe.name);
+                let message =
+                    "the nearest cell is one of those that are removed inside an overlapping body";
+                let problem = Problem::new(path, message);
+                self.problems
+                    .push(problem.accepted(["a place in the body that stays"]));
+                continue;
+            }
             let outside = |(node, _): &&(u32, f64)| !used[*node as usize];
             let (message, accepted) = match probe.nodes.iter().filter(outside).count() {
                 0 => continue,
@@ -100,14 +135,54 @@ impl Builder<'_> {
                 ),
                 _ => continue,
             };
-            let path = format!("probe.{}.on", probe.name);
+            let given = self.case.probe.get(&probe.name);
+            let on = given.and_then(|given| given.on.as_ref());
+            let key = if on.is_some() { "on" } else { "at" };
+            let path = format!("probe.{}.{key}", probe.name);
             let problem = Problem::new(path, message).accepted([accepted]);
-            self.problems.push(match self.case.probe.get(&probe.name) {
-                Some(given) if accepted.ends_with("surface") => problem.found(&given.on),
+            self.problems.push(match on {
+                Some(on) if accepted.ends_with("surface") => problem.found(on),
                 _ => problem,
             });
         }
     }
+}
+
+/// The node of a body that is nearest to a place; the first of equals.
+fn nearest_node(mesh: &Mesh, bodies: &[ModelBody], at: &[f64; 3]) -> Option<u32> {
+    let cells = bodies.iter().flat_map(|body| &body.spec.cells);
+    let nodes = cells.flat_map(|cell| mesh.element_nodes(*cell).iter().copied());
+    let distance = |node: &u32| squared(&mesh.nodes[*node as usize], at);
+    nodes.min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)))
+}
+
+/// The cell of a body whose middle is nearest to a place; the first of equals.
+fn nearest_cell(mesh: &Mesh, bodies: &[ModelBody], at: &[f64; 3]) -> Option<ElementId> {
+    let distance = |cell: &ElementId| {
+        let nodes = mesh.element_nodes(*cell);
+        let share = 1.0 / nodes.len() as f64;
+        let middle = nodes.iter().fold([0.0; 3], |sum, node| {
+            let x = mesh.nodes[*node as usize];
+            [0, 1, 2].map(|i| sum[i] + share * x[i])
+        });
+        squared(&middle, at)
+    };
+    let cells = bodies
+        .iter()
+        .flat_map(|body| body.spec.cells.iter().copied());
+    cells.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+fn squared(x: &[f64; 3], y: &[f64; 3]) -> f64 {
+    (0..3).map(|i| (x[i] - y[i]).powi(2)).sum()
+}
+
+/// A stress has a cell.
+fn without_a_cell(name: &str, probe: &Probe) -> Problem {
+    let place = probe.record.iter().position(|of| *of == Motion::Stress);
+    let path = format!("probe.{name}.record[{}]", place.unwrap_or(0));
+    let problem = Problem::new(path, "the stress of a probe is that of one cell");
+    problem.found("stress").accepted(["`at` in place of `on`"])
 }
 
 /// The nodes of a group, each with ∫ N_a dΩ over the group: with these weights the mean of the nodes is that of the field over the

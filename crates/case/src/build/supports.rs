@@ -2,15 +2,42 @@
 
 use std::collections::BTreeMap;
 
-use carom_dynamics::{Amplitude, Prescribed, PrescribedTurn, Support};
+use carom_dynamics::{Amplitude, NamedSupport, Prescribed, PrescribedTurn, Support};
 use carom_mesh::Mesh;
 
 use super::Builder;
 use crate::error::Problem;
-use crate::schema::MovementCourse;
+use crate::schema::{Case, MovementCourse};
 
 /// Supports, prescribed motions and prescribed rotations.
 pub(super) type Held = (Vec<Support>, Vec<Prescribed>, Vec<PrescribedTurn>);
+
+/// What the supports of a case hold or move.
+pub(super) fn named(case: &Case, mesh: &Mesh) -> Vec<NamedSupport> {
+    let named = case.support.iter().filter_map(|(name, support)| {
+        let nodes = mesh.group_nodes(mesh.groups.get(&support.on)?);
+        let (mut axes, mut rotations) = ([false; 3], [false; 3]);
+        for (axis, turns) in support.fix.iter().map(|axis| axis.index()) {
+            match turns {
+                true => rotations[axis] = true,
+                false => axes[axis] = true,
+            }
+        }
+        if let Some(motion) = &support.motion {
+            let moved = [&motion.x, &motion.y, &motion.z].map(|points| points.is_some());
+            let turned = [&motion.rx, &motion.ry, &motion.rz].map(|points| points.is_some());
+            (0..3).for_each(|i| axes[i] |= moved[i]);
+            (0..3).for_each(|i| rotations[i] |= turned[i]);
+        }
+        Some(NamedSupport {
+            name: name.to_owned(),
+            nodes,
+            axes,
+            rotations,
+        })
+    });
+    named.collect()
+}
 
 /// Names of the axes.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];

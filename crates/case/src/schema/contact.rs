@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::obstacle::Obstacle;
+use super::output::ChannelClass;
 use carom_laws::GivenLaw;
 use carom_quantities::{Length, SurfaceDamping, SurfaceStiffness};
 
@@ -46,6 +47,11 @@ pub struct Contact {
     /// Mass of the nodes of the two surfaces.
     #[serde(default)]
     pub nodes: Nodes,
+    /// Filters of SAE J211-1 behind which the sum of the normal forces is written too, in `filtered.csv`, and drawn over the raw force.
+    /// Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("uniqueItems" = true))]
+    pub filter: Vec<ChannelClass>,
 }
 
 /// Friction.

@@ -3,14 +3,18 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use carom_quantities::{Duration, Energy, Force, Frequency};
+use carom_quantities::{Coordinate, Duration, Energy, Force, Frequency, Vector};
 
-/// A history of the mean motion of a group, at every step.
+/// A history at every step: of the mean motion of a group, or of the motion and the stress at a place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("oneOf" = [{ "required": ["on"] }, { "required": ["at"] }]))]
 pub struct Probe {
-    /// Group of the nodes.
-    pub on: String,
+    /// Group of the nodes: the mean of the motion over its length, area or volume.
+    pub on: Option<String>,
+    /// A place in the reference configuration: the motion of the node of a body that is nearest to it, and the stress of the cell whose
+    /// middle is nearest to it.
+    pub at: Option<Vector<Coordinate>>,
     /// Quantities to write.
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub record: Vec<Motion>,
@@ -122,6 +126,9 @@ pub enum Motion {
     /// Acceleration with that of the ground, m/s²: in a run with base acceleration the other quantities are relative to the
     /// ground.
     AbsoluteAcceleration,
+    /// Mean stress of the cell nearest to `at`, Pa, and its von Mises equivalent; at finite strain of Cauchy, of beams and shells the
+    /// mean over the section. It takes about as long as the internal forces of the body.
+    Stress,
 }
 
 /// Output of a run beside its histories, which are always written at every step.

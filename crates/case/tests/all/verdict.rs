@@ -8,9 +8,15 @@ use carom_output::{Grade, Summary};
 use crate::compare::Nobody;
 
 /// Columns of `histories.csv` by name.
-type Histories = BTreeMap<String, Vec<f64>>;
+pub type Histories = BTreeMap<String, Vec<f64>>;
 
-fn result(text: &str) -> (Summary, Histories) {
+/// Summary and histories of a case.
+pub fn result(text: &str) -> (Summary, Histories) {
+    result_with(text, "histories.csv")
+}
+
+/// Summary of a case, and a table of its results folder.
+pub fn result_with(text: &str, table: &str) -> (Summary, Histories) {
     let input = Input::from_text("case.toml", text, &[]);
     let (case, locator) = parse(&input).unwrap();
     let built = build(&case, &locator, &input).unwrap();
@@ -22,7 +28,7 @@ fn result(text: &str) -> (Summary, Histories) {
         &mut Nobody,
         &|| false,
     );
-    let histories = std::fs::read_to_string(folder.join("histories.csv")).unwrap();
+    let histories = std::fs::read_to_string(folder.join(table)).unwrap();
     let mut lines = histories.lines();
     let names = lines.next().unwrap().split(',').map(str::to_owned);
     let mut columns: Vec<(String, Vec<f64>)> = names.map(|name| (name, Vec::new())).collect();

@@ -59,6 +59,11 @@ fn every_template_passes_the_check_and_no_file_is_overwritten() {
         "two-bars-newmark",
         "bar-on-wall",
         "block-drop",
+        "drop-test",
+        "friction",
+        "rigid-hammer",
+        "seismic-stops",
+        "preload",
         "arlequin",
     ] {
         assert!(listed.contains(name));

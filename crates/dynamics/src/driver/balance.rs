@@ -10,6 +10,7 @@ use std::sync::Arc;
 use carom_contact::law::Level;
 
 use super::identity::{End, energies};
+use super::reported;
 use super::scratch::Works;
 use super::{Driver, Which};
 use crate::error::Error;
@@ -323,6 +324,12 @@ impl Driver {
             energy: self.left_over * travel.sum::<f64>().sqrt(),
             momentum: self.left_over * nodes.sqrt() * self.dt,
         };
+        let apart = |i: usize| if pushes { held[i] } else { 0.0 };
+        let sprung = |i: usize| springs.get(i).unwrap_or(&0.0);
+        let at = (&old.frames[..], Some(&new.u[..]));
+        reported::write(&mut self.reactions, &system, at, |i| {
+            reaction[i] + apart(i) - sprung(i)
+        });
         let [loads, contacts, reactions, _, _, damped, linked, sprung] = resultants;
         let forces = [
             loads,

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use super::Driver;
 use super::forces::{Bodies, add_up};
 use super::leapfrog::{Direct, is_leapfrog};
+use super::reported;
 use crate::error::Error;
 use crate::ledger::{Beyond, Energies, Squares, Tolerated};
 use crate::resultant::Resultant;
@@ -82,6 +83,7 @@ impl Driver {
         self.count_contact(begin, before);
         let begin = Instant::now();
         let sums = self.end_motion(direct, loads);
+        self.report_supports(loads);
         direct.finite = (sums.velocity + sums.acceleration[1] + sums.way).is_finite();
         direct.clean = true;
         self.end_points();
@@ -257,6 +259,21 @@ impl Driver {
             Loads::None | Loads::Dead(_) => forces.clear(),
         }
         direct.gather(system.axisymmetric)
+    }
+
+    /// Forces of the named supports at the end: what is held has no acceleration.
+    fn report_supports(&mut self, loads: Loads) {
+        let motion = &self.next.motion;
+        let load = |i: usize| match loads {
+            Loads::None => 0.0,
+            Loads::Dead([_, factor]) => factor * self.system.load[i],
+            Loads::Varying => self.vectors.load[i],
+        };
+        let displacement = self.system.is_nonlinear().then_some(&motion.u[..]);
+        let at = (&self.state.motion.frames[..], displacement);
+        reported::write(&mut self.reactions, &self.system, at, |i| {
+            motion.internal_force[i] - load(i) - motion.contact_force[i]
+        });
     }
 
     /// Gaps, rates and memories of the contact points.

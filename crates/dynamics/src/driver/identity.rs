@@ -7,6 +7,7 @@ use carom_algebra::reduce::dot;
 use carom_bodies::Body;
 
 use super::Driver;
+use super::reported;
 use crate::ledger::{Energies, Squares, reactions};
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
@@ -214,7 +215,11 @@ impl Driver {
         let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
         exchange.add(&system, (0, self.dt, |_| self.maps.first().impulse), own);
         let supports = Resultant::of(&system, work);
-        if self.maps.first().impulse == self.maps.first().contact_impulse {
+        let apart = self.maps.first().impulse != self.maps.first().contact_impulse;
+        let held = |i: usize| if apart { new.contact_force[i] } else { 0.0 };
+        let at = (&self.state.motion.frames[..], None);
+        reported::write(&mut self.reactions, &system, at, |i| work[i] - held(i));
+        if !apart {
             return [supports, Resultant::default()];
         }
         for (i, held) in half.iter_mut().enumerate() {

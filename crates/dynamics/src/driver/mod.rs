@@ -50,6 +50,7 @@ mod predictor;
 mod projection;
 pub(crate) mod record;
 mod renewal;
+mod reported;
 mod residual;
 mod restoring;
 mod rigid;
@@ -75,6 +76,7 @@ use crate::costs::{Costs, Phases};
 use crate::coulomb::{Coulomb, FrictionProblem, Slip};
 use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::report::StepReport;
+use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
 use crate::shapes::Rates;
 use crate::state::State;
@@ -167,6 +169,8 @@ pub struct Driver {
     state: State,
     next: State,
     report: StepReport,
+    /// Forces of the named supports in the last attempt.
+    reactions: Vec<Resultant>,
     vectors: Vectors,
     works: Works,
     /// Energies of the iteration.

@@ -137,6 +137,9 @@ impl Driver {
         self.report.time = state.time;
         self.report.dt = dt;
         self.report.balance = state.ledger.balance;
+        if state.step > 0 {
+            self.report.supports.clone_from(&self.reactions);
+        }
         self.report.passes = match self.system.is_nonlinear() {
             true => self.residuals.len(),
             false if self.candidates.is_empty() => 0,

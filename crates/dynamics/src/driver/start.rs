@@ -105,6 +105,7 @@ impl Driver {
             jump: Jump::default(),
             failed: None,
             failed_friction: None,
+            reactions: Vec::new(),
             report: StepReport {
                 contacts: vec![ContactReport::default(); system.contacts.len()],
                 ..StepReport::default()

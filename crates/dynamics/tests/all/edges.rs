@@ -79,6 +79,7 @@ fn sheared(secondary: usize) -> Driver {
             fix: [true, true, false],
             fix_rotations: [false; 3],
         }],
+        named_supports: Vec::new(),
         gravity: [0.0; 3],
         scheme: Scheme::Newmark(scheme::Newmark {
             beta: 0.25,

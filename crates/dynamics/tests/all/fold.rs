@@ -82,6 +82,7 @@ fn pressed(depth: f64, way: f64) -> Driver {
             fix: [true, true, false],
             fix_rotations: [false; 3],
         }],
+        named_supports: Vec::new(),
         gravity: [0.0; 3],
         scheme: Scheme::Newmark(scheme::Newmark {
             beta: 0.25,

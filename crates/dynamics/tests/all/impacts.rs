@@ -3,6 +3,7 @@
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::Law;
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
+use carom_dynamics::NoRestitution;
 use carom_dynamics::scheme::{Newmark, Theta};
 use carom_dynamics::{
     Driver, Impact, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System,
@@ -151,6 +152,7 @@ fn an_impact_ends_when_its_flight_has_lasted_and_is_told_before() {
     }
     let (impacts, _) = row.impacts(1.0);
     assert!(impacts[0].unfinished && impacts[0].restitution.is_none());
+    assert_eq!(impacts[0].no_restitution, Some(NoRestitution::Unfinished));
 }
 
 #[test]
@@ -180,6 +182,9 @@ fn a_chain_has_no_restitution_where_two_contacts_act_on_one_body() {
     assert!(impacts.len() >= 2);
     for impact in impacts {
         assert_eq!(impact.restitution, None, "contact {}", impact.contact);
+        let why = impact.no_restitution.unwrap();
+        let told = [NoRestitution::OtherForces, NoRestitution::Unfinished];
+        assert!(told.contains(&why), "{why:?}");
     }
 }
 

@@ -9,6 +9,8 @@ pub mod file;
 pub(crate) mod flatten;
 pub mod gmsh;
 pub mod inp;
+pub mod stl;
+pub mod vtu;
 
 use std::path::Path;
 
@@ -16,13 +18,13 @@ use crate::Mesh;
 pub use error::{Place, ReadError};
 
 /// Extensions of the files that [`read`] takes.
-pub const EXTENSIONS: &[&str] = &["msh", "inp"];
+pub const EXTENSIONS: &[&str] = &["msh", "inp", "stl", "vtu"];
 
 /// Most bytes of a mesh file: 16 GiB, some hundred million nodes.
 const LARGEST: u64 = 16 << 30;
 
 /// Reads the mesh in a file; the extension, in any case, says the format: `.msh` is Gmsh's ([`gmsh`]), `.inp` that of
-/// Abaqus and CalculiX ([`inp`]).
+/// Abaqus and CalculiX ([`inp`]), `.stl` a surface of triangles ([`stl`]), `.vtu` an unstructured grid of VTK ([`vtu`]).
 ///
 /// Fails if the file cannot be read or its content refused; see [`ReadError`].
 pub fn read(path: &Path) -> Result<Mesh, ReadError> {
@@ -41,6 +43,8 @@ pub fn read(path: &Path) -> Result<Mesh, ReadError> {
     })?;
     match format.as_str() {
         "inp" => inp::parse(path, &bytes),
+        "stl" => stl::parse(path, &bytes),
+        "vtu" => vtu::parse(path, &bytes),
         _ => gmsh::parse(path, &bytes),
     }
 }

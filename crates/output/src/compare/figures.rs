@@ -107,6 +107,7 @@ pub(crate) fn page(comparison: &Comparison) -> Data {
             name: "time".to_owned(),
             unit: "s",
         },
+        begin: 0.0,
         end,
         events: Vec::new(),
         plots: draft::plots(drafts, &mut block),

@@ -4,13 +4,48 @@
 pub fn section(line: &str) -> &'static str {
     match line {
         "energy-residual" | "momentum-residual" | "contact-impulse" | "resizing" => "plot-residual",
-        "energy-gain" | "scheme-made" | "contact-work" | "contact-loss" | "scheme-energy"
-        | "hourglass" => "plot-energy",
+        "energy-gain" | "scheme-made" | "contact-work" | "contact-loss" | "scheme-loss"
+        | "scheme-energy" | "hourglass" => "plot-energy",
         "chatter" => "plot-status",
         "penetration" => "plot-gap",
         "step-in-contact" | "force-error" | "not-finite" => "plot-force",
         "angular-momentum-residual" => "balances",
-        "deleted-cells" | "loose-nodes" | "rotation" | "strain" | "slide" | "turn" => "model",
-        _ => "work",
+        "small-strain-rotation" | "small-strain" => "model",
+        line if line.starts_with("small-sliding") => "model",
+        "added-mass" => "work",
+        _ => "verdict",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_line_of_the_manual_leads_to_a_section_of_the_page() {
+        let manual = include_str!("../../../../docs/src/results.md");
+        let (_, table) = manual.split_once("| line | number |").unwrap();
+        let (table, _) = table.split_once("\n\n").unwrap();
+        let first = |row: &str| row.split('|').nth(1).unwrap_or_default().to_owned();
+        let cells = table.lines().skip(2).map(first);
+        let names: Vec<String> = cells
+            .flat_map(|cell| {
+                cell.split(',')
+                    .map(|name| name.trim().trim_matches('`').to_owned())
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+        // as many as there are lines today at least
+        assert!(names.len() >= 22, "{names:?}");
+        let page = include_str!("../../templates/report.html");
+        for name in names {
+            let section = section(&name);
+            assert_ne!(section, "verdict", "{name}");
+            let is_there = [format!("id=\"{section}\""), format!("(\"{section}\",")];
+            assert!(
+                is_there.iter().any(|id| page.contains(id)),
+                "{name}: {section}"
+            );
+        }
     }
 }

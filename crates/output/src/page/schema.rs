@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::page::block::Array;
 
 /// The version of what is written here; `report/src/data.js` has the same.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// The head of a page.
 #[derive(Debug, Serialize)]
@@ -16,6 +16,8 @@ pub struct Page {
     pub schema: u32,
     /// Name and unit of what plots are drawn over: time, or the pseudo-time of a static run.
     pub abscissa: Quantity,
+    /// Time at which the dynamics begin, s: plots over time show what follows at first.
+    pub begin: f64,
     /// Time reached, s.
     pub end: f64,
     /// Instants that every plot over time marks.
@@ -91,8 +93,10 @@ pub struct Curve {
 pub struct Raster {
     /// The section of the page.
     pub id: &'static str,
-    /// Equal parts of the time from 0 to `end`.
+    /// Equal parts of the time from `begin` to `end`.
     pub columns: usize,
+    /// Time at the start of the first one, s.
+    pub begin: f64,
     /// Time at the end of the last one, s.
     pub end: f64,
     /// The contacts with their rows.
@@ -156,6 +160,8 @@ pub struct Model {
     pub constants: BTreeMap<&'static str, Array>,
     /// Surfaces of the contacts.
     pub contacts: Vec<Sides>,
+    /// Groups of the mesh.
+    pub groups: Vec<Group>,
     /// Rigid obstacles.
     pub obstacles: Vec<Obstacle>,
     /// Fields beside the displacement.
@@ -178,6 +184,17 @@ pub struct Sides {
 /// A surface.
 #[derive(Debug, Serialize)]
 pub struct Side {
+    /// Corners of triangles.
+    pub triangles: Array,
+    /// Ends of lines.
+    pub lines: Array,
+}
+
+/// A group of the mesh: of cells their part of the surface.
+#[derive(Debug, Serialize)]
+pub struct Group {
+    /// In the mesh.
+    pub name: String,
     /// Corners of triangles.
     pub triangles: Array,
     /// Ends of lines.

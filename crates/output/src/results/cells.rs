@@ -16,7 +16,7 @@ pub(crate) fn cell_stresses(system: &System, u: &[f64], histories: &[f64]) -> Ve
 }
 
 /// A symmetric tensor in VTK's order.
-fn in_order(s: &Mat3) -> [f64; 6] {
+pub(crate) fn in_order(s: &Mat3) -> [f64; 6] {
     [
         s[(0, 0)],
         s[(1, 1)],
@@ -132,7 +132,7 @@ pub(crate) fn plastic_strains(system: &System, histories: &[f64]) -> Option<Vec<
 }
 
 /// Equivalent stress of von Mises, sqrt(3/2 s : s) with s the deviator, Pa.
-fn von_mises(stress: &[f64; 6]) -> f64 {
+pub(crate) fn von_mises(stress: &[f64; 6]) -> f64 {
     let [xx, yy, zz, xy, yz, xz] = *stress;
     let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
     let shear = xy * xy + yz * yz + xz * xz;

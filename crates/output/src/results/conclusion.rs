@@ -2,25 +2,21 @@
 
 use std::collections::BTreeMap;
 
-use carom_contact::{Contact as Pair, Integration};
-use carom_dynamics::{ContactRecord, Impact, Ledger, System};
+use carom_dynamics::{ContactRecord, Ledger, System};
 
 use crate::plot::{Logarithmic, model_figure};
 use crate::results::costs::{counts, courant, newton, timings};
 use crate::results::exact;
 use crate::results::film::film;
-use crate::results::impacts::ContactTotals;
 use crate::results::lines::{Evidence, judge};
 use crate::results::page::quality::qualities;
 use crate::results::page::tiles::tiles;
 use crate::results::page::{self, Sources};
 use crate::results::reduced;
 use crate::results::totals::Last;
-use crate::results::{Comparison, Ending, LevelSettings, Results};
-use crate::statistics::{Level, Statistics};
+use crate::results::{Comparison, Ending, Results, contacts, largest};
 use crate::summary::{
-    Angular, Contact, Energy, Exact, Friction, Model, Momentum, Rejected, Summary, Time, Zones,
-    hash,
+    Angular, Energy, Exact, Model, Momentum, Rejected, Summary, Time, Zones, hash,
 };
 use crate::{Error, Report, atomic, checkpoint};
 
@@ -141,6 +137,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         energy: &energy,
         momentum: &momentum,
         exact: exact.as_ref(),
+        study: settings.study.as_deref(),
     };
     let verdict = judge(&evidence, unfinished);
     let names = results.folder.names().map(str::to_owned);
@@ -159,9 +156,10 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         scheme: settings.scheme.clone(),
         time: time(system, last, zones),
         zones: ending.zones.clone(),
-        contacts: contacts(results),
-        levels: levels(results),
+        contacts: contacts::contacts(results),
+        levels: contacts::levels(results),
         discrete: results.discrete.all(),
+        maxima: largest::maxima(results),
         energy,
         momentum,
         exact,
@@ -230,84 +228,6 @@ fn time(system: &System, last: &Last, zones: Option<&Zones>) -> Time {
         largest_step: last.control.range[1],
         courant,
     }
-}
-
-fn contacts(results: &Results) -> BTreeMap<String, Contact> {
-    let system = &results.system;
-    let all = system.contacts.iter().zip(&results.impacts.told.contacts);
-    let in_time = |value: f64| (!results.is_static()).then_some(value);
-    let all_impacts = &results.impacts.all;
-    let name = |k: usize| system.contacts[k].name.as_str();
-    let one = |(k, (contact, totals)): (usize, (&Pair, &ContactTotals))| {
-        let none = ContactRecord::default();
-        let records = &results.last.records;
-        let record = records.contacts.get(k).unwrap_or(&none);
-        let closed = totals.closed;
-        let still_closed = results.last.closed.get(k) == Some(&true);
-        let impacts = || {
-            records
-                .ended()
-                .filter(|impact| impact.contact as usize == k)
-        };
-        (
-            contact.name.clone(),
-            Contact {
-                law: contact.law.get().name().to_owned(),
-                peak_force: record.peak_force,
-                peak_mean_force: in_time(totals.mean.peak()),
-                window: totals.window,
-                mean_force: in_time(match closed > 0.0 {
-                    true => record.impulse() / closed,
-                    false => 0.0,
-                }),
-                impulse: in_time(record.impulse()),
-                impulsive: record.impulse_of_jumps(),
-                friction: (system.friction[k] > 0.0).then_some(Friction {
-                    coefficient: system.friction[k],
-                    peak_force: totals.peak_friction,
-                    loss: record.friction_loss(),
-                }),
-                first_closing: record.first_closing,
-                last_release: record.last_force.filter(|_| !still_closed),
-                status_changes: record.status_changes,
-                chatter: record.chatter(),
-                max_penetration: record.penetration,
-                persistency_defect: record.persistency_defect(),
-                energy_crushed: record.energy_crushed,
-                mixed_supports: matches!(contact.integration, Integration::Weak { .. })
-                    .then_some(record.mixed),
-                impacts: impacts().count() + usize::from(still_closed && !results.is_static()),
-                restitution: impacts()
-                    .last()
-                    .and_then(|impact| impact.restitution)
-                    .filter(|_| !totals.of_parts),
-                statistics: {
-                    let own = |impact: &&Impact| impact.contact as usize == k;
-                    let own: Vec<&Impact> = all_impacts.iter().filter(own).collect();
-                    let some = || Statistics::of(&own, name, record.friction_loss());
-                    (!own.is_empty()).then(some)
-                },
-            },
-        )
-    };
-    all.enumerate().map(one).collect()
-}
-
-/// The levels of the case.
-fn levels(results: &Results) -> BTreeMap<String, Level> {
-    let name = |k: usize| results.system.contacts[k].name.as_str();
-    let records = &results.last.records.contacts;
-    let one = |level: &LevelSettings| {
-        let own = |impact: &&Impact| level.contacts.contains(&(impact.contact as usize));
-        let impacts: Vec<&Impact> = results.impacts.all.iter().filter(own).collect();
-        let losses = level.contacts.iter().filter_map(|k| records.get(*k));
-        let loss = losses
-            .map(ContactRecord::friction_loss)
-            .fold(0.0, |a, b| a + b);
-        let of = Level::of(&level.contacts, &impacts, name, (loss, level.allowable));
-        (level.name.clone(), of)
-    };
-    results.settings.levels.iter().map(one).collect()
 }
 
 fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {

@@ -37,7 +37,8 @@ pub(crate) fn film(system: &System, stills: &Stills) -> Option<Result<String, Er
             frame(still, (system, stills), &outlines)
         }
     };
-    let frames: Vec<Frame> = shown(all).iter().map(picture).collect();
+    let since = all.partition_point(|still| still.time < stills.begin());
+    let frames: Vec<Frame> = shown(&all[since..]).iter().map(picture).collect();
     let scene = Scene {
         title: "Motion",
         dim: system.dim,

@@ -1,4 +1,4 @@
-//! Accelerations of probes behind the filters of impact tests, beside the raw ones: `filtered.csv`.
+//! Accelerations of probes and forces of contacts behind the filters of impact tests, beside the raw ones: `filtered.csv`.
 //!
 //! The filters run backward too, so that they begin when the run has ended. Where steps differ, samples are at their mean distance,
 //! straight between the steps.
@@ -6,7 +6,6 @@
 use carom_dynamics::{Order, State, StepReport, System};
 use carom_signals::{ChannelFilter, Record};
 
-use crate::results::Probe;
 use crate::results::sensor::{COMPONENTS, Sensor};
 use crate::results::settings::Settings;
 use crate::rows::{Cell, Rows};
@@ -14,26 +13,69 @@ use crate::{Error, Folder, column};
 
 const FILE: &str = "filtered.csv";
 
-/// The accelerations of the probes with filters.
+/// What a signal is taken from.
+#[derive(Debug)]
+enum Source {
+    /// A component of an acceleration, and the axis of the frame whose acceleration is added.
+    Acceleration(Sensor, Option<usize>),
+    /// The sum of the normal forces of a contact.
+    Force(usize),
+}
+
+/// A signal with filters.
+#[derive(Debug)]
+struct Signal {
+    source: Source,
+    /// Path of its column.
+    path: [String; 3],
+    title: String,
+    /// Classes of its filters, Hz.
+    filters: Vec<u32>,
+}
+
+impl Signal {
+    fn unit(&self) -> &'static str {
+        match self.source {
+            Source::Acceleration(..) => "m/s²",
+            Source::Force(_) => "N",
+        }
+    }
+
+    fn of(&self, system: &System, state: &State, report: &StepReport) -> f64 {
+        match &self.source {
+            Source::Acceleration(sensor, frame) => {
+                let own = sensor.of(system, &state.motion, Order::Acceleration);
+                let frame =
+                    frame.map(|axis| system.frame_acceleration(report.time, report.dt)[axis]);
+                frame.unwrap_or(0.0) + own
+            }
+            Source::Force(contact) => report.contacts[*contact].force,
+        }
+    }
+}
+
+/// The signals with filters.
 #[derive(Debug)]
 pub(crate) struct Filtered {
-    probes: Vec<(Probe, Vec<Sensor>)>,
+    signals: Vec<Signal>,
     times: Vec<f64>,
-    /// By probe, kind of acceleration and direction, m/s².
+    /// By signal.
     histories: Vec<Vec<f64>>,
     every: Option<f64>,
 }
 
-/// An acceleration of a probe, raw or behind a filter.
+/// A signal, raw or behind a filter.
 #[derive(Debug)]
 pub(crate) struct FilteredCurve {
-    /// Probe, kind of acceleration and direction.
+    /// What it is.
     pub(crate) title: String,
     /// `raw`, or the name of the filter.
     pub(crate) name: String,
     /// Class of the filter, Hz.
     pub(crate) filter: Option<u32>,
-    /// s, m/s².
+    /// The contact whose force it is.
+    pub(crate) contact: Option<usize>,
+    /// s, and m/s² or N.
     pub(crate) points: Vec<(f64, f64)>,
 }
 
@@ -47,26 +89,47 @@ impl FilteredCurve {
     }
 }
 
-/// Names of the accelerations of a probe that are written; whether each has that of the frame.
-fn kinds(probe: &Probe) -> impl Iterator<Item = (&'static str, bool)> {
-    let own = probe.acceleration.then_some(("acceleration", false));
-    let absolute = probe.absolute_acceleration;
-    let absolute = absolute.then_some(("absolute acceleration", true));
-    own.into_iter().chain(absolute)
+/// The signals of the probes with filters, `sensors` of each probe, and those of the contacts.
+fn signals(system: &System, settings: &Settings, sensors: &[Vec<Sensor>]) -> Vec<Signal> {
+    let mut signals = Vec::new();
+    let probes = settings.probes.iter().zip(sensors);
+    for (probe, sensors) in probes.filter(|(probe, _)| !probe.filters.is_empty()) {
+        let own = probe.acceleration.then_some(("acceleration", false));
+        let absolute = probe.absolute_acceleration;
+        let absolute = absolute.then_some(("absolute acceleration", true));
+        for (kind, absolute) in own.into_iter().chain(absolute) {
+            for (axis, (sensor, component)) in sensors.iter().zip(COMPONENTS).enumerate() {
+                let what = format!("{kind} {component}");
+                signals.push(Signal {
+                    source: Source::Acceleration(sensor.clone(), absolute.then_some(axis)),
+                    title: format!("Probe {}: {what}", probe.name),
+                    path: ["probe".to_owned(), probe.name.clone(), what],
+                    filters: probe.filters.clone(),
+                });
+            }
+        }
+    }
+    for (k, contact) in system.contacts.iter().enumerate() {
+        if let Some(filters) = settings.contact_filters.get(&contact.name) {
+            signals.push(Signal {
+                source: Source::Force(k),
+                title: format!("Force of contact {}", contact.name),
+                path: ["contact", &contact.name, "force"].map(str::to_owned),
+                filters: filters.clone(),
+            });
+        }
+    }
+    signals
 }
 
 impl Filtered {
     /// Nothing yet; `sensors`: of each probe.
-    pub(crate) fn new(settings: &Settings, sensors: &[Vec<Sensor>]) -> Filtered {
-        let probes = settings.probes.iter().cloned().zip(sensors.iter().cloned());
-        let probes: Vec<_> = probes
-            .filter(|(probe, _)| !probe.filters.is_empty())
-            .collect();
-        let count = |(probe, sensors): &(Probe, Vec<Sensor>)| kinds(probe).count() * sensors.len();
+    pub(crate) fn new(system: &System, settings: &Settings, sensors: &[Vec<Sensor>]) -> Filtered {
+        let signals = signals(system, settings, sensors);
         Filtered {
             times: Vec::new(),
-            histories: vec![Vec::new(); probes.iter().map(count).sum()],
-            probes,
+            histories: vec![Vec::new(); signals.len()],
+            signals,
             every: settings.history_every,
         }
     }
@@ -83,26 +146,16 @@ impl Filtered {
 
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
         // the time of a static stage is none
-        if self.probes.is_empty() || report.step < system.static_steps() {
+        if self.signals.is_empty() || report.step < system.static_steps() {
             return;
         }
         self.times.push(report.time);
-        let frame = system.frame_acceleration(report.time, report.dt);
-        let mut histories = self.histories.iter_mut();
-        for (probe, sensors) in &self.probes {
-            for (_, absolute) in kinds(probe) {
-                for (sensor, frame) in sensors.iter().zip(frame) {
-                    let own = sensor.of(system, &state.motion, Order::Acceleration);
-                    let value = if absolute { own + frame } else { own };
-                    if let Some(history) = histories.next() {
-                        history.push(value);
-                    }
-                }
-            }
+        for (signal, history) in self.signals.iter().zip(&mut self.histories) {
+            history.push(signal.of(system, state, report));
         }
     }
 
-    /// Writes `filtered.csv`, if a probe has a filter and there are two states; returns its columns, each raw one before those behind its
+    /// Writes `filtered.csv`, if something has a filter and there are two states; returns its columns, each raw one before those behind its
     /// filters.
     ///
     /// # Errors
@@ -115,63 +168,69 @@ impl Filtered {
         if step <= 0.0 {
             return Ok(Vec::new());
         }
-        let first = *first;
-        let (mut names, mut columns) = (vec![column(&["time"], "s")], Vec::new());
+        let mut names = vec![column(&["time"], "s")];
         let mut curves = Vec::new();
-        let curve = |title: &str, filter: Option<u32>, samples: &[f64]| FilteredCurve {
-            title: title.to_owned(),
-            name: filter.map_or("raw".to_owned(), |class| format!("CFC {class}")),
-            filter,
-            points: samples
-                .iter()
-                .enumerate()
-                .map(|(k, a)| (first + k as f64 * step, *a))
-                .collect(),
-        };
         let mut histories = self.histories.drain(..);
-        for (probe, sensors) in &self.probes {
-            for (kind, _) in kinds(probe) {
-                for component in &COMPONENTS[..sensors.len()] {
-                    let what = format!("{kind} {component}");
-                    let raw = histories.next().unwrap_or_default();
-                    let raw = sampled(&self.times, raw, step);
-                    names.push(column(&["probe", &probe.name, &what], "m/s²"));
-                    let title = format!("Probe {}: {what}", probe.name);
-                    curves.push(curve(&title, None, &raw));
-                    columns.push(raw.clone());
-                    for class in &probe.filters {
-                        // cases with longer steps are refused
-                        let Some(filter) = ChannelFilter::new(f64::from(*class), step) else {
-                            continue;
-                        };
-                        let mut samples = raw.clone();
-                        filter.apply(&mut samples);
-                        let name = format!("cfc {class}");
-                        names.push(column(&["probe", &probe.name, &what, &name], "m/s²"));
-                        curves.push(curve(&title, Some(*class), &samples));
-                        columns.push(samples);
-                    }
-                }
+        for signal in &self.signals {
+            let raw = histories.next().unwrap_or_default();
+            let raw = sampled(&self.times, raw, step);
+            let path: Vec<&str> = signal.path.iter().map(String::as_str).collect();
+            names.push(column(&path, signal.unit()));
+            curves.push(curve(signal, None, (*first, step), &raw));
+            for class in &signal.filters {
+                // cases with longer steps are refused
+                let Some(filter) = ChannelFilter::new(f64::from(*class), step) else {
+                    continue;
+                };
+                let mut samples = raw.clone();
+                filter.apply(&mut samples);
+                let name = format!("cfc {class}");
+                let path: Vec<&str> = path.iter().copied().chain([&name[..]]).collect();
+                names.push(column(&path, signal.unit()));
+                curves.push(curve(signal, Some(*class), (*first, step), &samples));
             }
         }
         let mut rows = Rows::create(&folder.file(FILE)?, &names)?;
         let mut next = f64::NEG_INFINITY;
-        for k in 0..columns.first().map_or(0, Vec::len) {
-            let time = first + k as f64 * step;
+        for k in 0..curves.first().map_or(0, |curve| curve.points.len()) {
+            let time = curves[0].points[k].0;
             if time < next {
                 continue;
             }
             next = self
                 .every
                 .map_or(time, |every| (time + every) * (1.0 - 1e-12));
+            let values = curves.iter().map(|curve| curve.points[k].1);
             let cells: Vec<Cell> = std::iter::once(time)
-                .chain(columns.iter().map(|column| column[k]))
+                .chain(values)
                 .map(Cell::Number)
                 .collect();
             rows.push(cells.iter().copied())?;
         }
         rows.finish()?;
         Ok(curves)
+    }
+}
+
+/// Samples of a signal from the time `first` (s) on, `step` (s) apart.
+fn curve(
+    signal: &Signal,
+    filter: Option<u32>,
+    (first, step): (f64, f64),
+    samples: &[f64],
+) -> FilteredCurve {
+    let samples = samples.iter().enumerate();
+    FilteredCurve {
+        title: signal.title.clone(),
+        name: filter.map_or("raw".to_owned(), |class| format!("CFC {class}")),
+        filter,
+        contact: match signal.source {
+            Source::Force(contact) => Some(contact),
+            Source::Acceleration(..) => None,
+        },
+        points: samples
+            .map(|(k, value)| (first + k as f64 * step, *value))
+            .collect(),
     }
 }
 

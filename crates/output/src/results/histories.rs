@@ -13,6 +13,7 @@ use carom_dynamics::{ContactReport, Order, State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
 use crate::history::column;
+use crate::results::cells::{in_order, von_mises};
 use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor};
 use crate::results::{Probe, Settings, Zoning};
 use crate::rows::{Cell, unique};
@@ -147,6 +148,10 @@ impl Histories {
                 row.extend(sensors.iter().zip(frame).map(of));
             }
         }
+        for (probe, _) in &self.probes {
+            row.extend(stress(system, probe, state).into_iter().flatten());
+        }
+        push_supports(system, report, row);
         let balance = &report.balance;
         let energies = [
             balance.kinetic,
@@ -278,6 +283,60 @@ fn put(system: &System, (k, contact): (usize, &ContactReport), row: &mut Vec<Cel
     }
 }
 
+/// Mean stress of the cell of a probe and its equivalent, in the order of [`stresses`]; `None` without a cell.
+fn stress(system: &System, probe: &Probe, state: &State) -> Option<Vec<Cell<'static>>> {
+    let cell = probe.cell?;
+    let mut bodies = system.bodies.iter().enumerate();
+    let found = bodies.find_map(|(k, body)| {
+        let place = body.cells().iter().position(|own| *own == cell)?;
+        Some((k, body, place))
+    });
+    let tensor = found.and_then(|(k, body, place)| {
+        let history = system.history(k, &state.motion.history);
+        let all = body.stresses(&state.motion.u, history);
+        all.get(place).map(|(_, stress)| in_order(stress))
+    });
+    let of = |name: &str| {
+        let tensor = tensor.as_ref()?;
+        let place = TENSOR.iter().position(|component| *component == name);
+        Some(place.map_or(von_mises(tensor), |place| tensor[place]))
+    };
+    let cells = stresses(system).iter().map(|name| Cell::from(of(name)));
+    Some(cells.collect())
+}
+
+/// Components of a symmetric tensor in the order of fields.
+const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+
+/// What is written of a stress, by the dimension.
+fn stresses(system: &System) -> &'static [&'static str] {
+    match system.dim {
+        1 => &["xx", "von mises"],
+        2 => &["xx", "yy", "zz", "xy", "von mises"],
+        _ => &["xx", "yy", "zz", "xy", "yz", "xz", "von mises"],
+    }
+}
+
+/// Adds the forces and moments of the supports; nothing is known of them before the first step.
+fn push_supports(system: &System, report: &StepReport, row: &mut Vec<Cell>) {
+    for support in 0..system.supports.len() {
+        let told = report.supports.get(support);
+        let force = |i: usize| Cell::from(told.map(|r| r.linear[i]));
+        let moment = |i: usize| Cell::from(told.map(|r| r.angular[i]));
+        row.extend((0..system.dim).map(force));
+        row.extend(moments(system).map(moment));
+    }
+}
+
+/// The axes about which supports have moments.
+fn moments(system: &System) -> Range<usize> {
+    match (system.axisymmetric, system.dim) {
+        (false, 2) => 2..3,
+        (false, 3) => 0..3,
+        _ => 0..0,
+    }
+}
+
 /// Whether elements are deleted.
 fn deletes(system: &System) -> bool {
     system.bodies.iter().any(|body| body.has_deletion())
@@ -361,6 +420,16 @@ pub(crate) fn columns(
             };
             names.extend(components.iter().map(of));
         }
+    }
+    for probe in settings.probes.iter().filter(|probe| probe.cell.is_some()) {
+        let of = |what: &&str| column(&["probe", &probe.name, &format!("stress {what}")], "Pa");
+        names.extend(stresses(system).iter().map(of));
+    }
+    for support in &system.supports {
+        let add = |what: String, unit| column(&["support", &support.name, &what], unit);
+        names.extend(components.iter().map(|i| add(format!("force {i}"), "N")));
+        let turns = &COMPONENTS[moments(system)];
+        names.extend(turns.iter().map(|i| add(format!("moment {i}"), "N m")));
     }
     let energies = [
         ["energy", "kinetic"],

@@ -4,6 +4,7 @@ use carom_dynamics::{Impact, State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
 use crate::results::Zoning;
+use crate::summary::PeakResultant;
 use crate::window::PeakOfMean;
 use crate::{Error, Folder, ImpactRow, ImpactTable};
 
@@ -51,6 +52,22 @@ pub(crate) struct ContactTotals {
     pub(crate) closed: f64,
     /// Largest friction force of a step, N.
     pub(crate) peak_friction: f64,
+    /// Largest force as a vector.
+    pub(crate) resultant: Option<PeakResultant>,
+}
+
+impl ContactTotals {
+    /// Keeps the force on the secondary body if it is the largest so far.
+    fn follow_resultant(&mut self, force: [f64; 3], time: f64) {
+        let magnitude = force.iter().map(|f| f * f).sum::<f64>().sqrt();
+        if magnitude > self.resultant.map_or(0.0, |peak| peak.magnitude) {
+            self.resultant = Some(PeakResultant {
+                magnitude,
+                force,
+                time,
+            });
+        }
+    }
 }
 
 impl Impacts {
@@ -73,6 +90,7 @@ impl Impacts {
                 }),
                 closed: 0.0,
                 peak_friction: 0.0,
+                resultant: None,
             }
         };
         Ok(Impacts {
@@ -110,8 +128,9 @@ impl Impacts {
         let parts = report
             .parts()
             .filter(|_| report.step > system.static_steps());
-        for (_, dt, contacts) in parts {
+        for (time, dt, contacts) in parts {
             for (totals, contact) in self.told.contacts.iter_mut().zip(contacts) {
+                totals.follow_resultant(contact.resultant, time);
                 totals.mean.push(dt, contact.force);
                 totals.peak_friction = totals.peak_friction.max(contact.friction);
                 if contact.closed > 0 {

@@ -10,6 +10,7 @@
 mod beams;
 mod cells;
 mod conclusion;
+mod contacts;
 mod costs;
 mod discrete;
 mod due;
@@ -20,8 +21,10 @@ mod film;
 mod filtered;
 mod histories;
 mod impacts;
+pub(crate) mod inspect;
 mod instants;
 mod keeping;
+mod largest;
 mod lines;
 pub(crate) mod outlines;
 pub(crate) mod page;
@@ -53,7 +56,8 @@ use page::raster::RasterOf;
 use page::series::SeriesOf;
 use sensor::ContactPoint;
 
-pub use page::quality::BodyQuality;
+pub use inspect::model_picture;
+pub use page::quality::{BodyQuality, qualities};
 pub use page::tiles::Tile;
 pub use settings::{
     Checkpoints, Ending, Fields, LevelSettings, Probe, Reference, Settings, Spectrum,
@@ -130,7 +134,7 @@ impl Results {
         }
         let curves = Curves::new(&system, &settings, point.as_ref(), &probes);
         let spectra = Spectra::new(&settings, &probes);
-        let filtered = Filtered::new(&settings, &probes);
+        let filtered = Filtered::new(&system, &settings, &probes);
         let series = SeriesOf::new(&system, &probes);
         let histories =
             Histories::create(&mut folder, &columns, (&system, &settings), (probes, kept))?;

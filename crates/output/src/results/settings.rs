@@ -1,10 +1,12 @@
 //! What is written and where, and what the results are told of the run.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use carom_dynamics::Costs;
 use carom_exact::Solution;
+use carom_mesh::ElementId;
 
 use crate::results::Zoning;
 use crate::statistics::Allowable;
@@ -23,10 +25,14 @@ pub struct Settings {
     pub version: String,
     /// Time scheme with its parameters, as text: `theta, theta = 0.5`.
     pub scheme: String,
+    /// The command that varies mesh and step of this case, which one run cannot judge; `None` where nothing can be varied.
+    pub study: Option<String>,
     /// Time at which the run is to end, s.
     pub end: f64,
     /// Histories of groups of nodes.
     pub probes: Vec<Probe>,
+    /// Classes (Hz) of the filters behind which the forces of contacts are written too, by the name of the contact.
+    pub contact_filters: BTreeMap<String, Vec<u32>>,
     /// Contacts that are judged together.
     pub levels: Vec<LevelSettings>,
     /// Time between two rows of `histories.csv`, s; `None`: a row for every step.
@@ -75,6 +81,8 @@ pub struct Probe {
     pub name: String,
     /// Nodes of the mesh, each with its weight in the mean, relative to the others; nodes that no body uses are left out.
     pub nodes: Vec<(u32, f64)>,
+    /// Cell of a body whose mean stress is written.
+    pub cell: Option<ElementId>,
     /// Whether the displacement is written, m.
     pub displacement: bool,
     /// Whether the velocity is written, m/s.

@@ -144,8 +144,10 @@ pub fn settings(folder: &Path) -> Settings {
         case_text: "carom = 1\n".to_owned(),
         version: "0.1.0".to_owned(),
         scheme: "a scheme".to_owned(),
+        study: None,
         end: duration(),
         probes: Vec::new(),
+        contact_filters: Default::default(),
         levels: Vec::new(),
         history_every: None,
         fields: None,
@@ -181,6 +183,7 @@ pub fn probe(system: &System, name: &str, group: &str) -> Probe {
             let nodes = system.mesh.group_nodes(&system.mesh.groups[group]);
             nodes.into_iter().map(|node| (node, 1.0)).collect()
         },
+        cell: None,
         displacement: true,
         velocity: true,
         acceleration: true,

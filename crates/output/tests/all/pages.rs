@@ -51,6 +51,7 @@ fn sample(verdict: Verdict) -> Summary {
         contacts: BTreeMap::from([("shock".to_owned(), contact)]),
         levels: BTreeMap::new(),
         discrete: BTreeMap::new(),
+        maxima: Default::default(),
         energy,
         momentum: Momentum {
             initial: [6.6, 0.0, 0.0],

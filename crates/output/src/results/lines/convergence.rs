@@ -6,10 +6,10 @@ use crate::results::lines::{Evidence, Finding};
 pub(super) fn of_mesh_and_step(evidence: &Evidence) -> Finding {
     match evidence.exact {
         Some(_) => Finding::Absent,
-        None => Finding::Unchecked(
-            "whether mesh and step are fine enough: vary `mesh.refine` or `time.step` with `carom study`"
-                .to_owned(),
-        ),
+        None => Finding::Unchecked(match evidence.study {
+            Some(study) => format!("whether mesh and step are fine enough: run `{study}`"),
+            None => "whether mesh and step are fine enough".to_owned(),
+        }),
     }
 }
 

@@ -28,6 +28,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     energy::made,
     energy::of_contact,
     energy::lost,
+    energy::lost_to_scheme,
     energy::of_scheme,
     finite::states,
     explicit::hourglass,

@@ -1,11 +1,13 @@
 //! What the interactive report shows of a run: gathered while it goes ([`series`], [`raster`]), put together when it has ended.
 
-mod model;
+mod decimate;
+pub(crate) mod model;
 mod obstacles;
 mod plots;
 pub(crate) mod quality;
 pub(crate) mod raster;
 pub(crate) mod series;
+mod sides;
 mod surface;
 pub(crate) mod tiles;
 
@@ -34,6 +36,7 @@ pub(crate) fn data(sources: &Sources, qualities: &[f64]) -> Data {
             name: name.to_owned(),
             unit,
         },
+        begin: results.stills.begin(),
         end: results.last.time,
         events: events(results),
         plots,
@@ -73,6 +76,7 @@ fn raster(results: &Results, block: &mut Block) -> Option<Raster> {
     Some(Raster {
         id: "plot-status",
         columns: raster::COLUMNS,
+        begin: own.begin(),
         end: own.end(),
         contacts: rows.collect(),
         cells: block.bytes(own.cells.iter().copied()),

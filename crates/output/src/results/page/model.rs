@@ -4,13 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use carom_contact::Target;
 use carom_dynamics::System;
-use carom_mesh::Face;
 
 use crate::page::block::{Array, Block, COARSE, FINE};
-use crate::page::schema::{Field, Frame, Model, Obstacle, Side, Sides};
+use crate::page::schema::{Field, Frame, Model, Obstacle};
 use crate::results::Results;
 use crate::results::outlines::size;
-use crate::results::page::obstacles::{self, Near, around};
+use crate::results::page::obstacles::{self, Near};
+use crate::results::page::sides;
 use crate::results::page::surface::Surface;
 use crate::results::stills::{Seen, Still};
 
@@ -67,7 +67,15 @@ pub(crate) fn instants(results: &Results) -> Vec<(&Still, Vec<&'static str>)> {
 /// The model with its arrays in the block; none where nothing can be drawn. `qualities`: of the cells of all bodies.
 pub(crate) fn model(results: &Results, qualities: &[f64], block: &mut Block) -> Option<Model> {
     let (system, seen) = (&*results.system, &results.stills.seen);
-    let instants = instants(results);
+    let mut instants = instants(results);
+    let has_plastic = instants.iter().any(|(still, _)| still.plastic.is_some());
+    // displacement, speed, contact; cells have twice as many values, as many triangles as there are
+    let of_node = 5 + 2 * (2 + usize::from(has_plastic));
+    let drawn = |instants: usize| (NUMBERS / instants.max(1) / of_node).max(FEWEST);
+    if seen.nodes.len() > drawn(instants.len()) {
+        thin(&mut instants);
+    }
+    let most = drawn(instants.len());
     let stills: Vec<&Still> = instants.iter().map(|(still, _)| *still).collect();
     let mut surface = Surface::new(system, seen, &stills);
     if surface.is_blank() || instants.is_empty() {
@@ -79,10 +87,6 @@ pub(crate) fn model(results: &Results, qualities: &[f64], block: &mut Block) -> 
         .map(|node| system.x[*node as usize])
         .collect();
     let body = bodies_of_nodes(system, seen);
-    let has_plastic = stills.iter().any(|still| still.plastic.is_some());
-    // displacement, speed, contact; cells have twice as many values, as many triangles as there are
-    let of_node = 5 + 2 * (2 + usize::from(has_plastic));
-    let most = (NUMBERS / instants.len() / of_node).max(FEWEST);
     let became = surface.decimate(&x, &body, (most, &extremes(system, seen, &stills)));
     let chosen = Chosen::new(&surface, seen, became.as_deref());
     let zoning = results.settings.zoning.as_ref();
@@ -132,11 +136,25 @@ pub(crate) fn model(results: &Results, qualities: &[f64], block: &mut Block) -> 
         zones: zoning.map_or(Vec::new(), |zoning| zoning.zones.clone()),
         zone_of_body: zoning.map_or(Vec::new(), |zoning| zoning.of_body.clone()),
         constants,
-        contacts: sides(system, (seen, &chosen), block),
+        contacts: sides::contacts(system, (seen, &chosen), block),
+        groups: sides::groups((system, &surface), (seen, &chosen), block),
         obstacles: drawn_obstacles(contacts, (system, &near), block),
         fields: fields(system, has_plastic),
         frames,
     })
+}
+
+/// Leaves out every second of the instants at equal times, but for the last: a large surface needs nodes more than instants.
+fn thin(instants: &mut Vec<(&Still, Vec<&'static str>)>) {
+    let (last, mut place) = (instants.len() - 1, 0);
+    let mut equal = 0;
+    instants.retain(|(_, kinds)| {
+        let is_plain = kinds[..] == [EQUAL];
+        equal += usize::from(kinds.contains(&EQUAL));
+        let stays = !is_plain || equal % 2 == 1 || place == last;
+        place += 1;
+        stays
+    });
 }
 
 /// The fields that the page can colour by beside the displacement.
@@ -188,7 +206,7 @@ fn fields(system: &System, has_plastic: bool) -> Vec<Field> {
 }
 
 /// Nodes and cells that are in the page, by their places in [`Seen`], ascending.
-struct Chosen<'a> {
+pub(super) struct Chosen<'a> {
     nodes: Vec<u32>,
     cells: Vec<u32>,
     became: Option<&'a [u32]>,
@@ -216,11 +234,12 @@ impl<'a> Chosen<'a> {
     }
 
     /// Number in the page of a node that is there.
-    fn node(&self, node: u32) -> u32 {
+    pub(super) fn node(&self, node: u32) -> u32 {
         self.find(node).unwrap_or(0)
     }
 
-    fn find(&self, node: u32) -> Option<u32> {
+    /// The same of a node that may not be there.
+    pub(super) fn find(&self, node: u32) -> Option<u32> {
         let node = self.became.map_or(node, |became| became[node as usize]);
         let found = self.nodes.binary_search(&node).ok();
         found.map(|place| place as u32)
@@ -416,40 +435,4 @@ fn drawn_obstacles(
         }
     };
     rigid(system).map(one).collect()
-}
-
-/// Both surfaces of each contact.
-fn sides(system: &System, (seen, chosen): (&Seen, &Chosen), block: &mut Block) -> Vec<Sides> {
-    let mut side = |faces: &[Face]| {
-        let (mut triangles, mut lines) = (BTreeSet::new(), BTreeSet::new());
-        for face in faces {
-            let ring = around(face.kind, face.corners());
-            let ring: Option<Vec<u32>> = ring
-                .iter()
-                .map(|node| chosen.find(seen.node(*node)? as u32))
-                .collect();
-            let Some(ring) = ring else {
-                continue;
-            };
-            match face.kind.table().dim {
-                2 => triangles.extend((2..ring.len()).map(|k| [ring[0], ring[k - 1], ring[k]])),
-                _ => lines.extend(ring.windows(2).map(|pair| [pair[0], pair[1]])),
-            }
-        }
-        let has_area = |t: &&[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
-        Side {
-            triangles: block.indices(triangles.iter().filter(has_area).flatten().copied()),
-            lines: block.indices(lines.iter().flatten().copied()),
-        }
-    };
-    let contacts = system.contacts.iter().zip(&system.secondary_faces);
-    let both = contacts.map(|(contact, secondary)| Sides {
-        name: contact.name.clone(),
-        secondary: side(secondary),
-        primary: match &contact.target {
-            Target::Surface(faces) => side(faces),
-            Target::Rigid(_) => side(&[]),
-        },
-    });
-    both.collect()
 }

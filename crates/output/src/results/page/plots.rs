@@ -8,6 +8,7 @@ use crate::results::Results;
 use crate::results::exact::{Polyline, force_curve, motion_curves};
 use crate::results::filtered::FilteredCurve;
 use crate::results::sensor::COMPONENTS;
+use crate::results::stills::Still;
 use crate::results::trace::Trace;
 
 /// Contacts with plots of their own; more share them, eight in each.
@@ -40,7 +41,7 @@ fn computed(name: impl Into<String>, trace: &Trace) -> Line {
 /// All plots, their curves in the block.
 pub(crate) fn plots(sources: &Sources, block: &mut Block) -> Vec<Plot> {
     let results = sources.results;
-    let mut drafts = forces(results);
+    let mut drafts = forces(sources);
     drafts.extend(of_contacts(results));
     drafts.extend(motions(results));
     drafts.extend(probes(sources));
@@ -73,8 +74,9 @@ fn of_group(results: &Results, what: &str, group: &[usize]) -> String {
     }
 }
 
-/// Forces: raw, and of a contact by itself the mean over the window and the exact curve.
-fn forces(results: &Results) -> Vec<Draft> {
+/// Forces: raw, and of a contact by itself behind its filters, the mean over the window and the exact curve.
+fn forces(sources: &Sources) -> Vec<Draft> {
+    let results = sources.results;
     let (system, series) = (&results.system, &results.series.series);
     let reference = results.settings.reference.as_ref();
     let one = |(group, folded): (Vec<usize>, bool)| {
@@ -104,6 +106,10 @@ fn forces(results: &Results) -> Vec<Draft> {
                 ));
             }
         }
+        let filtered = sources.filtered.iter().filter(|curve| {
+            curve.filter.is_some() && group.len() == 1 && curve.contact == Some(group[0])
+        });
+        lines.extend(filtered.map(|curve| line(&curve.name, curve.role(), curve.points.clone())));
         let title = of_group(results, "Force", &group);
         let mut draft = draft("plot-force", title, ("force", "N"), lines);
         draft.plot.folded = folded;
@@ -182,7 +188,11 @@ fn probes(sources: &Sources) -> Vec<Draft> {
         }
     }
     let mut raw: Option<Draft> = None;
-    for curve in sources.filtered {
+    let of_probes = sources
+        .filtered
+        .iter()
+        .filter(|curve| curve.contact.is_none());
+    for curve in of_probes {
         let filtered = line(&curve.name, curve.role(), curve.points.clone());
         match &mut raw {
             Some(draft) if curve.filter.is_some() => draft.lines.push(filtered),
@@ -197,24 +207,24 @@ fn probes(sources: &Sources) -> Vec<Draft> {
     drafts
 }
 
-/// Forces of the supports, where they give any.
-fn supports(results: &Results) -> Option<Draft> {
-    let traces = &results.series.series.supports;
-    let acts = |trace: &Trace| trace.points().iter().any(|p| p.1 != 0.0);
-    if !traces.iter().any(acts) {
-        return None;
-    }
-    let lines = COMPONENTS.iter().zip(traces);
-    let lines = lines
-        .take(results.system.dim)
-        .map(|(name, trace)| computed(*name, trace));
-    let title = "Force of all supports on the bodies, mean of each step";
-    Some(draft(
-        "plot-reaction",
-        title,
-        ("force", "N"),
-        lines.collect(),
-    ))
+/// Forces of all supports, and of each of the first ones, where they give any.
+fn supports(results: &Results) -> Vec<Draft> {
+    let series = &results.series.series;
+    let of = |title: String, traces: &[Trace; 3]| {
+        let acts = |trace: &Trace| trace.points().iter().any(|p| p.1 != 0.0);
+        let lines = COMPONENTS.iter().zip(traces).take(results.system.dim);
+        let lines = lines.map(|(name, trace)| computed(*name, trace));
+        let draft = draft("plot-reaction", title, ("force", "N"), lines.collect());
+        traces.iter().any(acts).then_some(draft)
+    };
+    let all = "Force of all supports on the bodies, mean of each step";
+    let named = results.system.supports.iter().zip(&series.named);
+    let named = named.map(|(support, traces)| {
+        let title = format!("Force of the support {} on the bodies", support.name);
+        of(title, traces)
+    });
+    let all = of(all.to_owned(), &series.supports);
+    std::iter::once(all).chain(named).flatten().collect()
 }
 
 /// Energies of the model, and the kinetic energy of each body at the kept instants.
@@ -233,21 +243,27 @@ fn energies(results: &Results) -> Vec<Draft> {
     let bodies = &results.system.bodies;
     let is_plain = bodies.iter().all(|body| body.as_reduced().is_none());
     if bodies.len() > 1 && is_plain {
-        let stills = &results.stills.kept.equal;
-        let of = |(number, body): (usize, &carom_bodies::Body)| {
-            let values = stills
-                .iter()
-                .map(|still| (still.time, still.kinetic[number]));
-            line(body.name(), "instants", values.collect())
-        };
-        let mut lines: Vec<Line> = bodies.iter().enumerate().map(of).collect();
-        let largest = |line: &Line| line.points.iter().fold(0.0_f64, |m, p| m.max(p.1));
-        lines.sort_by(|a, b| largest(b).total_cmp(&largest(a)));
-        lines.truncate(SHARED);
-        let title = "Kinetic energy of the bodies at the kept instants, lumped masses";
-        drafts.push(draft("plot-energy", title, ("energy", "J"), lines));
+        let kinetic = "Kinetic energy of the bodies at the kept instants, lumped masses";
+        drafts.push(by_body(results, kinetic, |still| &still.kinetic));
+        let strain = "Strain energy of the bodies at the kept instants";
+        drafts.push(by_body(results, strain, |still| &still.strain));
     }
     drafts
+}
+
+/// An energy of the bodies at the kept instants, those with the most of it.
+fn by_body(results: &Results, title: &str, of: fn(&Still) -> &[f64]) -> Draft {
+    let stills = &results.stills.kept.equal;
+    let one = |(number, body): (usize, &carom_bodies::Body)| {
+        let values = stills.iter().map(|still| (still.time, of(still)[number]));
+        let finite = values.filter(|(_, energy)| energy.is_finite());
+        line(body.name(), "instants", finite.collect())
+    };
+    let mut lines: Vec<Line> = results.system.bodies.iter().enumerate().map(one).collect();
+    let largest = |line: &Line| line.points.iter().fold(0.0_f64, |m, p| m.max(p.1));
+    lines.sort_by(|a, b| largest(b).total_cmp(&largest(a)));
+    lines.truncate(SHARED);
+    draft("plot-energy", title, ("energy", "J"), lines)
 }
 
 /// Residuals over the largest energy and momentum.

@@ -101,8 +101,8 @@ pub(crate) fn scaled_jacobian(kind: Kind, x: &[[f64; 3]]) -> Option<f64> {
     Some((least / regular).min(1.0))
 }
 
-/// Of all cells of all bodies, and of the bodies.
-pub(crate) fn qualities(system: &System) -> (Vec<f64>, Vec<BodyQuality>) {
+/// Of all cells of all bodies, 1 of lines and points, and of the bodies.
+pub fn qualities(system: &System) -> (Vec<f64>, Vec<BodyQuality>) {
     let (mut all, mut bodies) = (Vec::new(), Vec::new());
     for body in &system.bodies {
         let (mut count, mut sum, mut worst) = (0, 0.0, (f64::INFINITY, String::new(), [0.0; 3]));

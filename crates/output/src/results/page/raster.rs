@@ -4,7 +4,7 @@ use carom_contact::law::Status;
 use carom_dynamics::{State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
-use crate::results::stills::slips;
+use crate::results::stills::{dynamics_begin, slips};
 
 /// Columns: equal parts of the time.
 pub(crate) const COLUMNS: usize = 480;
@@ -28,6 +28,7 @@ pub(crate) struct RasterOf {
     pub(crate) rows: Vec<usize>,
     /// Row after row.
     pub(crate) cells: Vec<u8>,
+    begin: f64,
     end: f64,
     /// The last column of each contact.
     last: Vec<Option<usize>>,
@@ -43,6 +44,7 @@ impl RasterOf {
             cells: vec![0; rows.iter().sum::<usize>() * COLUMNS],
             last: vec![None; rows.len()],
             rows,
+            begin: dynamics_begin(system, end),
             end,
         }
     }
@@ -53,9 +55,10 @@ impl RasterOf {
             *self = before;
             return;
         }
+        let own = [self.begin, self.end];
         let column = |old: usize| {
-            let time = (old as f64 + 0.5) / COLUMNS as f64 * before.end;
-            ((time / self.end * COLUMNS as f64) as usize).min(COLUMNS - 1)
+            let since = (old as f64 + 0.5) / COLUMNS as f64 * (before.end - before.begin);
+            column_of(before.begin + since, own)
         };
         let rows = before.cells.chunks_exact(COLUMNS);
         for (row, cells) in self.cells.chunks_exact_mut(COLUMNS).zip(rows) {
@@ -67,6 +70,11 @@ impl RasterOf {
         self.last = last.map(|last| last.map(column)).collect();
     }
 
+    /// Time at the start of the first column, s.
+    pub(crate) fn begin(&self) -> f64 {
+        self.begin
+    }
+
     /// Time at the end of the last column, s.
     pub(crate) fn end(&self) -> f64 {
         self.end
@@ -74,8 +82,7 @@ impl RasterOf {
 
     /// Adds the statuses at the end of a step; a contact without a change of status is looked at once for each column.
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
-        let part = report.time / self.end;
-        let column = ((part * COLUMNS as f64) as usize).min(COLUMNS - 1);
+        let column = column_of(report.time, [self.begin, self.end]);
         let mut first = 0;
         for (contact, rows) in self.rows.iter().enumerate() {
             let own = &mut self.cells[first * COLUMNS..(first + rows) * COLUMNS];
@@ -101,6 +108,12 @@ impl RasterOf {
     }
 }
 
+/// The column of a time, s; that of a static stage before the dynamics is the first.
+fn column_of(time: f64, [begin, end]: [f64; 2]) -> usize {
+    let part = ((time - begin) / (end - begin)).max(0.0);
+    ((part * COLUMNS as f64) as usize).min(COLUMNS - 1)
+}
+
 fn status(system: &System, point: usize, state: &State) -> u8 {
     let interface = &state.interface;
     match interface.force[point] != 0.0 || interface.status[point] != Status::Open {
@@ -119,6 +132,7 @@ mod tests {
         let of = |end| RasterOf {
             rows: vec![1],
             cells: vec![0; COLUMNS],
+            begin: 0.0,
             end,
             last: vec![None],
         };

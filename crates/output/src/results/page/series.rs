@@ -11,6 +11,9 @@ use crate::results::trace::Trace;
 const SAMPLES: usize = 1 << 19;
 const MOST: usize = 1 << 14;
 
+/// Supports with plots of their own, at most.
+const NAMED: usize = 8;
+
 /// What is followed.
 #[derive(Debug)]
 pub(crate) struct SeriesOf {
@@ -27,6 +30,8 @@ pub(crate) struct Series {
     pub(crate) probes: Vec<Vec<[Trace; 3]>>,
     /// Force of the supports along the axes, mean of each step, N.
     pub(crate) supports: [Trace; 3],
+    /// Force of each of the first named supports along the axes, N.
+    pub(crate) named: Vec<[Trace; 3]>,
     /// Largest magnitude of a component of the residuals of linear momentum, N s.
     pub(crate) momentum_residual: Trace,
     /// Impulse of the supports so far, N s.
@@ -51,7 +56,8 @@ impl SeriesOf {
     /// Nothing yet; `probes`: the sensors of each.
     pub(crate) fn new(system: &System, probes: &[Vec<Sensor>]) -> SeriesOf {
         let components: usize = probes.iter().map(Vec::len).sum();
-        let count = 4 * system.contacts.len() + 3 * components + 4;
+        let named = system.supports.len().min(NAMED);
+        let count = 4 * system.contacts.len() + 3 * (components + named) + 4;
         let limit = (SAMPLES / count).min(MOST);
         let trace = || Trace::of(limit);
         let contact = |_| ContactSeries {
@@ -70,6 +76,7 @@ impl SeriesOf {
                 contacts: system.contacts.iter().map(contact).collect(),
                 probes: probes.iter().map(of_probe).collect(),
                 supports: [trace(), trace(), trace()],
+                named: (0..named).map(|_| [trace(), trace(), trace()]).collect(),
                 momentum_residual: trace(),
                 given: [0.0; 3],
             },
@@ -114,6 +121,11 @@ impl SeriesOf {
             }
         }
         series.given = given;
+        for (traces, support) in series.named.iter_mut().zip(&report.supports) {
+            for (trace, force) in traces.iter_mut().zip(support.linear) {
+                trace.push(t, force);
+            }
+        }
         let residual = report.balance.momentum_residual.linear;
         let residual = residual.iter().fold(0.0_f64, |most, r| most.max(r.abs()));
         series.momentum_residual.push(t, residual);

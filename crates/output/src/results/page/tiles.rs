@@ -6,10 +6,10 @@ use carom_dynamics::System;
 use serde::Serialize;
 
 use crate::form::percent;
+use crate::maxima::{Maxima, Maximum};
 use crate::plot::quantity;
 use crate::results::Results;
 use crate::results::outlines::size;
-use crate::results::page::model;
 use crate::summary::{Contact, Energy, Summary};
 use crate::verdict::Grade;
 
@@ -43,7 +43,7 @@ pub(crate) fn tiles(results: &Results, summary: &Summary) -> Vec<Tile> {
     let mut tiles = vec![verdict(summary)];
     tiles.extend(of_contacts(results, summary));
     tiles.push(energy(&summary.energy));
-    tiles.extend(of_fields(results));
+    tiles.extend(of_fields(results, &summary.maxima));
     tiles
 }
 
@@ -87,7 +87,7 @@ fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
     let number = system.contacts.iter().position(|c| c.name == *name);
     let record = number.and_then(|k| results.last.records.contacts.get(k));
     let at = record.map_or(String::new(), |r| {
-        format!("at {}, ", quantity(r.peak_time, "s"))
+        format!("at {}, ", clock(results, r.peak_time))
     });
     let of = match summary.contacts.len() {
         1 => String::new(),
@@ -107,7 +107,7 @@ fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
         "plot-force",
     )];
     if let Some(impulse) = contact.impulse {
-        let note = format!("{of}{}", closed(contact));
+        let note = format!("{of}{}", closed(results, contact));
         tiles.push(tile(
             "Impulse",
             quantity(impulse, "N s"),
@@ -119,16 +119,16 @@ fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
     tiles
 }
 
-fn closed(contact: &Contact) -> String {
+fn closed(results: &Results, contact: &Contact) -> String {
     let impacts = match contact.impacts {
         1 => "1 impact".to_owned(),
         count => format!("{count} impacts"),
     };
     let from = contact
         .first_closing
-        .map_or(String::new(), |t| format!(" from {}", quantity(t, "s")));
+        .map_or(String::new(), |t| format!(" from {}", clock(results, t)));
     match contact.last_release {
-        Some(release) => format!("{impacts}{from} to {}", quantity(release, "s")),
+        Some(release) => format!("{impacts}{from} to {}", clock(results, release)),
         None => format!("{impacts}{from}, closed at the end"),
     }
 }
@@ -138,20 +138,18 @@ fn restitution(summary: &Summary, name: &str, contact: &Contact) -> Tile {
     let value = contact
         .restitution
         .or(exact.and_then(|exact| exact.restitution));
-    let (text, note) = match (value, contact.last_release) {
-        (Some(value), _) => {
+    let (text, note) = match value {
+        Some(value) => {
             let exact = exact.and_then(|exact| exact.exact_restitution);
             let exact = exact.map(|e| format!("; exact {}", quantity(e, "")));
             let note = format!("of the last impact of {name}{}", exact.unwrap_or_default());
             (quantity(value, ""), note)
         }
-        (None, None) => (
-            "–".to_owned(),
-            "the contact is closed at the end".to_owned(),
-        ),
-        (None, Some(_)) => {
-            let note = "none: loads, supports or further contacts change the momenta too, or the impact has not ended";
-            ("–".to_owned(), note.to_owned())
+        None => {
+            let why = contact.no_restitution.clone();
+            let why =
+                why.unwrap_or_else(|| "links join further bodies to one of the two".to_owned());
+            ("–".to_owned(), format!("none: {why}"))
         }
     };
     let section = if contact.impacts > 0 {
@@ -168,7 +166,7 @@ fn energy(energy: &Energy) -> Tile {
     let contact = energy.works.get("contact").copied().unwrap_or(0.0);
     places.insert("contact".to_owned(), -contact);
     let lost: f64 = places.values().sum();
-    let supplied = supplied(energy);
+    let supplied = energy.supplied();
     // what rounding and the shown digits leave
     let is_none = |value: f64| value.abs() < 5e-5 * supplied;
     let part = |value: f64| match supplied > 0.0 && !is_none(value) {
@@ -192,79 +190,47 @@ fn energy(energy: &Energy) -> Tile {
     tile("Energy lost", part(lost), note, "balances")
 }
 
-/// Energy at the start, and what loads, supports and obstacles gave in sum if that is positive, J.
-fn supplied(energy: &Energy) -> f64 {
-    let outside = ["loads", "supports", "obstacles"];
-    let works = outside.iter().filter_map(|name| energy.works.get(*name));
-    let given = works.filter(|work| **work > 0.0).sum::<f64>();
-    energy.kinetic_initial + energy.strain_initial + given
+/// Largest values of the fields at the kept instants.
+fn of_fields(results: &Results, maxima: &Maxima) -> Vec<Tile> {
+    let kept = format!("largest of {} kept instants", maxima.instants);
+    let cells = "mean of a cell";
+    let all = [
+        ("Largest von Mises stress", "Pa", &maxima.von_mises, cells),
+        ("Largest plastic strain", "", &maxima.plastic_strain, cells),
+        ("Largest displacement", "m", &maxima.displacement, "a node"),
+    ];
+    let one = |(label, unit, maximum, of): (_, _, &Option<Maximum>, _)| {
+        let maximum = maximum.as_ref()?;
+        let body = match maximum.body.as_str() {
+            "" => String::new(),
+            name => format!(" of {name}"),
+        };
+        let place = coordinates(&results.system, &maximum.place);
+        let time = clock(results, maximum.time);
+        let note = format!("{of}{body} at {place}, t = {time}; {kept}");
+        Some(tile(label, quantity(maximum.value, unit), note, "model"))
+    };
+    all.into_iter().filter_map(one).collect()
 }
 
-/// Largest values of the fields at the kept instants.
-fn of_fields(results: &Results) -> Vec<Tile> {
-    let (system, seen) = (&results.system, &results.stills.seen);
-    let instants = model::instants(results);
-    let kept = format!("largest of {} kept instants", instants.len());
-    let mut tiles = Vec::new();
-    let labels = [
-        ("Largest von Mises stress", "Pa"),
-        ("Largest plastic strain", ""),
-    ];
-    for (k, (label, unit)) in labels.into_iter().enumerate() {
-        let values = instants
-            .iter()
-            .filter_map(|(still, _)| Some((still.largest[k]?, still.time)));
-        let best = values.reduce(|best, other| if other.0.0 > best.0.0 { other } else { best });
-        let Some(((value, cell), time)) = best.filter(|best| best.0.0 > 0.0) else {
-            continue;
-        };
-        let body = &system.bodies[seen.body_of_cell[cell as usize] as usize];
-        let mut elements = system.bodies.iter().flat_map(|body| body.cells());
-        let place = elements
-            .nth(cell as usize)
-            .map_or(String::new(), |element| {
-                let nodes = system.mesh.element_nodes(*element);
-                let n = nodes.len() as f64;
-                let middle = nodes.iter().fold([0.0; 3], |sum, node| {
-                    let x = system.mesh.nodes[*node as usize];
-                    [0, 1, 2].map(|i| sum[i] + x[i] / n)
-                });
-                format!(" at {}", coordinates(system, &middle))
-            });
-        let at = quantity(time, "s");
-        let note = format!("mean of a cell of {}{place}, t = {at}; {kept}", body.name());
-        tiles.push(tile(label, quantity(value, unit), note, "model"));
+/// A time; in a run that begins with a static stage, whose time is none, that since its end.
+fn clock(results: &Results, time: f64) -> String {
+    let begin = results.stills.begin();
+    match (begin > 0.0, time - begin) {
+        (false, _) => quantity(time, "s"),
+        (true, since) if since > 0.0 => {
+            format!("{} after the static stage", quantity(since, "s"))
+        }
+        (true, _) => "the static stage".to_owned(),
     }
-    let moved = instants.iter().flat_map(|(still, _)| {
-        let nodes = still.moved.iter().zip(&seen.nodes);
-        nodes.map(|(u, node)| {
-            let length = u.iter().map(|u| f64::from(*u).powi(2)).sum::<f64>().sqrt();
-            (length, *node, still.time)
-        })
-    });
-    let best = moved.reduce(|best, other| if other.0 > best.0 { other } else { best });
-    if let Some((length, node, time)) = best {
-        let place = coordinates(system, &system.x[node as usize]);
-        let note = format!(
-            "of the node at {place}, t = {}; {kept}",
-            quantity(time, "s")
-        );
-        tiles.push(tile(
-            "Largest displacement",
-            quantity(length, "m"),
-            note,
-            "model",
-        ));
-    }
-    tiles
 }
 
 /// A place in the reference configuration.
-fn coordinates(system: &System, x: &[f64; 3]) -> String {
+fn coordinates(system: &System, x: &[f64]) -> String {
     // what rounding leaves of a zero
     let least = 1e-9 * size(system);
-    let own = x[..system.dim].iter();
-    let all: Vec<String> = own
+    let all: Vec<String> = x
+        .iter()
         .map(|x| quantity(if x.abs() < least { 0.0 } else { *x }, "m"))
         .collect();
     format!("({})", all.join(", "))

@@ -37,6 +37,8 @@ const RELEASES: f64 = 1.0 / 400.0;
 pub(crate) struct Stills {
     pub(crate) seen: Seen,
     pub(crate) kept: Kept,
+    /// Where the instants at equal times begin, and where the run ends, s.
+    begin: f64,
     end: f64,
     /// Time from one to the next of those at equal times, s.
     every: f64,
@@ -74,24 +76,37 @@ struct Copy {
     interface: InterfaceState,
 }
 
+/// The end of a static stage before the dynamics, s; 0 without one, and where the run ends with it.
+pub(crate) fn dynamics_begin(system: &System, end: f64) -> f64 {
+    let stage = system.nonlinear.preload.map_or(0.0, |stage| stage.end);
+    if stage < end { stage } else { 0.0 }
+}
+
 impl Stills {
     /// Of a run up to the time `end`, s.
     pub(crate) fn new(system: &System, end: f64) -> Stills {
         let seen = Seen::new(system);
         let bytes = 24 * seen.nodes.len() + 12 * seen.cells.len() + seen.body_of_cell.len() / 4;
         let by_memory = BYTES / bytes.max(1) / FILM;
+        let begin = dynamics_begin(system, end);
         let is_explicit = system.schemes.iter().all(|s| s.get().is_explicit());
         let by_steps = match is_explicit {
-            true => (end / system.dt / STEPS) as usize / FILM,
+            true => ((end - begin) / system.dt / STEPS) as usize / FILM,
             false => PARTS[1],
         };
         let parts = by_memory.min(by_steps).clamp(PARTS[0], PARTS[1]);
         Stills {
             seen,
             kept: Kept::default(),
+            begin,
             end,
-            every: end / (FILM * parts) as f64,
+            every: (end - begin) / (FILM * parts) as f64,
         }
+    }
+
+    /// Where the instants at equal times begin, s.
+    pub(crate) fn begin(&self) -> f64 {
+        self.begin
     }
 
     /// Goes on from what was kept.
@@ -102,7 +117,9 @@ impl Stills {
     /// Keeps the state if it is one of those to be kept.
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
         // a step that ends there to within rounding is there
-        let number = |time: f64| (time / self.every + 1e-6).floor();
+        // the time of a static stage before the dynamics is none: its start and its end are kept
+        let since = |time: f64| (time - self.begin) / self.every;
+        let number = |time: f64| (since(time) + 1e-6).floor().max(-1.0);
         let last = self.kept.equal.last();
         if last.is_none_or(|still| number(state.time) > number(still.time)) {
             self.keep(system, state);
@@ -116,7 +133,7 @@ impl Stills {
         if closed && force > kept.largest.measure * GROWTH {
             kept.largest.take(force, state);
         }
-        let pause = RELEASES * self.end;
+        let pause = RELEASES * (self.end - self.begin);
         let again = kept.release.is_none() || state.time > kept.release.measure + pause;
         if kept.closed && !closed && again {
             kept.release.take(state.time, state);

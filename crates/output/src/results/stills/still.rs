@@ -1,5 +1,6 @@
 //! A state as pictures need it: motion of the nodes that are seen, fields of the cells that are seen.
 
+use carom_bodies::{Body, Placement, Scratch};
 use carom_contact::law::Status;
 use carom_dynamics::{InterfaceState, Motion, Order, System};
 use serde::{Deserialize, Serialize};
@@ -31,6 +32,8 @@ pub(crate) struct Still {
     pub(crate) largest: [Option<(f64, u32)>; 2],
     /// Kinetic energy ½ Σ m |v|² of each body with lumped masses, J.
     pub(crate) kinetic: Vec<f64>,
+    /// Strain energy of each body, J; not finite where a body has none at this state.
+    pub(crate) strain: Vec<f64>,
     /// Places with a contact force in the plane, m.
     pub(crate) marks: Vec<[f64; 3]>,
 }
@@ -76,6 +79,7 @@ impl Still {
                 plastic.and_then(|plastic| largest(&plastic, is_there)),
             ],
             kinetic: kinetic(system, motion),
+            strain: strain(system, motion),
             marks: marks(system, motion, interface, time),
             deleted,
         }
@@ -153,6 +157,28 @@ fn kinetic(system: &System, motion: &Motion) -> Vec<f64> {
         terms.sum()
     };
     system.body_masses.iter().map(of_body).collect()
+}
+
+/// Strain energy of each body, J.
+fn strain(system: &System, motion: &Motion) -> Vec<f64> {
+    let mut forces = vec![0.0; system.unknowns()];
+    let bodies = system.bodies.iter().enumerate();
+    let of_body = |(k, body): (usize, &Body)| {
+        let old = system.history(k, &motion.history);
+        let at = Placement {
+            u: &motion.u,
+            v: &motion.v,
+            from: None,
+            frames: &motion.frames,
+            // nothing moves: the state stays as it is
+            dt: 0.0,
+            old,
+        };
+        let mut new = old.to_vec();
+        let stored = body.force(&at, &mut new, &mut Scratch::default(), &mut forces);
+        stored.map_or(f64::NAN, |stored| stored.strain)
+    };
+    bodies.map(of_body).collect()
 }
 
 /// Places of the points with a force, in the plane.

@@ -3,15 +3,20 @@
 //! Signs: gap positive when open, contact force positive in compression, energy lost positive when lost. A value
 //! that does not exist (the release of a contact that never opened) is `null`, never a made-up number.
 
+mod contact;
+
 use carom_algebra::fingerprint::Fingerprint;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::statistics::{Level, Statistics};
+use crate::maxima::Maxima;
+use crate::statistics::Level;
 use crate::verdict::Verdict;
 use crate::{Error, atomic};
+
+pub use contact::{Contact, Discrete, Friction, PeakResultant};
 
 /// Everything that `summary.json` says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,6 +46,9 @@ pub struct Summary {
     /// One entry per spring and dashpot, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub discrete: BTreeMap<String, Discrete>,
+    /// Largest values of the fields.
+    #[serde(default)]
+    pub maxima: Maxima,
     /// Balance of energy.
     pub energy: Energy,
     /// Balance of linear momentum.
@@ -207,80 +215,6 @@ pub struct Link {
     pub work: f64,
 }
 
-/// What one contact did. Force: the sum of the normal forces over its points.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Contact {
-    /// Contact law with its parameters, as text: `velocity, capture = half`.
-    pub law: String,
-    /// Largest force of a single step, N. It does not converge with the mesh where the exact force jumps: read
-    /// `peak_mean_force` beside it.
-    pub peak_force: f64,
-    /// Largest mean of the force over `window`, N; `None` of a static run, whose steps take no time.
-    pub peak_mean_force: Option<f64>,
-    /// Length of that window, s.
-    pub window: f64,
-    /// `impulse` over the time spent closed, N; zero if never closed, `None` of a static run.
-    pub mean_force: Option<f64>,
-    /// Impulse over the dynamics, N s: what the momentum of the bodies changes by; `None` of a static run.
-    pub impulse: Option<f64>,
-    /// The part of it that is in no force, N s: impulses of a projection, or of another stage after a step. The rest is the
-    /// sum of forces times step.
-    pub impulsive: f64,
-    /// Beginning of the first step with force, s.
-    pub first_closing: Option<f64>,
-    /// End of the last step with force, s; `None` if never closed or still closed.
-    pub last_release: Option<f64>,
-    /// Changes of status summed over the points.
-    pub status_changes: u64,
-    /// Changes of status to a closing of a point that is due: 2 where each point closes and opens once in an impact.
-    pub chatter: f64,
-    /// Largest penetration (minus the smallest gap), m, zero if never penetrated.
-    pub max_penetration: f64,
-    /// Persistency defect: Σ |P · gap rate| dt over the steps, J, with the rate that the law holds.
-    pub persistency_defect: f64,
-    /// Energy lost in crush, J; zero of laws without memory.
-    pub energy_crushed: f64,
-    /// Most nodes of the secondary surface in a step whose supports are partly closed: the pressure of the weak form
-    /// depends on r there. `None` with another integration.
-    pub mixed_supports: Option<u64>,
-    /// Coulomb friction, where there is some.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub friction: Option<Friction>,
-    /// Impacts, from the first closing to the last release before a flight that lasts.
-    pub impacts: usize,
-    /// Restitution of the last complete impact, from the momenta of the bodies before and after it; `None` where it means
-    /// nothing ([`carom_dynamics::Impact::restitution`]), or links join further bodies to one of the two.
-    pub restitution: Option<f64>,
-    /// Statistics of the impacts; `None` without any.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub statistics: Option<Statistics>,
-}
-
-/// Largest force of the springs or dashpots of one name.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Discrete {
-    /// `spring` or `dashpot`.
-    pub kind: String,
-    /// Largest magnitude of the sum of their forces at the end of a step, N.
-    pub peak_force: f64,
-    /// When, s.
-    pub time: f64,
-    /// Largest magnitude of the mean elongation (m) of springs, of its rate (m/s) of dashpots.
-    pub extent: f64,
-}
-
-/// Coulomb friction of a contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Friction {
-    /// Its coefficient.
-    pub coefficient: f64,
-    /// Largest magnitude of the sum of the friction forces in a step, N.
-    pub peak_force: f64,
-    /// Energy that friction took, J: its work on what slides, a measure of wear.
-    #[serde(default)]
-    pub loss: f64,
-}
-
 /// Balance of energy, J. The residual says how accurately the equations are solved, the dissipation of the scheme what the
 /// scheme makes or takes: by its exact identity in a linear run, in a nonlinear one by the works of inertia and internal
 /// forces minus the changes of the energies.
@@ -320,6 +254,16 @@ pub struct Energy {
     pub relative_residual: f64,
     /// Whether an energy identity of the scheme is known; without one what the scheme dissipates is in the residual.
     pub identity: bool,
+}
+
+impl Energy {
+    /// Energy put in, J: that at the start, and the positive ones of the works of loads, supports and obstacles over the run.
+    pub(crate) fn supplied(&self) -> f64 {
+        let outside = ["loads", "supports", "obstacles"];
+        let works = outside.iter().filter_map(|name| self.works.get(*name));
+        let given = works.filter(|work| **work > 0.0).sum::<f64>();
+        self.kinetic_initial + self.strain_initial + given
+    }
 }
 
 /// Balance of linear momentum, N s.

@@ -1,0 +1,86 @@
+//! Files that another program has written: meshio 5, from the meshes beside them in Gmsh's format.
+
+use std::path::Path;
+
+use carom_mesh::{Mesh, read};
+
+fn fixture(name: &str) -> Mesh {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    read::read(&folder.join(name)).unwrap()
+}
+
+#[test]
+fn another_program_writes_the_cells_of_gmsh_as_text_in_base64_and_compressed() {
+    for name in ["mixed", "second"] {
+        let theirs = fixture(&format!("{name}-22.msh"));
+        for format in ["ascii", "plain", "zlib"] {
+            let ours = fixture(&format!("{name}-{format}.vtu"));
+            assert_eq!(ours.dim, theirs.dim);
+            assert_eq!(ours.nodes.len(), theirs.nodes.len());
+            // twelve digits of text
+            for (a, b) in ours.nodes.iter().zip(&theirs.nodes) {
+                assert!((0..3).all(|i| (a[i] - b[i]).abs() < 1e-11), "{a:?} {b:?}");
+            }
+            assert_eq!(ours.blocks.len(), theirs.blocks.len());
+            for block in &ours.blocks {
+                let same = theirs.blocks.iter().find(|other| other.kind == block.kind);
+                assert_eq!(Some(block), same, "{name} {format}");
+            }
+            // the physical groups of the file are numbers there
+            let members = |mesh: &Mesh, of: &dyn Fn(&str) -> bool| -> usize {
+                let groups = mesh.groups.iter().filter(|(name, _)| of(name));
+                groups.map(|(_, group)| group.elements.len()).sum()
+            };
+            let physical = members(&ours, &|name| name.starts_with("gmsh:physical."));
+            let elements: usize = ours
+                .blocks
+                .iter()
+                .map(|block| block.nodes.len() / block.kind.table().nodes)
+                .sum();
+            assert!(
+                physical > 0 && physical <= elements,
+                "{name} {format} {physical}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_cut_off_damaged_or_of_another_sort_is_told() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let text = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    let (ascii, zlib) = (text("mixed-ascii.vtu"), text("mixed-zlib.vtu"));
+    let parse = |text: &str| read::vtu::parse(Path::new("a.vtu"), text.as_bytes());
+    for (text, told) in [
+        (
+            ascii.replace("UnstructuredGrid\" version", "PolyData\" version"),
+            "type \"PolyData\"",
+        ),
+        (
+            ascii.replace("LittleEndian", "BigEndian"),
+            "byte_order \"BigEndian\"",
+        ),
+        (
+            ascii.replace("NumberOfPoints=\"30\"", "NumberOfPoints=\"31\""),
+            "90 numbers for 31 points",
+        ),
+        (
+            ascii.replace("NumberOfCells=\"33\"", "NumberOfCells=\"32\""),
+            "33 numbers",
+        ),
+        (ascii.replacen("1.00000000000e+00", "nan", 1), "NaN"),
+        (
+            ascii.replace("Name=\"offsets\"", "Name=\"ends\""),
+            "Cells without offsets",
+        ),
+        (
+            zlib.replace("vtkZLibDataCompressor", "vtkLZ4DataCompressor"),
+            "compressor",
+        ),
+        (zlib[..zlib.len() / 2].to_owned(), "expected"),
+        ("hello".to_owned(), "no Piece"),
+    ] {
+        let error = parse(&text).map(|_| ()).unwrap_err().to_string();
+        assert!(error.contains(told), "{told}: {error}");
+    }
+}

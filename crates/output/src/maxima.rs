@@ -1,0 +1,29 @@
+//! Largest values of the fields of a run, each with its place and its instant.
+
+use serde::{Deserialize, Serialize};
+
+/// The largest value of a field.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Maximum {
+    /// In SI units.
+    pub value: f64,
+    /// Name of the body.
+    pub body: String,
+    /// Place in the reference configuration, m: of the node, or of the middle of the cell.
+    pub place: Vec<f64>,
+    /// When, s.
+    pub time: f64,
+}
+
+/// The largest values at the instants that a run keeps for its pictures; between them they may have been larger.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Maxima {
+    /// Number of these instants: at equal times, at the first closing, the largest force and the last release, and at the end.
+    pub instants: usize,
+    /// Von Mises stress, mean of a cell, Pa; of a shell the largest of middle and faces. `None` where nothing is stressed.
+    pub von_mises: Option<Maximum>,
+    /// Equivalent plastic strain, mean of a cell; `None` where nothing yields.
+    pub plastic_strain: Option<Maximum>,
+    /// Magnitude of the displacement of a node, m.
+    pub displacement: Option<Maximum>,
+}

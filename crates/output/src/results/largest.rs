@@ -1,0 +1,70 @@
+//! The largest values of the fields at the instants that were kept.
+
+use carom_dynamics::System;
+
+use crate::maxima::{Maxima, Maximum};
+use crate::results::Results;
+use crate::results::page::model;
+use crate::results::stills::Still;
+
+/// Those of a run that has ended.
+pub(crate) fn maxima(results: &Results) -> Maxima {
+    let instants = model::instants(results);
+    let stills: Vec<&Still> = instants.iter().map(|(still, _)| *still).collect();
+    Maxima {
+        instants: stills.len(),
+        von_mises: of_cells(results, &stills, 0),
+        plastic_strain: of_cells(results, &stills, 1),
+        displacement: of_nodes(results, &stills),
+    }
+}
+
+/// The largest of the values at cells: stress or plastic strain.
+fn of_cells(results: &Results, stills: &[&Still], field: usize) -> Option<Maximum> {
+    let (system, seen) = (&results.system, &results.stills.seen);
+    let values = stills.iter();
+    let values = values.filter_map(|still| Some((still.largest[field]?, still.time)));
+    let best = values.reduce(|best, other| if other.0.0 > best.0.0 { other } else { best });
+    let ((value, cell), time) = best.filter(|best| best.0.0 > 0.0)?;
+    let mut elements = system.bodies.iter().flat_map(|body| body.cells());
+    let nodes = system.mesh.element_nodes(*elements.nth(cell as usize)?);
+    let count = nodes.len() as f64;
+    let middle = nodes.iter().fold([0.0; 3], |sum, node| {
+        let x = system.mesh.nodes[*node as usize];
+        [0, 1, 2].map(|i| sum[i] + x[i] / count)
+    });
+    let body = seen.body_of_cell[cell as usize] as usize;
+    Some(maximum(system, (value, time), (body, &middle)))
+}
+
+/// The largest displacement of a node that is seen.
+fn of_nodes(results: &Results, stills: &[&Still]) -> Option<Maximum> {
+    let (system, seen) = (&results.system, &results.stills.seen);
+    let moved = stills.iter().flat_map(|still| {
+        let nodes = still.moved.iter().zip(&seen.nodes);
+        nodes.map(|(u, node)| {
+            let length = u.iter().map(|u| f64::from(*u).powi(2)).sum::<f64>().sqrt();
+            (length, *node, still.time)
+        })
+    });
+    let best = moved.reduce(|best, other| if other.0 > best.0 { other } else { best });
+    let (length, node, time) = best?;
+    let mut bodies = system.body_masses.iter();
+    let has = |masses: &Vec<(u32, f64)>| masses.iter().any(|(own, _)| *own == node);
+    let body = bodies.position(has).unwrap_or(usize::MAX);
+    Some(maximum(
+        system,
+        (length, time),
+        (body, &system.x[node as usize]),
+    ))
+}
+
+fn maximum(system: &System, (value, time): (f64, f64), (body, x): (usize, &[f64; 3])) -> Maximum {
+    let body = system.bodies.get(body);
+    Maximum {
+        value,
+        body: body.map_or(String::new(), |body| body.name().to_owned()),
+        place: x[..system.dim].to_vec(),
+        time,
+    }
+}

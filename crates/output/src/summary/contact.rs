@@ -1,0 +1,96 @@
+//! What the summary says of contacts, springs and dashpots.
+
+use serde::{Deserialize, Serialize};
+
+use crate::statistics::Statistics;
+
+/// What one contact did. Force: the sum of the normal forces over its points.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Contact {
+    /// Contact law with its parameters, as text: `velocity, capture = half`.
+    pub law: String,
+    /// Largest force of a single step, N. It does not converge with the mesh where the exact force jumps: read
+    /// `peak_mean_force` beside it.
+    pub peak_force: f64,
+    /// Largest magnitude of the force on the secondary body in a single step, friction included; `None` where there was none.
+    #[serde(default)]
+    pub peak_resultant: Option<PeakResultant>,
+    /// Largest mean of the force over `window`, N; `None` of a static run, whose steps take no time.
+    pub peak_mean_force: Option<f64>,
+    /// Length of that window, s.
+    pub window: f64,
+    /// `impulse` over the time spent closed, N; zero if never closed, `None` of a static run.
+    pub mean_force: Option<f64>,
+    /// Impulse over the dynamics, N s: what the momentum of the bodies changes by; `None` of a static run.
+    pub impulse: Option<f64>,
+    /// The part of it that is in no force, N s: impulses of a projection, or of another stage after a step. The rest is the
+    /// sum of forces times step.
+    pub impulsive: f64,
+    /// Beginning of the first step with force, s.
+    pub first_closing: Option<f64>,
+    /// End of the last step with force, s; `None` if never closed or still closed.
+    pub last_release: Option<f64>,
+    /// Changes of status summed over the points.
+    pub status_changes: u64,
+    /// Changes of status to a closing of a point that is due: 2 where each point closes and opens once in an impact.
+    pub chatter: f64,
+    /// Largest penetration (minus the smallest gap), m, zero if never penetrated.
+    pub max_penetration: f64,
+    /// Persistency defect: Σ |P · gap rate| dt over the steps, J, with the rate that the law holds.
+    pub persistency_defect: f64,
+    /// Energy lost in crush, J; zero of laws without memory.
+    pub energy_crushed: f64,
+    /// Most nodes of the secondary surface in a step whose supports are partly closed: the pressure of the weak form
+    /// depends on r there. `None` with another integration.
+    pub mixed_supports: Option<u64>,
+    /// Coulomb friction, where there is some.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<Friction>,
+    /// Impacts, from the first closing to the last release before a flight that lasts.
+    pub impacts: usize,
+    /// Restitution of the last complete impact, from the momenta of the bodies before and after it; `None` where it means
+    /// nothing ([`carom_dynamics::Impact::restitution`]), or links join further bodies to one of the two.
+    pub restitution: Option<f64>,
+    /// Why there is none, in a sentence without its beginning; `None` where there is one, or no impact.
+    #[serde(default)]
+    pub no_restitution: Option<String>,
+    /// Statistics of the impacts; `None` without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub statistics: Option<Statistics>,
+}
+
+/// Largest force of a contact as a vector. Where normals differ it is less than the sum of the normal forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PeakResultant {
+    /// Its magnitude, N.
+    pub magnitude: f64,
+    /// The force on the secondary body, N.
+    pub force: [f64; 3],
+    /// End of its step, s.
+    pub time: f64,
+}
+
+/// Largest force of the springs or dashpots of one name.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Discrete {
+    /// `spring` or `dashpot`.
+    pub kind: String,
+    /// Largest magnitude of the sum of their forces at the end of a step, N.
+    pub peak_force: f64,
+    /// When, s.
+    pub time: f64,
+    /// Largest magnitude of the mean elongation (m) of springs, of its rate (m/s) of dashpots.
+    pub extent: f64,
+}
+
+/// Coulomb friction of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Friction {
+    /// Its coefficient.
+    pub coefficient: f64,
+    /// Largest magnitude of the sum of the friction forces in a step, N.
+    pub peak_force: f64,
+    /// Energy that friction took, J: its work on what slides, a measure of wear.
+    #[serde(default)]
+    pub loss: f64,
+}
