@@ -1,6 +1,6 @@
 //! What can be said of the mesh of a case: quality of its cells, walls of one cell, nodes that are not merged.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use carom_dynamics::System;
 use carom_mesh::{ElementId, Mesh};
@@ -123,7 +123,7 @@ fn unmerged(system: &System, cells: &[ElementId]) -> Option<(usize, [f64; 3])> {
     let same = SAME * extent;
     // of a grid of twice the distance the cells around a place have all that are near
     let cube = |x: [f64; 3]| x.map(|x| (x / (2.0 * same).max(f64::MIN_POSITIVE)).floor() as i64);
-    let mut grid: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    let mut grid: BTreeMap<[i64; 3], Vec<u32>> = BTreeMap::new();
     let (mut count, mut first) = (0, None);
     for node in nodes {
         let x = place(node);

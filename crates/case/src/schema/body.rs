@@ -175,7 +175,7 @@ pub enum Section {
     Beam(Box<BeamSection>),
     /// Plates and shells in space, of triangles of three nodes and quadrilaterals of four: membrane, bending and shear, with rotations of the
     /// nodes. Of an elastic material or of a metal: `j2`, `j2-table`, `johnson-cook`, which flows in membrane and bending; shear across stays elastic.
-    Shell(ShellSection),
+    Shell(Box<ShellSection>),
     /// Plane cells whose strain across the plane is zero.
     PlaneStrain(PlaneSection),
     /// Plane cells whose stress across the plane is zero.

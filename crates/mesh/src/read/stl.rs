@@ -8,7 +8,7 @@
 //!
 //! The format has no unit. Reference: 3D Systems, StereoLithography Interface Specification (1989).
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use carom_elements::Kind;
@@ -67,7 +67,7 @@ fn triangles_of_binary(content: &[u8]) -> Option<usize> {
 #[derive(Default)]
 struct Surface {
     nodes: Vec<[f64; 3]>,
-    numbers: HashMap<[u64; 3], u32>,
+    numbers: BTreeMap<[u64; 3], u32>,
     corners: Vec<u32>,
     groups: BTreeMap<String, Vec<ElementId>>,
 }
