@@ -42,7 +42,7 @@ impl Zones {
         let links = links.collect();
         let mut drivers = systems
             .iter()
-            .map(|system| Driver::new(Arc::clone(system)))
+            .map(|system| Driver::of_zone(Arc::clone(system)))
             .collect::<Result<Vec<_>, carom_dynamics::Error>>()?;
         let between = Between::new(zoned, &drivers)?;
         if between.is_some() {

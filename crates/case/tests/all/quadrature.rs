@@ -75,7 +75,17 @@ fn the_summary_counts_the_nodes_with_mixed_supports() {
         let folder = folder.path().join("results");
         let finished = run((&input, &case, &built), folder, &mut Nobody, &|| false).unwrap();
         let contact = &finished.summary.contacts["slope"];
-        assert!(finished.summary.verdict.grade == Grade::Good && contact.peak_force > 0.0);
+        let verdict = &finished.summary.verdict;
+        // the scheme takes 40 % of the energy, which the verdict tells
+        let bad = verdict
+            .lines
+            .iter()
+            .filter(|line| line.grade != Grade::Good);
+        assert!(
+            bad.map(|line| line.name.as_str()).eq(["scheme-loss"]),
+            "{verdict:?}"
+        );
+        assert!(contact.peak_force > 0.0);
         contact.mixed_supports
     };
     let laws = ["law.displacement = {}", "law.velocity = {}"];

@@ -62,9 +62,9 @@ impl Contact {
             for look in looks.iter() {
                 let k = look.point as usize;
                 rest.lay(look.point, look.clearance);
-                if let Some(stencil) = &look.stencil {
+                if look.stencil.is_some() {
                     let (at, area) = (near.first + k, self.points[k].area);
-                    pairing.place_rows(places, (at, area), stencil);
+                    pairing.place(places, (at, area), look.stencil.as_ref());
                     pairing.rows.shift(at, self.offset(k));
                     pairing.keep(at, area, reach.near);
                 }

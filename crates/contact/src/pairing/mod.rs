@@ -183,24 +183,17 @@ impl Pairing {
     }
 
     /// Makes a point, or the one after the last, what one stencil is, standing for `area`; without one it faces nothing.
-    fn place(&mut self, places: &Places, (at, area): (usize, f64), stencil: Option<Stencil>) {
+    fn place(&mut self, places: &Places, (at, area): (usize, f64), stencil: Option<&Stencil>) {
         let begin = self.begin(at, area);
         match stencil {
             Some(stencil) => {
                 stencil.place(places, at, &mut self.rows, &mut self.tangents);
                 self.terms.push((self.stencils.len() as u32, 1.0));
-                self.stencils.push(stencil);
+                self.stencils.push(stencil.clone());
             }
             None => self.open(at),
         }
         self.spans[at] = [begin, self.terms.len() as u32];
-    }
-
-    /// Makes a point what one stencil is, without its second derivative, which explicit steps do not ask for.
-    fn place_rows(&mut self, places: &Places, (at, area): (usize, f64), stencil: &Stencil) {
-        self.begin(at, area);
-        stencil.place(places, at, &mut self.rows, &mut self.tangents);
-        self.spans[at] = [0; 2];
     }
 
     /// Makes a point, or the one after the last, the mean of stencils with the given weights, standing for their sum. Where that is

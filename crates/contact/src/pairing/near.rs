@@ -109,7 +109,7 @@ impl Contact {
     /// Pairs the points whose gap is within reach, in a pairing that has all points of its contacts and in which those of this
     /// one face nothing ([`Pairing::reopen`]). Gap, rows and tangents of a near point are those of [`Contact::pair_fully`], or
     /// with small sliding those of [`Pairing::append_moved`]; all others face nothing, also points that are deeper than the reach
-    /// without having been inside. Second derivatives are not kept ([`Pairing::add_curvature`]).
+    /// without having been inside.
     ///
     /// What `search` holds from before does not matter to the result.
     pub fn pair_near(

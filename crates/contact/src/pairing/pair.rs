@@ -76,8 +76,9 @@ impl Contact {
             return mortar.pair((self, basis), places, search, (first, pairing));
         }
         let span = pairing.span;
-        let mut place = |k: usize, stencil| {
-            pairing.place(places, (first + k, self.points[k].area), stencil);
+        let mut place = |k: usize, stencil: Option<Stencil>| {
+            let of = (first + k, self.points[k].area);
+            pairing.place(places, of, stencil.as_ref());
         };
         match &self.target {
             Target::Rigid(obstacle) => {

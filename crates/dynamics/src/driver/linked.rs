@@ -70,10 +70,6 @@ impl Driver {
     /// As [`Driver::step`]; a step of a zone is not halved.
     pub fn complete(&mut self) -> Result<(), Error> {
         self.report.attempts = 1;
-        // all forces of a step are kept for the works of links
-        if self.direct.take().is_some() && self.state.step == 0 {
-            self.start()?;
-        }
         if self.prepared {
             self.take_stages()?;
             self.check_finite()?;

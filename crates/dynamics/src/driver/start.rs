@@ -42,6 +42,19 @@ impl Driver {
     /// A matrix that is not positive definite, elements that are turned inside out, a static stage of a body that
     /// neither supports nor contacts could hold.
     pub fn new(system: Arc<System>) -> Result<Driver, Error> {
+        let direct = Direct::of(&system);
+        Driver::begun(system, direct)
+    }
+
+    /// The same for a zone whose steps others complete ([`Driver::complete`]): all forces of a step are kept for the works of links.
+    ///
+    /// # Errors
+    /// As [`Driver::new`].
+    pub fn of_zone(system: Arc<System>) -> Result<Driver, Error> {
+        Driver::begun(system, None)
+    }
+
+    fn begun(system: Arc<System>, direct: Option<Direct>) -> Result<Driver, Error> {
         let (n, points) = (system.unknowns(), system.points());
         let zeros = || vec![0.0; n];
         let scheme = system.scheme.get();
@@ -66,7 +79,7 @@ impl Driver {
             by_rate: false,
             identity: None,
             effective: Effective::new(),
-            direct: Direct::of(&system),
+            direct,
             rates: Rates::new(system.parts.len()),
             floating: Floating::new(&system)?,
             forced: None,
@@ -189,7 +202,7 @@ impl Driver {
     }
 
     /// Completes the initial state.
-    pub(super) fn start(&mut self) -> Result<(), Error> {
+    fn start(&mut self) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
         self.size(system.dt, system.dt);
         self.prepared = false;
