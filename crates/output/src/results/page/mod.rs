@@ -1,5 +1,6 @@
 //! What the interactive report shows of a run: gathered while it goes ([`series`], [`raster`]), put together when it has ended.
 
+mod chosen;
 mod decimate;
 pub(crate) mod model;
 mod obstacles;

@@ -8,7 +8,7 @@ use carom_elements::Kind;
 
 use crate::page::block::Block;
 use crate::page::schema::{Group, Side, Sides};
-use crate::results::page::model::Chosen;
+use crate::results::page::chosen::Chosen;
 use crate::results::page::obstacles::around;
 use crate::results::page::surface::Surface;
 use crate::results::stills::Seen;
