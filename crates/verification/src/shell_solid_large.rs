@@ -146,7 +146,7 @@ fn tumbling(steps: usize) -> Result<Vec<Row>, Error> {
         ..patch_plate()
     };
     let model = model(&plate, (CONSERVING, 4e-3), Joined::Turning)?;
-    glued_turning::tumbling("tumbling plate", model, Vec3::x() * 0.5, steps)
+    glued_turning::tumbling("tumbling plate", model, Vec3::x() * 0.5, (steps, 1e-10))
 }
 
 fn rows(size: Size) -> Result<Vec<Row>, Error> {
