@@ -35,7 +35,7 @@ impl Surface {
         Surface::of_cells(mesh, facets, cells, &|_| None)
     }
 
-    /// Edges of the faces around the middle surface of shells that belong to one of them, or at which two meet at more than [`FOLD`], as lines around which the
+    /// Edges of the faces around the middle surface of shells that belong to one of them, or at which two meet at more than 40°, as lines around which the
     /// surface is as far as around the faces.
     pub fn sharp_edges(&self, mesh: &Mesh) -> Vec<Face> {
         let mut of_edge: BTreeMap<[u32; 2], Vec<(&Face, [u32; 2])>> = BTreeMap::new();
