@@ -182,17 +182,7 @@ fn rows(size: Size) -> Result<Vec<Row>, Error> {
     rows.push(Row::at_most(label, speed, 1e-5));
     let label = "turned patch in 2D: explicit schemes that take it";
     rows.push(Row::at_most(label, explicit, 0.0));
-    let published: &[(f64, [f64; 2])] = match size {
-        Size::Quick => &[(2.0, [0.16064, 0.49346])],
-        Size::Full => &[(2.0, [0.16064, 0.49346]), (5.0, [0.38763, 0.71379])],
-    };
-    for &(load, exact) in published {
-        let found = elastica(load, 10)?;
-        for (k, along) in ["along", "across"].into_iter().enumerate() {
-            let label = format!("elastica, F L²/(E I) = {load}: displacement {along} / L");
-            rows.push(Row::near(label, found[k], exact[k], 0.01).published());
-        }
-    }
+    rows.extend(glued_turning::elastica(size, |load| elastica(load, 10))?);
     let steps = match size {
         Size::Quick => 100,
         Size::Full => 5000,

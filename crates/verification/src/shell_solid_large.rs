@@ -180,17 +180,7 @@ fn rows(size: Size) -> Result<Vec<Row>, Error> {
     let [speed, _] = turned_patch(&plate, Joined::SmallAngles)?;
     let label = "turned patch, rows of small angles: largest speed / c ε";
     rows.push(Row::at_least(label, speed, 1e-2).regression());
-    let published: &[(f64, [f64; 2])] = match size {
-        Size::Quick => &[(2.0, [0.16064, 0.49346])],
-        Size::Full => &[(2.0, [0.16064, 0.49346]), (5.0, [0.38763, 0.71379])],
-    };
-    for &(load, exact) in published {
-        let found = elastica(load, 10)?;
-        for (k, along) in ["along", "across"].into_iter().enumerate() {
-            let label = format!("elastica, F L²/(E I) = {load}: displacement {along} / L");
-            rows.push(Row::near(label, found[k], exact[k], 0.01).published());
-        }
-    }
+    rows.extend(glued_turning::elastica(size, |load| elastica(load, 10))?);
     let steps = match size {
         Size::Quick => 50,
         Size::Full => 2000,

@@ -46,15 +46,7 @@ impl Vectors {
     pub(super) fn make_room(&mut self, from: &Motion) {
         self.make_room_for_start(from);
         let n = from.u.len();
-        let Vectors {
-            dx,
-            jump,
-            balanced,
-            contact,
-            before,
-            ..
-        } = self;
-        for vector in [dx, jump, balanced, contact, before] {
+        for vector in self.of_iterations() {
             vector.resize(n, 0.0);
         }
     }
@@ -77,17 +69,20 @@ impl Vectors {
             *vector = Vec::new();
         }
         self.history = Vec::new();
-        let Vectors {
-            dx,
-            jump,
-            balanced,
-            contact,
-            before,
-            ..
-        } = self;
-        for vector in [dx, jump, balanced, contact, before] {
+        for vector in self.of_iterations() {
             *vector = Vec::new();
         }
+    }
+
+    /// Those that iterations alone need.
+    fn of_iterations(&mut self) -> [&mut Vec<f64>; 5] {
+        [
+            &mut self.dx,
+            &mut self.jump,
+            &mut self.balanced,
+            &mut self.contact,
+            &mut self.before,
+        ]
     }
 
     /// Those that a start needs too.
