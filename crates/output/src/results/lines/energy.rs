@@ -132,7 +132,8 @@ pub(super) fn of_contact(evidence: &Evidence) -> Finding {
 }
 
 /// Energy that closing takes, where neither a law nor a body without waves gives a reason for it: a node that closes loses the energy of
-/// its own motion, a share of the mass of the nodes at the surface, which goes with the size of the elements.
+/// its own motion, a share of the mass of the nodes at the surface, which goes with the size of the elements; in a step in which a wave passes
+/// several of them, that of all these.
 pub(super) fn lost(evidence: &Evidence) -> Finding {
     let (system, ledger) = (evidence.system, &evidence.last.ledger);
     let exact = |law: &Law| matches!(law, Law::Velocity(_) | Law::Displacement(_));
@@ -149,7 +150,7 @@ pub(super) fn lost(evidence: &Evidence) -> Finding {
             Form::Percent,
         ),
         LOSS,
-        "refine the mesh at the contact: the loss goes with the size of its elements (`carom study --vary mesh.refine=0,1`)",
+        "refine the mesh at the contact, and take steps in which a wave passes no more than an element: the loss goes with the size of the elements (`carom study --vary mesh.refine=0,1`), and with longer steps",
     ))
 }
 
