@@ -24,17 +24,17 @@ pub(crate) struct Sums {
     pub(crate) velocity: f64,
     /// |a|²_M at start and end.
     pub(crate) acceleration: [f64; 2],
-    /// Works on Δu of the means of the forces: inertia, internal forces, loads, contacts; J.
-    pub(crate) works: [f64; 4],
+    /// Works on Δu of the means of the forces: inertia, internal forces, loads, contacts, damping; J.
+    pub(crate) works: [f64; 5],
     /// |Δu|².
     pub(crate) way: f64,
-    /// Squares of the forces of the end, in the order of the works, and of the momentum M v at the start.
+    /// Squares of the forces of the end, in the order of the works without damping, and of the momentum M v at the start.
     pub(crate) squares: [f64; 5],
     /// M v₊.
     pub(crate) momentum: Resultant,
-    /// Means of loads, contact forces, and reactions of the supports.
-    pub(crate) forces: [Resultant; 3],
-    /// Sums of the forces of the end: loads with the reactions to all but contacts, and the reactions to contacts.
+    /// Means of loads, contact forces, reactions of the supports, and damping.
+    pub(crate) forces: [Resultant; 4],
+    /// Sums of the forces of the end: loads less damping with the reactions to all but contacts, and the reactions to contacts.
     pub(crate) outside: [[f64; 3]; 2],
     /// Largest |v₊ - w|² of a node.
     pub(crate) fastest: f64,
@@ -89,6 +89,8 @@ pub(crate) struct Update<'a> {
     pub(crate) a: &'a [f64],
     /// Loads; none where there are none.
     pub(crate) load: Option<Ends<'a>>,
+    /// Forces of damping at start and end; none where there are none. Where there are, there are loads too.
+    pub(crate) damping: Option<Ends<'a>>,
     /// Contact forces at start and end, N; read in the blocks that they touch.
     pub(crate) contact: [&'a [f64]; 2],
     /// Δu by v and a.
@@ -164,15 +166,16 @@ impl WithSimd for Panel<'_> {
             ];
             *sums = Sums::default();
             let (update, buffers) = (&self.update, &mut buffers);
-            match (&update.load, block.touched) {
-                (None, [false, false]) => {
-                    update.block::<false, false>((block, buffers), sums, out);
-                }
-                (Some(_), [false, false]) => {
-                    update.block::<true, false>((block, buffers), sums, out);
-                }
-                (None, _) => update.block::<false, true>((block, buffers), sums, out),
-                (Some(_), _) => update.block::<true, true>((block, buffers), sums, out),
+            let touched = block.touched != [false; 2];
+            let damped = update.damping.is_some();
+            let of = (block, buffers);
+            match (update.load.is_some(), damped, touched) {
+                (false, _, false) => update.block::<false, false, false>(of, sums, out),
+                (false, _, true) => update.block::<false, false, true>(of, sums, out),
+                (true, false, false) => update.block::<true, false, false>(of, sums, out),
+                (true, false, true) => update.block::<true, false, true>(of, sums, out),
+                (true, true, false) => update.block::<true, true, false>(of, sums, out),
+                (true, true, true) => update.block::<true, true, true>(of, sums, out),
             }
         }
     }
@@ -186,6 +189,7 @@ struct Within<'a> {
     a: &'a [f64],
     fixed: &'a [bool],
     load: Ends<'a>,
+    damping: Ends<'a>,
     contact: Ends<'a>,
 }
 
@@ -197,9 +201,10 @@ struct Buffers {
     place: Buffer,
     middle: Buffer,
     momentum: Buffer,
-    /// Means of loads and contact forces, and the loads of the end.
+    /// Means of loads, contact forces and damping, and the loads less damping of the end.
     load: Buffer,
     touch: Buffer,
+    damping: Buffer,
     outside: Buffer,
     /// v₊ - w.
     relative: Buffer,
@@ -216,6 +221,7 @@ impl Buffers {
             &mut self.momentum,
             &mut self.load,
             &mut self.touch,
+            &mut self.damping,
             &mut self.outside,
             &mut self.relative,
         ];
@@ -283,7 +289,7 @@ fn put(vector: &mut [f64], first: usize, values: &[f64; LANES]) {
 
 impl Update<'_> {
     #[inline(always)]
-    fn block<const LOADED: bool, const TOUCHED: bool>(
+    fn block<const LOADED: bool, const DAMPED: bool, const TOUCHED: bool>(
         &self,
         (block, buffers): (&Block, &mut Buffers),
         sums: &mut Sums,
@@ -298,6 +304,7 @@ impl Update<'_> {
             a: &self.a[range.clone()],
             fixed: &self.system.fixed[range.clone()],
             load: within(&self.load, &range),
+            damping: within(&self.damping, &range),
             contact: self.contact.map(|forces| (&forces[range.clone()], 1.0)),
         };
         buffers.end(range.len());
@@ -307,16 +314,16 @@ impl Update<'_> {
         let moves = self.moves && !self.system.undeformed[block.part];
         let [ahead, v1, a1] = out;
         let out = [ahead, v1, &mut *a1];
-        self.move_on::<LOADED, TOUCHED>((&within, &w, moves), (buffers, sums), out);
-        self.resultants::<LOADED, TOUCHED>(range.len(), buffers, sums);
+        self.move_on::<LOADED, DAMPED, TOUCHED>((&within, &w, moves), (buffers, sums), out);
+        self.resultants::<LOADED, DAMPED, TOUCHED>(range.len(), buffers, sums);
         if block.held {
-            self.reactions::<LOADED, TOUCHED>((&within, moves), (buffers, sums), a1);
+            self.reactions::<LOADED, DAMPED, TOUCHED>((&within, moves), (buffers, sums), a1);
         }
     }
 
     /// Accelerations and velocities of the end, the displacement ahead, works and squares.
     #[inline(always)]
-    fn move_on<const LOADED: bool, const TOUCHED: bool>(
+    fn move_on<const LOADED: bool, const DAMPED: bool, const TOUCHED: bool>(
         &self,
         (of, w, moves): (&Within, &[f64; blocks::LANES], bool),
         (buffers, sums): (&mut Buffers, &mut Sums),
@@ -324,8 +331,8 @@ impl Update<'_> {
     ) {
         let [old, new] = self.weights[0];
         let means = self.weights[1];
-        // |v₊|², |a|², |a₊|², four works, |Δu|², five squares
-        let mut lanes = [[0.0; LANES]; 13];
+        // |v₊|², |a|², |a₊|², four works, |Δu|², five squares, the work of damping
+        let mut lanes = [[0.0; LANES]; 14];
         let moved = f64::from(u8::from(moves));
         for first in (0..v1.len()).step_by(LANES) {
             let (u, v, a) = (
@@ -335,9 +342,12 @@ impl Update<'_> {
             );
             let f = [take(of.f[0], first, 0.0), take(of.f[1], first, 0.0)];
             let fixed = take(of.fixed, first, true);
-            let [mut load, mut touch] = [[[0.0; LANES]; 2]; 2];
+            let [mut load, mut damping, mut touch] = [[[0.0; LANES]; 2]; 3];
             if LOADED {
                 load = ends(&of.load, first);
+            }
+            if DAMPED {
+                damping = ends(&of.damping, first);
             }
             if TOUCHED {
                 touch = ends(&of.contact, first);
@@ -353,13 +363,18 @@ impl Update<'_> {
                 mut middle,
                 mut momentum,
                 mut relative,
-            ] = [[0.0; LANES]; 7];
+                mut still,
+            ] = [[0.0; LANES]; 8];
             for k in 0..LANES {
                 let du = self.way.v * v[k] + self.way.a * a[k];
                 let mut outside = 0.0;
                 if LOADED {
                     outside = load[1][k];
                 }
+                if DAMPED {
+                    outside -= damping[1][k];
+                }
+                still[k] = outside;
                 if TOUCHED {
                     outside += touch[1][k];
                 }
@@ -385,6 +400,9 @@ impl Update<'_> {
                     lanes[5][k] += (old * load[0][k] + new * load[1][k]) * du;
                     lanes[10][k] += load[1][k] * load[1][k];
                 }
+                if DAMPED {
+                    lanes[13][k] += (old * damping[0][k] + new * damping[1][k]) * du;
+                }
                 if TOUCHED {
                     lanes[6][k] += (old * touch[0][k] + new * touch[1][k]) * du;
                     lanes[11][k] += touch[1][k] * touch[1][k];
@@ -403,7 +421,10 @@ impl Update<'_> {
             }
             if LOADED {
                 buffers.load.put(first, &sum_of(means, &load));
-                buffers.outside.put(first, &load[1]);
+                buffers.outside.put(first, &still);
+            }
+            if DAMPED {
+                buffers.damping.put(first, &sum_of(means, &damping));
             }
             if TOUCHED {
                 buffers.touch.put(first, &sum_of(means, &touch));
@@ -413,14 +434,14 @@ impl Update<'_> {
         let sum = |number: usize| lanes[number].iter().sum::<f64>();
         sums.velocity = sum(0);
         sums.acceleration = [sum(1), sum(2)];
-        sums.works = [sum(3), sum(4), sum(5), sum(6)];
+        sums.works = [sum(3), sum(4), sum(5), sum(6), sum(13)];
         sums.way = sum(7);
         sums.squares = [sum(8), sum(9), sum(10), sum(11), sum(12)];
     }
 
-    /// Resultants of momentum, loads and contact forces of a block of `n` unknowns.
+    /// Resultants of momentum, loads, damping and contact forces of a block of `n` unknowns.
     #[inline(always)]
-    fn resultants<const LOADED: bool, const TOUCHED: bool>(
+    fn resultants<const LOADED: bool, const DAMPED: bool, const TOUCHED: bool>(
         &self,
         n: usize,
         buffers: &Buffers,
@@ -433,6 +454,9 @@ impl Update<'_> {
             sums.forces[0] = buffers.load.resultant(&buffers.middle, dim, n);
             sums.outside[0] = buffers.outside.total(dim, n);
         }
+        if DAMPED {
+            sums.forces[3] = buffers.damping.resultant(&buffers.middle, dim, n);
+        }
         if TOUCHED {
             sums.forces[1] = buffers.touch.resultant(&buffers.middle, dim, n);
         }
@@ -440,7 +464,7 @@ impl Update<'_> {
 
     /// What supports give: they hold what the balance leaves.
     #[inline(always)]
-    fn reactions<const LOADED: bool, const TOUCHED: bool>(
+    fn reactions<const LOADED: bool, const DAMPED: bool, const TOUCHED: bool>(
         &self,
         (of, moves): (&Within, bool),
         (buffers, sums): (&mut Buffers, &mut Sums),
@@ -460,6 +484,11 @@ impl Update<'_> {
                 let [mut load, mut touch] = [[0.0; 2]; 2];
                 if LOADED {
                     load = of.load.map(|(force, factor)| factor * force[i]);
+                }
+                if DAMPED {
+                    for (load, (force, factor)) in load.iter_mut().zip(&of.damping) {
+                        *load -= factor * force[i];
+                    }
                 }
                 if TOUCHED {
                     touch = of.contact.map(|(force, factor)| factor * force[i]);

@@ -11,8 +11,9 @@ use carom_contact::Rows;
 use rayon::prelude::*;
 
 use super::Driver;
-use super::forces::{Bodies, add_up};
+use super::forces::{Bodies, DAMPING, add_up};
 use super::leapfrog::{Direct, is_leapfrog};
+use super::loads::damping_rate;
 use super::reported;
 use crate::error::Error;
 use crate::ledger::{Beyond, Energies, Squares, Tolerated};
@@ -78,6 +79,7 @@ impl Driver {
         self.place_end(direct);
         self.forces_of_end()?;
         let loads = self.loads_of_end(direct.loaded);
+        self.damping_of_end();
         self.follow_interface();
         self.touch(direct, loads)?;
         self.count_contact(begin, before);
@@ -151,6 +153,24 @@ impl Driver {
         }
     }
 
+    /// Forces of damping, at the velocity that is known before the forces.
+    fn damping_of_end(&mut self) {
+        if !self.system.has_damping() {
+            return;
+        }
+        let (row, start) = (damping_rate(self.maps.first()), Known::from(&self.state.motion));
+        let (unknowns, vectors) = (self.system.unknowns(), &mut self.vectors);
+        for vector in [&mut vectors.rate, &mut vectors.damping, &mut vectors.work] {
+            vector.resize(unknowns, 0.0);
+        }
+        let rates = vectors.rate.par_chunks_mut(UNKNOWNS).enumerate();
+        rates.for_each(|(chunk, rates)| {
+            let first = chunk * UNKNOWNS;
+            row.known(start.within(first..first + rates.len()), rates);
+        });
+        self.evaluate_damping();
+    }
+
     /// Forces of the contacts.
     fn touch(&mut self, direct: &mut Direct, loads: Loads) -> Result<(), Error> {
         self.vectors.jumps = false;
@@ -168,11 +188,13 @@ impl Driver {
         let system = Arc::clone(&self.system);
         let internal = std::mem::take(&mut self.next.motion.internal_force);
         let load = std::mem::take(&mut self.vectors.load);
+        let damping = std::mem::take(&mut self.vectors.damping);
+        let inside = |i: usize| internal[i] + damping.get(i).unwrap_or(&0.0);
         let left = |i: usize| match loads {
             _ if system.fixed[i] => 0.0,
-            Loads::None => -internal[i],
-            Loads::Dead([_, factor]) => factor * system.load[i] - internal[i],
-            Loads::Varying => load[i] - internal[i],
+            Loads::None => -inside(i),
+            Loads::Dead([_, factor]) => factor * system.load[i] - inside(i),
+            Loads::Varying => load[i] - inside(i),
         };
         let solved = match self.weak.none() {
             true => self.solve_apart(&mut direct.apart, |i| left(i) / system.mass.lumped[i]),
@@ -184,6 +206,7 @@ impl Driver {
             }
         };
         (self.next.motion.internal_force, self.vectors.load) = (internal, load);
+        self.vectors.damping = damping;
         solved?;
         self.spread_directly(direct);
         Ok(())
@@ -227,6 +250,9 @@ impl Driver {
         let (old, new) = (&self.state.motion, &mut self.next.motion);
         let varying = &self.vectors.load[..];
         let before = self.state.forces.first().map_or(varying, |load| &load[..]);
+        let (damping, damped) = (&self.vectors.damping[..], system.has_damping());
+        let before_damping = self.state.forces.get(DAMPING).map_or(damping, |f| &f[..]);
+        let none = (&system.load[..], 0.0);
         let update = Update {
             system: &system,
             u: &new.u,
@@ -237,10 +263,11 @@ impl Driver {
             v: &old.v,
             a: &old.a,
             load: match loads {
-                Loads::None => None,
+                Loads::None => damped.then_some([none; 2]),
                 Loads::Dead(factors) => Some(factors.map(|factor| (&system.load[..], factor))),
                 Loads::Varying => Some([(before, 1.0), (varying, 1.0)]),
             },
+            damping: damped.then_some([(before_damping, 1.0), (damping, 1.0)]),
             contact: [&old.contact_force, &new.contact_force],
             way: map.displacement.since(&Row::START),
             velocity: map.velocity,
@@ -250,13 +277,18 @@ impl Driver {
         let out = [&mut direct.ahead[..], &mut new.v, &mut new.a];
         update.run(&direct.blocks, &mut direct.sums, out);
         direct.pending = Some(map.displacement);
+        let kept = match loads {
+            _ if damped => DAMPING + 1,
+            Loads::Varying => 1,
+            Loads::None | Loads::Dead(_) => 0,
+        };
         let forces = &mut self.next.forces;
-        match loads {
-            Loads::Varying => {
-                forces.resize_with(1, Vec::new);
-                forces[0].clone_from(&self.vectors.load);
-            }
-            Loads::None | Loads::Dead(_) => forces.clear(),
+        forces.resize_with(kept, Vec::new);
+        if let (Loads::Varying, [load, ..]) = (loads, &mut forces[..]) {
+            load.clone_from(&self.vectors.load);
+        }
+        if let Some(kept) = forces.get_mut(DAMPING) {
+            kept.clone_from(&self.vectors.damping);
         }
         direct.gather(system.axisymmetric)
     }
@@ -272,7 +304,8 @@ impl Driver {
         let displacement = self.system.is_nonlinear().then_some(&motion.u[..]);
         let at = (&self.state.motion.frames[..], displacement);
         reported::write(&mut self.reactions, &self.system, at, |i| {
-            motion.internal_force[i] - load(i) - motion.contact_force[i]
+            let damping = self.vectors.damping.get(i).unwrap_or(&0.0);
+            motion.internal_force[i] + damping - load(i) - motion.contact_force[i]
         });
     }
 
@@ -292,7 +325,7 @@ impl Driver {
         let map = *self.maps.first();
         let weights = [[map.impulse.old, map.impulse.new]];
         let (friction, obstacles) = (self.friction_work(&weights), self.obstacle_work(&weights));
-        let [inertia, internal, load, touch] = sums.works;
+        let [inertia, internal, load, touch, damping] = sums.works;
         let stored = self.stored;
         let energies = Energies {
             kinetic: 0.5 * sums.velocity,
@@ -320,6 +353,7 @@ impl Driver {
             ledger.go_beyond(&Beyond {
                 work_obstacles: obstacles,
                 dissipation_material: stored.dissipated,
+                dissipation_damping: damping,
                 dissipation_friction: -friction,
                 dissipation_viscosity: stored.viscous,
                 hardening: stored.hardening,
@@ -331,14 +365,14 @@ impl Driver {
                 ..Beyond::default()
             });
         }
-        let [loads, contacts, supports] = sums.forces;
+        let [loads, contacts, supports, damped] = sums.forces;
         let none = Resultant::default();
         ledger.add(
             (self.dt, &identity, impulses),
             &energies,
             [load, touch - friction - obstacles, 0.0],
             &squares,
-            [loads, contacts, supports, none, none],
+            [loads, contacts, supports, none, damped.reversed()],
         );
         let exchange = &mut self.next.exchange;
         exchange.follow(&self.state.exchange);

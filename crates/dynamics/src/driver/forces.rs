@@ -51,6 +51,9 @@ pub(super) fn add_up(
     Ok(sum)
 }
 
+/// Place of the forces of damping among those of a state ([`State::forces`](crate::State::forces)).
+pub(super) const DAMPING: usize = 5;
+
 impl Driver {
     /// Loads in the balance of the step, which holds at an instant of its own in each zone, at the configuration in `place`, N.
     pub(super) fn evaluate_loads_of_step(&mut self) {
@@ -102,9 +105,13 @@ impl Driver {
         if !system.has_damping() {
             return;
         }
-        vectors.damping.fill(0.0);
         if self.maps.is_static() {
+            vectors.damping.fill(0.0);
             return;
+        }
+        match &system.damping_mass {
+            Some(mass) => mass.multiply(&vectors.rate, &mut vectors.damping),
+            None => vectors.damping.fill(0.0),
         }
         for body in &system.bodies {
             body.add_damping_force(&vectors.rate, &mut vectors.damping);
@@ -112,23 +119,13 @@ impl Driver {
         for modal in &system.modal {
             modal.add_force(&vectors.rate, &mut vectors.damping);
         }
-        if let Some(mass) = &system.damping_mass {
-            mass.multiply(&vectors.rate, &mut vectors.work);
-            for (damping, force) in vectors.damping.iter_mut().zip(&vectors.work) {
-                *damping += force;
-            }
-        }
-        vectors.work.copy_from_slice(&vectors.rate);
         for (k, damping) in system.nonlinear.damping.iter().enumerate() {
             if damping.stiffness != 0.0 {
-                for v in vectors.work.iter_mut() {
-                    *v *= damping.stiffness;
+                for (scaled, rate) in vectors.work.iter_mut().zip(&vectors.rate) {
+                    *scaled = damping.stiffness * rate;
                 }
                 let scratch = &mut self.scratch[k];
                 system.bodies[k].internal_force(&vectors.work, scratch, &mut vectors.damping);
-                for v in vectors.work.iter_mut() {
-                    *v /= damping.stiffness;
-                }
             }
         }
     }

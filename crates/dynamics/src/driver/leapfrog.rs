@@ -77,7 +77,7 @@ impl Apart {
 }
 
 impl Direct {
-    /// None where forces or motions of the system are others than those of solids, loads and contacts.
+    /// None where forces or motions of the system are others than those of solids, their damping, loads and contacts.
     pub(super) fn of(system: &System) -> Option<Direct> {
         let (dim, unknowns) = (system.dim, &system.unknowns);
         let moves = |i: usize| matches!(unknowns.kind(i), Kind::Translation(_));
@@ -91,7 +91,6 @@ impl Direct {
             system.mass.is_lumped() && system.massless.is_empty() && lumped.chunks(dim).all(even);
         let free = system.nonlinear.follows.is_empty()
             && system.link_rows.is_empty()
-            && !system.has_damping()
             && system.adaptive.is_none();
         (plain && solids && mass && free).then(|| {
             let blocks = blocks(system);

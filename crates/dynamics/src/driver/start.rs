@@ -9,6 +9,7 @@ use super::active::Active;
 use super::carried::Carried;
 use super::effective::Effective;
 use super::floating::Floating;
+use super::forces::DAMPING;
 use super::identity::{End, energies};
 use super::impulse::Impulses;
 use super::leapfrog::Direct;
@@ -272,9 +273,18 @@ impl Driver {
             false => self.start_identity(stored.strain),
         }
         if self.is_direct() {
-            // all that such steps need of the start: loads that vary
-            let loads = usize::from(!system.nonlinear.loads.is_empty());
-            self.state.forces.truncate(loads);
+            // all that such steps need of the start: loads that vary, and damping
+            let (varying, damped) = (!system.nonlinear.loads.is_empty(), system.has_damping());
+            for (k, force) in self.state.forces.iter_mut().enumerate() {
+                if !(k == 0 && varying || k == DAMPING && damped) {
+                    *force = Vec::new();
+                }
+            }
+            let kept = match damped {
+                true => DAMPING + 1,
+                false => usize::from(varying),
+            };
+            self.state.forces.truncate(kept);
             self.vectors.give_up_room();
         }
         Ok(())
@@ -375,9 +385,9 @@ impl Driver {
             false => 0.0,
         });
         let reaction = reaction.collect();
-        // a direct step has neither damping nor links, and its ledger begins with resultants alone
+        // a direct step has no links, and its ledger begins with resultants alone
         let (internal, damping, links) = match self.is_direct() {
-            true => (Vec::new(), Vec::new(), Vec::new()),
+            true => (Vec::new(), self.vectors.damping.clone(), Vec::new()),
             false => {
                 let links = (0..system.unknowns()).map(|i| motion.link_of(i));
                 (

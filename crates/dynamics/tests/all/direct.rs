@@ -7,7 +7,7 @@ use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::CentralDifference;
 use carom_dynamics::{
-    Amplitude, Balance, Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support,
+    Amplitude, Balance, Damping, Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support,
     System,
 };
 use carom_materials::{Elastic, J2Plasticity, Law as Material, StVenantKirchhoff};
@@ -35,6 +35,8 @@ struct Case {
     gravity: f64,
     /// Whether the ground shakes.
     shakes: bool,
+    /// Factors of mass, 1/s, and stiffness, s, in its damping.
+    damping: [f64; 2],
     /// Whether the top is held.
     held: bool,
     /// Cells along an edge.
@@ -56,6 +58,7 @@ fn cases() -> Vec<Case> {
         friction: None,
         gravity: 0.0,
         shakes: false,
+        damping: [0.0; 2],
         held: false,
         cells: 3,
     };
@@ -78,6 +81,33 @@ fn cases() -> Vec<Case> {
             name: "small, rubbing",
             friction: Some(0.3),
             ..impact
+        },
+        Case {
+            name: "damped, free",
+            damping: [20.0, 0.0],
+            ..free
+        },
+        Case {
+            name: "damped, hanging",
+            gravity: -100.0,
+            damping: [20.0, 1e-5],
+            held: true,
+            ..free
+        },
+        Case {
+            name: "damped, rubbing",
+            friction: Some(0.3),
+            damping: [20.0, 1e-5],
+            ..impact
+        },
+        Case {
+            name: "finite, damped, hanging, shaken",
+            material: svk,
+            gravity: -100.0,
+            shakes: true,
+            damping: [20.0, 0.0],
+            held: true,
+            ..free
         },
         Case {
             name: "finite, hanging, shaken",
@@ -165,6 +195,8 @@ fn model(case: &Case) -> Model {
             fix_rotations: [false; 3],
         }];
     }
+    let [mass, stiffness] = case.damping;
+    model.nonlinear.damping = vec![Damping { mass, stiffness }];
     if case.shakes {
         let course = vec![[0.0, 50.0], [10.0 * dt, -80.0], [40.0 * dt, 30.0]];
         model.nonlinear.base[1] = Some(Amplitude::new(course).unwrap());
@@ -196,6 +228,7 @@ fn terms(balance: &Balance) -> [Vec<f64>; 2] {
         balance.work_supports,
         balance.dissipation_scheme,
         balance.dissipation_material,
+        balance.dissipation_damping,
         balance.dissipation_friction,
         balance.dissipation_viscosity,
         balance.hourglass,
@@ -302,7 +335,8 @@ fn any_number_of_threads_gives_the_same_bits() {
     let all = cases();
     let case = Case {
         cells: 17,
-        ..all[5]
+        damping: [20.0, 0.0],
+        ..*all.iter().find(|case| case.name == "finite, rubbing").unwrap()
     };
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
