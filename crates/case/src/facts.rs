@@ -70,10 +70,11 @@ pub fn facts(built: &Built) -> Vec<Fact> {
             ),
         ));
     }
+    let accelerations = accelerations(system);
     for (k, contact) in system.contacts.iter().enumerate() {
         facts.push(fact(
             format!("contact {}", contact.name),
-            contact_facts(built, k),
+            contact_facts(built, &accelerations, k),
         ));
     }
     let begin = built.stage.map_or(0.0, |(end, _)| end);
@@ -360,17 +361,16 @@ pub(crate) struct Approach {
     points: usize,
 }
 
-pub(crate) fn approach(system: &System, contact: usize) -> Approach {
-    approach_from(system, contact, &system.initial_displacement)
-}
-
-/// The same from another displacement, m.
-pub(crate) fn approach_from(system: &System, contact: usize, u: &[f64]) -> Approach {
+/// `accelerations`: see [`accelerations`]; `u`: displacement, m.
+pub(crate) fn approach(
+    system: &System,
+    accelerations: &[f64],
+    (contact, u): (usize, &[f64]),
+) -> Approach {
     let places = system.places(0.0, u, &system.initial_frames);
     let mut rows = Rows::default();
     rows.clear();
     system.contacts[contact].pair(&places, &mut Search::default(), &mut rows);
-    let accelerations = accelerations(system);
     let mut approach = Approach {
         gap: f64::INFINITY,
         speed: 0.0,
@@ -384,7 +384,7 @@ pub(crate) fn approach_from(system: &System, contact: usize, u: &[f64]) -> Appro
             continue;
         }
         let speed = closing(&rows, point, &system.initial_velocity, rows.rate(point));
-        let pull = closing(&rows, point, &accelerations, 0.0);
+        let pull = closing(&rows, point, accelerations, 0.0);
         approach.speed = approach.speed.max(speed);
         approach.impact = approach.impact.min(first_closing(gap, speed, pull));
     }
@@ -424,7 +424,7 @@ fn first_closing(gap: f64, speed: f64, pull: f64) -> f64 {
 
 /// Mean acceleration of each body under the dead loads, by unknown, m/s²; zero in directions in which a support holds it, and
 /// before the end of a static stage, in which loads make no motion.
-fn accelerations(system: &System) -> Vec<f64> {
+pub(crate) fn accelerations(system: &System) -> Vec<f64> {
     let mut accelerations = vec![0.0; system.unknowns()];
     if system.static_steps() > 0 {
         return accelerations;
@@ -450,9 +450,10 @@ fn accelerations(system: &System) -> Vec<f64> {
     accelerations
 }
 
-fn contact_facts(built: &Built, contact: usize) -> String {
+fn contact_facts(built: &Built, accelerations: &[f64], contact: usize) -> String {
     let system = &built.system;
-    let approach = approach(system, contact);
+    let start = &system.initial_displacement;
+    let approach = approach(system, accelerations, (contact, start));
     let pair = &system.contacts[contact];
     let law = pair.law.get().name();
     let sliding = match pair.sliding {

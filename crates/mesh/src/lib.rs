@@ -6,6 +6,7 @@
 
 mod axes;
 mod bare;
+mod beside;
 mod bounds;
 mod curved;
 mod element_id;
@@ -29,6 +30,7 @@ mod error;
 #[cfg(test)]
 mod random;
 
+pub use beside::CellsByNode;
 pub use bounds::Bounds;
 pub use element_id::ElementId;
 pub use error::Error;

@@ -5,7 +5,7 @@ use crate::{Bounds, BoxTree, ElementId, Mesh};
 /// Nodes by connected part.
 #[derive(Clone, Debug)]
 pub struct Parts {
-    /// For each node the way to the least node of its part; `u32::MAX` where no cell has it.
+    /// For each node one nearer to the least node of its part, which leads to itself; `u32::MAX` where no cell has it.
     root: Vec<u32>,
 }
 
@@ -35,7 +35,6 @@ impl Parts {
         for node in others {
             unite(&mut self.root, first, node);
         }
-        self.shorten();
     }
 
     fn shorten(&mut self) {
@@ -48,8 +47,14 @@ impl Parts {
 
     /// The least node of the part that a node is in; none where no cell has it.
     pub fn of(&self, node: u32) -> Option<u32> {
-        let root = self.root[node as usize];
-        (root != u32::MAX).then_some(root)
+        let mut root = self.root[node as usize];
+        if root == u32::MAX {
+            return None;
+        }
+        while self.root[root as usize] != root {
+            root = self.root[root as usize];
+        }
+        Some(root)
     }
 }
 

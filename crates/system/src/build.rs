@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use carom_algebra::rotation::Rotation;
-use carom_algebra::unknowns::{Kind, Unknowns};
+use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, Kinematics, Reduced, Rigid};
 use carom_contact::{Contact, Frames, Places};
 use carom_mesh::Parts;
@@ -118,9 +118,10 @@ impl System {
         }
         hold_axisymmetric(&model, (&bodies, &unknowns), &mut fixed);
         let mut mass = Mass::of(&bodies, &model.bodies, &unknowns);
+        let mut room = vec![0.0; unknowns.len()];
         let mut body_masses: Vec<_> = bodies
             .iter()
-            .map(|body| node_masses(body, (&number, &unknowns)))
+            .map(|body| node_masses(body, (&number, &unknowns), &mut room))
             .collect();
         check_masses(&bodies, &body_masses, &mesh_node)?;
         let masses = (&mut mass, &mut body_masses[..]);
@@ -471,21 +472,29 @@ fn schemes(
 /// Lumped masses of the nodes of a body, kg.
 type NodeMasses = Vec<(u32, f64)>;
 
-fn node_masses(body: &Body, (number, unknowns): (&[u32], &Unknowns)) -> Vec<(u32, f64)> {
+/// `room`: a system vector of zeros, and one again afterwards.
+fn node_masses(
+    body: &Body,
+    (number, unknowns): (&[u32], &Unknowns),
+    room: &mut [f64],
+) -> NodeMasses {
     if let Body::Reduced(reduced) = body {
         let masses = reduced.reduction().masses.iter();
         return masses
             .map(|(node, m)| (number[*node as usize], *m))
             .collect();
     }
-    let mut mass = vec![0.0; unknowns.len()];
-    body.add_lumped_mass(&mut mass);
-    let first = (0..unknowns.len()).filter(|&i| unknowns.kind(i) == Kind::Translation(0));
-    let masses = first
-        .filter(|&first| mass[first] > 0.0)
-        .map(|first| (unknowns.node(first), mass[first]));
-    let mut masses: Vec<_> = masses.collect();
-    masses.shrink_to_fit();
+    body.add_lumped_mass(room);
+    let mut nodes = Vec::new();
+    body.each_element(&mut |own| nodes.extend_from_slice(own));
+    nodes.sort_unstable();
+    nodes.dedup();
+    let mass = |&node: &u32| (node, room[unknowns.first(node)]);
+    let masses = nodes.iter().map(mass).filter(|(_, mass)| *mass > 0.0);
+    let masses = masses.collect();
+    for node in nodes {
+        room[unknowns.of(node)].fill(0.0);
+    }
     masses
 }
 

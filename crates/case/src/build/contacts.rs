@@ -1,18 +1,18 @@
 //! Contacts: surfaces on the bodies, no penetration at the start, advice.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use carom_bodies::Kinematics;
 use carom_contact::law::Level;
 use carom_contact::law::{Reading, Restitution, Side, Velocity};
 use carom_contact::{Initial, Integration, Law, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
-use carom_mesh::{ElementId, Face, Mesh, Surface};
+use carom_mesh::{CellsByNode, ElementId, Face, Mesh, Surface};
 
 use super::laws::sides;
 use super::{Builder, advice};
 use crate::error::Problem;
-use crate::facts::{approach, approach_from};
+use crate::facts::{accelerations, approach};
 use crate::schema::{self, Basis, Friction, IntegrationName, IntegrationWith, Penetration, Scheme};
 
 impl Builder<'_> {
@@ -25,6 +25,7 @@ impl Builder<'_> {
     ) -> Vec<ModelContact> {
         let mut contacts = Vec::new();
         let cells = of.concat();
+        let cells = CellsByNode::new(mesh, &cells);
         for (name, contact) in self.case.contact.iter() {
             let path = format!("contact.{name}");
             let mass = self.mass_surface(mesh, &contact.secondary);
@@ -140,7 +141,7 @@ impl Builder<'_> {
     /// Warns where bodies come nearer in a step by more than an element: nothing is looked at within a step, and what has left
     /// a thin body on its far side faces it no more.
     fn warn_of_speed(&mut self, system: &System) {
-        let fastest = fastest(system);
+        let (fastest, accelerations) = (fastest(system), accelerations(system));
         for (k, &(secondary, _)) in system.sides.iter().enumerate() {
             let zone = self.plan.zone_of(secondary);
             let parts = zone.map_or(1, |zone| self.plan.zones[zone].substeps);
@@ -150,7 +151,8 @@ impl Builder<'_> {
             if !system.contacts[k].moves() && 2.0 * fastest * dt <= element {
                 continue;
             }
-            let way = approach(system, k).speed * dt;
+            let start = &system.initial_displacement;
+            let way = approach(system, &accelerations, (k, start)).speed * dt;
             if way > element {
                 self.warnings.push(format!(
                     "contact `{}`: in a step its sides approach by {way:.4e} m, more than the smallest element of `{}` ({element:.4e} m), and may pass through each other; take a step of at most {:.4e} s",
@@ -201,8 +203,9 @@ impl Builder<'_> {
     /// Refuses contacts between faces that another contact joins in the same way: their stiffnesses add up, and their
     /// constraints are the same twice. Warns where the sides are exchanged.
     pub(super) fn listed_twice(&mut self, contacts: &[ModelContact]) {
+        let sides = Sides::of(contacts);
         for (k, contact) in contacts.iter().enumerate() {
-            for other in &contacts[..k] {
+            for other in sides.that_meet(contact, k).into_iter().map(|k| &contacts[k]) {
                 let same = shares_faces(&contact.secondary, &other.secondary)
                     && match (&contact.primary, &other.primary) {
                         (ModelTarget::Rigid(one), ModelTarget::Rigid(two)) => one == two,
@@ -257,12 +260,13 @@ impl Builder<'_> {
     /// Refuses contacts that can never act: points that face nothing at their reference places face nothing ever, unless they slide
     /// or the obstacle moves.
     pub(super) fn able_to_act(&mut self, system: &System) {
+        let at_rest = vec![0.0; system.unknowns()];
         for (k, contact) in system.contacts.iter().enumerate() {
             if contact.sliding == Sliding::Finite || contact.moves() {
                 continue;
             }
-            let at_rest = vec![0.0; system.unknowns()];
-            if approach_from(system, k, &at_rest).gap < f64::INFINITY {
+            // without motion all accelerations are zero too
+            if approach(system, &at_rest, (k, &at_rest)).gap < f64::INFINITY {
                 continue;
             }
             let message = "this contact can never act: at the start no point of the secondary surface has an opposite face, and small sliding does not pair points again";
@@ -335,13 +339,44 @@ fn sections(bodies: &[ModelBody], secondary: &Surface, primary: &ModelTarget) ->
 
 /// Whether two surfaces have a face in common.
 fn shares_faces(one: &Surface, two: &Surface) -> bool {
-    let face = |face: &carom_mesh::Face| {
-        let mut nodes = face.corners().to_vec();
-        nodes.sort_unstable();
-        nodes
-    };
-    let of_one: BTreeSet<Vec<u32>> = one.faces.iter().map(face).collect();
-    two.faces.iter().any(|other| of_one.contains(&face(other)))
+    let of_one: BTreeSet<Vec<u32>> = one.faces.iter().map(sorted_nodes).collect();
+    let mut of_two = two.faces.iter().map(sorted_nodes);
+    of_two.any(|face| of_one.contains(&face))
+}
+
+fn sorted_nodes(face: &Face) -> Vec<u32> {
+    let mut nodes = face.corners().to_vec();
+    nodes.sort_unstable();
+    nodes
+}
+
+/// Contacts by the faces of their sides.
+struct Sides(BTreeMap<Vec<u32>, Vec<usize>>);
+
+impl Sides {
+    fn of(contacts: &[ModelContact]) -> Sides {
+        let mut sides = BTreeMap::new();
+        for (k, contact) in contacts.iter().enumerate() {
+            let primary = match &contact.primary {
+                ModelTarget::Surface(surface) => &surface.faces[..],
+                ModelTarget::Rigid(_) => &[],
+            };
+            for face in contact.secondary.faces.iter().chain(primary) {
+                let of: &mut Vec<usize> = sides.entry(sorted_nodes(face)).or_default();
+                if of.last() != Some(&k) {
+                    of.push(k);
+                }
+            }
+        }
+        Sides(sides)
+    }
+
+    /// Contacts before the `k`-th that have a face of its secondary side, ascending.
+    fn that_meet(&self, contact: &ModelContact, k: usize) -> BTreeSet<usize> {
+        let faces = contact.secondary.faces.iter().map(sorted_nodes);
+        let of = faces.filter_map(|face| self.0.get(&face));
+        of.flatten().copied().filter(|other| *other < k).collect()
+    }
 }
 
 /// Whether a side of a contact has quadratic faces.

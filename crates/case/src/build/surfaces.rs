@@ -2,7 +2,7 @@
 
 use carom_bodies::{BeamSection, Kinematics};
 use carom_dynamics::ModelBody;
-use carom_mesh::{ElementId, Group, Mesh, Surface};
+use carom_mesh::{CellsByNode, ElementId, Group, Mesh, Surface};
 
 use super::Builder;
 use crate::error::Problem;
@@ -19,7 +19,7 @@ impl Builder<'_> {
     pub(super) fn contact_surface(
         &mut self,
         mesh: &Mesh,
-        (bodies, cells): (&[ModelBody], &[ElementId]),
+        (bodies, cells): (&[ModelBody], &CellsByNode),
         path: &str,
         name: &str,
     ) -> Option<Surface> {
@@ -30,7 +30,7 @@ impl Builder<'_> {
         let axes = axes(mesh, bodies, group);
         let flat = group.dim == 0 && axes.iter().all(|axes| axes.section.radius == Some(0.0));
         if axes.is_empty() || flat {
-            return self.surface(mesh, cells, path, name);
+            return self.surface(mesh, &cells.beside(mesh, group), path, name);
         }
         let known: Vec<bool> = axes.iter().map(|axes| self.has_surface(axes)).collect();
         if known.contains(&false) {
