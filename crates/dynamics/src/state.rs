@@ -25,7 +25,8 @@ pub struct State {
     /// Contact forces and statuses.
     pub interface: InterfaceState,
     /// Nodal forces of the last step as its balance by works takes them, N: loads, contacts, supports, inertia, internal,
-    /// damping, links; empty where the next step does not need them.
+    /// damping, links; empty where the next step does not need them. Of explicit steps in one pass those of links are taken from those of
+    /// damping.
     pub forces: Vec<Vec<f64>>,
     /// Links between velocities.
     pub links: Links,

@@ -190,7 +190,7 @@ impl Contact {
     }
 
     /// Nodes of both sides, each once, ascending, and the most that Σ |N_a| is on their faces.
-    fn nodes(&self) -> (Vec<u32>, f64) {
+    pub fn nodes(&self) -> (Vec<u32>, f64) {
         let own = self.points.iter().flat_map(|point| point.carriers());
         let mut nodes: Vec<u32> = own.map(|(node, _)| node).collect();
         let secondary = self.mortar.iter().flat_map(|mortar| &mortar.faces);

@@ -45,7 +45,7 @@ impl Driver {
     pub(super) fn solve_apart(
         &mut self,
         apart: &mut Apart,
-        free: impl Fn(usize) -> f64,
+        free: impl Fn(&Driver, usize) -> f64,
     ) -> Result<(), Error> {
         self.split(apart);
         apart.points.clear();
@@ -140,7 +140,7 @@ impl Driver {
     fn describe_apart(
         &mut self,
         (room, friction): (&mut Vec<f64>, &mut Vec<Tangential>),
-        free: impl Fn(usize) -> f64,
+        free: impl Fn(&Driver, usize) -> f64,
     ) {
         room.resize(self.system.unknowns(), 0.0);
         let mut data = std::mem::take(&mut self.candidate_data);
@@ -149,7 +149,7 @@ impl Driver {
         let points = self.candidates.iter();
         let numbers = points.flat_map(|&point| point * width..(point + 1) * width);
         for &dof in numbers.flat_map(|number| rows.row(number as usize).0) {
-            room[dof as usize] = free(dof as usize);
+            room[dof as usize] = free(self, dof as usize);
         }
         let along = |number: u32| rows.product(number as usize, room);
         let points = self.candidates.iter();

@@ -35,7 +35,7 @@ impl Driver {
             && self.direct.is_some()
             && !self.maps.is_static()
             && self.impulses.is_none()
-            && self.link_force.is_empty()
+            && (self.has_links() || self.link_force.is_empty())
     }
 
     /// Whether the motion of the attempt is known to be finite without a look at it.
@@ -80,6 +80,7 @@ impl Driver {
         self.forces_of_end()?;
         let loads = self.loads_of_end(direct.loaded);
         self.damping_of_end();
+        self.hold_directly(direct, |driver, i| driver.left(loads, i))?;
         self.follow_interface();
         self.touch(direct, loads)?;
         self.count_contact(begin, before);
@@ -89,7 +90,8 @@ impl Driver {
         direct.finite = (sums.velocity + sums.acceleration[1] + sums.way).is_finite();
         direct.clean = true;
         self.end_points();
-        self.balance_directly(&sums, &direct.parts);
+        self.balance_directly(&sums, direct);
+        self.record_links();
         self.record_contacts();
         let records = &self.next.records.contacts;
         let momenta = |part: usize| direct.parts[part].momentum.linear;
@@ -185,31 +187,40 @@ impl Driver {
             self.release();
             return Ok(());
         }
-        let system = Arc::clone(&self.system);
-        let internal = std::mem::take(&mut self.next.motion.internal_force);
-        let load = std::mem::take(&mut self.vectors.load);
-        let damping = std::mem::take(&mut self.vectors.damping);
-        let inside = |i: usize| internal[i] + damping.get(i).unwrap_or(&0.0);
-        let left = |i: usize| match loads {
-            _ if system.fixed[i] => 0.0,
-            Loads::None => -inside(i),
-            Loads::Dead([_, factor]) => factor * system.load[i] - inside(i),
-            Loads::Varying => load[i] - inside(i),
-        };
-        let solved = match self.weak.none() {
-            true => self.solve_apart(&mut direct.apart, |i| left(i) / system.mass.lumped[i]),
+        match self.weak.none() {
+            true => {
+                let free = |driver: &Driver, i: usize| {
+                    driver.left(loads, i) / driver.system.mass.lumped[i]
+                };
+                self.solve_apart(&mut direct.apart, free)?;
+            }
             false => {
                 self.vectors.make_room(&self.state.motion);
-                let residual = self.vectors.residual.iter_mut().enumerate();
-                residual.for_each(|(i, residual)| *residual = left(i));
-                self.solve_interface()
+                for i in 0..self.system.unknowns() {
+                    self.vectors.residual[i] = self.left(loads, i);
+                }
+                self.solve_interface()?;
             }
-        };
-        (self.next.motion.internal_force, self.vectors.load) = (internal, load);
-        self.vectors.damping = damping;
-        solved?;
+        }
         self.spread_directly(direct);
         Ok(())
+    }
+
+    /// What loads, internal forces and those beside them leave at the end on an unknown, N; zero on held ones.
+    fn left(&self, loads: Loads, i: usize) -> f64 {
+        let damping = self.vectors.damping.get(i).unwrap_or(&0.0);
+        let inside = self.next.motion.internal_force[i] + damping;
+        match loads {
+            _ if self.system.fixed[i] => 0.0,
+            Loads::None => -inside,
+            Loads::Dead([_, factor]) => factor * self.system.load[i] - inside,
+            Loads::Varying => self.vectors.load[i] - inside,
+        }
+    }
+
+    /// Whether forces beside the internal ones depend on the motion: damping, less the forces of links.
+    pub(super) fn has_forces_beside(&self) -> bool {
+        self.system.has_damping() || self.has_links()
     }
 
     /// Adds the forces of the points to those of the nodes.
@@ -247,10 +258,12 @@ impl Driver {
         let moves = system.is_nonlinear();
         let shapes = &self.state.shapes.bodies;
         self.rates.refer(&system.part_of_body, shapes);
+        let damped = self.has_forces_beside();
         let (old, new) = (&self.state.motion, &mut self.next.motion);
         let varying = &self.vectors.load[..];
-        let before = self.state.forces.first().map_or(varying, |load| &load[..]);
-        let (damping, damped) = (&self.vectors.damping[..], system.has_damping());
+        let kept = self.state.forces.first().filter(|load| !load.is_empty());
+        let before = kept.map_or(varying, |load| &load[..]);
+        let damping = &self.vectors.damping[..];
         let before_damping = self.state.forces.get(DAMPING).map_or(damping, |f| &f[..]);
         let none = (&system.load[..], 0.0);
         let update = Update {
@@ -319,13 +332,17 @@ impl Driver {
     }
 
     /// Energy and momentum of the step.
-    fn balance_directly(&mut self, sums: &Sums, parts: &[Sums]) {
-        let system = Arc::clone(&self.system);
+    fn balance_directly(&mut self, sums: &Sums, direct: &Direct) {
+        let (system, parts) = (Arc::clone(&self.system), &direct.parts);
         let identity = self.identity_of_ledger();
         let map = *self.maps.first();
         let weights = [[map.impulse.old, map.impulse.new]];
+        let (old, new) = (&self.state.motion, &self.next.motion);
+        let forces = [&old.link_force[..], &new.link_force];
+        let links = direct.links.work(weights[0], forces, [&old.u, &new.u]);
+        let link_norm = direct.links.norm(&new.link_force);
         let (friction, obstacles) = (self.friction_work(&weights), self.obstacle_work(&weights));
-        let [inertia, internal, load, touch, damping] = sums.works;
+        let [inertia, internal, load, touch, beside] = sums.works;
         let stored = self.stored;
         let energies = Energies {
             kinetic: 0.5 * sums.velocity,
@@ -348,12 +365,14 @@ impl Driver {
         if system.is_nonlinear() {
             impulses = [&one, &one];
             squares.stage = inertia - gained + internal - kept - stored.dissipated - stored.viscous;
-            self.left_over = self.system.nonlinear.iteration.tolerance * scale(sums, self.dt);
+            self.left_over = self.system.nonlinear.iteration.tolerance
+                * scale(sums, self.dt).max(link_norm);
             let nodes = system.x.len() as f64;
             ledger.go_beyond(&Beyond {
                 work_obstacles: obstacles,
                 dissipation_material: stored.dissipated,
-                dissipation_damping: damping,
+                // what is beside internal forces is damping less the forces of links
+                dissipation_damping: beside + links,
                 dissipation_friction: -friction,
                 dissipation_viscosity: stored.viscous,
                 hardening: stored.hardening,
@@ -365,14 +384,14 @@ impl Driver {
                 ..Beyond::default()
             });
         }
-        let [loads, contacts, supports, damped] = sums.forces;
+        let [loads, contacts, supports, beside] = sums.forces;
         let none = Resultant::default();
         ledger.add(
             (self.dt, &identity, impulses),
             &energies,
-            [load, touch - friction - obstacles, 0.0],
+            [load, touch - friction - obstacles, links],
             &squares,
-            [loads, contacts, supports, none, damped.reversed()],
+            [loads, contacts, supports, none, beside.reversed()],
         );
         let exchange = &mut self.next.exchange;
         exchange.follow(&self.state.exchange);

@@ -2,6 +2,7 @@
 
 use carom_algebra::unknowns::Kind;
 
+use super::direct_links::DirectLinks;
 use super::span::Span;
 use crate::blocks::{Block, blocks};
 use crate::coulomb::Tangential;
@@ -35,6 +36,7 @@ pub(super) struct Direct {
     /// Whether the motion of the attempt is known to be finite.
     pub(super) finite: bool,
     pub(super) apart: Apart,
+    pub(super) links: DirectLinks,
 }
 
 /// What the contact problem of such steps needs.
@@ -77,7 +79,8 @@ impl Apart {
 }
 
 impl Direct {
-    /// None where forces or motions of the system are others than those of solids, their damping, loads and contacts.
+    /// None where forces or motions of the system are others than those of solids, their damping, loads, contacts, and links that meet no
+    /// contact.
     pub(super) fn of(system: &System) -> Option<Direct> {
         let (dim, unknowns) = (system.dim, &system.unknowns);
         let moves = |i: usize| matches!(unknowns.kind(i), Kind::Translation(_));
@@ -90,8 +93,8 @@ impl Direct {
         let mass =
             system.mass.is_lumped() && system.massless.is_empty() && lumped.chunks(dim).all(even);
         let free = system.nonlinear.follows.is_empty()
-            && system.link_rows.is_empty()
             && system.adaptive.is_none();
+        let links = DirectLinks::of(system)?;
         (plain && solids && mass && free).then(|| {
             let blocks = blocks(system);
             Direct {
@@ -107,6 +110,7 @@ impl Direct {
                 clean: false,
                 finite: false,
                 apart: Apart::default(),
+                links,
             }
         })
     }

@@ -181,8 +181,9 @@ impl Driver {
         }
         let system = Arc::clone(&self.system);
         let (old, next) = (&self.state.links, &mut self.next.links);
-        next.clone_from(old);
         next.multipliers.clone_from(&self.multipliers.now);
+        next.mixed.clone_from(&old.mixed);
+        next.works.clone_from(&old.works);
         let [before, after] = [&self.state.motion.u, &self.next.motion.u];
         let rates = [&self.state.motion.v, &self.next.motion.v];
         for zone in 0..system.schemes.len() {

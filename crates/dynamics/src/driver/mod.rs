@@ -25,6 +25,7 @@ mod contacts;
 mod deletion;
 mod describe;
 mod direct;
+mod direct_links;
 mod effective;
 mod floating;
 mod forces;

@@ -221,6 +221,7 @@ impl Driver {
         } else if self.has_links() {
             self.begin_with_links()?;
         }
+        self.keep_for_direct_steps();
         self.state.control = Control::start(system.dt);
         self.next.clone_from(&self.state);
         self.tell(0.0);
@@ -272,22 +273,29 @@ impl Driver {
             true => self.start_works(stored.strain, stored.hardening),
             false => self.start_identity(stored.strain),
         }
-        if self.is_direct() {
-            // all that such steps need of the start: loads that vary, and damping
-            let (varying, damped) = (!system.nonlinear.loads.is_empty(), system.has_damping());
-            for (k, force) in self.state.forces.iter_mut().enumerate() {
-                if !(k == 0 && varying || k == DAMPING && damped) {
-                    *force = Vec::new();
-                }
-            }
-            let kept = match damped {
-                true => DAMPING + 1,
-                false => usize::from(varying),
-            };
-            self.state.forces.truncate(kept);
-            self.vectors.give_up_room();
-        }
         Ok(())
+    }
+
+    /// Keeps what direct steps need of the start: loads that vary, and forces beside the internal ones.
+    fn keep_for_direct_steps(&mut self) {
+        if !self.is_direct() {
+            return;
+        }
+        let beside = match self.has_forces_beside() {
+            true => {
+                let (damping, motion) = (&self.vectors.damping, &self.state.motion);
+                let own = damping.iter().enumerate();
+                own.map(|(i, own)| own - motion.link_of(i)).collect()
+            }
+            false => Vec::new(),
+        };
+        let forces = &mut self.state.forces;
+        forces.truncate(usize::from(!self.system.nonlinear.loads.is_empty()));
+        if !beside.is_empty() {
+            forces.resize_with(DAMPING, Vec::new);
+            forces.push(beside);
+        }
+        self.vectors.give_up_room();
     }
 
     /// The ledger at the start, of linear forces.
@@ -385,17 +393,18 @@ impl Driver {
             false => 0.0,
         });
         let reaction = reaction.collect();
-        // a direct step has no links, and its ledger begins with resultants alone
-        let (internal, damping, links) = match self.is_direct() {
-            true => (Vec::new(), self.vectors.damping.clone(), Vec::new()),
-            false => {
-                let links = (0..system.unknowns()).map(|i| motion.link_of(i));
-                (
-                    internal.clone(),
-                    self.vectors.damping.clone(),
-                    links.collect(),
-                )
-            }
+        // the ledger of direct steps begins with resultants alone
+        let internal = match self.is_direct() {
+            true => Vec::new(),
+            false => internal.clone(),
+        };
+        let damping = match system.has_damping() || !self.is_direct() {
+            true => self.vectors.damping.clone(),
+            false => Vec::new(),
+        };
+        let links = match self.has_links() || !self.is_direct() {
+            true => (0..system.unknowns()).map(|i| motion.link_of(i)).collect(),
+            false => Vec::new(),
         };
         self.state.forces = vec![
             load.clone(),
@@ -456,9 +465,10 @@ impl Driver {
         }
         self.state.motion.v.clone_from(&system.initial_velocity);
         self.begin()?;
-        match self.has_links() {
-            true => self.begin_with_links(),
-            false => Ok(()),
+        if self.has_links() {
+            self.begin_with_links()?;
         }
+        self.keep_for_direct_steps();
+        Ok(())
     }
 }

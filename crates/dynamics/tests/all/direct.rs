@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use carom_algebra::unknowns::Kind;
 use carom_bodies::{BodySpec, BulkViscosity, Formulation, Kinematics, MassScaling};
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::CentralDifference;
 use carom_dynamics::{
-    Amplitude, Balance, Damping, Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support,
+    Amplitude, Balance, Damping, Driver, Model, ModelBody, ModelConstraint, ModelContact, ModelTarget, Scheme, Support,
     System,
 };
 use carom_materials::{Elastic, J2Plasticity, Law as Material, StVenantKirchhoff};
@@ -39,6 +40,8 @@ struct Case {
     damping: [f64; 2],
     /// Whether the top is held.
     held: bool,
+    /// Whether all nodes of the top move alike, as far as they are not held.
+    linked: bool,
     /// Cells along an edge.
     cells: usize,
 }
@@ -60,6 +63,7 @@ fn cases() -> Vec<Case> {
         shakes: false,
         damping: [0.0; 2],
         held: false,
+        linked: false,
         cells: 3,
     };
     let impact = Case {
@@ -80,6 +84,32 @@ fn cases() -> Vec<Case> {
         Case {
             name: "small, rubbing",
             friction: Some(0.3),
+            ..impact
+        },
+        Case {
+            name: "linked, free",
+            linked: true,
+            ..free
+        },
+        Case {
+            name: "linked, hanging",
+            gravity: -100.0,
+            held: true,
+            linked: true,
+            ..free
+        },
+        Case {
+            name: "linked, impact",
+            linked: true,
+            ..impact
+        },
+        Case {
+            name: "finite, linked, damped, shaken, rubbing",
+            material: svk,
+            friction: Some(0.3),
+            damping: [20.0, 0.0],
+            shakes: true,
+            linked: true,
             ..impact
         },
         Case {
@@ -190,9 +220,24 @@ fn model(case: &Case) -> Model {
     };
     if case.held {
         model.supports = vec![Support {
-            nodes: top,
+            nodes: top.clone(),
             fix: [true, false, true],
             fix_rotations: [false; 3],
+        }];
+    }
+    if case.linked {
+        let axes = if case.held { 1..2 } else { 0..3 };
+        let alike = |pair: &[u32]| {
+            let (one, other) = (pair[0], pair[1]);
+            let rows = axes.clone().map(move |axis| {
+                let kind = Kind::Translation(axis);
+                vec![(one, kind, 1.0), (other, kind, -1.0)]
+            });
+            rows.collect::<Vec<_>>()
+        };
+        model.constraints = vec![ModelConstraint {
+            name: "top".to_string(),
+            rows: top.windows(2).flat_map(alike).collect(),
         }];
     }
     let [mass, stiffness] = case.damping;
@@ -226,6 +271,7 @@ fn terms(balance: &Balance) -> [Vec<f64>; 2] {
         balance.work_loads,
         balance.work_contact,
         balance.work_supports,
+        balance.work_links,
         balance.dissipation_scheme,
         balance.dissipation_material,
         balance.dissipation_damping,
@@ -261,6 +307,20 @@ fn steps_in_one_pass_are_those_of_the_iterations() {
                 distance(&a.interface.force, &b.interface.force) < 1e-9,
                 "{at}"
             );
+            // multipliers round as the forces that they hold, their works as the kinetic energy
+            let norm = |forces: &[f64]| forces.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+            let forces = [&b.motion.internal_force, &b.links.multipliers];
+            let forces = forces.into_iter().chain(&b.forces);
+            let force = forces.map(|forces| norm(forces)).fold(0.0, f64::max);
+            let both = a.links.multipliers.iter().zip(&b.links.multipliers);
+            for (a, b) in both {
+                assert!((a - b).abs() <= 1e-10 * force, "{at}: {a} {b}");
+            }
+            let energy = b.ledger.balance.kinetic;
+            for (a, b) in a.links.works.iter().zip(&b.links.works) {
+                let apart = (0..2).map(|k| (a[k] - b[k]).abs());
+                assert!(apart.fold(0.0, f64::max) < 1e-10 * energy, "{at}: {a:?} {b:?}");
+            }
             touched |= a.interface.force.iter().any(|force| *force != 0.0);
             let [a, b] = [&a.ledger, &b.ledger].map(|ledger| terms(&ledger.balance));
             for (a, b) in a.iter().zip(&b) {
