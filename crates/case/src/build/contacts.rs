@@ -205,7 +205,11 @@ impl Builder<'_> {
     pub(super) fn listed_twice(&mut self, contacts: &[ModelContact]) {
         let sides = Sides::of(contacts);
         for (k, contact) in contacts.iter().enumerate() {
-            for other in sides.that_meet(contact, k).into_iter().map(|k| &contacts[k]) {
+            for other in sides
+                .that_meet(contact, k)
+                .into_iter()
+                .map(|k| &contacts[k])
+            {
                 let same = shares_faces(&contact.secondary, &other.secondary)
                     && match (&contact.primary, &other.primary) {
                         (ModelTarget::Rigid(one), ModelTarget::Rigid(two)) => one == two,

@@ -34,7 +34,7 @@ impl Builder<'_> {
         let path = format!("reference.{name}");
         let solved = match foreign(self.case) {
             Some(what) => Err(format!("the exact solution has no {what}")),
-            None => solve(system, (sides, two), end, |body| self.joined(body)),
+            None => solve(system, (sides, two), end, |body| self.joined(system, body)),
         };
         match solved {
             Ok((solution, normal)) => Some(ExactReference {
@@ -53,7 +53,7 @@ impl Builder<'_> {
     }
 
     /// The bodies that joints make one with a body, itself first.
-    fn joined(&self, body: usize) -> Vec<usize> {
+    fn joined(&self, system: &System, body: usize) -> Vec<usize> {
         let case = self.case;
         let names: Vec<&str> = case.body.names().collect();
         let number = |name: &str| names.iter().position(|one| *one == name);
@@ -62,6 +62,7 @@ impl Builder<'_> {
         let pairs: Vec<(usize, usize)> = overlaps
             .chain(borders)
             .filter_map(|(inner, outer)| Some((number(inner)?, number(outer)?)))
+            .chain(self.tied_bodies(system))
             .collect();
         let mut all = vec![body];
         let mut next = 0;
@@ -76,6 +77,21 @@ impl Builder<'_> {
             }
         }
         all
+    }
+
+    /// The bodies whose surfaces are tied, by pairs.
+    fn tied_bodies(&self, system: &System) -> Vec<(usize, usize)> {
+        let owner = |group: &String| {
+            let first = *system.mesh.groups.get(group)?.elements.first()?;
+            let node = system.number[system.mesh.element_nodes(first)[0] as usize];
+            let mut bodies = system.body_masses.iter();
+            bodies.position(|masses| masses.iter().any(|(own, _)| *own == node))
+        };
+        let transitions = self.case.transition.iter();
+        let surfaces = transitions.filter_map(|(_, given)| given.surfaces.as_ref());
+        surfaces
+            .filter_map(|[one, other]| Some((owner(one)?, owner(other)?)))
+            .collect()
     }
 }
 

@@ -63,6 +63,26 @@ fn main_job_leaves_its_results_and_agrees_with_the_exact_solution() {
     );
 }
 
+/// The wave crosses the tie of two meshes that do not match: contact from 20 to 100 us, 2 m v0 = 128 N s. Steps close the contact within one of
+/// 0.18 us; the end of the contact is smeared over some cells of 1 mm, 0.2 us each; the impulse is that force over this time, 1 %.
+#[test]
+fn a_bar_of_tied_halves_meets_the_wall_as_one() {
+    let work = tempfile::tempdir().unwrap();
+    case("tied-bar", work.path());
+    let output = carom(work.path(), &["run", "case.toml", "--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let summary = summary(work.path());
+    let of = |key: &str| summary["contacts"]["wall"][key].as_f64().unwrap();
+    assert!((of("first_closing") - 20e-6).abs() < 0.2e-6);
+    assert!((of("last_release") - 100e-6).abs() < 1e-6);
+    assert!((of("impulse") - 128.0).abs() < 1.28);
+    assert_eq!(
+        summary["timings"]["factorisation"].as_f64(),
+        Some(0.0),
+        "in one pass"
+    );
+}
+
 #[test]
 fn a_file_where_the_folder_should_be_is_a_failure_with_its_cause() {
     let work = tempfile::tempdir().unwrap();

@@ -160,7 +160,10 @@ impl Driver {
         if !self.system.has_damping() {
             return;
         }
-        let (row, start) = (damping_rate(self.maps.first()), Known::from(&self.state.motion));
+        let (row, start) = (
+            damping_rate(self.maps.first()),
+            Known::from(&self.state.motion),
+        );
         let (unknowns, vectors) = (self.system.unknowns(), &mut self.vectors);
         for vector in [&mut vectors.rate, &mut vectors.damping, &mut vectors.work] {
             vector.resize(unknowns, 0.0);
@@ -365,8 +368,8 @@ impl Driver {
         if system.is_nonlinear() {
             impulses = [&one, &one];
             squares.stage = inertia - gained + internal - kept - stored.dissipated - stored.viscous;
-            self.left_over = self.system.nonlinear.iteration.tolerance
-                * scale(sums, self.dt).max(link_norm);
+            self.left_over =
+                self.system.nonlinear.iteration.tolerance * scale(sums, self.dt).max(link_norm);
             let nodes = system.x.len() as f64;
             ledger.go_beyond(&Beyond {
                 work_obstacles: obstacles,

@@ -92,8 +92,7 @@ impl Direct {
         let even = |mass: &[f64]| mass.iter().all(|own| *own == mass[0]);
         let mass =
             system.mass.is_lumped() && system.massless.is_empty() && lumped.chunks(dim).all(even);
-        let free = system.nonlinear.follows.is_empty()
-            && system.adaptive.is_none();
+        let free = system.nonlinear.follows.is_empty() && system.adaptive.is_none();
         let links = DirectLinks::of(system)?;
         (plain && solids && mass && free).then(|| {
             let blocks = blocks(system);

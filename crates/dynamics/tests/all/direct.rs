@@ -8,8 +8,8 @@ use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::scheme::CentralDifference;
 use carom_dynamics::{
-    Amplitude, Balance, Damping, Driver, Model, ModelBody, ModelConstraint, ModelContact, ModelTarget, Scheme, Support,
-    System,
+    Amplitude, Balance, Damping, Driver, Model, ModelBody, ModelConstraint, ModelContact,
+    ModelTarget, Scheme, Support, System,
 };
 use carom_materials::{Elastic, J2Plasticity, Law as Material, StVenantKirchhoff};
 use carom_mesh::{Surface, generate};
@@ -319,7 +319,10 @@ fn steps_in_one_pass_are_those_of_the_iterations() {
             let energy = b.ledger.balance.kinetic;
             for (a, b) in a.links.works.iter().zip(&b.links.works) {
                 let apart = (0..2).map(|k| (a[k] - b[k]).abs());
-                assert!(apart.fold(0.0, f64::max) < 1e-10 * energy, "{at}: {a:?} {b:?}");
+                assert!(
+                    apart.fold(0.0, f64::max) < 1e-10 * energy,
+                    "{at}: {a:?} {b:?}"
+                );
             }
             touched |= a.interface.force.iter().any(|force| *force != 0.0);
             let [a, b] = [&a.ledger, &b.ledger].map(|ledger| terms(&ledger.balance));
@@ -396,7 +399,10 @@ fn any_number_of_threads_gives_the_same_bits() {
     let case = Case {
         cells: 17,
         damping: [20.0, 0.0],
-        ..*all.iter().find(|case| case.name == "finite, rubbing").unwrap()
+        ..*all
+            .iter()
+            .find(|case| case.name == "finite, rubbing")
+            .unwrap()
     };
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
