@@ -25,6 +25,7 @@ mod contacts;
 mod deletion;
 mod describe;
 mod direct;
+mod direct_hold;
 mod direct_links;
 mod effective;
 mod floating;
