@@ -56,6 +56,21 @@ fn a_box_of_shells_falls() {
 }
 
 #[test]
+fn strips_of_plies_and_taper_bend_as_beams() {
+    let summary = run_until("shell-strips", "1.2 ms", &[]);
+    assert_balanced(&summary, "shell-strips");
+}
+
+#[test]
+fn a_sheet_of_one_point_shells_strikes_a_cylinder() {
+    let summary = run_until("wrapped-sheet", "30 us", &[]);
+    assert_balanced(&summary, "wrapped-sheet");
+    // the first points touch after 0.1 mm at 20 m/s
+    let impulse = summary["contacts"]["cylinder"]["impulse"].as_f64().unwrap();
+    assert!(impulse > 0.0, "{impulse}");
+}
+
+#[test]
 fn a_bar_of_solid_and_beam_is_struck() {
     let summary = run_until("beam-and-solid", "100 us", &[]);
     assert_balanced(&summary, "beam-and-solid");
