@@ -3,11 +3,12 @@
 // x-low.leaf, ... (cells), tube.outer, grid.feet, x-spring, x-low, x-up, y-spring, y-low, y-up (faces; the last six of the pads).
 //
 // Made with Gmsh 4.15.2 by: gmsh rod.geo -3 -order 2 -setnumber Mesh.SecondOrderIncomplete 1 -format msh41 -bin -o <name>.msh
-//   rod.msh   as it stands;  fine.msh: -setnumber f 2
+//   rod.msh   as it stands;  a1.msh: -setnumber a 1;  a2.msh: -setnumber a 2;  a8.msh: -setnumber a 8;  fine.msh: -setnumber f 2
 SetFactory("OpenCASCADE");
 DefineConstant[
   n = 8   // elements of the rod between two grids
-  f = 1   // refinement of the solids
+  f = 1,  // refinement of the solids
+  a = 4   // elements along an arm of a leaf, in pairs
 ];
 outer = 4.572;  inner = 4.0005;  middle = 1626;
 half = 40;      // of the tube along z
@@ -113,8 +114,10 @@ For k In {0 : #all[] - 1}
     count = 8*f;
   ElseIf (size > 17)
     count = 3*f;
-  ElseIf (Fabs(size - 4) < 0.01 || Fabs(size - 5) < 0.01 || Fabs(size - 9) < 0.01)
+  ElseIf (Fabs(size - 4) < 0.01)
     count = 2*f;
+  ElseIf (Fabs(size - 5) < 0.01 || Fabs(size - 9) < 0.01)
+    count = 2*a;
   EndIf
   Transfinite Curve {all[k]} = count + 1;
 EndFor

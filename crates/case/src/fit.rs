@@ -215,6 +215,10 @@ pub fn fit(input: &Input, fit: &Fit, sweep: &Sweep) -> Result<Fitted, SweepError
         keys: vec![(fit.key.clone(), Vec::new())],
         abscissa: Abscissa::Nothing,
         runs: Vec::new(),
+        wanted: match &fit.goal {
+            Goal::Force(history) => Some(history.clone()),
+            Goal::Quantity(..) => None,
+        },
     };
     let logarithmic = a > 0.0 && b / a > DECADES;
     let value = |s: f64| if logarithmic { s.exp() } else { s };

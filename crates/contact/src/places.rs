@@ -74,8 +74,15 @@ impl Places<'_> {
             }
             None => place,
             Some(carrier) => {
-                let [start, turned] = self.turn(own);
-                let arm = start * turned * Vec3::from(carrier.arm);
+                let arm = Vec3::from(carrier.arm);
+                let arm = match self.unknowns.frame(own) {
+                    Some(_) => {
+                        let [start, turned] = self.turn(own);
+                        start * turned * arm
+                    }
+                    // small rotations are linear
+                    None => arm + Vec3::from(self.unknowns.spin(own, self.u)).cross(&arm),
+                };
                 [0, 1, 2].map(|i| place[i] + arm[i])
             }
         }
@@ -115,10 +122,16 @@ impl Places<'_> {
         let Some(carrier) = self.unknowns.carrier(node) else {
             return;
         };
-        let [start, turned] = self.turn(own);
-        let arm = turned * Vec3::from(carrier.arm);
-        let moment = arm.cross(&start.tr_mul(&Vec3::from(*direction)));
-        self.each_rotation(own, &self.balanced(own, &turned, &moment), &mut visit);
+        let (arm, direction) = (Vec3::from(carrier.arm), Vec3::from(*direction));
+        let moment = match self.unknowns.frame(own) {
+            None => arm.cross(&direction),
+            Some(_) => {
+                let [start, turned] = self.turn(own);
+                let moment = (turned * arm).cross(&start.tr_mul(&direction));
+                self.balanced(own, &turned, &moment)
+            }
+        };
+        self.each_rotation(own, &moment, &mut visit);
     }
 
     /// Calls `visit` with the rotations that turn a node, if any, and what a moment on it does to them. `moment`: about the axes

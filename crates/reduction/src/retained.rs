@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use carom_system::{Model, ModelTarget};
 
-/// Nodes of the mesh of a body that something else than supports acts on, and of the nodes `given`: those of contacts, links, other
-/// bodies, discrete elements, loads and motions; ascending.
+/// Nodes of the mesh of a body that something else than supports acts on, and of the nodes `given`: those of contacts, links, constraints,
+/// other bodies, discrete elements, loads and motions; ascending.
 pub(crate) fn retained(model: &Model, body: usize, given: &[u32]) -> Vec<u32> {
     let nodes_of = |cells: &[carom_mesh::ElementId]| -> BTreeSet<u32> {
         let nodes = cells
@@ -31,6 +31,11 @@ pub(crate) fn retained(model: &Model, body: usize, given: &[u32]) -> Vec<u32> {
     }
     let rows = model.links.iter().flat_map(|link| &link.rows);
     used.extend(rows.flat_map(|row| row.inner.iter().chain(&row.outer).map(|term| term.node)));
+    let rows = model
+        .constraints
+        .iter()
+        .flat_map(|constraint| &constraint.rows);
+    used.extend(rows.flatten().map(|(node, ..)| *node));
     let nonlinear = &model.nonlinear;
     used.extend(nonlinear.loads.iter().flat_map(|load| &load.surface.nodes));
     used.extend(nonlinear.nodal.iter().flat_map(|load| &load.nodes));

@@ -17,6 +17,7 @@ use crate::levers::Levers;
 use crate::link_row::LinkRow;
 use crate::mass::Mass;
 use crate::massless::redistribute;
+use crate::middles::{Carried, add_middles};
 use crate::modal::NumberedModal;
 use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelLink};
 use crate::numbered::NumberedNonlinear;
@@ -71,13 +72,15 @@ impl System {
         model.remove_penetrations()?;
         let dim = model.mesh.dim;
         let centres = add_centres(&mut model);
+        let carried = add_middles(&mut model)?;
         model.mesh.shrink_to_fit();
-        let (number, mesh_node, parts) = numbering(&model, &centres);
+        let (number, mesh_node, parts) = numbering(&model, &centres, &carried);
         let x: Vec<[f64; 3]> = mesh_node
             .iter()
             .map(|&node| model.mesh.nodes[node as usize])
             .collect();
-        let (mut unknowns, initial_frames) = unknowns(&model, &centres, &number, &mesh_node)?;
+        let (mut unknowns, initial_frames) =
+            unknowns(&model, (&centres, &carried), &number, &mesh_node)?;
         let body = |(body, centre): (&ModelBody, &Option<u32>)| {
             let (spec, unknowns) = (body.spec.clone(), &unknowns);
             if let (Some(reduced), Some(centre)) = (&body.reduced, centre) {
@@ -283,7 +286,11 @@ fn undeformed(bodies: &[Body], part_of_body: &[usize], parts: usize) -> Vec<bool
 
 /// System numbers of the mesh nodes, mesh nodes of the system numbers, and node ranges of the connected parts. `centres`: nodes of
 /// the rigid bodies.
-fn numbering(model: &Model, centres: &[Option<u32>]) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
+fn numbering(
+    model: &Model,
+    centres: &[Option<u32>],
+    carried: &[Carried],
+) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
     let count = model.mesh.nodes.len();
     let cells = model.bodies.iter().flat_map(|body| &body.spec.cells);
     let discrete = model.discrete.iter().flat_map(|some| &some.spec.cells);
@@ -320,6 +327,8 @@ fn numbering(model: &Model, centres: &[Option<u32>]) -> (Vec<u32>, Vec<u32>, Vec
             nodes.push((leader, centre));
         }
     }
+    let with = |own: &Carried| Some((joined.of(own.by)?, own.node));
+    nodes.extend(carried.iter().filter_map(with));
     nodes.sort_unstable();
     let mut number = vec![u32::MAX; count];
     let mut parts: Vec<Range<usize>> = Vec::new();

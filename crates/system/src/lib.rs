@@ -18,6 +18,7 @@ mod loads;
 mod maps;
 mod mass;
 mod massless;
+mod middles;
 mod modal;
 mod model;
 mod motion;

@@ -9,6 +9,7 @@ use carom_bodies::{Body, DiscreteKind, Kinematics, Rotations};
 use carom_contact::{Contact, Frames, Places, Sliding};
 
 use crate::error::Error;
+use crate::middles::Carried;
 use crate::model::{Model, ModelBody, ModelDiscrete};
 use crate::motion::Motion;
 use crate::refused::Refused;
@@ -48,7 +49,7 @@ pub(crate) fn add_centres(model: &mut Model) -> Vec<Option<u32>> {
 /// A node that a rigid body shares with another body.
 pub(crate) fn unknowns(
     model: &Model,
-    centres: &[Option<u32>],
+    (centres, carried): (&[Option<u32>], &[Carried]),
     number: &[u32],
     mesh_node: &[u32],
 ) -> Result<(Unknowns, Vec<Rotation>), Error> {
@@ -115,6 +116,15 @@ pub(crate) fn unknowns(
                 arm: arm.into(),
             });
         }
+    }
+    // nodes of shells have the axes of coordinates at the start
+    for own in carried {
+        let [place, of_carrier] =
+            [own.node, own.by].map(|node| Vec3::from(model.mesh.nodes[node as usize]));
+        kinds[number[own.node as usize] as usize] = NodeKind::Carried(Carrier {
+            node: number[own.by as usize],
+            arm: (place - of_carrier).into(),
+        });
     }
     frames.sort_unstable_by_key(|(node, _)| *node);
     let frames = frames.into_iter().map(|(_, frame)| frame).collect();
@@ -255,20 +265,27 @@ impl System {
         let places = self.places(0.0, &motion.u, &motion.frames);
         let [place, centre] = [node, carrier.node].map(|node| Vec3::from(places.of(node)));
         let of_centre = Vec3::from(self.unknowns.vector(carrier.node, values));
-        let (start, arm) = (self.x[node as usize], place - centre);
+        let start = self.x[node as usize];
+        // small rotations are linear
+        let arm = match self.unknowns.frame(carrier.node) {
+            Some(_) => place - centre,
+            None => Vec3::from(carrier.arm),
+        };
         let turned = |values: &[f64]| -> Vec3 {
-            let frame = self.unknowns.frame(carrier.node);
-            let frame = frame.and_then(|frame| motion.frames.get(frame));
+            let spin = Vec3::from(self.unknowns.spin(carrier.node, values));
+            let Some(frame) = self.unknowns.frame(carrier.node) else {
+                return spin;
+            };
             let increment = self.unknowns.spin(carrier.node, &motion.u).into();
-            let now = frame
-                .copied()
-                .unwrap_or_default()
-                .then(&Rotation::cayley(&increment));
-            now.matrix() * Vec3::from(self.unknowns.spin(carrier.node, values))
+            let now = motion.frames.get(frame).copied().unwrap_or_default();
+            now.then(&Rotation::cayley(&increment)).matrix() * spin
         };
         let moved = match order {
             Order::Displacement => place - Vec3::from(start),
             Order::Velocity => of_centre + turned(&motion.v).cross(&arm),
+            Order::Acceleration if self.unknowns.frame(carrier.node).is_none() => {
+                of_centre + turned(&motion.a).cross(&arm)
+            }
             Order::Acceleration => {
                 let spin = turned(&motion.v);
                 of_centre + turned(&motion.a).cross(&arm) + spin.cross(&spin.cross(&arm))
@@ -337,8 +354,17 @@ impl System {
             || scheme.restores_contact_work()
             || scheme.step_map(self.dt).uses_contact_acceleration();
         let projects = |contact: &Contact| contact.law.projects();
-        if self.schemes.len() > 1 {
-            return refuse("the rows hold at the end of the step; give both bodies one scheme");
+        // rows of several schemes are those of the end of the step; moments must balance about the same axes
+        let ends = |zone: usize| {
+            let map = self.schemes[zone].get().step_map(self.dt);
+            (map.instant(self.dt) - self.dt).abs() < 1e-12 * self.dt
+        };
+        let bodies = self.bodies.iter().zip(&self.zone_of_body);
+        let mut turning = bodies.filter(|(body, _)| body.bends_finitely());
+        if self.schemes.len() > 1 && !turning.all(|(_, zone)| ends(*zone)) {
+            return refuse(
+                "beside another scheme the body that turns needs one whose forces balance at the end of the step: newmark, or theta = 1",
+            );
         }
         if scheme.step_map(self.dt).displacement.x == 0.0 {
             return refuse(

@@ -65,7 +65,7 @@ impl Zoned {
             None => Ok(()),
             Some(link) => Err(system::Error::Nonlinear {
                 what: Refused::TurningLink(link.name.clone()),
-                why: "rows that turn join places, not velocities; take equal steps and one scheme",
+                why: "rows that turn join places, not velocities; take equal steps",
             }
             .into()),
         }

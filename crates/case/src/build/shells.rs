@@ -225,45 +225,24 @@ impl Builder<'_> {
                 .push(problem.accepted(["solids and beams", "no `reduction`"]));
         }
     }
+}
 
-    /// The surface around a group of cells of shells, at half their thickness on both sides and around their edges. None if the group is anything
-    /// else.
-    pub(super) fn around_shells(
-        &mut self,
-        mesh: &Mesh,
-        bodies: &[ModelBody],
-        (path, group): (&str, &Group),
-    ) -> Option<Surface> {
-        let cells = shell_cells(bodies);
-        let surface = Surface::of_axes(mesh, group, &cells, |cell| {
-            let owner = bodies.iter().find(|body| {
-                matches!(body.spec.kinematics, Kinematics::Shell(_))
-                    && body.spec.cells.contains(&cell)
-            });
-            match owner.map(|body| (body.spec.kinematics, &body.spec)) {
-                Some((Kinematics::Shell(section), spec)) => {
-                    0.5 * spec.mean_thickness(&section, mesh.element_nodes(cell))
-                }
-                _ => 0.0,
+/// The surface around a group of cells of shells, at half their thickness on both sides and around their edges. None if the group is anything
+/// else.
+pub(super) fn around_shells(mesh: &Mesh, bodies: &[ModelBody], group: &Group) -> Option<Surface> {
+    let cells = shell_cells(bodies);
+    let surface = Surface::of_axes(mesh, group, &cells, |cell| {
+        let owner = bodies.iter().find(|body| {
+            matches!(body.spec.kinematics, Kinematics::Shell(_)) && body.spec.cells.contains(&cell)
+        });
+        match owner.map(|body| (body.spec.kinematics, &body.spec)) {
+            Some((Kinematics::Shell(section), spec)) => {
+                0.5 * spec.mean_thickness(&section, mesh.element_nodes(cell))
             }
-        });
-        let surface = surface.ok().filter(|_| group.dim == 2 && mesh.dim == 3)?;
-        let offset = bodies.iter().find(|body| {
-            let has = |face: &carom_mesh::Face| body.spec.cells.contains(&face.parent);
-            matches!(body.spec.kinematics, Kinematics::Shell(section) if section.offset != 0.0)
-                && surface.faces.iter().any(has)
-        });
-        if let Some(body) = offset {
-            let message = format!(
-                "body `{}` has its middle surface beside its nodes, where contacts are not available",
-                body.spec.name
-            );
-            let problem = Problem::new(path, message);
-            self.problems
-                .push(problem.accepted(["a shell without `offset`"]));
+            _ => 0.0,
         }
-        Some(surface)
-    }
+    });
+    surface.ok().filter(|_| group.dim == 2 && mesh.dim == 3)
 }
 
 /// The cells of all shells.

@@ -5,6 +5,7 @@ use carom_dynamics::ModelBody;
 use carom_mesh::{CellsByNode, ElementId, Group, Mesh, Surface};
 
 use super::Builder;
+use super::shells::around_shells;
 use crate::error::Problem;
 
 /// Cells of a body of beams that a surface may be around.
@@ -24,7 +25,7 @@ impl Builder<'_> {
         name: &str,
     ) -> Option<Surface> {
         let group = self.group(mesh, path, name)?;
-        if let Some(surface) = self.around_shells(mesh, bodies, (path, group)) {
+        if let Some(surface) = around_shells(mesh, bodies, group) {
             return Some(surface);
         }
         let axes = axes(mesh, bodies, group);

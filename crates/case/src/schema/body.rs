@@ -47,7 +47,7 @@ pub struct Body {
     pub initial: Option<Initial>,
 }
 
-/// A body reduced to nodes and modes. It retains the nodes of contacts, stops, links, loads and motions, those that it shares with other
+/// A body reduced to nodes and modes. It retains the nodes of contacts, stops, links, constraints, loads and motions, those that it shares with other
 /// bodies and discrete elements, and those of `retain`. Supports are part of the reduction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]

@@ -1,5 +1,6 @@
 //! Comparisons and studies of the two bars, as a user of the library makes them.
 
+use std::fs;
 use std::path::Path;
 
 use carom_case::{Axis, Choices, Fit, Input, Sweep, SweepError, compare, fit, study};
@@ -99,7 +100,7 @@ fn figures_of_a_variant_are_those_of_its_own_summary() {
         ]
     );
     for name in names {
-        let text = std::fs::read_to_string(folder.join(name).join("summary.json")).unwrap();
+        let text = fs::read_to_string(folder.join(name).join("summary.json")).unwrap();
         let own = Summary::from_json(&text).unwrap();
         let (shock, exact) = (&own.contacts["shock"], own.exact.unwrap());
         let of = |column| value(&comparison, name, column);
@@ -190,7 +191,7 @@ fn the_finest_run_is_nearer_to_the_exact_solution_than_the_case_and_says_what_it
     ] {
         assert!(unseen.contains(text), "{text:?} in {unseen}");
     }
-    let page = std::fs::read_to_string(work.path().join("a/report.html")).unwrap();
+    let page = fs::read_to_string(work.path().join("a/report.html")).unwrap();
     assert!(page.contains("Not shown: the error of"));
 }
 
@@ -377,7 +378,13 @@ fn without_an_exact_solution_the_order_comes_from_differences() {
         .unwrap();
     assert_eq!(energy.source, Source::Differences);
     assert!((energy.fit.unwrap().order - 1.0).abs() < 0.05, "{energy:?}");
-    for file in ["study.csv", "orders.csv", "plots/orders.svg", "report.html"] {
+    for file in [
+        "study.csv",
+        "orders.csv",
+        "plots/orders.svg",
+        "plots/force.svg",
+        "report.html",
+    ] {
         assert!(folder.join(file).is_file(), "{file}");
     }
     assert!(folder.join("1-elements-50/summary.json").is_file());
@@ -412,6 +419,20 @@ fn a_fit_finds_the_parameter_that_made_the_result() {
         assert!((theta - truth).abs() < tolerance, "{goal}: {theta}");
         assert!(fitted.study.runs.len() < 25, "{}", fitted.study.runs.len());
         assert!(fitted.page.is_file());
+        // a wanted history is drawn under the force of the nearest trial, and under that one alone
+        let figure = fs::read_to_string(work.path().join("fit/plots/force.svg"));
+        let page = fs::read_to_string(&fitted.page).unwrap();
+        match goal.starts_with("force") {
+            true => {
+                let figure = figure.unwrap();
+                assert!(figure.contains("\nwanted\n"), "{figure}");
+                let drawn = fitted.study.runs.iter();
+                let drawn = drawn.filter(|run| figure.contains(&run.variant.name));
+                assert_eq!(drawn.count(), 1);
+                assert!(page.contains("The pale line is the wanted history"));
+            }
+            false => assert!(!page.contains("wanted history")),
+        }
     }
     let far = Fit::read(
         "time.scheme.theta.theta",
@@ -450,7 +471,7 @@ fn of_several_forces_that_of_the_contact_counts() {
     let work = tempfile::tempdir().unwrap();
     let file = work.path().join("contact.csv");
     let table = "time_s,contact.left.force_n,contact.far_right.force_n\n0.0,0.0,0.0\n1.0,2.0,3.0\n";
-    std::fs::write(&file, table).unwrap();
+    fs::write(&file, table).unwrap();
     let goal = format!("force={}", file.display());
     let read = |contact| Fit::read("time.scheme.theta.theta", "0.5,1.0", &goal, contact);
     assert!(read(Some("far-right")).is_ok());
@@ -509,7 +530,7 @@ fn a_grid_has_a_row_for_each_combination_and_orders_for_each_value_of_the_second
             points(&mut one.orders().iter())
         );
     }
-    let csv = std::fs::read_to_string(folder.join("orders.csv")).unwrap();
+    let csv = fs::read_to_string(folder.join("orders.csv")).unwrap();
     assert!(csv.contains("\nimpulse_n_s,theta 1.0,"), "{csv}");
 }
 

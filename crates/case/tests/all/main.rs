@@ -9,6 +9,7 @@ mod defaults;
 mod grades;
 mod large;
 mod losses;
+mod offset;
 mod quadrature;
 mod reactions;
 mod reductions;

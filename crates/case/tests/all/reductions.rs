@@ -41,9 +41,34 @@ step = "10 us"
 scheme.newmark = {}
 "#;
 
+/// A second rod, whose end a plain constraint joins to that of the first.
+const JOINED: &str = r#"
+[mesh.generate.post]
+line = { from = [0.0, 0.5, 0.0], to = [1.0, 0.5, 0.0], elements = 4 }
+
+[body.post]
+region = "post"
+material = "steel"
+section.beam = { shape.circle = { diameter = "1 cm" }, theory = "timoshenko", orientation = [0.0, 1.0, 0.0] }
+
+[support.foot]
+on = "post.left"
+fix = ["x", "y", "z", "rx", "ry", "rz"]
+
+[constraint.ends]
+terms = [
+    { on = "rod.right", direction = "y", factor = 1.0 },
+    { on = "post.right", direction = "y", factor = -1.0 },
+]
+"#;
+
 fn built(folder: &Path, overrides: &[&str]) -> Result<Built, Vec<Problem>> {
+    built_of(CASE, folder, overrides)
+}
+
+fn built_of(case: &str, folder: &Path, overrides: &[&str]) -> Result<Built, Vec<Problem>> {
     let path = folder.join("case.toml");
-    fs::write(&path, CASE).unwrap();
+    fs::write(&path, case).unwrap();
     let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
     let input = Input::read(&path, &overrides).unwrap();
     let (case, locator) = carom_case::parse(&input)?;
@@ -73,6 +98,42 @@ fn a_run_from_a_saved_reduction_ends_in_the_same_bytes() {
     let damped = built(folder.path(), &["body.rod.reduction.damping-ratio=0.1"]).unwrap();
     assert_eq!(told(&damped), "read from 'rod.reduction'");
     assert_ne!(end(&first), end(&damped));
+}
+
+/// With all of its modes a reduced body is the full one, so that what its constraint does differs by rounding.
+#[test]
+fn the_nodes_of_a_constraint_are_retained() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = CASE.replace("elements = 20", "elements = 4") + JOINED;
+    // three inner nodes of six unknowns each
+    let reduced = text.replace("modes = 6, file = \"rod.reduction\"", "modes = 18");
+    let full = text.replace("reduction = { modes = 6, file = \"rod.reduction\" }", "");
+    let motion = |text: &str| {
+        let built = built_of(text, folder.path(), &[]).unwrap();
+        let system = Arc::clone(&built.system);
+        let mut driver = Driver::new(Arc::clone(&system)).unwrap();
+        (0..100).for_each(|_| driver.step().unwrap());
+        let node = |group: &str| {
+            let group = &system.mesh.groups[group];
+            let node = system.mesh.group_nodes(group)[0];
+            system
+                .unknowns
+                .vector(system.number[node as usize], &driver.state().motion.u)
+        };
+        [node("rod.right"), node("post.right")]
+    };
+    let [of_reduced, of_full] = [motion(&reduced), motion(&full)];
+    let size = of_full[0][1].abs();
+    assert!(size > 1e-5, "{of_full:?}");
+    for [rod, post] in [&of_reduced, &of_full] {
+        assert!((rod[1] - post[1]).abs() < 1e-12 * size, "{rod:?} {post:?}");
+    }
+    for (one, other) in of_reduced.iter().flatten().zip(of_full.iter().flatten()) {
+        assert!(
+            (one - other).abs() < 1e-9 * size,
+            "{of_reduced:?} {of_full:?}"
+        );
+    }
 }
 
 #[test]

@@ -49,15 +49,19 @@ impl Driver {
         self.set_links();
     }
 
-    /// The force of the multipliers as they stand, Σ_z C_zᵀ (w₀ L_k + w₁ L_{k+1}).
+    /// The force of the multipliers as they stand, Σ_z C_zᵀ (w₀ L_k + w₁ L_{k+1}); of several schemes with rows that turn L_k with the rows at the start of the step.
     pub(super) fn set_links(&mut self) {
+        let start = self.rows_before();
         self.link_force.fill(0.0);
         let system = &*self.system;
         let (before, now) = (&self.state.links.multipliers, &self.multipliers.now);
         for (i, row) in self.rows.iter().enumerate() {
-            for &(dof, c) in row {
+            for (k, &(dof, c)) in row.iter().enumerate() {
                 let [old, new] = self.maps.link_weights(system.zone_at(dof as usize));
-                self.link_force[dof as usize] += c * (old * before[i] + new * now[i]);
+                self.link_force[dof as usize] += match &start {
+                    None => c * (old * before[i] + new * now[i]),
+                    Some(start) => start[i][k].1 * old * before[i] + c * new * now[i],
+                };
             }
         }
     }
@@ -180,6 +184,7 @@ impl Driver {
             return;
         }
         let system = Arc::clone(&self.system);
+        let start = self.rows_before();
         let (old, next) = (&self.state.links, &mut self.next.links);
         next.multipliers.clone_from(&self.multipliers.now);
         next.mixed.clone_from(&old.mixed);
@@ -195,16 +200,24 @@ impl Driver {
                     let [l, mixed] = [old.multipliers[row], old.mixed[zone][row]];
                     let now = weights[0] * l + weights[1] * next.multipliers[row];
                     let mean = of_work.old * mixed + of_work.new * now;
-                    let terms = &self.rows[row];
-                    let (inner, outer) = terms.split_at(system.inner_terms[row]);
-                    for (work, terms) in next.works[link].iter_mut().zip([inner, outer]) {
-                        let terms = terms.iter().filter(|(dof, _)| own(*dof as usize));
-                        let way = |&(dof, c): &(u32, f64)| {
-                            let i = dof as usize;
-                            let later = of_work.lag * (rates[1][i] - rates[0][i]);
-                            c * (after[i] - before[i] - later)
+                    // those of the rows at the start of the step, and at its end
+                    let earlier = of_work.old * mixed + of_work.new * weights[0] * l;
+                    let later = of_work.new * weights[1] * next.multipliers[row];
+                    let (terms, inner) = (&self.rows[row], system.inner_terms[row]);
+                    let sides = [0..inner, inner..terms.len()];
+                    for (work, side) in next.works[link].iter_mut().zip(sides) {
+                        let side = side.filter(|&k| own(terms[k].0 as usize));
+                        let way = |k: usize| {
+                            let i = terms[k].0 as usize;
+                            let lag = of_work.lag * (rates[1][i] - rates[0][i]);
+                            after[i] - before[i] - lag
                         };
-                        *work += mean * terms.map(way).sum::<f64>();
+                        *work += match &start {
+                            None => mean * side.map(|k| terms[k].1 * way(k)).sum::<f64>(),
+                            Some(start) => side
+                                .map(|k| (start[row][k].1 * earlier + terms[k].1 * later) * way(k))
+                                .sum(),
+                        };
                     }
                     next.mixed[zone][row] = now;
                 }

@@ -6,16 +6,18 @@ use super::Driver;
 use crate::system::{LinkRow, Turned};
 
 impl Driver {
-    /// Makes the rows those of the configuration of the internal forces, `place`, and the forces of the multipliers those of these rows.
+    /// Makes the rows those of the configuration of the internal forces, `place`, of several schemes that of the end of the step, and the forces of the multipliers those
+    /// of these rows.
     pub(super) fn turn_rows(&mut self) {
         let system = &self.system;
         if system.turning_rows.is_empty() {
             return;
         }
         let motion = &self.state.motion;
+        let end = (system.schemes.len() > 1).then(|| self.end(&self.vectors.x));
         let at = Turned {
             frames: &motion.frames,
-            u: &self.vectors.place,
+            u: end.as_ref().unwrap_or(&self.vectors.place),
             from: (!self.maps.is_static() && system.scheme.get().is_between())
                 .then_some(&motion.u[..]),
         };
@@ -24,6 +26,26 @@ impl Driver {
             .turning_rows
             .coefficients(&system.unknowns, &at, rows);
         self.set_links();
+    }
+
+    /// The rows at the start of the step, where they turn and several schemes weigh multipliers in time: the force of a scheme that balances in the step is then the mean of the
+    /// forces at both ends, as that of the other, and the momentum of both sides changes alike.
+    pub(super) fn rows_before(&self) -> Option<Vec<LinkRow>> {
+        let system = &self.system;
+        if system.turning_rows.is_empty() || system.schemes.len() < 2 || self.maps.is_static() {
+            return None;
+        }
+        let motion = &self.state.motion;
+        let at = Turned {
+            frames: &motion.frames,
+            u: &motion.u,
+            from: None,
+        };
+        let mut rows = Vec::clone(&self.rows);
+        system
+            .turning_rows
+            .coefficients(&system.unknowns, &at, &mut rows);
+        Some(rows)
     }
 
     /// Makes the rows those of the state.
@@ -78,19 +100,22 @@ impl Driver {
         lengths.fold(0.0, f64::max) / self.system.tolerance
     }
 
+    /// The displacement at the end of the step.
+    fn end(&self, x: &[f64]) -> Vec<f64> {
+        let mut end = vec![0.0; x.len()];
+        let xc = [x, &self.vectors.push];
+        self.maps
+            .whole(|map| map.displacement, &self.state.motion, xc, &mut end);
+        end
+    }
+
     fn missed(&self, x: &[f64]) -> Vec<(usize, f64)> {
         let system = &self.system;
         if system.turning_rows.is_empty() {
             return Vec::new();
         }
         let motion = &self.state.motion;
-        let mut end = vec![0.0; x.len()];
-        self.maps.whole(
-            |map| map.displacement,
-            motion,
-            [x, &self.vectors.push],
-            &mut end,
-        );
+        let end = self.end(x);
         let at = Turned {
             frames: &motion.frames,
             u: &end,

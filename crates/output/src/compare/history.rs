@@ -37,6 +37,18 @@ impl StepForce {
         }
     }
 
+    /// Times and forces of the steps, each at the end of its step and zero at the start, in the bounded number of a figure.
+    pub(crate) fn curve(&self) -> (Vec<f64>, Vec<f64>) {
+        let mut trace = Trace::default();
+        if let Some(start) = self.times.first() {
+            trace.push(*start, 0.0);
+        }
+        for (span, impulse) in self.times.windows(2).zip(self.impulses.windows(2)) {
+            trace.push(span[1], (impulse[1] - impulse[0]) / (span[1] - span[0]));
+        }
+        trace.columns()
+    }
+
     /// Largest magnitude of the force of a step, N.
     fn peak(&self) -> f64 {
         let spans = self.times.windows(2).zip(self.impulses.windows(2));

@@ -4,10 +4,13 @@
 //! order comes from the differences of neighbouring runs, which needs values in a constant ratio.
 
 mod envelope;
+mod forces;
 mod orders;
 mod page;
 mod quantities;
 mod run;
+
+use crate::compare::StepForce;
 
 pub use envelope::{Envelope, Governed};
 pub use orders::{Fit, consecutive, differences, extrapolate, fit, saturation};
@@ -26,6 +29,8 @@ pub struct Study {
     pub abscissa: Abscissa,
     /// The runs.
     pub runs: Vec<Run>,
+    /// The force history that a fit comes nearest to; the figure of forces shows it under that of the nearest run.
+    pub wanted: Option<StepForce>,
 }
 
 /// What the orders are taken against.

@@ -96,8 +96,8 @@ impl Study {
         }
     }
 
-    /// Writes `study.csv`, `orders.csv`, `plots/orders.svg` (if there is an order and one axis) and `report.html` into the folder; returns
-    /// the path of the page.
+    /// Writes `study.csv`, `orders.csv`, `plots/orders.svg` (if there is an order and one axis), `plots/force.svg` (if the
+    /// runs have a contact and can be told apart) and `report.html` into the folder; returns the path of the page.
     ///
     /// # Errors
     /// The first file that could not be written.
@@ -113,8 +113,12 @@ impl Study {
         if let Some(svg) = &svg {
             atomic::write_text(&folder.file("plots/orders.svg")?, svg)?;
         }
+        let forces = self.force_figure();
+        if let Some(forces) = &forces {
+            atomic::write_text(&folder.file("plots/force.svg")?, forces)?;
+        }
         let page = folder.file("report.html")?;
-        atomic::write_text(&page, &self.html(svg)?)?;
+        atomic::write_text(&page, &self.html(svg, forces)?)?;
         Ok(page)
     }
 
@@ -223,7 +227,7 @@ impl Study {
         }
     }
 
-    fn html(&self, figure: Option<String>) -> Result<String, Error> {
+    fn html(&self, figure: Option<String>, forces: Option<String>) -> Result<String, Error> {
         let mut environment = environment()?;
         environment.add_template("study.html", include_str!("../../templates/study.html"))?;
         let (table, orders) = (self.table(), self.order_table());
@@ -254,6 +258,8 @@ impl Study {
             raw_peak => RAW_PEAK,
             version => env!("CARGO_PKG_VERSION"),
             figure => figure.map(Value::from_safe_string),
+            forces => forces.map(Value::from_safe_string),
+            wanted => self.wanted.is_some(),
         })?;
         Ok(page)
     }

@@ -1,0 +1,70 @@
+//! The force histories of a study in one figure: those of the runs, or of the nearest one over the history that a fit wants.
+
+use crate::compare::{Done, StepForce};
+use crate::plot::{Axis, Curve, Figure, Panel, Role};
+use crate::results::exact::Polyline;
+use crate::study::{Run, Study};
+
+/// Most runs whose curves one can tell apart.
+const MOST: usize = 8;
+
+impl Study {
+    /// The figure as SVG; `None` where there is no contact, more runs than can be told apart, or a curve that cannot be drawn.
+    pub(crate) fn force_figure(&self) -> Option<String> {
+        let done = |run: &Run| Some((run.variant.name.clone(), drawn(run.variant.done()?)?));
+        let curves: Vec<(String, Polyline)> = match &self.wanted {
+            Some(wanted) => vec![done(self.nearest(wanted)?)?],
+            None => self.runs.iter().filter_map(done).collect(),
+        };
+        if curves.is_empty() || curves.len() > MOST {
+            return None;
+        }
+        let wanted = self.wanted.as_ref().map(StepForce::curve);
+        let wanted = wanted.iter().map(|(x, y)| Curve {
+            name: "wanted",
+            x,
+            y,
+            role: Role::Exact,
+        });
+        let computed = curves.iter().map(|(name, (x, y))| Curve {
+            name,
+            x,
+            y,
+            role: Role::Computed,
+        });
+        let panel = Panel {
+            title: self.contact().map(|name| format!("Contact {name}"))?,
+            ordinate: Axis {
+                quantity: "contact force",
+                unit: "N",
+            },
+            curves: wanted.chain(computed).collect(),
+            clip: false,
+        };
+        let figure = Figure {
+            title: format!("{}: force", self.title),
+            abscissa: Axis {
+                quantity: "time",
+                unit: "s",
+            },
+            panels: vec![panel],
+            columns: 1,
+        };
+        figure.svg().ok()
+    }
+
+    /// The run whose force is nearest to `wanted` by [`StepForce::distance`].
+    fn nearest(&self, wanted: &StepForce) -> Option<&Run> {
+        let far = |run: &Run| run.variant.done()?.history.force.distance(wanted);
+        let runs = self.runs.iter().filter_map(|run| Some((far(run)?, run)));
+        let nearest = runs.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.map(|(_, run)| run)
+    }
+}
+
+/// The force of a run, if it has a contact and a step.
+fn drawn(done: &Done) -> Option<Polyline> {
+    let history = &done.history;
+    let has = history.contact.is_some() && !history.force_curve.is_empty();
+    has.then(|| history.force_curve.columns())
+}
