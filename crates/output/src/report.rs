@@ -4,10 +4,11 @@
 //! they follow the light or dark theme of the reader) and the text of the case, and with what its program shows
 //! ([`crate::page`]).
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use minijinja::value::Serde;
-use minijinja::{Environment, Value, context};
+use minijinja::{Environment, HtmlEscape, Value, context};
 
 use crate::form::{NOTHING, percent};
 use crate::page::anchors::section;
@@ -105,9 +106,27 @@ pub(crate) fn environment() -> Result<Environment<'static>, Error> {
     environment.add_filter("exact", |value: Value| show(&value, exact));
     environment.add_filter("percent", |value: Value| show(&value, percent));
     environment.add_filter("section", |line: &str| section(line));
+    environment.add_filter("code", |text: &str| Value::from_safe_string(code(text)));
     environment.add_filter("bytes", |value: Value| show(&value, bytes));
     environment.add_template("style.css", include_str!("../templates/style.css"))?;
     Ok(environment)
+}
+
+/// A message as HTML: what stands between two backticks is code.
+fn code(message: &str) -> String {
+    let mut html = String::new();
+    let parts: Vec<&str> = message.split('`').collect();
+    for (k, part) in parts.iter().enumerate() {
+        let part = HtmlEscape(part);
+        let _ = match k {
+            0 => write!(html, "{part}"),
+            // a backtick without its other one stands as it is
+            k if k % 2 == 1 && k + 1 == parts.len() => write!(html, "`{part}"),
+            k if k % 2 == 1 => write!(html, "<code>{part}</code>"),
+            _ => write!(html, "{part}"),
+        };
+    }
+    html
 }
 
 fn show(value: &Value, text: impl Fn(f64) -> String) -> String {
@@ -131,5 +150,23 @@ fn bytes(count: f64) -> String {
         count if count >= 1e6 => format!("{:.1} MB", count / 1e6),
         count if count >= 1e3 => format!("{:.1} kB", count / 1e3),
         _ => format!("{count} B"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::code;
+
+    #[test]
+    fn what_stands_between_backticks_is_code_and_all_is_escaped() {
+        for (message, html) in [
+            ("plain", "plain"),
+            ("run `carom study` now", "run <code>carom study</code> now"),
+            ("`a<b` and `c`", "<code>a&lt;b</code> and <code>c</code>"),
+            ("one ` alone", "one ` alone"),
+            ("", ""),
+        ] {
+            assert_eq!(code(message), html);
+        }
     }
 }

@@ -79,7 +79,7 @@ fn surfaces(model: &Model) -> impl Iterator<Item = &Surface> {
 
 fn touches(surface: &Surface, cells: &[ElementId]) -> bool {
     let mut faces = surface.faces.iter().filter(|face| is_middle(face));
-    faces.any(|face| cells.contains(&face.parent))
+    faces.any(|face| cells.binary_search(&face.parent).is_ok())
 }
 
 /// Whether it is a cell of a shell with the surface around it.

@@ -143,11 +143,37 @@ impl Builder<'_> {
                 Some(mesh)
             }
             Err(error) => {
-                self.problems.push(Problem::new(key, error.to_string()));
+                let problem = Problem::new(key, error.to_string());
+                let others = if path.exists() {
+                    Vec::new()
+                } else {
+                    beside(&path)
+                };
+                self.problems.push(match others.is_empty() {
+                    true => problem,
+                    false => problem.unknown(file, others.iter().map(String::as_str)),
+                });
                 None
             }
         }
     }
+}
+
+/// Names of the meshes in the folder of a file, in their order.
+fn beside(path: &Path) -> Vec<String> {
+    // the folder of a name alone is the one at hand
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    let entries = folder.unwrap_or(Path::new(".")).read_dir();
+    let names = entries.into_iter().flatten().flatten();
+    let names = names.filter_map(|entry| entry.file_name().into_string().ok());
+    let is_mesh = |name: &String| {
+        let extension = Path::new(name).extension().unwrap_or_default();
+        let extension = extension.to_string_lossy().to_lowercase();
+        read::EXTENSIONS.contains(&extension.as_str())
+    };
+    let mut names: Vec<String> = names.filter(is_mesh).collect();
+    names.sort_unstable();
+    names
 }
 
 fn generated(name: &str, part: &Part) -> Mesh {

@@ -69,6 +69,8 @@ fn main_job_leaves_its_results_and_agrees_with_the_exact_solution() {
 fn a_bar_of_tied_halves_meets_the_wall_as_one() {
     let work = tempfile::tempdir().unwrap();
     case("tied-bar", work.path());
+    let mesh = project().join("cases/tied-bar/bar.msh");
+    fs::copy(mesh, work.path().join("bar.msh")).unwrap();
     let output = carom(work.path(), &["run", "case.toml", "--quiet"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
     let summary = summary(work.path());
