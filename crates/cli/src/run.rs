@@ -233,6 +233,13 @@ fn print_contact(name: &str, contact: &Contact) {
         Some(impulse) => out!("    impulse {}{impulsive}{times}", quantity(impulse, "N s")),
         None => out!("    static: no impulse{times}"),
     }
+    if let Some(peak) = contact.peak_moment {
+        out!(
+            "    largest moment {} at {}",
+            quantity(peak.magnitude, "N m"),
+            quantity(peak.time, "s")
+        );
+    }
     if let Some(friction) = contact.friction {
         out!(
             "    friction coefficient {}, largest friction force {}",

@@ -19,6 +19,7 @@ pub mod landing;
 mod ledger;
 mod low_rank;
 mod march;
+mod moment;
 pub mod operator;
 pub mod records;
 mod report;
@@ -49,6 +50,7 @@ pub use impact::{Impact, NoRestitution};
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Tolerated};
 pub use march::{FailedProblem, Observer, Outcome, Stepper, go_on, march, step_count};
+pub use moment::moment;
 pub use records::{ContactRecord, Records};
 pub use report::{ContactReport, ContactSample, StepReport};
 pub use resultant::Resultant;
@@ -58,7 +60,7 @@ pub use state::{InterfaceState, State};
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::{
     Adaptive, Closing, Damping, Iteration, Load, LoadKind, Mass, Model, ModelBody, ModelConstraint,
-    ModelContact, ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget, Motion,
-    NamedSupport, NodalLoad, Nonlinear, Order, Preload, Prescribed, PrescribedTurn, Refused,
-    ReportedSupport, Support, System,
+    ModelContact, ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget, MomentAbout,
+    Motion, NamedSupport, NodalLoad, Nonlinear, Order, Preload, Prescribed, PrescribedTurn,
+    Refused, ReportedSupport, Support, System,
 };

@@ -21,6 +21,9 @@ pub struct ContactReport {
     pub friction: f64,
     /// Points that slip with a friction force.
     pub slipping: usize,
+    /// Moment of the force on the secondary body about the point that the contact names, friction included, N m; zero where it names
+    /// none ([`moment`](crate::moment())).
+    pub moment: [f64; 3],
     /// Energy that friction took in the step, J.
     pub friction_loss: f64,
     /// Least gap at the end of the step, m; infinite where nothing faces anything.
@@ -114,6 +117,7 @@ fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut C
         for i in 0..3 {
             sum.resultant[i] += dt * part.resultant[i];
             sum.normal[i] += dt * part.normal[i];
+            sum.moment[i] += dt * part.moment[i];
         }
         sum.friction += dt * part.friction;
         sum.slipping = sum.slipping.max(part.slipping);
@@ -128,6 +132,7 @@ fn join<'a>(parts: impl Iterator<Item = (f64, &'a ContactReport)>, whole: &mut C
             force: sum.force / length,
             resultant: sum.resultant.map(|r| r / length),
             normal: sum.normal.map(|r| r / length),
+            moment: sum.moment.map(|r| r / length),
             friction: sum.friction / length,
             ..sum
         };

@@ -20,6 +20,7 @@ use crate::massless::redistribute;
 use crate::middles::{Carried, add_middles};
 use crate::modal::NumberedModal;
 use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelLink};
+use crate::moments::MomentAbout;
 use crate::numbered::NumberedNonlinear;
 use crate::reported::ReportedSupport;
 use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
@@ -216,6 +217,16 @@ impl System {
             (&unknowns, &fixed),
             &of_parts,
         );
+        let axisymmetric = model
+            .bodies
+            .iter()
+            .any(|body| body.spec.kinematics == Kinematics::Axisymmetric);
+        let numbered = contacts.iter().zip(&secondary_faces);
+        let moments = model.contacts.iter().zip(numbered);
+        let moments = moments.map(|(model, (contact, faces)): (_, (_, &Vec<_>))| {
+            MomentAbout::of(model, (contact, &faces[..]), (&unknowns, dim, axisymmetric))
+        });
+        let moments = moments.collect::<Result<_, _>>()?;
         let system = System {
             supports,
             levers: Levers::new(&unknowns, parts.iter().zip(&undeformed)),
@@ -223,10 +234,7 @@ impl System {
             part_of_body,
             origin,
             tolerance: 1e-12 * model.length(),
-            axisymmetric: model
-                .bodies
-                .iter()
-                .any(|body| body.spec.kinematics == Kinematics::Axisymmetric),
+            axisymmetric,
             dim,
             x,
             mesh_node,
@@ -260,6 +268,7 @@ impl System {
             critical_fraction: model.critical_fraction,
             nonlinear,
             friction: model.contacts.iter().map(|c| c.friction).collect(),
+            moments,
             initial_frames,
             initial_displacement,
             initial_velocity,

@@ -132,6 +132,14 @@ pub enum Error {
         /// Why.
         cause: &'static str,
     },
+    /// A contact that has no moment about a point.
+    #[error("contact '{contact}': {cause}")]
+    MomentAbout {
+        /// Name of the contact.
+        contact: String,
+        /// Why.
+        cause: &'static str,
+    },
     /// Surfaces that overlap at the start.
     #[error(
         "contact '{contact}': {points} points penetrate at the start, the deepest, at node {node}, by {depth:e} m"

@@ -21,6 +21,7 @@ mod massless;
 mod middles;
 mod modal;
 mod model;
+mod moments;
 mod motion;
 mod nonlinear;
 mod numbered;
@@ -46,6 +47,7 @@ pub use model::{
     Model, ModelBody, ModelConstraint, ModelContact, ModelDiscrete, ModelLink, ModelRigid,
     ModelScheme, ModelTarget, NamedSupport, Support,
 };
+pub use moments::MomentAbout;
 pub use motion::Motion;
 pub use nonlinear::{Damping, Iteration, Nonlinear, Preload, Prescribed, PrescribedTurn};
 pub use numbered::{Follows, NumberedNonlinear};

@@ -339,6 +339,8 @@ pub struct ModelContact {
     /// Largest penetration that is a contact, m: points see only faces turned against them and not further away inside than
     /// this ([`Sight`](carom_contact::Sight)). `None`: they see everything, unless the surface faces itself.
     pub depth: Option<f64>,
+    /// The point that the moment of its forces is reported about, m; `None`: no moment is.
+    pub moment_about: Option<[f64; 3]>,
 }
 
 impl ModelContact {
@@ -360,6 +362,7 @@ impl ModelContact {
             friction: 0.0,
             initial: Initial::Keep,
             depth: None,
+            moment_about: None,
         }
     }
 }

@@ -15,6 +15,7 @@ use crate::levers::Levers;
 use crate::link_row::LinkRow;
 use crate::mass::Mass;
 use crate::modal::NumberedModal;
+use crate::moments::MomentAbout;
 use crate::numbered::NumberedNonlinear;
 use crate::reported::ReportedSupport;
 use crate::turning::TurningRows;
@@ -107,6 +108,8 @@ pub struct System {
     pub nonlinear: NumberedNonlinear,
     /// Coefficient of friction by contact.
     pub friction: Vec<f64>,
+    /// By contact: what its moment is about; `None` where none is reported.
+    pub moments: Vec<Option<MomentAbout>>,
     /// Initial rotations of the nodes that have any.
     pub initial_frames: Vec<Rotation>,
     /// Initial displacement, m.

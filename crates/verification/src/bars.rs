@@ -246,6 +246,7 @@ impl Run {
                 friction: 0.0,
                 initial: Initial::Keep,
                 depth: None,
+                moment_about: None,
                 ..contact(secondary, primary, self.law)
             }],
             ..Model::new(bodies, mesh, self.scheme, self.dt())

@@ -23,6 +23,7 @@ use carom_dynamics::ContactReport;
 use carom_dynamics::Driver;
 use carom_dynamics::contact_report;
 use carom_dynamics::landing::{arrival, flies, lead};
+use carom_dynamics::moment;
 use carom_dynamics::paired::{append, approaches, told};
 use carom_dynamics::records::{Records, Step};
 use carom_dynamics::state::{InterfaceState, empty_state};
@@ -84,6 +85,8 @@ pub(crate) struct Between {
     /// Rotations of the whole at the start of the step.
     frames: Vec<Rotation>,
     place: Vec<f64>,
+    /// Room for nodal forces, N.
+    nodal: Vec<f64>,
     still: Vec<f64>,
     pub(crate) state: BetweenState,
     /// What the contacts did in the last outer step.
@@ -149,6 +152,7 @@ impl Between {
             end: [zeros(), zeros()],
             frames: system.initial_frames.clone(),
             place: zeros(),
+            nodal: Vec::new(),
             still: zeros(),
             reports: vec![ContactReport::default(); count],
             state: BetweenState {
@@ -383,7 +387,9 @@ impl Between {
         for contact in 0..system.contacts.len() {
             let now = &self.state.interface;
             let rows = &self.pairing.rows;
-            let report = contact_report(system.points_of(contact), rows, [before, now], dt);
+            let mut report = contact_report(system.points_of(contact), rows, [before, now], dt);
+            report.moment = self.moment(contact);
+            let now = &self.state.interface;
             let step = Step {
                 span: [end - dt, end],
                 dt,
@@ -418,6 +424,16 @@ impl Between {
             self.reports[contact] =
                 contact_report(self.system.points_of(contact), rows, [now; 2], 0.0);
         }
+    }
+
+    /// Moment of a contact about the point that it names, at the mean of the places at start and end of the step, N m.
+    fn moment(&mut self, contact: usize) -> [f64; 3] {
+        let (rows, force) = (&self.pairing.rows, &self.state.interface.force);
+        let points = self.system.points_of(contact);
+        let forces = points.map(|point| (rows, point, force[point]));
+        let ends = [&self.start[0][..], &self.end[0]];
+        let at = (&self.frames[..], &ends[..]);
+        moment((&self.system, contact), forces, at, &mut self.nodal)
     }
 
     /// Whether a point carries a force or may do so within `dt` (s), at twice its present rate.

@@ -75,6 +75,9 @@ impl Builder<'_> {
                 None if quadratic => mortar(Basis::default()),
                 None => Integration::Node,
             };
+            let moment_about = contact.moment_about.as_ref();
+            let moment_about =
+                moment_about.map(|point| self.vector(mesh, &format!("{path}.moment-about"), point));
             contacts.push(ModelContact {
                 name: name.to_string(),
                 secondary,
@@ -94,6 +97,7 @@ impl Builder<'_> {
                     Penetration::Remove => Initial::Remove,
                 },
                 depth: contact.depth.map(|depth| depth.0),
+                moment_about,
             });
         }
         contacts

@@ -98,6 +98,10 @@ impl Builder<'_> {
             Refusal::Integration { contact, .. } => {
                 Problem::new(format!("contact.{contact}.integration"), error.to_string())
             }
+            Refusal::MomentAbout { contact, .. } => {
+                let path = format!("contact.{contact}.moment-about");
+                Problem::new(path, error.to_string()).accepted(["no `moment-about`"])
+            }
             Refusal::LumpedBeam { body } => {
                 let problem = Problem::new(format!("body.{body}.mass"), error.to_string());
                 problem.accepted(["consistent"])

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::obstacle::Obstacle;
 use super::output::ChannelClass;
 use carom_laws::GivenLaw;
-use carom_quantities::{Length, SurfaceDamping, SurfaceStiffness};
+use carom_quantities::{Coordinate, Length, SurfaceDamping, SurfaceStiffness, Vector};
 
 /// Contact between two surfaces, between a surface and a rigid obstacle, or of a surface with itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -44,6 +44,9 @@ pub struct Contact {
     /// Largest penetration that counts as contact. A point is then paired only with faces of opposite normal that it
     /// penetrates by at most this depth. For thin parts. Default: no bound; in self-contact half the thickness.
     pub depth: Option<Length>,
+    /// Point, fixed in space, about which the moment of the contact force is written, as columns `contact.NAME.moment_x_n_m` … and with
+    /// its largest magnitude in the summary. For two surfaces that share no nodes, in the plane and in space. Default: none.
+    pub moment_about: Option<Vector<Coordinate>>,
     /// Mass of the nodes of the two surfaces.
     #[serde(default)]
     pub nodes: Nodes,

@@ -171,6 +171,8 @@ pub struct Driver {
     state: State,
     next: State,
     report: StepReport,
+    /// Room for nodal forces of a contact whose moment is reported, N.
+    nodal: Vec<f64>,
     /// Forces of the named supports in the last attempt.
     reactions: Vec<Resultant>,
     vectors: Vectors,

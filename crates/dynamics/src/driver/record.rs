@@ -6,6 +6,7 @@ use carom_contact::Rows;
 
 use super::Driver;
 use crate::exchange::sum;
+use crate::moment::moment;
 use crate::records::Step;
 use crate::report::ContactReport;
 use crate::state::{InterfaceState, State};
@@ -33,6 +34,7 @@ impl Driver {
         self.next.time = self.state.time + self.dt;
         // without inertia forces give no impulse, and closing is no impact
         let dt = if self.maps.is_static() { 0.0 } else { self.dt };
+        let mut nodal = std::mem::take(&mut self.nodal);
         for k in 0..system.contacts.len() {
             let impulse = self.contact_impulse(k);
             let rows = &self.pairing.rows;
@@ -41,6 +43,7 @@ impl Driver {
             let mut report = contact_report(points(), rows, [old, new], self.dt);
             report.mixed = self.weak.mixed(k, &new.force[system.points_of(k)]);
             self.report_friction(k, &mut report);
+            report.moment = self.moment_of(k, &mut nodal);
             report.friction_loss = -self.friction_work_of(k, [impulse.old, impulse.new]);
             let work = self.contact_work(k);
             let pushed = self.pushed(k);
@@ -80,8 +83,34 @@ impl Driver {
             records.contacts[k].pushed = pushed;
             self.report.contacts[k] = report;
         }
+        self.nodal = nodal;
         self.watch
             .look(&system, self.state.step + 1, &mut self.next);
+    }
+
+    /// Moment of a contact in the step, about the point that it names, N m; zero where it names none.
+    fn moment_of(&self, contact: usize, nodal: &mut Vec<f64>) -> [f64; 3] {
+        let (old, new) = (&self.state.motion, &self.next.motion);
+        let at = (&old.frames[..], &[&old.u[..], &new.u[..]][..]);
+        let forces = self.forces_of(contact, &self.next.interface);
+        moment((&self.system, contact), forces, at, nodal)
+    }
+
+    /// Rows, points and forces of a contact along them, normals and tangents, N.
+    fn forces_of<'a>(
+        &'a self,
+        contact: usize,
+        interface: &'a InterfaceState,
+    ) -> impl Iterator<Item = (&'a Rows, usize, f64)> {
+        let points = self.active.within(self.system.points_of(contact));
+        let tangents = &self.pairing.tangents[..self.system.tangents()];
+        points.flat_map(move |point| {
+            let normal = (&self.pairing.rows, point, interface.force[point]);
+            let friction = interface.friction.get(point);
+            let friction = tangents.iter().zip(friction.into_iter().flatten());
+            let friction = friction.map(move |(rows, t)| (rows, point, *t));
+            std::iter::once(normal).chain(friction)
+        })
     }
 
     /// Work of the normal forces of one contact on the motion of the step, J.
@@ -149,7 +178,10 @@ impl Driver {
             for (k, report) in self.report.contacts.iter_mut().enumerate() {
                 let (rows, interface) = (&self.pairing.rows, &state.interface);
                 let points = self.system.points_of(k);
-                *report = contact_report(points, rows, [interface; 2], 0.0);
+                *report = contact_report(points.clone(), rows, [interface; 2], 0.0);
+                let forces = points.map(|point| (rows, point, interface.force[point]));
+                let at = (&state.motion.frames[..], &[&state.motion.u[..]][..]);
+                report.moment = moment((&self.system, k), forces, at, &mut self.nodal);
             }
         }
     }

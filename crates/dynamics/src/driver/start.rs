@@ -120,6 +120,7 @@ impl Driver {
             failed: None,
             failed_friction: None,
             reactions: Vec::new(),
+            nodal: Vec::new(),
             report: StepReport {
                 contacts: vec![ContactReport::default(); system.contacts.len()],
                 ..StepReport::default()

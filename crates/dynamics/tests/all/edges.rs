@@ -72,6 +72,7 @@ fn sheared(secondary: usize) -> Driver {
             friction: MU,
             initial: Initial::Keep,
             depth: None,
+            moment_about: None,
         }],
         discrete: Vec::new(),
         supports: vec![Support {

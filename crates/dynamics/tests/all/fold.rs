@@ -75,6 +75,7 @@ fn pressed(depth: f64, way: f64) -> Driver {
             friction: 0.0,
             initial: Initial::Keep,
             depth: None,
+            moment_about: None,
         }],
         discrete: Vec::new(),
         supports: vec![Support {

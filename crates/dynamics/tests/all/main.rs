@@ -18,6 +18,7 @@ mod initial;
 mod interface;
 mod many_points;
 mod material_work;
+mod moments;
 mod momentum;
 mod mortar;
 mod newton;

@@ -39,6 +39,7 @@ pub(crate) fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 law: contact.law.get().name().to_owned(),
                 peak_force: record.peak_force,
                 peak_resultant: totals.resultant,
+                peak_moment: totals.moment,
                 peak_mean_force: in_time(totals.mean.peak()),
                 window: totals.window,
                 mean_force: in_time(match closed > 0.0 {

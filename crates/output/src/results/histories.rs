@@ -236,6 +236,7 @@ impl Histories {
             mean.force /= time;
             mean.friction /= time;
             mean.resultant = mean.resultant.map(|f| f / time);
+            mean.moment = mean.moment.map(|m| m / time);
         }
         true
     }
@@ -256,6 +257,9 @@ fn gather(mean: &mut ContactReport, contact: &ContactReport, dt: f64) {
     for (sum, force) in mean.resultant.iter_mut().zip(contact.resultant) {
         *sum += dt * force;
     }
+    for (sum, moment) in mean.moment.iter_mut().zip(contact.moment) {
+        *sum += dt * moment;
+    }
     (mean.gap, mean.rate) = (contact.gap, contact.rate);
     mean.closed = mean.closed.max(contact.closed);
     mean.slipping = mean.slipping.max(contact.slipping);
@@ -275,6 +279,9 @@ fn put(system: &System, (k, contact): (usize, &ContactReport), row: &mut Vec<Cel
             .copied()
             .map(Cell::Number),
     );
+    if system.moments[k].is_some() {
+        row.extend(moments(system).map(|i| Cell::Number(contact.moment[i])));
+    }
     // the gap of what faces nothing does not exist
     row.push(Some(contact.gap).filter(|gap| *gap != f64::INFINITY).into());
     row.extend([contact.rate, contact.closed as f64].map(Cell::Number));
@@ -329,7 +336,7 @@ fn push_supports(system: &System, report: &StepReport, row: &mut Vec<Cell>) {
 }
 
 /// The axes about which supports have moments.
-fn moments(system: &System) -> Range<usize> {
+pub(super) fn moments(system: &System) -> Range<usize> {
     match (system.axisymmetric, system.dim) {
         (false, 2) => 2..3,
         (false, 3) => 0..3,
@@ -360,6 +367,10 @@ fn contact_columns(system: &System, k: usize) -> Vec<String> {
     names.extend(impulsive.then(|| add("impulsive", "N s")));
     let resultant = |i: &&str| add(&format!("resultant {i}"), "N");
     names.extend(COMPONENTS[..system.dim].iter().map(resultant));
+    if system.moments[k].is_some() {
+        let turns = &COMPONENTS[moments(system)];
+        names.extend(turns.iter().map(|i| add(&format!("moment {i}"), "N m")));
+    }
     names.extend([
         add("gap", "m"),
         add("gap rate", "m/s"),

@@ -4,7 +4,7 @@ use carom_dynamics::{Impact, State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
 use crate::results::Zoning;
-use crate::summary::PeakResultant;
+use crate::summary::{PeakMoment, PeakResultant};
 use crate::window::PeakOfMean;
 use crate::{Error, Folder, ImpactRow, ImpactTable};
 
@@ -54,6 +54,8 @@ pub(crate) struct ContactTotals {
     pub(crate) peak_friction: f64,
     /// Largest force as a vector.
     pub(crate) resultant: Option<PeakResultant>,
+    /// Largest moment about the point that the contact names.
+    pub(crate) moment: Option<PeakMoment>,
 }
 
 impl ContactTotals {
@@ -64,6 +66,19 @@ impl ContactTotals {
             self.resultant = Some(PeakResultant {
                 magnitude,
                 force,
+                time,
+            });
+        }
+    }
+
+    /// Keeps the moment on the secondary body about a point if it is the largest so far.
+    fn follow_moment(&mut self, about: [f64; 3], moment: [f64; 3], time: f64) {
+        let magnitude = moment.iter().map(|m| m * m).sum::<f64>().sqrt();
+        if magnitude > self.moment.map_or(0.0, |peak| peak.magnitude) {
+            self.moment = Some(PeakMoment {
+                magnitude,
+                moment,
+                about,
                 time,
             });
         }
@@ -91,6 +106,7 @@ impl Impacts {
                 closed: 0.0,
                 peak_friction: 0.0,
                 resultant: None,
+                moment: None,
             }
         };
         Ok(Impacts {
@@ -129,8 +145,12 @@ impl Impacts {
             .parts()
             .filter(|_| report.step > system.static_steps());
         for (time, dt, contacts) in parts {
-            for (totals, contact) in self.told.contacts.iter_mut().zip(contacts) {
+            let moments = system.moments.iter().zip(contacts);
+            for (totals, (about, contact)) in self.told.contacts.iter_mut().zip(moments) {
                 totals.follow_resultant(contact.resultant, time);
+                if let Some(about) = about {
+                    totals.follow_moment(about.point, contact.moment, time);
+                }
                 totals.mean.push(dt, contact.force);
                 totals.peak_friction = totals.peak_friction.max(contact.friction);
                 if contact.closed > 0 {

@@ -15,6 +15,10 @@ pub struct Contact {
     /// Largest magnitude of the force on the secondary body in a single step, friction included; `None` where there was none.
     #[serde(default)]
     pub peak_resultant: Option<PeakResultant>,
+    /// Largest magnitude of the moment on the secondary body in a single step about the point that the case names; absent where it
+    /// names none, or nothing touched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_moment: Option<PeakMoment>,
     /// Largest mean of the force over `window`, N; `None` of a static run, whose steps take no time.
     pub peak_mean_force: Option<f64>,
     /// Length of that window, s.
@@ -66,6 +70,19 @@ pub struct PeakResultant {
     pub magnitude: f64,
     /// The force on the secondary body, N.
     pub force: [f64; 3],
+    /// End of its step, s.
+    pub time: f64,
+}
+
+/// Largest moment of a contact about a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PeakMoment {
+    /// Its magnitude, N m.
+    pub magnitude: f64,
+    /// The moment on the secondary body, N m.
+    pub moment: [f64; 3],
+    /// The point that it is about, m.
+    pub about: [f64; 3],
     /// End of its step, s.
     pub time: f64,
 }

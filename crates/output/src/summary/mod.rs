@@ -16,7 +16,7 @@ use crate::statistics::Level;
 use crate::verdict::Verdict;
 use crate::{Error, atomic};
 
-pub use contact::{Contact, Discrete, Friction, PeakResultant};
+pub use contact::{Contact, Discrete, Friction, PeakMoment, PeakResultant};
 
 /// Everything that `summary.json` says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

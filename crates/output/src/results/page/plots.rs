@@ -1,5 +1,8 @@
 //! The plots of a page, from what the run gathered.
 
+use carom_contact::Contact;
+use carom_dynamics::MomentAbout;
+
 use crate::page::block::Block;
 use crate::page::draft::{self, Draft, Line, draft, line, zipped};
 use crate::page::schema::Plot;
@@ -7,6 +10,8 @@ use crate::plot::{Logarithmic, quantity};
 use crate::results::Results;
 use crate::results::exact::{Polyline, force_curve, motion_curves};
 use crate::results::filtered::FilteredCurve;
+use crate::results::histories::moments;
+use crate::results::page::series::ContactSeries;
 use crate::results::sensor::COMPONENTS;
 use crate::results::stills::Still;
 use crate::results::trace::Trace;
@@ -43,6 +48,7 @@ pub(crate) fn plots(sources: &Sources, block: &mut Block) -> Vec<Plot> {
     let results = sources.results;
     let mut drafts = forces(sources);
     drafts.extend(of_contacts(results));
+    drafts.extend(contact_moments(results));
     drafts.extend(motions(results));
     drafts.extend(probes(sources));
     drafts.extend(supports(results));
@@ -123,7 +129,7 @@ fn of_contacts(results: &Results) -> Vec<Draft> {
     let (system, series) = (&results.system, &results.series.series);
     let mut drafts = Vec::new();
     for (group, folded) in groups(results) {
-        let lines = |trace: fn(&super::series::ContactSeries) -> &Trace| {
+        let lines = |trace: fn(&ContactSeries) -> &Trace| {
             let of = |k: &usize| computed(&system.contacts[*k].name, trace(&series.contacts[*k]));
             group.iter().map(of).collect()
         };
@@ -143,6 +149,25 @@ fn of_contacts(results: &Results) -> Vec<Draft> {
     }
     drafts.retain(|draft| draft.plot.id != "plot-impulse" || !results.is_static());
     drafts
+}
+
+/// Moments of the contacts that name a point.
+fn contact_moments(results: &Results) -> Vec<Draft> {
+    let (system, series) = (&results.system, &results.series.series);
+    let all = system.contacts.iter().zip(&system.moments);
+    let one = |((contact, about), series): ((&Contact, &Option<MomentAbout>), &ContactSeries)| {
+        let point = about.as_ref()?.point;
+        let place: Vec<String> = point[..system.dim].iter().map(|x| format!("{x}")).collect();
+        let title = format!(
+            "Moment of contact {} about ({}) m",
+            contact.name,
+            place.join(", ")
+        );
+        let names = COMPONENTS[moments(system)].iter().zip(&series.moment);
+        let lines = names.map(|(name, trace)| computed(*name, trace)).collect();
+        Some(draft("plot-moment", title, ("moment", "N m"), lines))
+    };
+    all.zip(&series.contacts).filter_map(one).collect()
 }
 
 /// Motion of the contact point that the static figures show, with the exact one.

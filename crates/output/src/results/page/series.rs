@@ -3,6 +3,7 @@
 use carom_dynamics::{Order, State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
+use crate::results::histories::moments;
 use crate::results::impacts::ContactTotals;
 use crate::results::sensor::Sensor;
 use crate::results::trace::Trace;
@@ -49,6 +50,8 @@ pub(crate) struct ContactSeries {
     pub(crate) gap: Trace,
     /// Impulse so far, N s.
     pub(crate) impulse: Trace,
+    /// Moment about the point that the contact names, N m; empty where it names none.
+    pub(crate) moment: Vec<Trace>,
     given: f64,
 }
 
@@ -57,14 +60,19 @@ impl SeriesOf {
     pub(crate) fn new(system: &System, probes: &[Vec<Sensor>]) -> SeriesOf {
         let components: usize = probes.iter().map(Vec::len).sum();
         let named = system.supports.len().min(NAMED);
-        let count = 4 * system.contacts.len() + 3 * (components + named) + 4;
+        let turning = system.moments.iter().flatten().count();
+        let count = 4 * system.contacts.len() + 3 * (turning + components + named) + 4;
         let limit = (SAMPLES / count).min(MOST);
         let trace = || Trace::of(limit);
-        let contact = |_| ContactSeries {
+        let contact = |about: &Option<_>| ContactSeries {
             force: trace(),
             mean: trace(),
             gap: trace(),
             impulse: trace(),
+            moment: match about {
+                Some(_) => moments(system).map(|_| trace()).collect(),
+                None => Vec::new(),
+            },
             given: 0.0,
         };
         let of_probe = |sensors: &Vec<Sensor>| {
@@ -73,7 +81,7 @@ impl SeriesOf {
         };
         SeriesOf {
             series: Series {
-                contacts: system.contacts.iter().map(contact).collect(),
+                contacts: system.moments.iter().map(contact).collect(),
                 probes: probes.iter().map(of_probe).collect(),
                 supports: [trace(), trace(), trace()],
                 named: (0..named).map(|_| [trace(), trace(), trace()]).collect(),
@@ -96,6 +104,9 @@ impl SeriesOf {
         for (end, dt, contacts) in report.parts() {
             for (own, contact) in series.contacts.iter_mut().zip(contacts) {
                 own.force.push(end, contact.force);
+                for (trace, i) in own.moment.iter_mut().zip(moments(system)) {
+                    trace.push(end, contact.moment[i]);
+                }
                 if !is_static {
                     own.given += contact.force * dt + contact.impulsive;
                 }

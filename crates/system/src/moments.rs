@@ -1,0 +1,61 @@
+//! Contacts whose moment is asked for: the point that it is about, and what belongs to the secondary side.
+
+use carom_algebra::unknowns::Unknowns;
+use carom_contact::{Contact, Target};
+use carom_mesh::Face;
+
+use crate::error::Error;
+use crate::model::ModelContact;
+
+/// The point that the moment of a contact is about, and the unknowns that its forces on the secondary body act on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MomentAbout {
+    /// The point, fixed in space, m.
+    pub point: [f64; 3],
+    /// Whether an unknown of the system moves nodes of the secondary surface.
+    pub secondary: Vec<bool>,
+}
+
+impl MomentAbout {
+    /// `None` where no moment is asked for. `faces`: the secondary surface by system number.
+    ///
+    /// # Errors
+    /// [`Error::MomentAbout`] where there is no moment, or the two sides share nodes.
+    pub(crate) fn of(
+        model: &ModelContact,
+        (contact, faces): (&Contact, &[Face]),
+        (unknowns, dim, axisymmetric): (&Unknowns, usize, bool),
+    ) -> Result<Option<MomentAbout>, Error> {
+        let Some(point) = model.moment_about else {
+            return Ok(None);
+        };
+        let refuse = |cause| {
+            Err(Error::MomentAbout {
+                contact: contact.name.clone(),
+                cause,
+            })
+        };
+        if dim < 2 || axisymmetric {
+            return refuse("forces along a line and axisymmetric ones have no moment");
+        }
+        let mut secondary = vec![false; unknowns.len()];
+        let own = contact.points.iter().flat_map(|point| point.carriers());
+        let of_faces = faces.iter().flat_map(|face| face.corners());
+        for node in own.map(|(node, _)| node).chain(of_faces.copied()) {
+            secondary[unknowns.of(unknowns.moved_by(node))].fill(true);
+        }
+        let target = match &contact.target {
+            Target::Surface(faces) => &faces[..],
+            Target::Rigid(_) => &[],
+        };
+        let mut opposite = target.iter().flat_map(|face| face.corners());
+        let shared = |&node: &u32| {
+            let mut of = unknowns.of(unknowns.moved_by(node));
+            of.any(|unknown| secondary[unknown])
+        };
+        if opposite.any(shared) {
+            return refuse("its two sides share nodes, whose forces belong to both");
+        }
+        Ok(Some(MomentAbout { point, secondary }))
+    }
+}
