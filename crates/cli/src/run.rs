@@ -213,6 +213,12 @@ fn print_contact(name: &str, contact: &Contact) {
         ),
         None => out!("    largest force {peak}"),
     }
+    if let Some(preload) = contact.preload {
+        out!(
+            "    preload {} at the start of the dynamics",
+            quantity(preload, "N")
+        );
+    }
     let times = match (contact.first_closing, contact.last_release) {
         (Some(first), Some(last)) => format!(
             ", closed from {} to {}",

@@ -11,6 +11,9 @@ const OTHERS: f64 = 0.01;
 /// Flight over the impact before it that ends the impact whatever waves do.
 const LONG: f64 = 10.0;
 
+/// Steps that a flight takes at least that ends an impact by itself: shorter ones are the chatter of the steps.
+const RESOLVED: f64 = 4.0;
+
 /// Magnitude of the sum of the normal impulses of the steps over the sum of their magnitudes, below which the contact has slid over a
 /// surface that turns: 0.99 is a force that swings by 8 degrees in the mean square.
 const STEADY: f64 = 0.99;
@@ -36,7 +39,8 @@ pub enum NoRestitution {
 ///
 /// A flight lasts if it is longer than a wave takes across the longer of the two bodies: a contact that closes again earlier does
 /// so by the waves of that impact, or by the chatter of a scheme, and it is the same impact. It lasts too if it is ten times as
-/// long as the impact so far, for a body that stands for a mass on a spring, in which waves do not matter.
+/// long as the impact so far, for a body that stands for a mass on a spring, in which waves do not matter. A flight of less than
+/// four steps never lasts. A contact with a time of its own ([`System::merge_within`]) has that in place of all this.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Impact {
     /// Index of the contact.
@@ -169,7 +173,7 @@ impl OpenImpact {
             (None, false) => {
                 going.released = Some(Released {
                     impact: going.impact(system, contact, given.span[1], velocities[1]),
-                    until: given.span[1] + lasting(system, contact, given.span[1] - going.start),
+                    until: given.span[1] + lasting(system, contact, (given, going.start)),
                 });
             }
             (Some(released), false) if given.span[1] >= released.until => {
@@ -420,9 +424,14 @@ fn each_free(system: &System, body: Option<usize>, mut visit: impl FnMut(usize, 
     }
 }
 
-/// How long a flight lasts that ends an impact of this duration, s.
-fn lasting(system: &System, contact: usize, duration: f64) -> f64 {
-    crossing(system, contact).min(LONG * duration)
+/// How long a flight lasts that ends an impact, begun at `start` (s) and last closed before this step, s.
+fn lasting(system: &System, contact: usize, (given, start): (&Given, f64)) -> f64 {
+    if let Some(time) = system.merge_within[contact] {
+        return time;
+    }
+    let [from, to] = given.span;
+    let waves = crossing(system, contact).min(LONG * (to - start));
+    waves.max(RESOLVED * (to - from))
 }
 
 /// Time that a wave takes across the longer of the two bodies of a contact (the diagonal of its box), s.

@@ -32,7 +32,7 @@ pub struct ContactRecord {
     pub peak_force: f64,
     /// End of the step of the largest force, s.
     pub peak_time: f64,
-    /// Start of the first step with a force, s.
+    /// Start of the first step with a force, s; after a static stage of the first one of the dynamics.
     pub first_closing: Option<f64>,
     /// End of the last step with a force, s.
     pub last_force: Option<f64>,
@@ -217,6 +217,14 @@ impl Records {
             small: Smallness::of(system),
             opened: vec![f64::NEG_INFINITY; system.points()],
             loose: Vec::new(),
+        }
+    }
+
+    /// Starts the clocks of the contacts at the end of a static stage: what is compressed there closes with the first step of the
+    /// dynamics.
+    pub(crate) fn begin_dynamics(&mut self) {
+        for record in &mut self.contacts {
+            (record.first_closing, record.last_force) = (None, None);
         }
     }
 

@@ -268,6 +268,7 @@ impl System {
             critical_fraction: model.critical_fraction,
             nonlinear,
             friction: model.contacts.iter().map(|c| c.friction).collect(),
+            merge_within: model.contacts.iter().map(|c| c.merge_within).collect(),
             moments,
             initial_frames,
             initial_displacement,

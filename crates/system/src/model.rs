@@ -339,6 +339,8 @@ pub struct ModelContact {
     /// Largest penetration that is a contact, m: points see only faces turned against them and not further away inside than
     /// this ([`Sight`](carom_contact::Sight)). `None`: they see everything, unless the surface faces itself.
     pub depth: Option<f64>,
+    /// Duration of a flight that ends an impact, s; `None`: by waves and steps.
+    pub merge_within: Option<f64>,
     /// The point that the moment of its forces is reported about, m; `None`: no moment is.
     pub moment_about: Option<[f64; 3]>,
 }
@@ -363,6 +365,7 @@ impl ModelContact {
             initial: Initial::Keep,
             depth: None,
             moment_about: None,
+            merge_within: None,
         }
     }
 }

@@ -30,6 +30,8 @@ pub struct Follows {
 pub struct NumberedNonlinear {
     /// Loads.
     pub loads: Vec<NumberedLoad>,
+    /// Names of those on surfaces and at nodes, each once.
+    pub load_names: Vec<String>,
     /// Acceleration of the frame of coordinates, m/s², by direction.
     pub base: [Option<Amplitude>; 3],
     /// Functions of time that unknowns follow.
@@ -82,7 +84,8 @@ impl NumberedNonlinear {
             let kind = Kind::Rotation(turn.axis);
             numbered.follow((node, &turn.angle), kind, (number, unknowns), fixed)?;
         }
-        numbered.loads = numbered_loads(model, (number, unknowns), (bodies, mass))?;
+        let own = (number, unknowns);
+        numbered.loads = numbered_loads(model, own, (bodies, mass), &mut numbered.load_names)?;
         let mut first = 0;
         for body in bodies {
             numbered.histories.push(first..first + body.history_len());

@@ -13,6 +13,8 @@ use crate::refused::Refused;
 /// A load in the numbers of a system.
 #[derive(Debug)]
 pub struct NumberedLoad {
+    /// Place of its name in [`NumberedNonlinear::load_names`](crate::NumberedNonlinear::load_names); none of an accelerated frame.
+    pub named: Option<usize>,
     /// Factor in time.
     pub amplitude: Amplitude,
     /// What acts.
@@ -32,18 +34,29 @@ pub enum NumberedForce {
 
 /// All loads of a model in the numbers of its system.
 ///
+/// `names`: gets the name of each load on surfaces and at nodes once.
+///
 /// # Errors
 /// A load on a node that a rigid body carries, a moment on a node without such a rotation.
 pub fn numbered_loads(
     model: &Model,
     (number, unknowns): (&[u32], &Unknowns),
     (bodies, mass): (&[Body], &Mass),
+    names: &mut Vec<String>,
 ) -> Result<Vec<NumberedLoad>, Error> {
     let given = &model.nonlinear;
     let mut numbered = Vec::new();
+    let mut named = |name: &String| {
+        let place = names.iter().position(|other| other == name);
+        Some(place.unwrap_or_else(|| {
+            names.push(name.clone());
+            names.len() - 1
+        }))
+    };
     for load in &given.loads {
         not_carried(&load.surface.nodes, (number, unknowns))?;
         numbered.push(NumberedLoad {
+            named: named(&load.name),
             amplitude: load.amplitude.clone(),
             force: numbered_force(load, model, (number, unknowns)),
             bodies: loaded(load, model),
@@ -52,6 +65,7 @@ pub fn numbered_loads(
     for load in &given.nodal {
         not_carried(&load.nodes, (number, unknowns))?;
         numbered.push(NumberedLoad {
+            named: named(&load.name),
             amplitude: load.amplitude.clone(),
             force: NumberedForce::Dead(nodal_forces(load, (number, unknowns))?),
             bodies: Vec::new(),
@@ -60,6 +74,7 @@ pub fn numbered_loads(
     for (direction, acceleration) in given.base.iter().enumerate() {
         if let Some(amplitude) = acceleration {
             numbered.push(NumberedLoad {
+                named: None,
                 amplitude: amplitude.clone(),
                 force: NumberedForce::Dead(inertia_forces(direction, (bodies, unknowns), mass)),
                 bodies: Vec::new(),

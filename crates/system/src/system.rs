@@ -108,6 +108,8 @@ pub struct System {
     pub nonlinear: NumberedNonlinear,
     /// Coefficient of friction by contact.
     pub friction: Vec<f64>,
+    /// By contact: duration of a flight that ends an impact, s; `None` where waves and steps tell.
+    pub merge_within: Vec<Option<f64>>,
     /// By contact: what its moment is about; `None` where none is reported.
     pub moments: Vec<Option<MomentAbout>>,
     /// Initial rotations of the nodes that have any.

@@ -247,6 +247,7 @@ impl Run {
                 initial: Initial::Keep,
                 depth: None,
                 moment_about: None,
+                merge_within: None,
                 ..contact(secondary, primary, self.law)
             }],
             ..Model::new(bodies, mesh, self.scheme, self.dt())

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::obstacle::Obstacle;
 use super::output::ChannelClass;
 use carom_laws::GivenLaw;
-use carom_quantities::{Coordinate, Length, SurfaceDamping, SurfaceStiffness, Vector};
+use carom_quantities::{Coordinate, Duration, Length, SurfaceDamping, SurfaceStiffness, Vector};
 
 /// Contact between two surfaces, between a surface and a rigid obstacle, or of a surface with itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -47,6 +47,10 @@ pub struct Contact {
     /// Point, fixed in space, about which the moment of the contact force is written, as columns `contact.NAME.moment_x_n_m` … and with
     /// its largest magnitude in the summary. For two surfaces that share no nodes, in the plane and in space. Default: none.
     pub moment_about: Option<Vector<Coordinate>>,
+    /// Flights shorter than this belong to one impact: closings of a contact that chatters are one event in the table of impacts, with
+    /// one restitution. Default: the time in which a wave crosses the longer of the two bodies, or ten times the impact so far where
+    /// that is shorter; four steps at least.
+    pub merge_within: Option<Duration>,
     /// Mass of the nodes of the two surfaces.
     #[serde(default)]
     pub nodes: Nodes,

@@ -44,7 +44,7 @@ pub(super) fn add_tangent(
 }
 
 /// Factor of a load: one without a course of its own grows with gravity over the static stage.
-pub(super) fn factor(amplitude: &Amplitude, ramp: f64, time: f64) -> f64 {
+pub(crate) fn factor(amplitude: &Amplitude, ramp: f64, time: f64) -> f64 {
     match amplitude.is_constant() {
         true => ramp * amplitude.at(time),
         false => amplitude.at(time),

@@ -40,7 +40,7 @@ mod leapfrog;
 pub mod linked;
 mod linking;
 mod links;
-mod loads;
+pub(crate) mod loads;
 mod manner;
 mod matrices;
 mod mixing;

@@ -465,6 +465,7 @@ impl Driver {
             return Ok(());
         }
         self.state.motion.v.clone_from(&system.initial_velocity);
+        self.state.records.begin_dynamics();
         self.begin()?;
         if self.has_links() {
             self.begin_with_links()?;

@@ -73,6 +73,7 @@ fn sheared(secondary: usize) -> Driver {
             initial: Initial::Keep,
             depth: None,
             moment_about: None,
+            merge_within: None,
         }],
         discrete: Vec::new(),
         supports: vec![Support {

@@ -76,6 +76,7 @@ fn pressed(depth: f64, way: f64) -> Driver {
             initial: Initial::Keep,
             depth: None,
             moment_about: None,
+            merge_within: None,
         }],
         discrete: Vec::new(),
         supports: vec![Support {

@@ -159,6 +159,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         contacts: contacts::contacts(results),
         levels: contacts::levels(results),
         discrete: results.discrete.all(),
+        loads: results.loads.all(system),
         maxima: largest::maxima(results),
         energy,
         momentum,

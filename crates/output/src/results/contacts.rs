@@ -37,6 +37,7 @@ pub(crate) fn contacts(results: &Results) -> BTreeMap<String, Contact> {
             contact.name.clone(),
             Contact {
                 law: contact.law.get().name().to_owned(),
+                preload: totals.preload.filter(|_| !results.is_static()),
                 peak_force: record.peak_force,
                 peak_resultant: totals.resultant,
                 peak_moment: totals.moment,

@@ -103,7 +103,7 @@ impl Histories {
         &mut self,
         system: &System,
         (state, report): (&State, &StepReport),
-        point: Option<&ContactPoint>,
+        (point, loads): (Option<&ContactPoint>, &[[f64; 3]]),
     ) -> Result<(), Error> {
         if !self.is_due(report) {
             return Ok(());
@@ -152,6 +152,9 @@ impl Histories {
             row.extend(stress(system, probe, state).into_iter().flatten());
         }
         push_supports(system, report, row);
+        for load in loads {
+            row.extend(load[..dim].iter().copied().map(Cell::Number));
+        }
         let balance = &report.balance;
         let energies = [
             balance.kinetic,
@@ -441,6 +444,10 @@ pub(crate) fn columns(
         names.extend(components.iter().map(|i| add(format!("force {i}"), "N")));
         let turns = &COMPONENTS[moments(system)];
         names.extend(turns.iter().map(|i| add(format!("moment {i}"), "N m")));
+    }
+    for load in &system.nonlinear.load_names {
+        let of = |i: &&str| column(&["load", load, &format!("force {i}")], "N");
+        names.extend(components.iter().map(of));
     }
     let energies = [
         ["energy", "kinetic"],

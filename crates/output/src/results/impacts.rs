@@ -52,6 +52,8 @@ pub(crate) struct ContactTotals {
     pub(crate) closed: f64,
     /// Largest friction force of a step, N.
     pub(crate) peak_friction: f64,
+    /// Force at the end of the static stage, N; `None` without one.
+    pub(crate) preload: Option<f64>,
     /// Largest force as a vector.
     pub(crate) resultant: Option<PeakResultant>,
     /// Largest moment about the point that the contact names.
@@ -105,6 +107,7 @@ impl Impacts {
                 }),
                 closed: 0.0,
                 peak_friction: 0.0,
+                preload: None,
                 resultant: None,
                 moment: None,
             }
@@ -141,6 +144,11 @@ impl Impacts {
         state: &State,
         report: &StepReport,
     ) -> Result<(), Error> {
+        if report.step > 0 && report.step == system.static_steps() {
+            for (totals, contact) in self.told.contacts.iter_mut().zip(&report.contacts) {
+                totals.preload = Some(contact.force);
+            }
+        }
         let parts = report
             .parts()
             .filter(|_| report.step > system.static_steps());

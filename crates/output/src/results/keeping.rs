@@ -8,14 +8,15 @@ use serde::Deserialize;
 
 use super::due::Due;
 use super::{
-    Results, discrete, exact, fields, figures, histories, impacts, instants, page, stills, totals,
+    Results, discrete, exact, fields, figures, histories, impacts, instants, loads, page, stills,
+    totals,
 };
 use crate::checkpoint::{self, Checkpoint};
 use crate::results::Settings;
 use crate::{Error, Folder};
 
 /// What the results have gathered: bytes of the list of files, histories, impacts, fields, figures, kept instants, instants of largest forces,
-/// springs and dashpots, spectra, filtered accelerations, series and statuses of the page, errors against the exact solution, totals, wall time of the run.
+/// springs and dashpots, loads, spectra, filtered accelerations, series and statuses of the page, errors against the exact solution, totals, wall time of the run.
 #[derive(Deserialize)]
 struct Gathered(
     u64,
@@ -26,6 +27,7 @@ struct Gathered(
     stills::Kept,
     Vec<instants::Instant>,
     discrete::DiscretePeaks,
+    Vec<loads::LoadTotals>,
     Vec<Vec<Vec<[f64; 2]>>>,
     (Vec<f64>, Vec<Vec<f64>>),
     page::series::Series,
@@ -56,6 +58,7 @@ impl Results {
             kept,
             instants,
             discrete,
+            loads,
             spectra,
             filtered,
             series,
@@ -90,6 +93,7 @@ impl Results {
         results.stills.go_on(kept);
         results.instants.go_on(instants);
         results.discrete = discrete;
+        results.loads.totals = loads;
         results.spectra.go_on(spectra);
         results.filtered.go_on(filtered);
         results.series.series = series;
@@ -132,6 +136,7 @@ impl Results {
             self.stills.settled(&self.system),
             self.instants.kept(),
             &self.discrete,
+            &self.loads.totals,
             self.spectra.kept(),
             self.filtered.kept(),
             &self.series.series,

@@ -26,6 +26,7 @@ mod instants;
 mod keeping;
 mod largest;
 mod lines;
+mod loads;
 pub(crate) mod outlines;
 pub(crate) mod page;
 mod reduced;
@@ -52,6 +53,7 @@ use filtered::Filtered;
 use histories::Histories;
 use impacts::Impacts;
 use instants::Instants;
+use loads::Loads;
 use page::raster::RasterOf;
 use page::series::SeriesOf;
 use sensor::ContactPoint;
@@ -85,6 +87,7 @@ pub struct Results {
     raster: RasterOf,
     instants: Instants,
     discrete: DiscretePeaks,
+    loads: Loads,
     spectra: Spectra,
     filtered: Filtered,
     comparison: Option<Comparison>,
@@ -158,6 +161,7 @@ impl Results {
             raster: RasterOf::new(&system, settings.end),
             instants: Instants::new(&system, &settings.levels),
             discrete: DiscretePeaks::default(),
+            loads: Loads::default(),
             spectra,
             filtered,
             comparison: settings.reference.clone().map(Comparison::new),
@@ -186,12 +190,15 @@ impl Results {
         let finite = (report.balance.energy_residual + forces).is_finite();
         self.totals.not_finite += u64::from(!finite);
         let point = self.point.as_ref();
-        self.histories.push(&self.system, (state, report), point)?;
+        self.loads.push(&self.system, state, report);
+        let beside = (point, &self.loads.now[..]);
+        self.histories.push(&self.system, (state, report), beside)?;
         self.impacts.take(&self.system, state, report)?;
         self.curves.push(&self.system, state, report);
         self.stills.push(&self.system, state, report);
         self.series
             .push(&self.system, (state, report), &self.impacts.told.contacts);
+        self.series.push_loads(report.time, &self.loads.now);
         self.raster.push(&self.system, state, report);
         self.instants.push(&self.system, state, report);
         self.discrete.push(&self.system, state);

@@ -1,4 +1,4 @@
-//! What the summary says of contacts, springs and dashpots.
+//! What the summary says of contacts, springs, dashpots and loads.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +9,9 @@ use crate::statistics::Statistics;
 pub struct Contact {
     /// Contact law with its parameters, as text: `velocity, capture = half`.
     pub law: String,
+    /// Sum of the normal forces at the end of the static stage, with which the dynamics begins, N; absent without both.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preload: Option<f64>,
     /// Largest force of a single step, N. It does not converge with the mesh where the exact force jumps: read
     /// `peak_mean_force` beside it.
     pub peak_force: f64,
@@ -98,6 +101,19 @@ pub struct Discrete {
     pub time: f64,
     /// Largest magnitude of the mean elongation (m) of springs, of its rate (m/s) of dashpots.
     pub extent: f64,
+}
+
+/// Total force of a load on a surface or at nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Load {
+    /// Largest magnitude at the end of a step, N.
+    pub peak_force: f64,
+    /// The force then, N.
+    pub force: [f64; 3],
+    /// When, s.
+    pub time: f64,
+    /// Impulse over the dynamics, N s: of the forces at the ends of the steps, by the trapezoidal rule.
+    pub impulse: [f64; 3],
 }
 
 /// Coulomb friction of a contact.

@@ -16,7 +16,7 @@ use crate::statistics::Level;
 use crate::verdict::Verdict;
 use crate::{Error, atomic};
 
-pub use contact::{Contact, Discrete, Friction, PeakMoment, PeakResultant};
+pub use contact::{Contact, Discrete, Friction, Load, PeakMoment, PeakResultant};
 
 /// Everything that `summary.json` says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,6 +46,9 @@ pub struct Summary {
     /// One entry per spring and dashpot, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub discrete: BTreeMap<String, Discrete>,
+    /// One entry per load on a surface or at nodes, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub loads: BTreeMap<String, Load>,
     /// Largest values of the fields.
     #[serde(default)]
     pub maxima: Maxima,

@@ -48,8 +48,10 @@ fn sample(verdict: Verdict) -> Summary {
             ..summary::Time::default()
         },
         zones: None,
+        loads: BTreeMap::new(),
         contacts: BTreeMap::from([("shock".to_owned(), contact)]),
         levels: BTreeMap::new(),
+        loads: BTreeMap::new(),
         discrete: BTreeMap::new(),
         maxima: Default::default(),
         energy,

@@ -52,6 +52,7 @@ pub(crate) fn plots(sources: &Sources, block: &mut Block) -> Vec<Plot> {
     drafts.extend(motions(results));
     drafts.extend(probes(sources));
     drafts.extend(supports(results));
+    drafts.extend(loads(results));
     drafts.extend(energies(results));
     drafts.extend(residuals(sources));
     drafts.extend(sources.spectra.map(spectra));
@@ -235,13 +236,7 @@ fn probes(sources: &Sources) -> Vec<Draft> {
 /// Forces of all supports, and of each of the first ones, where they give any.
 fn supports(results: &Results) -> Vec<Draft> {
     let series = &results.series.series;
-    let of = |title: String, traces: &[Trace; 3]| {
-        let acts = |trace: &Trace| trace.points().iter().any(|p| p.1 != 0.0);
-        let lines = COMPONENTS.iter().zip(traces).take(results.system.dim);
-        let lines = lines.map(|(name, trace)| computed(*name, trace));
-        let draft = draft("plot-reaction", title, ("force", "N"), lines.collect());
-        traces.iter().any(acts).then_some(draft)
-    };
+    let of = |title, traces| along_axes(results, ("plot-reaction", title), traces);
     let all = "Force of all supports on the bodies, mean of each step";
     let named = results.system.supports.iter().zip(&series.named);
     let named = named.map(|(support, traces)| {
@@ -250,6 +245,33 @@ fn supports(results: &Results) -> Vec<Draft> {
     });
     let all = of(all.to_owned(), &series.supports);
     std::iter::once(all).chain(named).flatten().collect()
+}
+
+/// Total forces of the first loads.
+fn loads(results: &Results) -> Vec<Draft> {
+    let names = results.system.nonlinear.load_names.iter();
+    let each = names.zip(&results.series.series.loads);
+    let one = |(name, traces): (&String, &[Trace; 3])| {
+        along_axes(
+            results,
+            ("plot-load", format!("Force of the load {name}")),
+            traces,
+        )
+    };
+    each.filter_map(one).collect()
+}
+
+/// A force along the axes; none where it is zero.
+fn along_axes(
+    results: &Results,
+    (id, title): (&'static str, String),
+    traces: &[Trace; 3],
+) -> Option<Draft> {
+    let acts = |trace: &Trace| trace.points().iter().any(|p| p.1 != 0.0);
+    let lines = COMPONENTS.iter().zip(traces).take(results.system.dim);
+    let lines = lines.map(|(name, trace)| computed(*name, trace));
+    let draft = draft(id, title, ("force", "N"), lines.collect());
+    traces.iter().any(acts).then_some(draft)
 }
 
 /// Energies of the model, and the kinetic energy of each body at the kept instants.

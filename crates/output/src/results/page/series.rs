@@ -12,7 +12,7 @@ use crate::results::trace::Trace;
 const SAMPLES: usize = 1 << 19;
 const MOST: usize = 1 << 14;
 
-/// Supports with plots of their own, at most.
+/// Supports with plots of their own, at most, and loads.
 const NAMED: usize = 8;
 
 /// What is followed.
@@ -33,6 +33,8 @@ pub(crate) struct Series {
     pub(crate) supports: [Trace; 3],
     /// Force of each of the first named supports along the axes, N.
     pub(crate) named: Vec<[Trace; 3]>,
+    /// Total force of each of the first loads along the axes, N.
+    pub(crate) loads: Vec<[Trace; 3]>,
     /// Largest magnitude of a component of the residuals of linear momentum, N s.
     pub(crate) momentum_residual: Trace,
     /// Impulse of the supports so far, N s.
@@ -61,7 +63,9 @@ impl SeriesOf {
         let components: usize = probes.iter().map(Vec::len).sum();
         let named = system.supports.len().min(NAMED);
         let turning = system.moments.iter().flatten().count();
-        let count = 4 * system.contacts.len() + 3 * (turning + components + named) + 4;
+        let loads = system.nonlinear.load_names.len().min(NAMED);
+        let triples = turning + components + named + loads;
+        let count = 4 * system.contacts.len() + 3 * triples + 4;
         let limit = (SAMPLES / count).min(MOST);
         let trace = || Trace::of(limit);
         let contact = |about: &Option<_>| ContactSeries {
@@ -85,6 +89,7 @@ impl SeriesOf {
                 probes: probes.iter().map(of_probe).collect(),
                 supports: [trace(), trace(), trace()],
                 named: (0..named).map(|_| [trace(), trace(), trace()]).collect(),
+                loads: (0..loads).map(|_| [trace(), trace(), trace()]).collect(),
                 momentum_residual: trace(),
                 given: [0.0; 3],
             },
@@ -140,5 +145,14 @@ impl SeriesOf {
         let residual = report.balance.momentum_residual.linear;
         let residual = residual.iter().fold(0.0_f64, |most, r| most.max(r.abs()));
         series.momentum_residual.push(t, residual);
+    }
+
+    /// Adds the forces of the loads at the end of a step, at `time` (s).
+    pub(crate) fn push_loads(&mut self, time: f64, forces: &[[f64; 3]]) {
+        for (traces, force) in self.series.loads.iter_mut().zip(forces) {
+            for (trace, force) in traces.iter_mut().zip(force) {
+                trace.push(time, *force);
+            }
+        }
     }
 }
