@@ -84,7 +84,20 @@ impl Origin {
             }
         }
         problems.extend(self.end(case, time));
+        problems.extend(self.format(case));
         problems
+    }
+
+    /// Why the histories cannot go on as this case has them.
+    fn format(&self, case: &Case) -> Option<Problem> {
+        let path = "output.compress-histories";
+        let before = at(&self.case, path).as_bool().unwrap_or_default();
+        let now = case.output.compress_histories;
+        let message = "the histories of a run that goes on keep their format";
+        (before != now).then(|| {
+            let problem = Problem::new(path, message).found(now.to_string());
+            problem.accepted([before.to_string()])
+        })
     }
 
     /// Why the run cannot go on to the end of the case.

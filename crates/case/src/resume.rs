@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use carom_dynamics::Observer;
+use carom_dynamics::{Observer, Stepper};
 use carom_output::checkpoint::{self, Checkpoint};
 use carom_output::{Error, Folder};
 
@@ -25,6 +25,19 @@ pub struct Resume {
     origin: Origin,
     /// Why newer checkpoints are not used.
     pub unusable: Vec<Error>,
+}
+
+/// An observer of a run that takes no step.
+struct Silent;
+
+impl Observer for Silent {
+    fn accepted(&mut self, _: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
+        Ok(())
+    }
+
+    fn finish(&mut self, _: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
+        Ok(())
+    }
 }
 
 /// Why a run cannot go on.
@@ -86,6 +99,19 @@ impl Resume {
     /// Step and simulated time (s) of the checkpoint.
     pub fn instant(&self) -> (u64, f64) {
         (self.checkpoint.head.step, self.checkpoint.head.time)
+    }
+
+    /// Writes figures, report and summary as they are at the checkpoint. Histories, impacts and fields stay as they are, those after the
+    /// checkpoint included, and the run can go on as before.
+    ///
+    /// # Errors
+    /// As [`run`](crate::run()).
+    pub fn report(self) -> Result<Finished, Failed> {
+        let path = self.folder.path().to_owned();
+        let settings = settings((&self.input, &self.case, &self.built), path, &self.origin);
+        let begin = Begin::Review(self.checkpoint, self.folder);
+        let stop = &|| false;
+        march_from((&self.built, settings), begin, &mut Silent, stop)
     }
 
     /// Goes on to the end of the case, as [`run`](crate::run()).

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Driver, Observer, Outcome, State, Stepper, System, go_on, march};
+use carom_dynamics::{Driver, Observer, Outcome, State, Stepper, System, go_on, is_at_end, march};
 use carom_output::checkpoint::Checkpoint;
 use carom_output::summary::Zones;
 use carom_output::{
@@ -49,6 +49,8 @@ pub(crate) enum Begin {
     Start,
     /// From a checkpoint in an open results folder.
     Checkpoint(Box<Checkpoint>, Folder),
+    /// The same, to take no step and write its report.
+    Review(Box<Checkpoint>, Folder),
 }
 
 /// Runs a case into a results folder. `progress` sees every accepted state; `stop` is asked before every step.
@@ -79,24 +81,28 @@ pub(crate) fn march_from(
         zoned if !built.apart => {
             let mut driver = match &begin {
                 Begin::Start => Driver::new(system()).map_err(Failed::Start)?,
-                Begin::Checkpoint(saved, _) => driver_from(system(), saved)?,
+                Begin::Checkpoint(saved, _) | Begin::Review(saved, _) => {
+                    driver_from(system(), saved)?
+                }
             };
             let outcome = observed((&mut driver, built), (settings, begin), progress, stop)?;
             let zones = zoned.as_ref().map(|zoned| Zones::together(&driver, zoned));
-            conclude(outcome, (&driver, zones), now)
+            conclude(outcome, (&driver, zones), (now, built.end))
         }
         None => unreachable!("only zones step apart"),
         Some(zoned) => {
             let mut whole = match &begin {
                 Begin::Start => Whole::new(zoned, system()),
-                Begin::Checkpoint(saved, _) => Whole::resume(zoned, system(), &saved.state),
+                Begin::Checkpoint(saved, _) | Begin::Review(saved, _) => {
+                    Whole::resume(zoned, system(), &saved.state)
+                }
             }
             .map_err(|error| Failed::Start(error.into()))?;
-            if let Begin::Checkpoint(saved, _) = &begin {
+            if let Begin::Checkpoint(saved, _) | Begin::Review(saved, _) = &begin {
                 whole.add_earlier(&saved.costs()?);
             }
             let outcome = observed((&mut whole, built), (settings, begin), progress, stop)?;
-            conclude(outcome, (&whole, Some(Zones::of(&whole))), now)
+            conclude(outcome, (&whole, Some(Zones::of(&whole))), (now, built.end))
         }
     }
 }
@@ -120,15 +126,19 @@ fn observed(
     stop: &dyn Fn() -> bool,
 ) -> Result<Observed, Failed> {
     let system = Arc::clone(&built.system);
-    let (mut results, march): (Results, March) = match begin {
-        Begin::Start => (Results::create(settings, system)?, march),
+    let (mut results, march, end): (Results, March, f64) = match begin {
+        Begin::Start => (Results::create(settings, system)?, march, built.end),
         Begin::Checkpoint(saved, folder) => {
             let results = Results::resume(folder, &saved, settings, system)?;
-            (results, go_on)
+            (results, go_on, built.end)
+        }
+        Begin::Review(saved, folder) => {
+            let results = Results::review(folder, &saved, settings, system)?;
+            (results, go_on, f64::NEG_INFINITY)
         }
     };
     let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
-    let outcome = march(run, built.end, observers, stop);
+    let outcome = march(run, end, observers, stop);
     Ok((results, outcome))
 }
 
@@ -144,10 +154,17 @@ type March = fn(
 fn conclude(
     (mut results, outcome): Observed,
     (run, zones): (&dyn Stepper, Option<Zones>),
-    begin: Instant,
+    (begin, end): (Instant, f64),
 ) -> Result<Finished, Failed> {
     let unfinished = match &outcome {
-        Ok(Outcome::Done) => None,
+        // a report of a run that was cut is one of its checkpoint
+        Ok(Outcome::Done) => (!is_at_end(run, end)).then(|| {
+            format!(
+                "the run has not come to its end: this is its checkpoint of step {} at {:.6e} s",
+                run.state().step,
+                run.state().time
+            )
+        }),
         Ok(Outcome::Interrupted) => Some("the run was interrupted".to_string()),
         Err(error) => Some(error.to_string()),
     };
@@ -230,6 +247,7 @@ pub(crate) fn settings(
             .collect(),
         levels: built.levels.clone(),
         history_every: case.output.histories.map(|histories| histories.every.0),
+        compress_histories: case.output.compress_histories,
         fields: case.output.fields.as_ref().map(|fields| {
             let has = |field| fields.record.contains(&field);
             Fields {

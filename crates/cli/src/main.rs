@@ -1,4 +1,4 @@
-//! The executable: `carom run`, `resume`, `compare`, `study`, `modes`, `check`, `convert`, `schema`, `new`, `verify`, `completion`, `man`.
+//! The executable: `carom run`, `resume`, `report`, `compare`, `study`, `modes`, `check`, `convert`, `schema`, `new`, `verify`, `completion`, `man`.
 //!
 //! Exit codes: 0 done and the verdict `good` or `look`, 2 bad input, 3 the run failed with the last good state on disk, 4 done but
 //! the verdict bad, 130 interrupted. All that it prints goes through [`terminal`].
@@ -11,6 +11,7 @@ mod load;
 mod modes;
 mod new;
 mod progress;
+mod report;
 mod resume;
 mod run;
 mod study;
@@ -54,6 +55,8 @@ enum Command {
     Run(run::Arguments),
     /// Go on with a run that was cut, from the last checkpoint in its results folder
     Resume(resume::Arguments),
+    /// Write report, figures and summary of a results folder anew, from its last checkpoint: of a run that was killed too
+    Report(report::Arguments),
     /// Run a case under several schemes and contact laws: one table, one figure per quantity, one report
     Compare(compare::Arguments),
     /// Run a case over the values of a key, with orders of convergence; or find the value that gives a result
@@ -136,6 +139,7 @@ fn obey(arguments: Arguments) -> u8 {
     match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Resume(arguments) => resume::resume(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Study(arguments) => study::study(&arguments),
         Command::Modes(arguments) => modes::modes(&arguments),

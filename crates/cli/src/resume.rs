@@ -1,6 +1,6 @@
 //! `carom resume`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use carom_case::{NotResumed, Resume};
 use carom_output::Error;
@@ -34,20 +34,10 @@ pub struct Arguments {
 pub fn resume(arguments: &Arguments) -> u8 {
     let until = arguments.until.iter().map(|end| format!("time.end={end}"));
     let overrides: Vec<String> = arguments.set.iter().cloned().chain(until).collect();
-    let run = match Resume::open(&arguments.folder, &overrides) {
+    let run = match open(&arguments.folder, &overrides) {
         Ok(run) => run,
-        Err(NotResumed::Case(sources, problems)) => return refuse(&sources, &problems),
-        Err(NotResumed::Folder(error)) => {
-            err!("error: {}", line(&error.to_string()));
-            return match error {
-                Error::Busy { .. } => FAILED,
-                _ => BAD_INPUT,
-            };
-        }
+        Err(code) => return code,
     };
-    for error in &run.unusable {
-        err!("warning: {}", line(&error.to_string()));
-    }
     let (step, time) = run.instant();
     let time = quantity(time, "s");
     err!("going on from the checkpoint of step {step} at {time}");
@@ -55,4 +45,23 @@ pub fn resume(arguments: &Arguments) -> u8 {
         run.run(progress, stop)
     });
     end(ended, &arguments.folder, arguments.json)
+}
+
+/// The run of a results folder at its newest checkpoint that can be used; else the exit code, after the cause is told.
+pub fn open(folder: &Path, overrides: &[String]) -> Result<Resume, u8> {
+    let run = match Resume::open(folder, overrides) {
+        Ok(run) => run,
+        Err(NotResumed::Case(sources, problems)) => return Err(refuse(&sources, &problems)),
+        Err(NotResumed::Folder(error)) => {
+            err!("error: {}", line(&error.to_string()));
+            return Err(match error {
+                Error::Busy { .. } => FAILED,
+                _ => BAD_INPUT,
+            });
+        }
+    };
+    for error in &run.unusable {
+        err!("warning: {}", line(&error.to_string()));
+    }
+    Ok(run)
 }

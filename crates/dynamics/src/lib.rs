@@ -51,7 +51,7 @@ pub use impact::{Impact, NoRestitution};
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Tolerated};
 pub use load_forces::load_forces;
-pub use march::{FailedProblem, Observer, Outcome, Stepper, go_on, march, step_count};
+pub use march::{FailedProblem, Observer, Outcome, Stepper, go_on, is_at_end, march, step_count};
 pub use moment::moment;
 pub use records::{ContactRecord, Records};
 pub use report::{ContactReport, ContactSample, StepReport};

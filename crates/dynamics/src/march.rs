@@ -131,8 +131,7 @@ fn steps(
     observers: &mut [&mut dyn Observer],
     stop: &dyn Fn() -> bool,
 ) -> Result<Outcome, Error> {
-    let end = end - 1e-6 * run.system().dt;
-    while run.state().time < end {
+    while !is_at_end(run, end) {
         if stop() {
             return Ok(Outcome::Interrupted);
         }
@@ -140,6 +139,11 @@ fn steps(
         tell(run, observers)?;
     }
     Ok(Outcome::Done)
+}
+
+/// Whether a run has come to its end time (s), up to rounding of the sum of its steps.
+pub fn is_at_end(run: &dyn Stepper, end: f64) -> bool {
+    run.state().time >= end - 1e-6 * run.system().dt
 }
 
 /// Number of equal steps of length `dt` to the end time.

@@ -1,18 +1,26 @@
-//! A CSV file that grows by complete rows.
+//! A CSV file that grows by complete rows, compressed where its name ends with `.gz`.
 //!
 //! Rows are gathered in memory and appended in one piece. If an append fails half-way (disk full, file-size limit),
 //! the file is cut back to the end of its last complete row, so that what is on the disk can always be read; the rows
 //! not written stay in memory and the next flush tries them again.
+//!
+//! A compressed file is a sequence of gzip members (RFC 1952), one for each flush, with complete rows in each: it can be read up to its
+//! last complete member whenever the run is cut, and be cut back to any of them.
 
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
 use crate::{Error, atomic};
 
 /// Rows are handed to the system when they fill this many bytes ...
 const FLUSH_BYTES: usize = 64 * 1024;
+/// ... those of a compressed file this many, since each piece is compressed by itself ...
+const MEMBER_BYTES: usize = 1024 * 1024;
 /// ... or when the last time is this long ago, so that a running case can be watched.
 const FLUSH_TIME: Duration = Duration::from_secs(1);
 
@@ -22,6 +30,7 @@ pub struct Rows {
     path: PathBuf,
     file: File,
     columns: usize,
+    compressed: bool,
     /// Length of the file, all of it complete rows.
     length: u64,
     pending: Vec<u8>,
@@ -42,6 +51,7 @@ impl Rows {
             path: path.to_owned(),
             file: atomic::create(path)?,
             columns: names.len(),
+            compressed: is_compressed(path),
             length: 0,
             pending: Vec::new(),
             row_lengths: Vec::new(),
@@ -76,6 +86,7 @@ impl Rows {
             path: path.to_owned(),
             file,
             columns,
+            compressed: is_compressed(path),
             length,
             pending: Vec::new(),
             row_lengths: Vec::new(),
@@ -108,7 +119,12 @@ impl Rows {
         }
         self.pending.push(b'\n');
         self.row_lengths.push(self.pending.len() - start);
-        if self.pending.len() >= FLUSH_BYTES || self.flushed.elapsed() >= FLUSH_TIME {
+        let most = if self.compressed {
+            MEMBER_BYTES
+        } else {
+            FLUSH_BYTES
+        };
+        if self.pending.len() >= most || self.flushed.elapsed() >= FLUSH_TIME {
             self.flush()?;
         }
         Ok(())
@@ -120,6 +136,9 @@ impl Rows {
     /// [`Error::File`]; the file then ends with the last row that fitted whole.
     pub fn flush(&mut self) -> Result<(), Error> {
         self.flushed = Instant::now();
+        if self.compressed {
+            return self.flush_member();
+        }
         let (written, outcome) = append(&mut self.file, &self.pending);
         let mut complete = 0;
         let mut rows = 0;
@@ -133,6 +152,30 @@ impl Rows {
         let Err(cause) = outcome else { return Ok(()) };
         // The first cause is the one to report; if cutting fails too, the file ends with a part of a row.
         if written > complete && self.file.set_len(self.length).is_ok() {
+            let _ = self.file.seek(SeekFrom::Start(self.length));
+        }
+        Err(Error::file("write", &self.path)(cause))
+    }
+
+    /// Appends all rows as one member; none where the file system does not take it whole.
+    fn flush_member(&mut self) -> Result<(), Error> {
+        if self.pending.is_empty() {
+            return Ok(());
+        }
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
+        let member = encoder
+            .write_all(&self.pending)
+            .and_then(|()| encoder.finish());
+        let member = member.map_err(Error::file("write", &self.path))?;
+        let (written, outcome) = append(&mut self.file, &member);
+        let Err(cause) = outcome else {
+            self.length += written as u64;
+            self.pending.clear();
+            self.row_lengths.clear();
+            return Ok(());
+        };
+        // The first cause is the one to report; if cutting fails too, the file ends with a part of a member.
+        if written > 0 && self.file.set_len(self.length).is_ok() {
             let _ = self.file.seek(SeekFrom::Start(self.length));
         }
         Err(Error::file("write", &self.path)(cause))
@@ -163,6 +206,10 @@ impl Drop for Rows {
     fn drop(&mut self) {
         let _ = self.flush();
     }
+}
+
+fn is_compressed(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "gz")
 }
 
 /// Refuses two columns of one name.

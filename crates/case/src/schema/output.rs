@@ -139,6 +139,10 @@ pub struct Output {
     pub fields: Option<Fields>,
     /// Rows of `histories.csv`. Default: one for every step.
     pub histories: Option<Histories>,
+    /// Whether the histories are compressed, as `histories.csv.gz` and `contact.csv.gz`: a third to a tenth of the size. A run that goes
+    /// on keeps the format.
+    #[serde(default)]
+    pub compress_histories: bool,
     /// Checkpoints, from which `carom resume` goes on. One is always written at the end of a run. Default: one every 60 s of wall
     /// time, two kept.
     pub checkpoint: Option<Checkpoint>,

@@ -6,6 +6,7 @@
 mod checks;
 mod compare;
 mod defaults;
+mod events;
 mod grades;
 mod large;
 mod losses;

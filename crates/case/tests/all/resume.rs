@@ -321,3 +321,76 @@ fn a_ring_holds_the_newest_checkpoints() {
     }
     assert!(!folder.join(checkpoint::name(3)).exists());
 }
+
+/// What is in a compressed table.
+fn unpacked(path: &Path) -> String {
+    let file = fs::File::open(path).unwrap();
+    let mut text = String::new();
+    let mut decoder = flate2::read::MultiGzDecoder::new(file);
+    std::io::Read::read_to_string(&mut decoder, &mut text).unwrap();
+    text
+}
+
+#[test]
+fn compressed_histories_go_on_without_gap_or_duplicate() {
+    let work = tempfile::tempdir().unwrap();
+    let file = cases().join("two-bars/case.toml");
+    let plain = work.path().join("plain.carom");
+    assert!(run(&Input::read(&file, &[]).unwrap(), &plain, u64::MAX));
+    let expected = fs::read_to_string(plain.join("histories.csv")).unwrap();
+    let packed = work.path().join("packed.carom");
+    let input = Input::read(&file, &words(&["output.compress-histories=true"])).unwrap();
+    assert!(!run(&input, &packed, 30));
+    let told = refused(&packed, &["output.compress-histories=false"]);
+    assert!(told[0].contains("keep their format"), "{told:?}");
+    let path = packed.join("histories.csv.gz");
+    let cut = unpacked(&path);
+    assert!(expected.starts_with(&cut) && cut.lines().count() == 32, "{cut}");
+    // what a run has written after its last checkpoint, when it was killed
+    let mut bytes = fs::read(&path).unwrap();
+    let more = bytes[..bytes.len() / 2].to_vec();
+    bytes.extend(more);
+    fs::write(&path, bytes).unwrap();
+    open(&packed, &[]).run(&mut Nobody, &|| false).unwrap();
+    assert!(unpacked(&path) == expected);
+    assert!(!packed.join("histories.csv").exists());
+}
+
+#[test]
+fn a_report_made_from_the_checkpoint_is_that_of_the_run() {
+    let work = tempfile::tempdir().unwrap();
+    let input = Input::read(&cases().join("two-bars/case.toml"), &[]).unwrap();
+    let made = ["report.html", "summary.json", "plots/contact.svg"];
+    for steps in [u64::MAX, 30] {
+        let folder = work.path().join("results.carom");
+        run(&input, &folder, steps);
+        let before = content(&folder);
+        for name in made {
+            fs::remove_file(folder.join(name)).unwrap();
+        }
+        let summary = open(&folder, &[]).report().unwrap().summary;
+        let after = content(&folder);
+        let cut = steps == 30;
+        assert_eq!(summary.verdict.unfinished.is_some(), cut, "{summary:?}");
+        for (name, bytes) in &before {
+            // the run was interrupted, its report says that it has not come to its end
+            if !(cut && made[..2].contains(&name.as_str())) {
+                assert!(after[name] == *bytes, "{name} differs after {steps}");
+            }
+        }
+        let [one, other] = [&before, &after].map(|files| {
+            let all: serde_json::Value = serde_json::from_slice(&files["summary.json"]).unwrap();
+            ["contacts", "energy", "momentum", "maxima", "time"].map(|key| all[key].clone())
+        });
+        assert_eq!(one, other);
+    }
+    // and the run goes on as if nothing had been
+    let folder = work.path().join("results.carom");
+    open(&folder, &[]).run(&mut Nobody, &|| false).unwrap();
+    let whole = work.path().join("whole.carom");
+    run(&input, &whole, u64::MAX);
+    let [one, other] = [&folder, &whole].map(|folder| content(folder));
+    for (name, bytes) in &one {
+        assert!(other[name] == *bytes, "{name} differs");
+    }
+}

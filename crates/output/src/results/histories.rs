@@ -19,8 +19,18 @@ use crate::results::{Probe, Settings, Zoning};
 use crate::rows::{Cell, unique};
 use crate::{Error, Folder, History};
 
-pub(super) const FILE: &str = "histories.csv";
-pub(super) const CONTACT_FILE: &str = "contact.csv";
+const FILE: &str = "histories.csv";
+const CONTACT_FILE: &str = "contact.csv";
+
+/// Names of the two files.
+pub(super) fn files(settings: &Settings) -> [String; 2] {
+    let ending = if settings.compress_histories {
+        ".gz"
+    } else {
+        ""
+    };
+    [FILE, CONTACT_FILE].map(|name| name.to_owned() + ending)
+}
 
 /// Names of a motion with its unit, in the order displacement, velocity, acceleration.
 const MOTIONS: [(&str, &str); 3] = [
@@ -67,8 +77,8 @@ impl Histories {
             Some(lengths) => History::go_on(path, columns.len(), lengths[file]),
             None => History::create(path, columns),
         };
-        let path = folder.file(FILE)?;
-        let probes = settings.probes.iter().cloned();
+        let [name, contact_name] = files(settings);
+        let path = folder.file(&name)?;
         let zoning = settings.zoning.as_ref();
         let contact = match zoning.is_some_and(Zoning::has_parts) && !system.contacts.is_empty() {
             true => {
@@ -76,19 +86,31 @@ impl Histories {
                 for k in 0..system.contacts.len() {
                     names.extend(contact_columns(system, k));
                 }
-                Some(open(&folder.file(CONTACT_FILE)?, &names, 1)?)
+                Some(open(&folder.file(&contact_name)?, &names, 1)?)
             }
             false => None,
         };
         Ok(Histories {
             file: Some(open(&path, columns, 0)?),
             contact,
-            links: zoning.is_some(),
-            probes: probes.zip(sensors).collect(),
             row: Vec::with_capacity(columns.len()),
-            every: settings.history_every,
             since: since.unwrap_or_default(),
+            ..Histories::closed(settings, sensors)
         })
+    }
+
+    /// Without files: those that are there stay as they are. `sensors`: of each probe.
+    pub(crate) fn closed(settings: &Settings, sensors: Vec<Vec<Sensor>>) -> Histories {
+        let probes = settings.probes.iter().cloned();
+        Histories {
+            file: None,
+            contact: None,
+            links: settings.zoning.is_some(),
+            probes: probes.zip(sensors).collect(),
+            row: Vec::new(),
+            every: settings.history_every,
+            since: Since::default(),
+        }
     }
 
     /// Forces all rows to the disk; what the files go on from.

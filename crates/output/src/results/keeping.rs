@@ -12,17 +12,20 @@ use super::{
     totals,
 };
 use crate::checkpoint::{self, Checkpoint};
-use crate::results::Settings;
+use crate::results::{Settings, Tables};
 use crate::{Error, Folder};
 
-/// What the results have gathered: bytes of the list of files, histories, impacts, fields, figures, kept instants, instants of largest forces,
-/// springs and dashpots, loads, spectra, filtered accelerations, series and statuses of the page, errors against the exact solution, totals, wall time of the run.
+/// What the results have gathered: of the files, and beside them.
 #[derive(Deserialize)]
-struct Gathered(
-    u64,
-    histories::Kept,
-    impacts::Kept,
-    Option<fields::Sent>,
+struct Gathered(Files, Beside);
+
+/// Bytes of the list of files, histories, impacts, fields.
+type Files = (u64, histories::Kept, impacts::Kept, Option<fields::Sent>);
+
+/// Figures, kept instants, instants of largest forces, springs and dashpots, loads, spectra, filtered accelerations, series and statuses
+/// of the page, errors against the exact solution, totals, wall time of the run.
+#[derive(Deserialize)]
+struct Beside(
     figures::Traces,
     stills::Kept,
     Vec<instants::Instant>,
@@ -49,27 +52,11 @@ impl Results {
         settings: Settings,
         system: Arc<System>,
     ) -> Result<Results, Error> {
-        let Gathered(
-            listed,
-            histories,
-            impacts,
-            sent,
-            traces,
-            kept,
-            instants,
-            discrete,
-            loads,
-            spectra,
-            filtered,
-            series,
-            raster,
-            errors,
-            totals,
-            wall,
-        ) = checkpoint.gathered()?;
+        let Gathered((listed, histories, impacts, sent), beside) = checkpoint.gathered()?;
+        let [history, contact] = histories::files(&settings);
         let tables = [
-            (histories::FILE, histories.0[0]),
-            (histories::CONTACT_FILE, histories.0[1]),
+            (history.as_str(), histories.0[0]),
+            (contact.as_str(), histories.0[1]),
             (impacts::FILE, impacts.0),
         ];
         for (name, expected) in tables {
@@ -84,27 +71,66 @@ impl Results {
             }
         }
         folder.cut_back(listed)?;
-        let mut results = Results::with(
-            (settings, system),
-            folder,
-            (Some(histories), Some(impacts), sent.unwrap_or_default()),
-        )?;
-        results.curves.go_on(traces);
-        results.stills.go_on(kept);
-        results.instants.go_on(instants);
-        results.discrete = discrete;
-        results.loads.totals = loads;
-        results.spectra.go_on(spectra);
-        results.filtered.go_on(filtered);
-        results.series.series = series;
-        results.raster.go_on(raster);
-        if let (Some(comparison), Some(errors)) = (&mut results.comparison, errors) {
+        let tables = Tables::GoOn(histories, impacts, sent.unwrap_or_default());
+        let mut results = Results::with((settings, system), folder, tables)?;
+        results.recall(beside, checkpoint);
+        Ok(results)
+    }
+
+    /// Opens the results of a run at a checkpoint to write its figures, report and summary anew. Tables and fields stay as they are,
+    /// those after the checkpoint included, and no checkpoint is written. `run` of the same checkpoint is to be gone on with to no further
+    /// time.
+    ///
+    /// # Errors
+    /// [`Error::Checkpoint`]; [`Error::File`].
+    pub fn review(
+        mut folder: Folder,
+        checkpoint: &Checkpoint,
+        mut settings: Settings,
+        system: Arc<System>,
+    ) -> Result<Results, Error> {
+        let Gathered((_, _, impacts, _), beside) = checkpoint.gathered()?;
+        let listed = folder.listed()?;
+        folder.cut_back(listed)?;
+        settings.fields = None;
+        let tables = Tables::Closed(impacts.1);
+        let mut results = Results::with((settings, system), folder, tables)?;
+        results.broken = true;
+        results.recall(beside, checkpoint);
+        Ok(results)
+    }
+
+    /// Takes what was gathered until a checkpoint.
+    fn recall(&mut self, beside: Beside, checkpoint: &Checkpoint) {
+        let Beside(
+            traces,
+            kept,
+            instants,
+            discrete,
+            loads,
+            spectra,
+            filtered,
+            series,
+            raster,
+            errors,
+            totals,
+            wall,
+        ) = beside;
+        self.curves.go_on(traces);
+        self.stills.go_on(kept);
+        self.instants.go_on(instants);
+        self.discrete = discrete;
+        self.loads.totals = loads;
+        self.spectra.go_on(spectra);
+        self.filtered.go_on(filtered);
+        self.series.series = series;
+        self.raster.go_on(raster);
+        if let (Some(comparison), Some(errors)) = (&mut self.comparison, errors) {
             comparison.errors = errors;
         }
-        results.totals = totals;
-        results.earlier = wall;
-        results.due = Due::from(checkpoint.head.time);
-        Ok(results)
+        self.totals = totals;
+        self.earlier = wall;
+        self.due = Due::from(checkpoint.head.time);
     }
 
     /// Writes a checkpoint if one is due.

@@ -103,6 +103,16 @@ pub struct Results {
     earlier: Duration,
 }
 
+/// What is done with the tables of the folder.
+enum Tables {
+    /// They are made.
+    New,
+    /// Those of a run that goes on are appended to, and so are the fields.
+    GoOn(histories::Kept, impacts::Kept, fields::Sent),
+    /// They stay as they are.
+    Closed(impacts::Told),
+}
+
 impl Results {
     /// Creates the folder, copies the case into it and opens the tables.
     ///
@@ -117,21 +127,23 @@ impl Results {
         histories::columns(&system, &settings, point.as_ref())?;
         // what is wrong with the settings is found before there is a folder
         let folder = Folder::create(&settings.folder)?;
-        Results::with((settings, system), folder, Default::default())
+        Results::with((settings, system), folder, Tables::New)
     }
 
-    /// Writes the case into the folder and opens the tables, those of a run that goes on at what was kept.
+    /// Opens the tables; writes the case into the folder, unless they are closed.
     fn with(
         (settings, system): (Settings, Arc<System>),
         mut folder: Folder,
-        (kept, told, sent): (Option<histories::Kept>, Option<impacts::Kept>, fields::Sent),
+        tables: Tables,
     ) -> Result<Results, Error> {
         let point = sensor::contact_point(&system, settings.reference.as_ref(), None);
         let probes = settings.probes.iter();
         let probes = probes.map(|probe| sensor::of_probe(&system, probe));
         let probes = probes.collect::<Result<Vec<_>, Error>>()?;
         let columns = histories::columns(&system, &settings, point.as_ref())?;
-        atomic::write_text(&folder.file("case.toml")?, &settings.case_text)?;
+        if !matches!(tables, Tables::Closed(_)) {
+            atomic::write_text(&folder.file("case.toml")?, &settings.case_text)?;
+        }
         for place in 0..settings.checkpoints.keep {
             folder.file(&checkpoint::name(place))?;
         }
@@ -139,11 +151,23 @@ impl Results {
         let spectra = Spectra::new(&settings, &probes);
         let filtered = Filtered::new(&system, &settings, &probes);
         let series = SeriesOf::new(&system, &probes);
-        let histories =
-            Histories::create(&mut folder, &columns, (&system, &settings), (probes, kept))?;
-        let impacts = match told {
-            Some(told) => Impacts::go_on(&mut folder, told)?,
-            None => Impacts::create(&mut folder, &system, settings.zoning.as_ref())?,
+        let beside = (&*system, &settings);
+        let (histories, impacts, sent) = match tables {
+            Tables::New => (
+                Histories::create(&mut folder, &columns, beside, (probes, None))?,
+                Impacts::create(&mut folder, &system, settings.zoning.as_ref())?,
+                fields::Sent::default(),
+            ),
+            Tables::GoOn(kept, told, sent) => (
+                Histories::create(&mut folder, &columns, beside, (probes, Some(kept)))?,
+                Impacts::go_on(&mut folder, told)?,
+                sent,
+            ),
+            Tables::Closed(told) => (
+                Histories::closed(&settings, probes),
+                Impacts::closed(told),
+                fields::Sent::default(),
+            ),
         };
         let fields = match &settings.fields {
             Some(fields) => Some(FieldOutput::create(

@@ -37,6 +37,8 @@ pub struct Settings {
     pub levels: Vec<LevelSettings>,
     /// Time between two rows of `histories.csv`, s; `None`: a row for every step.
     pub history_every: Option<f64>,
+    /// Whether `histories.csv` and `contact.csv` are compressed, with `.gz` after their names.
+    pub compress_histories: bool,
     /// Fields for ParaView; `None`: none.
     pub fields: Option<Fields>,
     /// Exact solution to compare with.

@@ -150,6 +150,7 @@ pub fn settings(folder: &Path) -> Settings {
         contact_filters: Default::default(),
         levels: Vec::new(),
         history_every: None,
+        compress_histories: false,
         fields: None,
         reference: None,
         zoning: None,

@@ -225,3 +225,44 @@ fn a_file_size_limit_leaves_complete_rows_and_names_the_file() {
         assert_eq!(found, [step as f64 / 3.0, step as f64]);
     }
 }
+
+#[test]
+fn a_compressed_table_has_the_rows_of_a_plain_one_and_is_read_up_to_its_last_member() {
+    use std::io::Read;
+    let folder = tempfile::tempdir().unwrap();
+    let [plain, packed] = ["a.csv", "a.csv.gz"].map(|name| folder.path().join(name));
+    let read = |path: &Path| {
+        let (mut text, file) = (String::new(), std::fs::File::open(path).unwrap());
+        let outcome = flate2::read::MultiGzDecoder::new(file).read_to_string(&mut text);
+        (text, outcome.is_ok())
+    };
+    let row = |k: usize| [k as f64, (k as f64).sqrt()];
+    let push = |table: &mut History, rows: std::ops::Range<usize>| {
+        rows.for_each(|k| table.push(&row(k)).unwrap());
+    };
+    let names = ["time_s", "root"];
+    let mut tables = [&plain, &packed].map(|path| History::create(path, &names).unwrap());
+    let [_, kept] = tables.each_mut().map(|table| {
+        push(table, 0..500);
+        table.sync().unwrap()
+    });
+    let half = std::fs::read_to_string(&plain).unwrap();
+    assert_eq!(read(&packed), (half.clone(), true));
+    // a kill in the middle of a write leaves a part of a member
+    push(&mut tables[1], 500..900);
+    tables[1].flush().unwrap();
+    let whole = std::fs::read(&packed).unwrap();
+    assert!(whole.len() as u64 > kept && whole.len() < half.len());
+    std::fs::write(&packed, &whole[..whole.len() - 9]).unwrap();
+    let (text, complete) = read(&packed);
+    assert!(!complete && text.starts_with(&half));
+    // cut back to the checkpoint, it goes on like the plain one
+    let mut table = History::go_on(&packed, 2, kept).unwrap();
+    for table in [&mut table, &mut tables[0]] {
+        push(table, 500..1000);
+        table.flush().unwrap();
+    }
+    let text = std::fs::read_to_string(&plain).unwrap();
+    assert_eq!(text.lines().count(), 1001);
+    assert_eq!(read(&packed), (text, true));
+}
