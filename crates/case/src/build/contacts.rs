@@ -389,7 +389,7 @@ impl Sides {
 }
 
 /// Whether a side of a contact has quadratic faces.
-fn has_quadratic_faces(secondary: &Surface, primary: &ModelTarget) -> bool {
+pub(super) fn has_quadratic_faces(secondary: &Surface, primary: &ModelTarget) -> bool {
     let primary = match primary {
         ModelTarget::Surface(surface) => &surface.faces[..],
         ModelTarget::Rigid(_) => &[],
@@ -424,7 +424,7 @@ fn integration(given: schema::Integration, law: &Law, sides: &[Side]) -> Integra
     Integration::Weak { r }
 }
 
-fn mortar(basis: Basis) -> Integration {
+pub(super) fn mortar(basis: Basis) -> Integration {
     Integration::Mortar {
         basis: match basis {
             Basis::Dual => carom_contact::Basis::Dual,

@@ -61,6 +61,35 @@ pub struct Contact {
     pub filter: Vec<ChannelClass>,
 }
 
+/// General contact: the outer sides of all bodies of cells, in the plane and in space, each body with each other; bodies at finite strain
+/// with themselves too. Pairs of bodies that a contact of `[contact]` joins, or that share nodes, are left out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct GeneralContact {
+    /// Contact law of pairs of materials that have none of their own.
+    pub law: GivenLaw,
+    /// Friction of pairs of materials that have none of their own. Default: none.
+    pub friction: Option<Friction>,
+    /// Largest penetration that counts as contact. Default: the least thickness of a cell at the outer sides of the two bodies.
+    pub depth: Option<Length>,
+    /// What is different between two materials.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pairs: Vec<MaterialPair>,
+}
+
+/// Law and friction between bodies of two materials.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("anyOf" = [{ "required": ["law"] }, { "required": ["friction"] }]))]
+pub struct MaterialPair {
+    /// The two materials, in any order; the same twice for bodies of one material.
+    pub materials: [String; 2],
+    /// Contact law. Default: that of the general contact.
+    pub law: Option<GivenLaw>,
+    /// Friction. Default: that of the general contact.
+    pub friction: Option<Friction>,
+}
+
 /// Friction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

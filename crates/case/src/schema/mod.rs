@@ -44,8 +44,8 @@ pub use carom_quantities::{
 };
 pub use carom_schemes::Scheme;
 pub use contact::{
-    Basis, Contact, Friction, Integration, IntegrationName, IntegrationWith, Mortar, Nodes,
-    Penetration, Sliding,
+    Basis, Contact, Friction, GeneralContact, Integration, IntegrationName, IntegrationWith,
+    MaterialPair, Mortar, Nodes, Penetration, Sliding,
 };
 pub use discrete::{Dashpot, DashpotPoint, Ends, PointMass, Spring, SpringPoint, Stop};
 pub use explicit::{BulkViscosity, Deletion, MassScaling};
@@ -143,6 +143,9 @@ pub struct Case {
     /// Contacts, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub contact: Named<Contact>,
+    /// Contact of all outer sides, by pairs of bodies; a pair of the bodies `a` and `b` has the name `all-a-b`, a body with itself `all-a`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub general_contact: Option<GeneralContact>,
     /// Zones, by name: parts with their own scheme and step.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub zone: Named<Zone>,

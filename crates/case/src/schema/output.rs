@@ -139,7 +139,7 @@ pub struct Output {
     pub fields: Option<Fields>,
     /// Rows of `histories.csv`. Default: one for every step.
     pub histories: Option<Histories>,
-    /// Whether the histories are compressed, as `histories.csv.gz` and `contact.csv.gz`: a third to a tenth of the size. A run that goes
+    /// Whether the histories are compressed, as `histories.csv.gz` and `contact.csv.gz`: some 30 % of the size. A run that goes
     /// on keeps the format.
     #[serde(default)]
     pub compress_histories: bool,

@@ -93,7 +93,10 @@ fn flights_shorter_than_the_time_given_are_within_one_impact() {
 
 #[test]
 fn a_line_has_no_moments() {
-    let text = PRESSED.replace("moment-about = [0.1, 0.05]", "moment-about = [0.1, 0.05, 1.0]");
+    let text = PRESSED.replace(
+        "moment-about = [0.1, 0.05]",
+        "moment-about = [0.1, 0.05, 1.0]",
+    );
     let input = carom_case::Input::from_text("case.toml", &text, &[]);
     let (case, locator) = carom_case::parse(&input).unwrap();
     let problems = carom_case::build(&case, &locator, &input).err().unwrap();

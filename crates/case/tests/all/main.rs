@@ -7,6 +7,7 @@ mod checks;
 mod compare;
 mod defaults;
 mod events;
+mod general;
 mod grades;
 mod large;
 mod losses;

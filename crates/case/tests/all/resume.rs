@@ -345,7 +345,10 @@ fn compressed_histories_go_on_without_gap_or_duplicate() {
     assert!(told[0].contains("keep their format"), "{told:?}");
     let path = packed.join("histories.csv.gz");
     let cut = unpacked(&path);
-    assert!(expected.starts_with(&cut) && cut.lines().count() == 32, "{cut}");
+    assert!(
+        expected.starts_with(&cut) && cut.lines().count() == 32,
+        "{cut}"
+    );
     // what a run has written after its last checkpoint, when it was killed
     let mut bytes = fs::read(&path).unwrap();
     let more = bytes[..bytes.len() / 2].to_vec();

@@ -180,3 +180,35 @@ fn what_is_no_run_is_refused_with_its_cause() {
         assert!(text(&output).contains(message), "{}", text(&output));
     }
 }
+
+#[test]
+fn a_run_that_was_killed_has_a_report_and_goes_on_with_the_same_bytes() {
+    let whole = tempfile::tempdir().unwrap();
+    case(whole.path());
+    assert_eq!(start(whole.path()).wait().unwrap().code(), Some(0));
+    let cut = tempfile::tempdir().unwrap();
+    case(cut.path());
+    let mut child = start(cut.path());
+    await_checkpoint(cut.path());
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let folder = cut.path().join("case.carom");
+    assert!(!folder.join("report.html").exists());
+    let rows = fs::read(folder.join("histories.csv")).unwrap();
+    let output = carom(cut.path(), &["report", "case.carom"]);
+    // the verdict on a run that has not come to its end is bad
+    assert_eq!(output.status.code(), Some(4), "{}", text(&output));
+    assert!(text(&output).contains("has not come to its end"));
+    let report = fs::read_to_string(folder.join("report.html")).unwrap();
+    assert!(report.contains("has not come to its end"));
+    assert!(fs::read(folder.join("histories.csv")).unwrap() == rows);
+    let output = carom(cut.path(), &["resume", "case.carom"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    assert_same(&whole.path().join("case.carom"), &folder);
+    // and one that has come to its end has the report that it had
+    let before = fs::read(folder.join("report.html")).unwrap();
+    let output = carom(cut.path(), &["report", "case.carom", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let after = fs::read(folder.join("report.html")).unwrap();
+    assert!(after.len().abs_diff(before.len()) < before.len() / 100);
+}
