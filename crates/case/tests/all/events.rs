@@ -92,7 +92,7 @@ fn flights_shorter_than_the_time_given_are_within_one_impact() {
 }
 
 #[test]
-fn a_line_has_no_moments() {
+fn a_point_out_of_the_plane_is_told() {
     let text = PRESSED.replace(
         "moment-about = [0.1, 0.05]",
         "moment-about = [0.1, 0.05, 1.0]",
@@ -102,5 +102,5 @@ fn a_line_has_no_moments() {
     let problems = carom_case::build(&case, &locator, &input).err().unwrap();
     let told = problems[0].to_string();
     assert!(told.contains("contact.ground.moment-about"), "{told}");
-    assert!(told.contains("beyond the two"), "{told}");
+    assert!(told.contains("beyond the 2 dimensions"), "{told}");
 }
