@@ -48,7 +48,6 @@ fn sample(verdict: Verdict) -> Summary {
             ..summary::Time::default()
         },
         zones: None,
-        loads: BTreeMap::new(),
         contacts: BTreeMap::from([("shock".to_owned(), contact)]),
         levels: BTreeMap::new(),
         loads: BTreeMap::new(),
