@@ -28,12 +28,15 @@ mod repeat;
 mod resume;
 mod rules;
 mod run;
+mod simulation;
 mod study;
 mod sweep;
 mod tree;
 mod validate;
 
-pub use build::{Built, BuiltOverlap, BuiltProbe, ExactReference, build};
+pub use build::{
+    AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, build, build_with,
+};
 pub use compare::{Choices, compare};
 pub use convert::{NotConverted, convert};
 pub use error::{Place, Problem};
@@ -49,5 +52,6 @@ pub use parse::parse;
 pub use reference::reference_page;
 pub use resume::{NotResumed, Resume};
 pub use run::{Failed, Finished, run};
+pub use simulation::Simulation;
 pub use study::{Axis, study};
 pub use sweep::{Sweep, SweepError};
