@@ -57,6 +57,7 @@ class Case(MutableMapping[str, Any]):
         self._name = ""
         self._text: str | None = None
         self._tables: dict[str, Any] = {}
+        self._read: dict[str, Any] = {}
         base: Path | str = ""
         if isinstance(source, Mapping):
             self._tables = copy.deepcopy(dict(source))

@@ -182,7 +182,8 @@ def _dense(
         found, closed, passes = _carom.solve_normal(small, gaps)
         statuses, counts = np.where(closed, SLIP, OPEN), (passes, 0)
     else:
-        found, statuses, counts = _carom.solve_friction(small, gaps, list(mu), rules)
+        found, told, counts = _carom.solve_friction(small, gaps, list(mu), rules)
+        statuses = np.frombuffer(told, dtype=np.int8)
     force = np.zeros(q.size)
     force[free] = found
     if held.size:

@@ -35,8 +35,8 @@ def test_a_dict_gives_the_bits_of_its_file(tmp_path):
 
 def test_values_are_changed_by_their_keys(bars):
     bars["time"]["step"] = "1 us"
-    facts = bars.check().facts
-    assert any("1 µs" in value or "1.000 µs" in value or "1e-6" in value for value in facts.values()), facts
+    assert bars.simulate().dt == 1e-6
+    assert "42 nodes" in bars.check().facts["model"]
     bars["time"]["step"] = np.float64(2e-6)
     with bars.simulate() as simulation:
         assert simulation.dt == 2e-6

@@ -13,8 +13,7 @@ from conftest import ROOT
 # one oscillator of 1 kg on a spring of 100 N/m, without contact
 OSCILLATOR = {
     "carom": 1,
-    "mesh": {"generate": {"weight": {"point": {"at": [0.0]}}}},
-    "mass": {"weight": {"on": "weight", "mass": 1.0}},
+    "mass": {"weight": {"mass": 1.0, "at": [0.0]}},
     "spring": {"spring": {"ends": ["weight", "ground"], "axis": [1.0], "stiffness": 100.0}},
     "time": {"end": 1.0, "step": 1e-3, "scheme": {"newmark": {}}},
 }
