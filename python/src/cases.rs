@@ -26,6 +26,9 @@ pub(crate) fn input((name, text, folder, overrides): Given) -> Input {
     }
 }
 
+/// Facts by their names, and warnings.
+type Checked = (Vec<(String, String)>, Vec<String>);
+
 /// A case that has been read and built.
 pub(crate) struct Loaded {
     pub(crate) input: Input,
@@ -74,10 +77,7 @@ pub(crate) fn schema() -> String {
 
 /// Facts and warnings of a case that can be run.
 #[pyfunction]
-pub(crate) fn check(
-    py: Python<'_>,
-    given: Given,
-) -> PyResult<(Vec<(String, String)>, Vec<String>)> {
+pub(crate) fn check(py: Python<'_>, given: Given) -> PyResult<Checked> {
     let built = load(py, given)?.built;
     let facts = py.detach(|| {
         let mut facts = carom_case::facts(&built);
@@ -188,11 +188,10 @@ pub(crate) fn compare(
         beside: Vec::new(),
         reference,
     };
-    let made = sweep(py, into, |sweep| {
+    sweep(py, into, |sweep| {
         let (comparison, _) = carom_case::compare(&input, &choices, sweep)?;
         Ok(comparison.variants.iter().map(row).collect())
-    });
-    made
+    })
 }
 
 /// Runs a case over the values of keys, `key.path=value,value;key=value,value` for each axis, into a folder.

@@ -45,6 +45,9 @@ pub(crate) fn solve_normal(
     Ok((solution.forces, closed.collect(), solution.passes))
 }
 
+/// Forces of all rows, statuses of the points, passes and sweeps.
+type WithFriction = (Vec<f64>, Vec<u8>, (usize, usize));
+
 /// Normal and tangential forces with friction; each point has its normal row and then its tangents. Statuses: 0 open, 1 sticks, 2 slips.
 #[pyfunction]
 pub(crate) fn solve_friction(
@@ -53,7 +56,7 @@ pub(crate) fn solve_friction(
     q: PyReadonlyArray1<'_, f64>,
     mu: Vec<f64>,
     rules: (usize, f64),
-) -> PyResult<(Vec<f64>, Vec<u8>, (usize, usize))> {
+) -> PyResult<WithFriction> {
     let (tangents, tolerance) = rules;
     let rows: Vec<&[f64]> = q.as_slice()?.chunks_exact(1 + tangents).collect();
     let friction = rows.iter().zip(&mu).map(|(row, &mu)| {

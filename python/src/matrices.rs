@@ -21,6 +21,12 @@ use crate::schemes::{read_law, read_scheme};
 /// Pointers, columns and values of a matrix by rows.
 type GivenMatrix = (Vec<usize>, Vec<u32>, Vec<f64>);
 
+/// Rows with their unknowns and coefficients, gaps, and laws.
+type GivenContacts = (Vec<Vec<(usize, f64)>>, Vec<f64>, Vec<String>);
+
+/// Forces of the rows and displacements, step by step.
+type History = (Vec<Vec<f64>>, Vec<Vec<f64>>);
+
 /// A run of a model given by its matrices.
 #[pyclass(module = "carom")]
 pub(crate) struct MatrixRun {
@@ -168,7 +174,7 @@ impl MatrixRun {
         self.rows[row].iter().map(|&(i, c)| c * vector[i]).sum()
     }
 
-    /// N times what a row of the map says, x as it stands included; `acceleration`: whether x is in it.
+    /// N times what a row of the map says; `with_x`: with the unknown as it stands, that of the motion without contact forces.
     fn quantity(&self, row: usize, of: &Row, with_x: bool) -> f64 {
         let terms = [
             (of.u, &self.u),
@@ -315,7 +321,7 @@ impl MatrixRun {
     fn new(
         py: Python<'_>,
         matrices: (usize, GivenMatrix, Option<GivenMatrix>, GivenMatrix),
-        contacts: (Vec<Vec<(usize, f64)>>, Vec<f64>, Vec<String>),
+        contacts: GivenContacts,
         scheme: (String, f64),
         start: (Vec<f64>, Vec<f64>, Vec<f64>),
     ) -> PyResult<MatrixRun> {
@@ -416,12 +422,7 @@ impl MatrixRun {
     }
 
     /// Takes steps with constant loads (N), one of each row of `loads`; returns the forces of the rows (N) and the displacements (m).
-    fn run(
-        &mut self,
-        py: Python<'_>,
-        loads: Vec<Vec<f64>>,
-        tolerance: f64,
-    ) -> PyResult<(Vec<Vec<f64>>, Vec<Vec<f64>>)> {
+    fn run(&mut self, py: Python<'_>, loads: Vec<Vec<f64>>, tolerance: f64) -> PyResult<History> {
         if loads.iter().any(|load| load.len() != self.u.len()) {
             return Err(wrong(format!(
                 "a load of a wrong length; accepted: {}",
