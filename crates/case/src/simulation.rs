@@ -178,9 +178,7 @@ impl Simulation {
                 let zones = zoned.map(|zoned| Zones::together(driver, zoned));
                 conclude(observed, (&**driver, zones), self.begin)
             }
-            Run::Zones(whole) => {
-                conclude(observed, (&**whole, Some(Zones::of(whole))), self.begin)
-            }
+            Run::Zones(whole) => conclude(observed, (&**whole, Some(Zones::of(whole))), self.begin),
         };
         concluded.map(Some)
     }

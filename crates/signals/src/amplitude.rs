@@ -185,7 +185,10 @@ mod tests {
         let copy = amplitude.clone();
         assert_eq!((amplitude.at(0.0), amplitude.is_constant()), (0.0, false));
         held.set(-2.5);
-        assert_eq!((amplitude.at(1.0), copy.at(7.0), held.get()), (-2.5, -2.5, -2.5));
+        assert_eq!(
+            (amplitude.at(1.0), copy.at(7.0), held.get()),
+            (-2.5, -2.5, -2.5)
+        );
         assert_eq!(amplitude.rate(1.0), 0.0);
         assert_eq!(amplitude, copy);
         assert_ne!(amplitude, Amplitude::held(&Held::new()));

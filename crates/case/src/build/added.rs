@@ -34,7 +34,8 @@ impl Builder<'_> {
                 continue;
             }
             if self.case.time.is_static() || self.case.time.stage.is_some() {
-                let message = "forces that are set between the steps need a run without a static stage";
+                let message =
+                    "forces that are set between the steps need a run without a static stage";
                 self.problems.push(Problem::new(&path, message));
                 continue;
             }

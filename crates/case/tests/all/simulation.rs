@@ -75,7 +75,10 @@ fn steps_taken_one_by_one_leave_the_folder_of_a_run() {
     let input = Input::from_text("case.toml", BARS, &[]);
     let (case, locator) = parse(&input).unwrap();
     let built = build(&case, &locator, &input).unwrap();
-    run((&input, &case, &built), one.clone(), &mut Nothing, &|| false).unwrap();
+    run((&input, &case, &built), one.clone(), &mut Nothing, &|| {
+        false
+    })
+    .unwrap();
     let mut steps = simulation(BARS, &[], Some(&other));
     while !steps.is_done() {
         steps.step().unwrap();
@@ -100,7 +103,10 @@ fn a_saved_simulation_goes_on_with_the_same_bits() {
     let first = steps(&mut simulation);
     simulation.restore(&saved).unwrap();
     assert_eq!(first, steps(&mut simulation));
-    assert!(matches!(simulation.restore(&saved[..9]), Err(Failed::Start(_))));
+    assert!(matches!(
+        simulation.restore(&saved[..9]),
+        Err(Failed::Start(_))
+    ));
     let folder = tempfile::tempdir().unwrap();
     let mut written = self::simulation(BARS, &[], Some(&folder.path().join("a")));
     assert!(written.restore(&saved).is_err());
@@ -134,7 +140,10 @@ fn forces_that_do_not_fit_are_refused() {
         problems[0].message.clone()
     };
     let size = Held::new();
-    assert_eq!(refused(force("nowhere", &size)), "no group of this name in the mesh");
+    assert_eq!(
+        refused(force("nowhere", &size)),
+        "no group of this name in the mesh"
+    );
     let plane = AddedForce {
         direction: vec![1.0, 0.0],
         ..force("striker.left", &size)
