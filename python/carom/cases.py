@@ -208,4 +208,5 @@ def resume(
 
 def schema() -> dict[str, Any]:
     """The JSON schema of a case."""
-    return json.loads(_carom.schema())
+    tables: dict[str, Any] = json.loads(_carom.schema())
+    return tables

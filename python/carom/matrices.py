@@ -126,9 +126,9 @@ class Matrices:
         loads = [self._at((start + k) * self._dt + instant).tolist() for k in range(steps)]
         # a gap within rounding of the largest one is closed
         tolerance = 1e-12 * float(np.abs(self._gap).max(initial=0.0))
-        force, displacement = (np.array(rows) for rows in self._raw.run(loads, tolerance))
-        time = (start + 1 + np.arange(steps)) * self._dt
-        gap = self._gap + (self._rows @ displacement.T).T
+        force, displacement = (np.array(rows, dtype=np.float64) for rows in self._raw.run(loads, tolerance))
+        time = np.asarray((start + 1 + np.arange(steps)) * self._dt, dtype=np.float64)
+        gap: NDArray[np.float64] = self._gap + (self._rows @ displacement.T).T
         return MatrixHistory(time, force, displacement, gap)
 
 

@@ -1,5 +1,10 @@
 //! A run whose steps are taken from Python.
 
+#![expect(
+    unsafe_code,
+    reason = "NumPy looks at memory of the simulation without a copy"
+)]
+
 use std::path::PathBuf;
 use std::sync::Mutex;
 
