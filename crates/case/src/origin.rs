@@ -45,6 +45,17 @@ impl Origin {
         }
     }
 
+    /// The same of a run with forces that are in no case file.
+    pub(crate) fn with_forces(mut self, names: &[&str]) -> Origin {
+        if let (false, Value::Object(case)) = (names.is_empty(), &mut self.case) {
+            case.insert(
+                "forces set by a program".to_owned(),
+                names.join(", ").into(),
+            );
+        }
+        self
+    }
+
     /// That of the run which goes on as this case.
     pub(crate) fn of_the_rest(self, input: &Input, case: &Case) -> Origin {
         Origin {

@@ -116,7 +116,7 @@ fn driver_from(system: Arc<System>, saved: &Checkpoint) -> Result<Driver, Failed
 }
 
 /// The results, and how the steps ended.
-type Observed = (Results, Result<Outcome, carom_dynamics::Error>);
+pub(crate) type Observed = (Results, Result<Outcome, carom_dynamics::Error>);
 
 /// Takes the steps with the results and `progress` as observers.
 fn observed(
@@ -151,7 +151,7 @@ type March = fn(
 ) -> Result<Outcome, carom_dynamics::Error>;
 
 /// Writes what is written after the run.
-fn conclude(
+pub(crate) fn conclude(
     (mut results, outcome): Observed,
     (run, zones): (&dyn Stepper, Option<Zones>),
     (begin, end): (Instant, f64),

@@ -37,7 +37,7 @@ pub use carom_schemes as scheme;
 use carom_schemes::step_map;
 use carom_system as system;
 
-pub use carom_signals::Amplitude;
+pub use carom_signals::{Amplitude, Held};
 pub use control::{Attempts, Control, Event, adapt};
 pub use costs::{Costs, Phases, Work};
 pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};

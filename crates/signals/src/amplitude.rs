@@ -1,5 +1,8 @@
 //! A quantity as a function of time.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use crate::error::Error;
 
 /// A quantity as a function of time: a polynomial of third degree at most between its knots, constant before the first.
@@ -8,6 +11,36 @@ use crate::error::Error;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Amplitude {
     knots: Vec<Knot>,
+    /// Where it is not known before.
+    held: Option<Held>,
+}
+
+/// A number that is set while a run goes on, between its steps: that of a controller. Its copies are the same number.
+#[derive(Clone, Debug, Default)]
+pub struct Held(Arc<AtomicU64>);
+
+impl Held {
+    /// Zero at first.
+    pub fn new() -> Held {
+        Held::default()
+    }
+
+    /// Sets it for the steps to come.
+    pub fn set(&self, value: f64) {
+        self.0.store(value.to_bits(), Ordering::Relaxed);
+    }
+
+    /// The number.
+    pub fn get(&self) -> f64 {
+        f64::from_bits(self.0.load(Ordering::Relaxed))
+    }
+}
+
+/// Copies of one number are equal, whatever it is now.
+impl PartialEq for Held {
+    fn eq(&self, other: &Held) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
 }
 
 /// The polynomial from a time on: c₀ + c₁ s + c₂ s² + c₃ s³ with s the time since the knot.
@@ -23,6 +56,16 @@ impl Amplitude {
         let c = [value, 0.0, 0.0, 0.0];
         Amplitude {
             knots: vec![Knot { time: 0.0, c }],
+            held: None,
+        }
+    }
+
+    /// What is set between the steps: constant over each of them. It is what it is now at all times, so that a step must be taken
+    /// before the next value is set.
+    pub fn held(held: &Held) -> Amplitude {
+        Amplitude {
+            knots: Vec::new(),
+            held: Some(held.clone()),
         }
     }
 
@@ -42,16 +85,20 @@ impl Amplitude {
         };
         Ok(Amplitude {
             knots: (0..points.len()).map(knot).collect(),
+            held: None,
         })
     }
 
     /// Of knots with ascending times; not empty.
     pub(crate) fn of_knots(knots: Vec<Knot>) -> Amplitude {
-        Amplitude { knots }
+        Amplitude { knots, held: None }
     }
 
     /// Value at a time in s.
     pub fn at(&self, time: f64) -> f64 {
+        if let Some(held) = &self.held {
+            return held.get();
+        }
         self.eval(time, |c, s| c[0] + s * (c[1] + s * (c[2] + s * c[3])))
     }
 
@@ -72,6 +119,9 @@ impl Amplitude {
 
     /// Whether it is the same at all times.
     pub fn is_constant(&self) -> bool {
+        if self.held.is_some() {
+            return false;
+        }
         let first = self.knots.first().map_or(0.0, |knot| knot.c[0]);
         let mut knots = self.knots.iter();
         knots.all(|knot| knot.c == [first, 0.0, 0.0, 0.0])
@@ -126,5 +176,21 @@ mod tests {
         assert_eq!(hole, Err(Error::NotFinite { at: 1 }));
         assert_eq!(Amplitude::constant(3.0).at(-7.0), 3.0);
         assert!(Amplitude::constant(3.0).is_constant());
+    }
+
+    #[test]
+    fn a_held_number_is_seen_by_all_copies_of_its_amplitude() {
+        let held = Held::new();
+        let amplitude = Amplitude::held(&held);
+        let copy = amplitude.clone();
+        assert_eq!((amplitude.at(0.0), amplitude.is_constant()), (0.0, false));
+        held.set(-2.5);
+        assert_eq!(
+            (amplitude.at(1.0), copy.at(7.0), held.get()),
+            (-2.5, -2.5, -2.5)
+        );
+        assert_eq!(amplitude.rate(1.0), 0.0);
+        assert_eq!(amplitude, copy);
+        assert_ne!(amplitude, Amplitude::held(&Held::new()));
     }
 }

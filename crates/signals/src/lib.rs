@@ -16,7 +16,7 @@ mod record;
 mod spectrum;
 mod synthetic;
 
-pub use amplitude::Amplitude;
+pub use amplitude::{Amplitude, Held};
 pub use baseline::corrected;
 pub use channel::ChannelFilter;
 pub use csv::{Column, Table};

@@ -1,5 +1,6 @@
 //! Stage two: names resolved, meshes read, ranges that need the mesh checked; a system, or every problem found.
 
+mod added;
 mod advice;
 mod arlequin;
 mod beams;
@@ -57,6 +58,7 @@ use crate::input::Input;
 use crate::locate::Locator;
 use crate::schema::{Case, Motion};
 
+pub use added::AddedForce;
 pub use arlequin::BuiltOverlap;
 use builder::{Builder, dimensions, plural};
 use course::Signals;
@@ -113,6 +115,17 @@ pub struct BuiltProbe {
 /// # Errors
 /// All problems that stage two can tell, with their places.
 pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
+    build_with((case, locator, input), &[])
+}
+
+/// As [`build`], with forces that are in no case file.
+///
+/// # Errors
+/// As [`build`]; those of the forces have no place.
+pub fn build_with(
+    (case, locator, input): (&Case, &Locator, &Input),
+    forces: &[AddedForce],
+) -> Result<Built, Vec<Problem>> {
     let mut builder = Builder {
         case,
         problems: Vec::new(),
@@ -131,7 +144,7 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
         reductions: Vec::new(),
     };
     builder.plan = builder.plan_zones();
-    let built = builder.build(input);
+    let built = builder.build(input, forces);
     match built {
         Some(built) if builder.problems.is_empty() => Ok(built),
         _ => Err(locator.locate_all(builder.problems)),
@@ -139,7 +152,7 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
 }
 
 impl Builder<'_> {
-    fn build(&mut self, input: &Input) -> Option<Built> {
+    fn build(&mut self, input: &Input, forces: &[AddedForce]) -> Option<Built> {
         self.signals = self.signals(input);
         let materials = self.materials();
         self.schemes();
@@ -159,7 +172,8 @@ impl Builder<'_> {
         let (supports, motions, turns) = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
         let loads = self.loads(&mesh, &bodies);
-        let nodal = self.nodal_loads(&mesh);
+        let mut nodal = self.nodal_loads(&mesh);
+        nodal.extend(self.added_forces(&mesh, forces));
         let base = self.base_acceleration(&mesh);
         let probes = self.probes(&mesh, &bodies);
         if !self.problems.is_empty() {

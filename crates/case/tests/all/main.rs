@@ -19,6 +19,7 @@ mod reference;
 mod refine;
 mod repeat;
 mod resume;
+mod simulation;
 mod stage_one;
 mod verdict;
 mod warnings;

@@ -1,0 +1,185 @@
+//! A run whose steps are taken one by one by a program.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use carom_dynamics::{Driver, Observer, Outcome, State, Stepper};
+use carom_output::Results;
+use carom_output::summary::Zones;
+use carom_zones::Whole;
+
+use crate::build::{AddedForce, Built};
+use crate::input::Input;
+use crate::origin::Origin;
+use crate::run::{Failed, Finished, conclude, settings};
+use crate::schema::Case;
+
+/// A run that is driven from outside: the same steps as those of [`run`](crate::run()), with the same bits.
+pub struct Simulation {
+    built: Built,
+    run: Run,
+    results: Option<Results>,
+    begin: Instant,
+}
+
+/// What takes the steps.
+enum Run {
+    One(Box<Driver>),
+    Zones(Box<Whole>),
+}
+
+impl Run {
+    fn get(&self) -> &dyn Stepper {
+        match self {
+            Run::One(driver) => &**driver,
+            Run::Zones(whole) => &**whole,
+        }
+    }
+
+    fn get_mut(&mut self) -> &mut dyn Stepper {
+        match self {
+            Run::One(driver) => &mut **driver,
+            Run::Zones(whole) => &mut **whole,
+        }
+    }
+}
+
+impl Simulation {
+    /// At the initial state; `folder`: where results are written, if anywhere. `added`: the forces that the case was built with beside
+    /// its own. A checkpoint names them, so that `carom resume`, which has no program to set them, refuses it.
+    ///
+    /// # Errors
+    /// The run cannot begin, or the folder cannot be made.
+    pub fn new(
+        (input, case, built): (&Input, &Case, Built),
+        added: &[AddedForce],
+        folder: Option<PathBuf>,
+    ) -> Result<Simulation, Failed> {
+        let begin = Instant::now();
+        let system = || Arc::clone(&built.system);
+        let run = match &built.zoned {
+            Some(zoned) if built.apart => {
+                let whole = Whole::new(zoned, system());
+                Run::Zones(Box::new(
+                    whole.map_err(|error| Failed::Start(error.into()))?,
+                ))
+            }
+            _ => Run::One(Box::new(Driver::new(system()).map_err(Failed::Start)?)),
+        };
+        let results = match folder {
+            None => None,
+            Some(folder) => {
+                let names: Vec<&str> = added.iter().map(|force| &*force.name).collect();
+                let origin = Origin::of(input, case, &folder).with_forces(&names);
+                let settings = settings((input, case, &built), folder, &origin);
+                let mut results = Results::create(settings, system())?;
+                results.accepted(run.get()).map_err(Failed::Step)?;
+                Some(results)
+            }
+        };
+        Ok(Simulation {
+            built,
+            run,
+            results,
+            begin,
+        })
+    }
+
+    /// The case as built.
+    pub fn built(&self) -> &Built {
+        &self.built
+    }
+
+    /// The run: its last accepted state, and the report of its last step.
+    pub fn run(&self) -> &dyn Stepper {
+        self.run.get()
+    }
+
+    /// Whether the end of the case is reached, to within a millionth of the largest step.
+    pub fn is_done(&self) -> bool {
+        let run = self.run.get();
+        run.state().time >= self.built.end - 1e-6 * run.system().dt
+    }
+
+    /// Takes one step, also beyond the end of the case.
+    ///
+    /// # Errors
+    /// The step fails: the state is then the one before it. Its results cannot be written.
+    pub fn step(&mut self) -> Result<(), Failed> {
+        self.run.get_mut().step().map_err(Failed::Step)?;
+        match &mut self.results {
+            Some(results) => results.accepted(self.run.get()).map_err(Failed::Step),
+            None => Ok(()),
+        }
+    }
+
+    /// Bytes of everything that the run goes on from.
+    ///
+    /// # Errors
+    /// None is known; the encoder's own error is passed on.
+    pub fn saved(&self) -> Result<Vec<u8>, Failed> {
+        self.run.get().saved().map_err(Failed::Step)
+    }
+
+    /// Goes on from the bytes of [`Simulation::saved`] of the same case. Only without a results folder, whose rows would not be those of
+    /// the state.
+    ///
+    /// # Errors
+    /// There is a results folder; bytes that are no state, or one of another model. The state is then the one before.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Failed> {
+        if self.results.is_some() {
+            let cause = "a run with a results folder cannot go back to a saved state".to_owned();
+            return Err(Failed::Start(carom_dynamics::Error::State { cause }));
+        }
+        let system = Arc::clone(&self.built.system);
+        self.run = match &self.built.zoned {
+            Some(zoned) if self.built.apart => {
+                let whole = Whole::resume(zoned, system, bytes);
+                Run::Zones(Box::new(
+                    whole.map_err(|error| Failed::Start(error.into()))?,
+                ))
+            }
+            _ => {
+                let state = State::from_bytes(&system, bytes).map_err(Failed::Start)?;
+                Run::One(Box::new(
+                    Driver::resume(system, state).map_err(Failed::Start)?,
+                ))
+            }
+        };
+        Ok(())
+    }
+
+    /// Ends the run: a checkpoint, the figures, the report and the summary, if there is a results folder. `failed`: the error of the last
+    /// step, which is given back once all that was computed before stands in the folder.
+    ///
+    /// # Errors
+    /// `failed`; results cannot be written.
+    pub fn finish(&mut self, failed: Option<Failed>) -> Result<Option<Finished>, Failed> {
+        let Some(mut results) = self.results.take() else {
+            return failed.map_or(Ok(None), Err);
+        };
+        let run = self.run.get();
+        let finished = results.finish(run).map_err(Failed::Step);
+        let outcome = match (failed, finished) {
+            (Some(Failed::Step(error)), _) => Err(error),
+            (Some(other), _) => return Err(other),
+            (None, Err(Failed::Step(error))) => Err(error),
+            (None, Err(other)) => return Err(other),
+            (None, Ok(())) => Ok(match self.is_done() {
+                true => Outcome::Done,
+                false => Outcome::Interrupted,
+            }),
+        };
+        let observed = (results, outcome);
+        let zoned = self.built.zoned.as_ref();
+        let concluded = match &self.run {
+            Run::One(driver) => {
+                let zones = zoned.map(|zoned| Zones::together(driver, zoned));
+                conclude(observed, (&**driver, zones), self.begin)
+            }
+            Run::Zones(whole) => conclude(observed, (&**whole, Some(Zones::of(whole))), self.begin),
+        };
+        concluded.map(Some)
+    }
+}
