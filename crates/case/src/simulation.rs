@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_dynamics::{Driver, Observer, Outcome, State, Stepper};
+use carom_dynamics::{Driver, Observer, Outcome, State, Stepper, is_at_end};
 use carom_output::Results;
 use carom_output::summary::Zones;
 use carom_zones::Whole;
@@ -98,8 +98,7 @@ impl Simulation {
 
     /// Whether the end of the case is reached, to within a millionth of the largest step.
     pub fn is_done(&self) -> bool {
-        let run = self.run.get();
-        run.state().time >= self.built.end - 1e-6 * run.system().dt
+        is_at_end(self.run.get(), self.built.end)
     }
 
     /// Takes one step, also beyond the end of the case.
@@ -171,14 +170,14 @@ impl Simulation {
                 false => Outcome::Interrupted,
             }),
         };
-        let observed = (results, outcome);
+        let (observed, times) = ((results, outcome), (self.begin, self.built.end));
         let zoned = self.built.zoned.as_ref();
         let concluded = match &self.run {
             Run::One(driver) => {
                 let zones = zoned.map(|zoned| Zones::together(driver, zoned));
-                conclude(observed, (&**driver, zones), self.begin)
+                conclude(observed, (&**driver, zones), times)
             }
-            Run::Zones(whole) => conclude(observed, (&**whole, Some(Zones::of(whole))), self.begin),
+            Run::Zones(whole) => conclude(observed, (&**whole, Some(Zones::of(whole))), times),
         };
         concluded.map(Some)
     }
