@@ -15,6 +15,11 @@ const SOFT: Elastic = Elastic {
 const CENTRE: [f64; 3] = [0.5, 0.5, 0.0];
 const STEPS: usize = 60;
 
+/// Resultant (N) and moment out of the plane (N m) of each step.
+type Moments = Vec<([f64; 3], f64)>;
+/// A model whose moments are about this place, m.
+type OfPlace = fn([f64; 3]) -> Model;
+
 fn law(capture: Capture) -> Law {
     Law::Velocity(Velocity {
         capture,
@@ -111,7 +116,7 @@ fn angular(driver: &Driver, about: [f64; 3], moved: bool) -> f64 {
 }
 
 /// The driver after some steps; angular momentum that the moments have given, and the largest so far; resultants and moments.
-fn run(model: Model, about: [f64; 3]) -> (Driver, [f64; 2], Vec<([f64; 3], f64)>) {
+fn run(model: Model, about: [f64; 3]) -> (Driver, [f64; 2], Moments) {
     let dt = model.dt;
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();
     let (mut given, mut largest, mut steps) = (0.0, 0.0_f64, Vec::new());
@@ -129,8 +134,7 @@ fn run(model: Model, about: [f64; 3]) -> (Driver, [f64; 2], Vec<([f64; 3], f64)>
 #[test]
 fn the_moment_about_the_mass_centre_is_the_rate_of_the_angular_momentum() {
     // linear steps leave rounding, iterations their tolerance of 1e-10 of the largest force in each of the steps
-    let cases: [(fn([f64; 3]) -> Model, bool, f64); 2] =
-        [(on_slope, false, 1e-12), (on_block, true, 1e-8)];
+    let cases: [(OfPlace, bool, f64); 2] = [(on_slope, false, 1e-12), (on_block, true, 1e-8)];
     for (model, moved, bound) in cases {
         let begin = Driver::new(System::new(model(CENTRE)).unwrap()).unwrap();
         let (end, [given, largest], steps) = run(model(CENTRE), CENTRE);
