@@ -161,6 +161,7 @@ def test_an_exception_in_a_callback_ends_the_run_with_its_traceback(bars, tmp_pa
         carom.resume(tmp_path / "control")
 
 
+@pytest.mark.slow
 def test_a_run_leaks_nothing(bars):
     """A thousand runs of a small case in one process: the memory of the last 800 does not grow beyond what allocators keep."""
     psutil = pytest.importorskip("psutil")
@@ -177,6 +178,7 @@ def test_a_run_leaks_nothing(bars):
     assert sizes[1] - sizes[0] < 0.8e6
 
 
+@pytest.mark.slow
 def test_a_thousand_results_folders_leak_nothing(bars, tmp_path):
     psutil = pytest.importorskip("psutil")
     bars["time"]["end"] = "1 us"
