@@ -29,6 +29,7 @@ mod resume;
 mod rules;
 mod run;
 mod simulation;
+mod stepping;
 mod study;
 mod sweep;
 mod tree;

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Driver, Observer, Outcome, State, Stepper, System, go_on, is_at_end, march};
+use carom_dynamics::{Observer, Outcome, Stepper, go_on, is_at_end, march};
 use carom_output::checkpoint::Checkpoint;
 use carom_output::summary::Zones;
 use carom_output::{
     Checkpoints, Ending, Fields, Folder, Probe, Reference, Results, Settings, Summary, Zoning,
 };
-use carom_zones::{ModelZone, Whole};
+use carom_zones::ModelZone;
 use thiserror::Error as ThisError;
 
 use crate::build::Built;
@@ -19,6 +19,7 @@ use crate::describe::entries;
 use crate::input::Input;
 use crate::origin::Origin;
 use crate::schema::{Case, Field, Motion, Scheme};
+use crate::stepping::Stepping;
 
 /// How a run ended.
 #[derive(Debug)]
@@ -76,43 +77,16 @@ pub(crate) fn march_from(
     stop: &dyn Fn() -> bool,
 ) -> Result<Finished, Failed> {
     let now = Instant::now();
-    let system = || Arc::clone(&built.system);
-    match &built.zoned {
-        zoned if !built.apart => {
-            let mut driver = match &begin {
-                Begin::Start => Driver::new(system()).map_err(Failed::Start)?,
-                Begin::Checkpoint(saved, _) | Begin::Review(saved, _) => {
-                    driver_from(system(), saved)?
-                }
-            };
-            let outcome = observed((&mut driver, built), (settings, begin), progress, stop)?;
-            let zones = zoned.as_ref().map(|zoned| Zones::together(&driver, zoned));
-            conclude(outcome, (&driver, zones), (now, built.end))
+    let mut run = match &begin {
+        Begin::Start => Stepping::new(built, None)?,
+        Begin::Checkpoint(saved, _) | Begin::Review(saved, _) => {
+            let mut run = Stepping::new(built, Some(&saved.state))?;
+            run.add_earlier(&saved.costs()?);
+            run
         }
-        None => unreachable!("only zones step apart"),
-        Some(zoned) => {
-            let mut whole = match &begin {
-                Begin::Start => Whole::new(zoned, system()),
-                Begin::Checkpoint(saved, _) | Begin::Review(saved, _) => {
-                    Whole::resume(zoned, system(), &saved.state)
-                }
-            }
-            .map_err(|error| Failed::Start(error.into()))?;
-            if let Begin::Checkpoint(saved, _) | Begin::Review(saved, _) = &begin {
-                whole.add_earlier(&saved.costs()?);
-            }
-            let outcome = observed((&mut whole, built), (settings, begin), progress, stop)?;
-            conclude(outcome, (&whole, Some(Zones::of(&whole))), (now, built.end))
-        }
-    }
-}
-
-/// A driver that goes on from a checkpoint.
-fn driver_from(system: Arc<System>, saved: &Checkpoint) -> Result<Driver, Failed> {
-    let state = State::from_bytes(&system, &saved.state).map_err(Failed::Start)?;
-    let mut driver = Driver::resume(system, state).map_err(Failed::Start)?;
-    driver.add_earlier(&saved.costs()?);
-    Ok(driver)
+    };
+    let outcome = observed((run.get_mut(), built), (settings, begin), progress, stop)?;
+    conclude(outcome, (run.get(), run.zones(built)), (now, built.end))
 }
 
 /// The results, and how the steps ended.

@@ -4,45 +4,22 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_dynamics::{Driver, Observer, Outcome, State, Stepper, is_at_end};
+use carom_dynamics::{Observer, Outcome, Stepper, is_at_end};
 use carom_output::Results;
-use carom_output::summary::Zones;
-use carom_zones::Whole;
 
 use crate::build::{AddedForce, Built};
 use crate::input::Input;
 use crate::origin::Origin;
 use crate::run::{Failed, Finished, conclude, settings};
 use crate::schema::Case;
+use crate::stepping::Stepping;
 
 /// A run that is driven from outside: the same steps as those of [`run`](crate::run()), with the same bits.
 pub struct Simulation {
     built: Built,
-    run: Run,
+    run: Stepping,
     results: Option<Results>,
     begin: Instant,
-}
-
-/// What takes the steps.
-enum Run {
-    One(Box<Driver>),
-    Zones(Box<Whole>),
-}
-
-impl Run {
-    fn get(&self) -> &dyn Stepper {
-        match self {
-            Run::One(driver) => &**driver,
-            Run::Zones(whole) => &**whole,
-        }
-    }
-
-    fn get_mut(&mut self) -> &mut dyn Stepper {
-        match self {
-            Run::One(driver) => &mut **driver,
-            Run::Zones(whole) => &mut **whole,
-        }
-    }
 }
 
 impl Simulation {
@@ -57,23 +34,14 @@ impl Simulation {
         folder: Option<PathBuf>,
     ) -> Result<Simulation, Failed> {
         let begin = Instant::now();
-        let system = || Arc::clone(&built.system);
-        let run = match &built.zoned {
-            Some(zoned) if built.apart => {
-                let whole = Whole::new(zoned, system());
-                Run::Zones(Box::new(
-                    whole.map_err(|error| Failed::Start(error.into()))?,
-                ))
-            }
-            _ => Run::One(Box::new(Driver::new(system()).map_err(Failed::Start)?)),
-        };
+        let run = Stepping::new(&built, None)?;
         let results = match folder {
             None => None,
             Some(folder) => {
                 let names: Vec<&str> = added.iter().map(|force| &*force.name).collect();
                 let origin = Origin::of(input, case, &folder).with_forces(&names);
                 let settings = settings((input, case, &built), folder, &origin);
-                let mut results = Results::create(settings, system())?;
+                let mut results = Results::create(settings, Arc::clone(&built.system))?;
                 results.accepted(run.get()).map_err(Failed::Step)?;
                 Some(results)
             }
@@ -131,21 +99,7 @@ impl Simulation {
             let cause = "a run with a results folder cannot go back to a saved state".to_owned();
             return Err(Failed::Start(carom_dynamics::Error::State { cause }));
         }
-        let system = Arc::clone(&self.built.system);
-        self.run = match &self.built.zoned {
-            Some(zoned) if self.built.apart => {
-                let whole = Whole::resume(zoned, system, bytes);
-                Run::Zones(Box::new(
-                    whole.map_err(|error| Failed::Start(error.into()))?,
-                ))
-            }
-            _ => {
-                let state = State::from_bytes(&system, bytes).map_err(Failed::Start)?;
-                Run::One(Box::new(
-                    Driver::resume(system, state).map_err(Failed::Start)?,
-                ))
-            }
-        };
+        self.run = Stepping::new(&self.built, Some(bytes))?;
         Ok(())
     }
 
@@ -170,15 +124,9 @@ impl Simulation {
                 false => Outcome::Interrupted,
             }),
         };
-        let (observed, times) = ((results, outcome), (self.begin, self.built.end));
-        let zoned = self.built.zoned.as_ref();
-        let concluded = match &self.run {
-            Run::One(driver) => {
-                let zones = zoned.map(|zoned| Zones::together(driver, zoned));
-                conclude(observed, (&**driver, zones), times)
-            }
-            Run::Zones(whole) => conclude(observed, (&**whole, Some(Zones::of(whole))), times),
-        };
+        let times = (self.begin, self.built.end);
+        let zones = self.run.zones(&self.built);
+        let concluded = conclude((results, outcome), (self.run.get(), zones), times);
         concluded.map(Some)
     }
 }

@@ -121,6 +121,36 @@ impl Surface {
         })
     }
 
+    /// The outer surface of cells: their faces that no other of them has, in the order of the cells and of their faces.
+    pub fn outer(mesh: &Mesh, cells: &[ElementId]) -> Surface {
+        let faces_of = |&cell: &ElementId| {
+            let faces = mesh.kind(cell).table().faces.iter().enumerate();
+            faces.map(move |(number, face)| Face {
+                kind: face.kind,
+                nodes: nodes_of(mesh, cell, number),
+                parent: cell,
+                axis: axis(mesh, cell, number),
+                radius: None,
+            })
+        };
+        let mut cells_of = BTreeMap::new();
+        for face in cells.iter().flat_map(faces_of) {
+            *cells_of.entry(key(&face.nodes)).or_insert(0) += 1;
+        }
+        let all = cells.iter().flat_map(faces_of);
+        let faces: Vec<Face> = all
+            .filter(|face| cells_of[&key(&face.nodes)] == 1)
+            .collect();
+        let mut nodes: Vec<u32> = faces
+            .iter()
+            .flat_map(|face| face.corners())
+            .copied()
+            .collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        Surface { faces, nodes }
+    }
+
     /// The surface of points that stand by themselves: nodes, each with the cell that owns it. `axis`: their outward unit
     /// vector, along which a primary side measures gaps; of a secondary side it does not matter.
     pub fn of_points(points: &[(u32, ElementId)], axis: [f64; 3]) -> Surface {
@@ -338,6 +368,19 @@ fn centre(mesh: &Mesh, id: ElementId) -> [f64; 3] {
 mod tests {
     use super::*;
     use crate::generate::{box_, line, rectangle};
+
+    /// The outer surface of a box of 2 x 3 x 4 cells: 52 faces in all, those of its sides, and all nodes but the six inside.
+    #[test]
+    fn the_outer_surface_of_a_box_is_its_six_sides() {
+        let mesh = box_("box", [0.0; 3], [1.0; 3], [2, 3, 4], false);
+        let outer = Surface::outer(&mesh, &mesh.groups["box"].elements);
+        assert_eq!(outer.faces.len(), 2 * (2 * 3 + 3 * 4 + 2 * 4));
+        assert_eq!(outer.nodes.len(), 3 * 4 * 5 - 1 * 2 * 3);
+        for name in ["left", "right", "front", "back", "bottom", "top"] {
+            let side = surface(&mesh, "box", &format!("box.{name}")).unwrap();
+            assert!(side.faces.iter().all(|face| outer.faces.contains(face)));
+        }
+    }
 
     fn surface(mesh: &Mesh, body: &str, side: &str) -> Result<Surface, Error> {
         Surface::new(mesh, &mesh.groups[side], &mesh.groups[body].elements)

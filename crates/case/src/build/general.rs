@@ -1,15 +1,16 @@
 //! General contact: the outer sides of all bodies of cells, each with each other and with itself.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use carom_bodies::height;
 use carom_contact::{Initial, Integration, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget};
-use carom_mesh::{ElementId, Face, Mesh, Surface, face_nodes};
+use carom_mesh::{ElementId, Face, Mesh, Surface};
 
 use super::Builder;
 use super::contacts::{has_quadratic_faces, mortar};
 use super::laws::sides;
+use super::zones::body_of;
 use crate::error::Problem;
 use crate::schema::{Basis, Friction, GeneralContact, GivenLaw};
 
@@ -108,7 +109,7 @@ impl Builder<'_> {
                 ));
                 continue;
             };
-            let surface = outer(mesh, cells);
+            let surface = Surface::outer(mesh, cells);
             let faces = &surface.faces;
             let thickness = |face: &Face| height(mesh, face.parent, face.kind, face.corners());
             let lengths: f64 = faces.iter().map(|face| face.length(&mesh.nodes)).sum();
@@ -206,11 +207,7 @@ fn sorted(names: &[String; 2]) -> [String; 2] {
 
 /// The two bodies of a contact, ascending; none on an obstacle.
 fn pair_of(contact: &ModelContact, of: &[Vec<ElementId>]) -> Option<[usize; 2]> {
-    let body = |surface: &Surface| {
-        let parent = surface.faces.first()?.parent;
-        of.iter()
-            .position(|cells| cells.binary_search(&parent).is_ok())
-    };
+    let body = |surface: &Surface| body_of(surface.faces.first()?.parent, of);
     let ModelTarget::Surface(primary) = &contact.primary else {
         return None;
     };
@@ -220,42 +217,5 @@ fn pair_of(contact: &ModelContact, of: &[Vec<ElementId>]) -> Option<[usize; 2]> 
 }
 
 fn shares_nodes(one: &Surface, other: &Surface) -> bool {
-    one.nodes
-        .iter()
-        .any(|node| other.nodes.binary_search(node).is_ok())
-}
-
-/// The faces of cells that bound one of them alone.
-fn outer(mesh: &Mesh, cells: &[ElementId]) -> Surface {
-    let mut faces: BTreeMap<Vec<u32>, Option<Face>> = BTreeMap::new();
-    for &cell in cells {
-        let nodes = mesh.element_nodes(cell);
-        for face in mesh.kind(cell).table().faces {
-            let own: Vec<u32> = face.nodes.iter().map(|&node| nodes[node]).collect();
-            let mut key = own.clone();
-            key.sort_unstable();
-            let found = Face {
-                kind: face.kind,
-                nodes: face_nodes(&own),
-                parent: cell,
-                axis: [0.0; 3],
-                radius: None,
-            };
-            faces
-                .entry(key)
-                .and_modify(|face| *face = None)
-                .or_insert(Some(found));
-        }
-    }
-    let mut faces: Vec<Face> = faces.into_values().flatten().collect();
-    faces.sort_by_key(|face| (face.parent, face.nodes));
-    let nodes: BTreeSet<u32> = faces
-        .iter()
-        .flat_map(|face| face.corners())
-        .copied()
-        .collect();
-    Surface {
-        faces,
-        nodes: nodes.into_iter().collect(),
-    }
+    one.nodes.iter().any(|node| other.index_of(*node).is_some())
 }

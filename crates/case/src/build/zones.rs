@@ -253,7 +253,7 @@ impl Builder<'_> {
 }
 
 /// The body of a cell.
-fn body_of(cell: ElementId, of: &[Vec<ElementId>]) -> Option<usize> {
+pub(super) fn body_of(cell: ElementId, of: &[Vec<ElementId>]) -> Option<usize> {
     of.iter()
         .position(|cells| cells.binary_search(&cell).is_ok())
 }

@@ -1,0 +1,73 @@
+//! What takes the steps of a built case.
+
+use std::sync::Arc;
+
+use carom_dynamics::{Costs, Driver, State, Stepper};
+use carom_output::summary::Zones;
+use carom_zones::Whole;
+
+use crate::build::Built;
+use crate::run::Failed;
+
+/// What takes the steps of a built case.
+pub(crate) enum Stepping {
+    /// One driver, of zones too that step together.
+    One(Box<Driver>),
+    /// Zones that step apart.
+    Apart(Box<Whole>),
+}
+
+impl Stepping {
+    /// At the initial state; or, with the bytes of a state ([`Stepper::saved`]), at that one.
+    ///
+    /// # Errors
+    /// [`Failed::Start`]: the run cannot begin, or the bytes are no state of this model.
+    pub(crate) fn new(built: &Built, saved: Option<&[u8]>) -> Result<Stepping, Failed> {
+        let system = Arc::clone(&built.system);
+        if let (Some(zoned), true) = (&built.zoned, built.apart) {
+            let whole = match saved {
+                None => Whole::new(zoned, system),
+                Some(bytes) => Whole::resume(zoned, system, bytes),
+            };
+            let whole = whole.map_err(|error| Failed::Start(error.into()))?;
+            return Ok(Stepping::Apart(Box::new(whole)));
+        }
+        let driver = match saved {
+            None => Driver::new(system),
+            Some(bytes) => State::from_bytes(&system, bytes)
+                .and_then(|state| Driver::resume(Arc::clone(&system), state)),
+        };
+        Ok(Stepping::One(Box::new(driver.map_err(Failed::Start)?)))
+    }
+
+    /// Adds what the run has cost before it was cut.
+    pub(crate) fn add_earlier(&mut self, costs: &Costs) {
+        match self {
+            Stepping::One(driver) => driver.add_earlier(costs),
+            Stepping::Apart(whole) => whole.add_earlier(costs),
+        }
+    }
+
+    pub(crate) fn get(&self) -> &dyn Stepper {
+        match self {
+            Stepping::One(driver) => &**driver,
+            Stepping::Apart(whole) => &**whole,
+        }
+    }
+
+    pub(crate) fn get_mut(&mut self) -> &mut dyn Stepper {
+        match self {
+            Stepping::One(driver) => &mut **driver,
+            Stepping::Apart(whole) => &mut **whole,
+        }
+    }
+
+    /// What the summary says of the zones, if there are any.
+    pub(crate) fn zones(&self, built: &Built) -> Option<Zones> {
+        match (self, &built.zoned) {
+            (Stepping::Apart(whole), _) => Some(Zones::of(whole)),
+            (Stepping::One(driver), Some(zoned)) => Some(Zones::together(driver, zoned)),
+            (Stepping::One(_), None) => None,
+        }
+    }
+}
