@@ -78,9 +78,9 @@ pub(crate) fn march_from(
 ) -> Result<Finished, Failed> {
     let now = Instant::now();
     let mut run = match &begin {
-        Begin::Start => Stepping::new(built, None)?,
+        Begin::Start => Stepping::new(built, None).map_err(Failed::Start)?,
         Begin::Checkpoint(saved, _) | Begin::Review(saved, _) => {
-            let mut run = Stepping::new(built, Some(&saved.state))?;
+            let mut run = Stepping::new(built, Some(&saved.state)).map_err(Failed::Start)?;
             run.add_earlier(&saved.costs()?);
             run
         }

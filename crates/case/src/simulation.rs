@@ -34,7 +34,7 @@ impl Simulation {
         folder: Option<PathBuf>,
     ) -> Result<Simulation, Failed> {
         let begin = Instant::now();
-        let run = Stepping::new(&built, None)?;
+        let run = Stepping::new(&built, None).map_err(Failed::Start)?;
         let results = match folder {
             None => None,
             Some(folder) => {
@@ -99,7 +99,7 @@ impl Simulation {
             let cause = "a run with a results folder cannot go back to a saved state".to_owned();
             return Err(Failed::Start(carom_dynamics::Error::State { cause }));
         }
-        self.run = Stepping::new(&self.built, Some(bytes))?;
+        self.run = Stepping::new(&self.built, Some(bytes)).map_err(Failed::Start)?;
         Ok(())
     }
 

@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use carom_dynamics::{Costs, Driver, State, Stepper};
+use carom_dynamics::{Costs, Driver, Error, State, Stepper};
 use carom_output::summary::Zones;
 use carom_zones::Whole;
 
 use crate::build::Built;
-use crate::run::Failed;
 
 /// What takes the steps of a built case.
 pub(crate) enum Stepping {
@@ -21,23 +20,22 @@ impl Stepping {
     /// At the initial state; or, with the bytes of a state ([`Stepper::saved`]), at that one.
     ///
     /// # Errors
-    /// [`Failed::Start`]: the run cannot begin, or the bytes are no state of this model.
-    pub(crate) fn new(built: &Built, saved: Option<&[u8]>) -> Result<Stepping, Failed> {
+    /// The run cannot begin, or the bytes are no state of this model.
+    pub(crate) fn new(built: &Built, saved: Option<&[u8]>) -> Result<Stepping, Error> {
         let system = Arc::clone(&built.system);
         if let (Some(zoned), true) = (&built.zoned, built.apart) {
             let whole = match saved {
                 None => Whole::new(zoned, system),
                 Some(bytes) => Whole::resume(zoned, system, bytes),
             };
-            let whole = whole.map_err(|error| Failed::Start(error.into()))?;
-            return Ok(Stepping::Apart(Box::new(whole)));
+            return Ok(Stepping::Apart(Box::new(whole?)));
         }
         let driver = match saved {
             None => Driver::new(system),
             Some(bytes) => State::from_bytes(&system, bytes)
                 .and_then(|state| Driver::resume(Arc::clone(&system), state)),
         };
-        Ok(Stepping::One(Box::new(driver.map_err(Failed::Start)?)))
+        Ok(Stepping::One(Box::new(driver?)))
     }
 
     /// Adds what the run has cost before it was cut.
