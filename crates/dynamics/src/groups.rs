@@ -3,8 +3,9 @@
 
 use std::ops::Range;
 
+use carom_algebra::unknowns::Unknowns;
 use carom_contact::Rows;
-use carom_nonsmooth::{Compliance, Lumped};
+use carom_nonsmooth::{Compliance, Lumped, Unknown};
 
 /// Nobody.
 const NONE: u32 = u32::MAX;
@@ -109,51 +110,62 @@ impl Groups {
 /// Rows up to which D of a group is a dense matrix.
 const DENSE: usize = 72;
 
+/// The unknowns of a system with a diagonal mass.
+#[derive(Clone, Copy)]
+pub(crate) struct Masses<'a> {
+    /// Of each unknown, kg or kg m².
+    pub(crate) lumped: &'a [f64],
+    /// Which are held.
+    pub(crate) fixed: &'a [bool],
+    pub(crate) unknowns: &'a Unknowns,
+}
+
+impl Masses<'_> {
+    /// An unknown with those of its node that are translations, or rotations, as it is.
+    fn unknown(&self, dof: u32) -> Unknown {
+        let at = dof as usize;
+        let first = self.unknowns.first(self.unknowns.node(at));
+        Unknown {
+            first: (at - (at - first) % 3) as u32,
+            inverse: match self.fixed[at] {
+                true => 0.0,
+                false => self.lumped[at].recip(),
+            },
+        }
+    }
+}
+
 /// D = N M⁻¹ Nᵀ over the rows of one group, M diagonal.
 #[derive(Default)]
 pub(crate) struct OfGroup {
     /// All entries, of few rows.
     matrix: Vec<f64>,
-    /// The rows over √m, of many.
+    /// The rows, of many.
     lumped: Lumped,
-    /// Number of an unknown in these, by unknown of the system; nobody outside of [`OfGroup::over`].
-    local: Vec<u32>,
     /// Bytes of the largest so far.
     pub(crate) bytes: usize,
 }
 
 impl OfGroup {
-    /// D over some rows, `width` for each candidate. `mass`: of each unknown; `fixed`: held unknowns.
+    /// D over some points: their first `width` rows, of `each` that a point has.
     pub(crate) fn over(
         &mut self,
-        of: impl Iterator<Item = u32> + Clone,
-        width: usize,
+        points: &[u32],
+        [width, each]: [u32; 2],
         rows: &Rows,
-        (mass, fixed): (&[f64], &[bool]),
+        masses: Masses,
     ) -> Compliance<'_> {
-        if of.clone().count() <= DENSE {
-            entries(of, rows, (mass, fixed), &mut self.matrix);
+        let of_point = |point: &u32| point * each..point * each + width;
+        if points.len() * width as usize <= DENSE {
+            let numbers = points.iter().flat_map(of_point);
+            entries(numbers, rows, masses, &mut self.matrix);
             self.bytes = self.bytes.max(8 * self.matrix.len());
             return Compliance::Dense(&self.matrix);
         }
-        self.local.resize(fixed.len(), NONE);
-        self.lumped.clear(width);
-        let mut count = 0;
-        for number in of.clone() {
-            let (dofs, coefficients) = rows.row(number as usize);
-            let local = &mut self.local;
-            let free = dofs.iter().zip(coefficients);
-            let free = free.filter(|(dof, _)| !fixed[**dof as usize]);
-            self.lumped.push(free.map(|(&dof, n)| {
-                let dof = dof as usize;
-                if local[dof] == NONE {
-                    (local[dof], count) = (count, count + 1);
-                }
-                (local[dof], n / mass[dof].sqrt())
-            }));
-        }
-        for &dof in of.flat_map(|number| rows.row(number as usize).0) {
-            self.local[dof as usize] = NONE;
+        self.lumped.clear(width as usize);
+        for point in points {
+            let own = of_point(point).map(|number| rows.row(number as usize));
+            self.lumped.push(own, |dof| masses.unknown(dof));
         }
         self.lumped.finish();
         self.bytes = self.bytes.max(self.lumped.bytes());
@@ -165,7 +177,7 @@ impl OfGroup {
 fn entries(
     of: impl Iterator<Item = u32> + Clone,
     rows: &Rows,
-    (mass, fixed): (&[f64], &[bool]),
+    masses: Masses,
     matrix: &mut Vec<f64>,
 ) {
     matrix.clear();
@@ -177,8 +189,8 @@ fn entries(
             for (i, n) in dofs.iter().zip(coefficients) {
                 for (j, m) in others.iter().zip(factors) {
                     let at = *i as usize;
-                    if i == j && !fixed[at] {
-                        sum += n * m / mass[at];
+                    if i == j && !masses.fixed[at] {
+                        sum += n * m / masses.lumped[at];
                     }
                 }
             }

@@ -1,12 +1,14 @@
 //! Forces and statuses of contact points: pure problems, numbers in and numbers out.
 //!
 //! [`interface`]: complementarity without friction. [`coulomb`]: with Coulomb friction. [`Weak`]: what the weak form of a
-//! law adds to the compliance. [`Compliance`]: the matrix of the problem, or the sparse rows that it is the product of. No model, no state: the driver of `carom-dynamics` states the problems.
+//! law adds to the compliance. [`Compliance`]: the matrix of the problem, or the sparse rows that it is a product of. No model, no state: the driver of `carom-dynamics` states the problems.
 
 mod compliance;
 pub mod coulomb;
 pub mod interface;
+mod lumped;
 mod weak;
 
-pub use compliance::{Compliance, Lumped};
+pub use compliance::Compliance;
+pub use lumped::{Lumped, Unknown};
 pub use weak::Weak;

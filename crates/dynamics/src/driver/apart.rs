@@ -12,6 +12,7 @@ use super::leapfrog::Apart;
 use super::span::{Candidates, Span, Unsolved};
 use crate::coulomb::Tangential;
 use crate::error::Error;
+use crate::groups::Masses;
 
 /// Rows of the largest group whose problem is kept where it is not solved.
 const KEPT: usize = 1000;
@@ -67,7 +68,11 @@ impl Driver {
             data: &data,
             friction: &friction,
             rows: self.rows_of_points(),
-            mass: (&system.mass.lumped, &system.fixed),
+            masses: Masses {
+                lumped: &system.mass.lumped,
+                fixed: &system.fixed,
+                unknowns: &system.unknowns,
+            },
             factors: [map.gap.x, map.rate.x, self.sliding().0(map).x],
             tolerance: system.nonlinear.iteration.tolerance,
         };

@@ -7,7 +7,7 @@ use carom_contact::law::Status;
 use carom_nonsmooth::Compliance;
 
 use crate::coulomb::{Coulomb, FrictionFailure, Posed, Slip, Tangential};
-use crate::groups::OfGroup;
+use crate::groups::{Masses, OfGroup};
 use crate::interface::{Candidate, Failure, Interface};
 
 /// The candidates of all groups, group after group, and what their problems have in common.
@@ -19,12 +19,24 @@ pub(super) struct Candidates<'a> {
     pub(super) friction: &'a [Tangential],
     /// Rows of all points, and how many each has.
     pub(super) rows: (&'a Rows, u32),
-    /// Mass of each unknown, and which are held.
-    pub(super) mass: (&'a [f64], &'a [bool]),
+    pub(super) masses: Masses<'a>,
     /// Factors of D p in gap, rate and sliding.
     pub(super) factors: [f64; 3],
     /// Relative defect that solutions with friction may have.
     pub(super) tolerance: f64,
+}
+
+impl Candidates<'_> {
+    /// D of a group, over the tangents too where it has friction.
+    fn compliance<'a>(
+        &self,
+        (group, has_friction): (Range<usize>, bool),
+        of_group: &'a mut OfGroup,
+    ) -> Compliance<'a> {
+        let (rows, each) = self.rows;
+        let width = if has_friction { each } else { 1 };
+        of_group.over(&self.points[group], [width, each], rows, self.masses)
+    }
 }
 
 /// What is found for a candidate.
@@ -91,9 +103,7 @@ impl Span {
     /// One group without friction.
     fn solve_normal(&mut self, of: &Candidates, group: Range<usize>) -> Result<(), Unsolved> {
         self.version += 1;
-        let (rows, width) = of.rows;
-        let normals = of.points[group.clone()].iter().map(|point| point * width);
-        let compliance = self.of_group.over(normals, 1, rows, of.mass);
+        let compliance = of.compliance((group.clone(), false), &mut self.of_group);
         let factors = [of.factors[0], of.factors[1]];
         let problem = (compliance, self.version);
         let solved = self
@@ -115,7 +125,7 @@ impl Span {
 
     /// One group with friction.
     fn solve_rubbing(&mut self, of: &Candidates, group: Range<usize>) -> Result<(), Unsolved> {
-        let compliance = with_tangents(of, group.clone(), &mut self.of_group);
+        let compliance = of.compliance((group.clone(), true), &mut self.of_group);
         let posed = Posed {
             candidates: &of.data[group.clone()],
             friction: &of.friction[group],
@@ -142,27 +152,12 @@ impl Span {
         group: Range<usize>,
         (has_friction, most): (bool, usize),
     ) -> Option<Vec<f64>> {
-        if has_friction {
-            return with_tangents(of, group, &mut self.of_group).entries(most);
-        }
-        let (rows, width) = of.rows;
-        let normals = of.points[group].iter().map(|point| point * width);
-        self.of_group.over(normals, 1, rows, of.mass).entries(most)
+        let compliance = of.compliance((group, has_friction), &mut self.of_group);
+        compliance.entries(most)
     }
 
     /// Bytes of the largest D so far.
     pub(super) fn bytes(&self) -> usize {
         self.of_group.bytes
     }
-}
-
-fn with_tangents<'a>(
-    of: &Candidates,
-    group: Range<usize>,
-    of_group: &'a mut OfGroup,
-) -> Compliance<'a> {
-    let (rows, width) = of.rows;
-    let numbers = of.points[group].iter();
-    let numbers = numbers.flat_map(|point| point * width..(point + 1) * width);
-    of_group.over(numbers, width as usize, rows, of.mass)
 }

@@ -111,6 +111,7 @@ fn ten_thousand_points_have_at_most_a_hundred_numbers_each() {
         (100, Integration::Node, 0.0),
         (100, Integration::Node, FRICTION),
         (30, dual, 0.0),
+        (30, dual, FRICTION),
     ] {
         let mut driver = plates(across, integration, friction);
         let (closed, numbers) = step(&mut driver, friction);

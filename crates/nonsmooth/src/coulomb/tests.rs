@@ -3,7 +3,7 @@ use carom_testing::Random;
 
 use super::*;
 use crate::interface::{Candidate, Interface};
-use crate::{Compliance, Lumped};
+use crate::{Compliance, Lumped, Unknown};
 
 fn candidate(law: Law, gap_free: f64) -> Candidate {
     Candidate {
@@ -552,10 +552,14 @@ fn two_rows(n: usize, shift: f64) -> Lumped {
                 ((1 - own) * n + first + 1, -share),
             ];
             // the normal is the third axis, and that of the other side is turned
-            for axis in [2, 0, 1] {
-                let entries = nodes.map(|(node, c)| ((3 * node + axis) as u32, sign * c));
-                d.push(entries.into_iter().filter(|(_, c)| *c != 0.0));
-            }
+            let rows = [2, 0, 1].map(|axis| nodes.map(|(node, _)| (3 * node + axis) as u32));
+            let entries = nodes.map(|(_, c)| sign * c);
+            d.push(rows.iter().map(|row| (&row[..], &entries[..])), |unknown| {
+                Unknown {
+                    first: unknown - unknown % 3,
+                    inverse: 1.0,
+                }
+            });
         }
     }
     d.finish();

@@ -6,7 +6,7 @@ use carom_nonsmooth::coulomb::{
     Coulomb, FrictionProblem, FrictionSolution, Posed, Slip, Tangential,
 };
 use carom_nonsmooth::interface::{Candidate, Interface, InterfaceProblem};
-use carom_nonsmooth::{Compliance, Lumped};
+use carom_nonsmooth::{Compliance, Lumped, Unknown};
 use carom_testing::Random;
 
 /// n × n nodes at distances of 1 upon as many faces of the size `size`; per point its four nodes and their shares.
@@ -29,17 +29,43 @@ fn surface(n: usize, size: f64) -> Vec<[(usize, f64); 4]> {
 
 /// The rows of these points on nodes of mass 1 above and of mass `size`² below, three unknowns each.
 fn rows(points: &[[(usize, f64); 4]], size: f64, tangents: usize) -> Lumped {
-    let mut lumped = Lumped::default();
-    lumped.clear(1 + tangents);
-    let below = 3 * points.len();
-    let root = size.recip();
-    for (k, point) in points.iter().enumerate() {
-        for axis in (0..=tangents).map(|row| (row + 2) % 3) {
-            let own = std::iter::once(((3 * k + axis) as u32, 1.0));
+    let below = 3 * points.len() as u32;
+    let of_point = |(k, point): (usize, &[(usize, f64); 4])| -> Vec<Row> {
+        let along = |axis: usize| {
             let face = point.iter();
-            let face = face.map(|&(node, share)| ((below + 3 * node + axis) as u32, -share * root));
-            lumped.push(own.chain(face));
-        }
+            let face = face.map(|&(node, share)| (below + (3 * node + axis) as u32, -share));
+            let own = std::iter::once(((3 * k + axis) as u32, 1.0));
+            own.chain(face).unzip()
+        };
+        (0..=tangents).map(|row| along((row + 2) % 3)).collect()
+    };
+    let inverse = |unknown: u32| match unknown < below {
+        true => 1.0,
+        false => size.powi(-2),
+    };
+    let candidates = points.iter().enumerate().map(of_point);
+    filled(candidates, 1 + tangents, inverse)
+}
+
+/// Unknowns and entries of a row.
+type Row = (Vec<u32>, Vec<f64>);
+
+/// The rows of candidates on nodes of three unknowns; `inverse`: mass of an unknown.
+fn filled(
+    candidates: impl Iterator<Item = Vec<Row>>,
+    width: usize,
+    inverse: impl Fn(u32) -> f64,
+) -> Lumped {
+    let mut lumped = Lumped::default();
+    lumped.clear(width);
+    for rows in candidates {
+        let rows = rows
+            .iter()
+            .map(|(unknowns, entries)| (&unknowns[..], &entries[..]));
+        lumped.push(rows, |unknown| Unknown {
+            first: unknown - unknown % 3,
+            inverse: inverse(unknown),
+        });
     }
     lumped.finish();
     lumped
@@ -187,15 +213,14 @@ fn ten_thousand_points_have_no_dense_matrix() {
 #[test]
 fn a_row_of_bodies_pressed_together_is_solved_by_passes() {
     const BODIES: usize = 120;
-    let mut lumped = Lumped::default();
-    lumped.clear(3);
-    for k in 0..BODIES - 1 {
-        for axis in [2, 0, 1] {
+    let between = |k: usize| -> Vec<Row> {
+        let along = |axis: usize| {
             let unknown = |body: usize| (3 * body + axis) as u32;
-            lumped.push([(unknown(k + 1), 1.0), (unknown(k), -1.0)].into_iter());
-        }
-    }
-    lumped.finish();
+            (vec![unknown(k + 1), unknown(k)], vec![1.0, -1.0])
+        };
+        [2, 0, 1].map(along).into()
+    };
+    let lumped = filled((0..BODIES - 1).map(between), 3, |_| 1.0);
     let mut random = Random(8);
     let mut candidates = candidates(BODIES - 1, &mut random);
     for candidate in &mut candidates {
