@@ -5,7 +5,8 @@
 //! without contact. Waves run through both plates. "far": four elements lie between them; "near": half an element; "tenth": they
 //! touch on a tenth of their faces, pressed together by gravity, with friction, and are far elsewhere; they are compared with the run
 //! without contact under the same gravity, whose work and resultants a step without loads does not sum. Best of groups of four
-//! steps, since other processes may be running; the first steps, in which all points are looked at, are not among them.
+//! steps, since other processes may be running; the first steps, in which all points are looked at, are not among them. "processor" is
+//! the mean by the time that threads have had a processor, where the system tells it: other processes move it less than the clock's.
 
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -73,8 +74,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         2 * n * n
     );
     println!(
-        "{:24} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8}",
-        "", "step", "contact", "balance", "closed", "mean", "best"
+        "{:24} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8} {:>10} {:>8}",
+        "", "step", "contact", "balance", "closed", "mean", "best", "processor", "mean"
     );
     let node = Integration::Node;
     let runs: [Run; 10] = [
@@ -102,7 +103,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn time(
     run: &Run,
     n: usize,
-    undisturbed: &mut Option<[Duration; 2]>,
+    undisturbed: &mut Option<[Duration; 3]>,
 ) -> Result<(), Box<dyn Error>> {
     let system = System::new(model(run, n)?)?;
     let velocity = system.x.iter().flat_map(|x| {
@@ -113,9 +114,10 @@ fn time(
     let mut driver = Driver::new(system)?;
     driver.restart(&vec![0.0; velocity.len()], &velocity)?;
     let mut best: Option<(Duration, Phases)> = None;
-    let mut all = Duration::ZERO;
+    let (mut all, mut processor) = (Duration::ZERO, Duration::ZERO);
     for group in 0..GROUPS + WARM {
         let (begin, before) = (Instant::now(), driver.costs().phases);
+        let had = on_processor();
         for _ in 0..STEPS {
             driver.step()?;
         }
@@ -129,6 +131,7 @@ fn time(
             continue;
         }
         all += took;
+        processor += on_processor().saturating_sub(had);
         if best.as_ref().is_none_or(|(least, _)| took < *least) {
             best = Some((took, spent));
         }
@@ -138,18 +141,31 @@ fn time(
     };
     let each = |time: Duration| 1e3 * time.as_secs_f64() / STEPS as f64;
     let mean = all / GROUPS as u32;
-    let [first_mean, first] = *undisturbed.get_or_insert([mean, took]);
+    let processor = processor / GROUPS as u32;
+    let [first_mean, first, first_processor] = *undisturbed.get_or_insert([mean, took, processor]);
     let closed: usize = driver.report().contacts.iter().map(|c| c.closed).sum();
     println!(
-        "{:24} {:7.2} ms {:7.2} ms {:7.2} ms {closed:8} {:7.2}x {:7.2}x",
+        "{:24} {:7.2} ms {:7.2} ms {:7.2} ms {closed:8} {:7.2}x {:7.2}x {:7.2} ms {:7.2}x",
         run.0,
         each(took),
         each(spent.contact),
         each(spent.balance),
         mean.as_secs_f64() / first_mean.as_secs_f64(),
         took.as_secs_f64() / first.as_secs_f64(),
+        each(processor),
+        processor.as_secs_f64() / first_processor.as_secs_f64(),
     );
     Ok(())
+}
+
+/// Time that the threads of this process have had a processor; zero where the system does not tell it as Linux does.
+fn on_processor() -> Duration {
+    let threads = std::fs::read_dir("/proc/self/task").into_iter().flatten();
+    let of_thread = |thread: std::io::Result<std::fs::DirEntry>| {
+        let told = std::fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
+        told.split_whitespace().next()?.parse::<u64>().ok()
+    };
+    Duration::from_nanos(threads.filter_map(of_thread).sum())
 }
 
 /// Two plates of 1 m.
