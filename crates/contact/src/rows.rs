@@ -210,6 +210,17 @@ impl Rows {
         self.close();
     }
 
+    /// The same of a node that nothing carries, whose translations begin with this unknown and have no entry yet.
+    pub(crate) fn add_translations(&mut self, first: u32, direction: &[f64]) {
+        for (unknown, &n) in (first..).zip(direction) {
+            if n != 0.0 {
+                self.dofs.push(unknown);
+                self.coefficients.push(n);
+            }
+        }
+        self.close();
+    }
+
     /// Adds to the row of the point begun last what a moment on a node does, of a unit force in m.
     pub(crate) fn add_moment(&mut self, places: &Places, node: u32, moment: &[f64; 3]) {
         let carried = places.unknowns.carrier(node).is_some();

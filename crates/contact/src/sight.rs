@@ -297,7 +297,8 @@ impl View<'_> {
         }
     }
 
-    fn is_beside(&self, item: u32) -> bool {
+    /// Whether a face is beside the viewer, and so never in view.
+    pub(crate) fn is_beside(&self, item: u32) -> bool {
         let beside = self.sight.beside.of(self.point);
         beside.binary_search(&item).is_ok()
     }

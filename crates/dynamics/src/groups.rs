@@ -110,6 +110,43 @@ impl Groups {
 /// Rows up to which D of a group is a dense matrix.
 const DENSE: usize = 72;
 
+/// The rows of points, numbered point after point: that of the normal, and those of the tangents where there is friction.
+#[derive(Clone, Copy)]
+pub(crate) struct PointRows<'a> {
+    pub(crate) normals: &'a Rows,
+    /// None, or one for each tangent.
+    pub(crate) tangents: &'a [Rows],
+}
+
+impl<'a> PointRows<'a> {
+    /// Rows of a point.
+    pub(crate) fn width(&self) -> u32 {
+        1 + self.tangents.len() as u32
+    }
+
+    /// Pool and point of a row.
+    fn of(&self, number: u32) -> (&'a Rows, usize) {
+        let (point, k) = (number / self.width(), number % self.width());
+        let rows = match k {
+            0 => self.normals,
+            k => &self.tangents[k as usize - 1],
+        };
+        (rows, point as usize)
+    }
+
+    /// Unknowns and entries of a row.
+    pub(crate) fn row(&self, number: u32) -> (&'a [u32], &'a [f64]) {
+        let (rows, point) = self.of(number);
+        rows.row(point)
+    }
+
+    /// Product of a row with a system vector.
+    pub(crate) fn product(&self, number: u32, x: &[f64]) -> f64 {
+        let (rows, point) = self.of(number);
+        rows.product(point, x)
+    }
+}
+
 /// The unknowns of a system with a diagonal mass.
 #[derive(Clone, Copy)]
 pub(crate) struct Masses<'a> {
@@ -147,15 +184,15 @@ pub(crate) struct OfGroup {
 }
 
 impl OfGroup {
-    /// D over some points: their first `width` rows, of `each` that a point has.
+    /// D over the first `width` rows of some points.
     pub(crate) fn over(
         &mut self,
         points: &[u32],
-        [width, each]: [u32; 2],
-        rows: &Rows,
+        width: u32,
+        rows: PointRows,
         masses: Masses,
     ) -> Compliance<'_> {
-        let of_point = |point: &u32| point * each..point * each + width;
+        let of_point = |point: &u32| point * rows.width()..point * rows.width() + width;
         if points.len() * width as usize <= DENSE {
             let numbers = points.iter().flat_map(of_point);
             entries(numbers, rows, masses, &mut self.matrix);
@@ -164,7 +201,7 @@ impl OfGroup {
         }
         self.lumped.clear(width as usize);
         for point in points {
-            let own = of_point(point).map(|number| rows.row(number as usize));
+            let own = of_point(point).map(|number| rows.row(number));
             self.lumped.push(own, |dof| masses.unknown(dof));
         }
         self.lumped.finish();
@@ -176,15 +213,15 @@ impl OfGroup {
 /// All entries of D, row-major.
 fn entries(
     of: impl Iterator<Item = u32> + Clone,
-    rows: &Rows,
+    rows: PointRows,
     masses: Masses,
     matrix: &mut Vec<f64>,
 ) {
     matrix.clear();
     for one in of.clone() {
-        let (dofs, coefficients) = rows.row(one as usize);
+        let (dofs, coefficients) = rows.row(one);
         for other in of.clone() {
-            let (others, factors) = rows.row(other as usize);
+            let (others, factors) = rows.row(other);
             let mut sum = 0.0;
             for (i, n) in dofs.iter().zip(coefficients) {
                 for (j, m) in others.iter().zip(factors) {

@@ -129,17 +129,31 @@ impl Stencil {
             rows.begin(at, 0.0, *t);
             rows.set_rate(self.slide(t));
         }
-        let turning = self.turning();
+        let (turning, tangents) = (self.turning(), &mut tangents[..dim - 1]);
         for (i, (node, c)) in self.relative().enumerate() {
             let mut n = self.normal.map(|n| c * n);
             if let Some(turning) = &turning {
                 n = (Vec3::from(n) + turning[i]).into();
             }
-            rows.add_node(places, node, &n);
-            let arm = Vec3::from(self.normal) * (c * self.reach(i));
-            for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
-                rows.add_node(places, node, &t.map(|t| c * t));
-                rows.add_moment(places, node, &arm.cross(&Vec3::from(*t)).into());
+            let scaled = |t: &[f64; 3]| t.map(|t| c * t);
+            if !self.carried {
+                let first = self.first[i];
+                rows.add_translations(first, &n[..dim]);
+                for (rows, t) in tangents.iter_mut().zip(&frame) {
+                    rows.add_translations(first, &scaled(t)[..dim]);
+                }
+            } else {
+                rows.add_node(places, node, &n);
+                for (rows, t) in tangents.iter_mut().zip(&frame) {
+                    rows.add_node(places, node, &scaled(t));
+                }
+            }
+            let reach = self.reach(i);
+            if reach != 0.0 {
+                let arm = Vec3::from(self.normal) * (c * reach);
+                for (rows, t) in tangents.iter_mut().zip(&frame) {
+                    rows.add_moment(places, node, &arm.cross(&Vec3::from(*t)).into());
+                }
             }
         }
     }

@@ -233,6 +233,9 @@ impl FaceTree {
             let distance = found.map_or(within, |(_, distance)| distance);
             let reach = distance + self.moved + self.skin;
             tree.near(&there, reach, &mut scratch.near);
+            if let Some(view) = view {
+                scratch.near.retain(|&item| !view.is_beside(item));
+            }
             kept.list(&there, reach, &scratch.near, tree);
         }
         if let (Some(before), Some((item, _))) = (kept.face, found) {

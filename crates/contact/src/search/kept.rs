@@ -23,7 +23,7 @@ pub(crate) struct Kept {
     pub epoch: u32,
     /// The place when the faces were listed, m.
     x: [f64; 3],
-    /// All faces within `reach` (m) of that place and the distances of their boxes, nearer ones first; none if not listed.
+    /// All faces within `reach` (m) of that place that may be in view, and the distances of their boxes, nearer ones first; none if not listed.
     faces: Vec<(u32, f64)>,
     reach: Option<f64>,
     /// Whether there were too many to be listed.

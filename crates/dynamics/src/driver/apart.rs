@@ -4,7 +4,6 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use carom_contact::Rows;
 use rayon::prelude::*;
 
 use super::Driver;
@@ -12,7 +11,7 @@ use super::leapfrog::Apart;
 use super::span::{Candidates, Span, Unsolved};
 use crate::coulomb::Tangential;
 use crate::error::Error;
-use crate::groups::Masses;
+use crate::groups::{Masses, PointRows};
 
 /// Rows of the largest group whose problem is kept where it is not solved.
 const KEPT: usize = 1000;
@@ -20,22 +19,21 @@ const KEPT: usize = 1000;
 impl Driver {
     /// Splits the candidates into groups.
     fn split(&self, apart: &mut Apart) {
-        let (rows, width) = self.rows_of_points();
-        let fixed = &self.system.fixed;
+        let (rows, fixed) = (self.rows_of_points(), &self.system.fixed);
         let unknowns = |point: u32| {
-            let numbers = point * width..(point + 1) * width;
-            let dofs = numbers.flat_map(|number| rows.row(number as usize).0);
+            let numbers = point * rows.width()..(point + 1) * rows.width();
+            let dofs = numbers.flat_map(|number| rows.row(number).0);
             let dofs = dofs.map(|&dof| dof as usize);
             dofs.filter(|&dof| !fixed[dof])
         };
         apart.groups.split(&self.candidates, unknowns, fixed.len());
     }
 
-    /// The rows of all points, with those of tangents, and how many each has.
-    fn rows_of_points(&self) -> (&Rows, u32) {
-        match self.system.tangents() {
-            0 => (&self.pairing.rows, 1),
-            tangents => (&self.stacked, 1 + tangents as u32),
+    /// The rows of all points.
+    fn rows_of_points(&self) -> PointRows<'_> {
+        PointRows {
+            normals: &self.pairing.rows,
+            tangents: &self.pairing.tangents[..self.system.tangents()],
         }
     }
 
@@ -150,13 +148,14 @@ impl Driver {
         room.resize(self.system.unknowns(), 0.0);
         let mut data = std::mem::take(&mut self.candidate_data);
         data.clear();
-        let (rows, width) = self.rows_of_points();
+        let rows = self.rows_of_points();
+        let width = rows.width();
         let points = self.candidates.iter();
         let numbers = points.flat_map(|&point| point * width..(point + 1) * width);
-        for &dof in numbers.flat_map(|number| rows.row(number as usize).0) {
+        for &dof in numbers.flat_map(|number| rows.row(number).0) {
             room[dof as usize] = free(self, dof as usize);
         }
-        let along = |number: u32| rows.product(number as usize, room);
+        let along = |number: u32| rows.product(number, room);
         let points = self.candidates.iter();
         data.extend(points.map(|&point| self.candidate(point as usize, along(point * width))));
         friction.clear();

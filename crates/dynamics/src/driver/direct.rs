@@ -198,6 +198,7 @@ impl Driver {
                 self.solve_apart(&mut direct.apart, free)?;
             }
             false => {
+                self.stack();
                 self.vectors.make_room(&self.state.motion);
                 for i in 0..self.system.unknowns() {
                     self.vectors.residual[i] = self.left(loads, i);

@@ -154,7 +154,7 @@ pub struct Driver {
     coulomb: Coulomb,
     weak: WeakForms,
     with_weak: WithWeak,
-    /// Normal and tangential rows of all points, point after point, where there is friction.
+    /// Normal and tangential rows of all points, point after point, where there is friction; of steps with iterations.
     stacked: carom_contact::Rows,
     slips: Vec<Slip>,
     /// Buffers of the bodies.

@@ -34,17 +34,13 @@ impl Driver {
     /// Pairs the near points, in the configurations that are known.
     pub(super) fn pair_near(&mut self) {
         let system = Arc::clone(&self.system);
-        let width = 1 + system.tangents();
         let mut pairing = std::mem::take(&mut self.pairing);
         self.rows_stand = false;
         let begins = self.active.begins();
         if begins {
             pairing.open_all(&system.contacts, system.dim);
-            self.stacked.open_all(width * system.points());
         } else {
             self.active.keep(pairing.near());
-            let near = pairing.near().iter().flat_map(|&point| rows(point, width));
-            self.stacked.reopen(near);
             pairing.reopen();
         }
         for number in 0..system.contacts.len() {
@@ -53,17 +49,6 @@ impl Driver {
         }
         if !begins {
             self.active.take(pairing.near());
-        }
-        if width > 1 {
-            for &point in pairing.near() {
-                let first = point as usize * width;
-                self.stacked
-                    .place_from(first, &pairing.rows, point as usize);
-                for (k, tangent) in pairing.tangents[..width - 1].iter().enumerate() {
-                    self.stacked
-                        .place_from(first + 1 + k, tangent, point as usize);
-                }
-            }
         }
         self.pairing = pairing;
     }
@@ -121,10 +106,4 @@ impl Driver {
         };
         contact.pair_near(&places, search, &near, pairing);
     }
-}
-
-/// Numbers of the rows of a point among those of all with their tangents.
-fn rows(point: u32, width: usize) -> impl Iterator<Item = u32> {
-    let width = width as u32;
-    point * width..(point + 1) * width
 }

@@ -2,12 +2,11 @@
 
 use std::ops::Range;
 
-use carom_contact::Rows;
 use carom_contact::law::Status;
 use carom_nonsmooth::Compliance;
 
 use crate::coulomb::{Coulomb, FrictionFailure, Posed, Slip, Tangential};
-use crate::groups::{Masses, OfGroup};
+use crate::groups::{Masses, OfGroup, PointRows};
 use crate::interface::{Candidate, Failure, Interface};
 
 /// The candidates of all groups, group after group, and what their problems have in common.
@@ -17,8 +16,8 @@ pub(super) struct Candidates<'a> {
     pub(super) data: &'a [Candidate],
     /// Empty without friction.
     pub(super) friction: &'a [Tangential],
-    /// Rows of all points, and how many each has.
-    pub(super) rows: (&'a Rows, u32),
+    /// Rows of all points.
+    pub(super) rows: PointRows<'a>,
     pub(super) masses: Masses<'a>,
     /// Factors of D p in gap, rate and sliding.
     pub(super) factors: [f64; 3],
@@ -33,9 +32,8 @@ impl Candidates<'_> {
         (group, has_friction): (Range<usize>, bool),
         of_group: &'a mut OfGroup,
     ) -> Compliance<'a> {
-        let (rows, each) = self.rows;
-        let width = if has_friction { each } else { 1 };
-        of_group.over(&self.points[group], [width, each], rows, self.masses)
+        let width = if has_friction { self.rows.width() } else { 1 };
+        of_group.over(&self.points[group], width, self.rows, self.masses)
     }
 }
 
@@ -129,7 +127,7 @@ impl Span {
         let posed = Posed {
             candidates: &of.data[group.clone()],
             friction: &of.friction[group],
-            tangents: of.rows.1 as usize - 1,
+            tangents: of.rows.tangents.len(),
             d: compliance,
             s: of.factors,
             tolerance: of.tolerance,
