@@ -541,25 +541,20 @@ fn points_whose_stick_is_contradictory_are_solved_by_the_slip_of_one() {
 fn two_rows(n: usize, shift: f64) -> Lumped {
     let mut d = Lumped::default();
     d.clear(3);
+    let alike = |unknown: u32| Unknown {
+        first: unknown - unknown % 3,
+        inverse: 1.0,
+    };
     for (own, sign) in [(0, 1.0), (1, -1.0)] {
         for i in 0..n {
             let place = (i as f64 + sign * shift).clamp(0.0, (n - 1) as f64);
             let first = (place as usize).min(n - 2);
-            let share = place - first as f64;
-            let nodes = [
-                (own * n + i, 1.0),
-                ((1 - own) * n + first, share - 1.0),
-                ((1 - own) * n + first + 1, -share),
-            ];
+            let (share, other) = (place - first as f64, (1 - own) * n + first);
+            let nodes = [own * n + i, other, other + 1];
             // the normal is the third axis, and that of the other side is turned
-            let rows = [2, 0, 1].map(|axis| nodes.map(|(node, _)| (3 * node + axis) as u32));
-            let entries = nodes.map(|(_, c)| sign * c);
-            d.push(rows.iter().map(|row| (&row[..], &entries[..])), |unknown| {
-                Unknown {
-                    first: unknown - unknown % 3,
-                    inverse: 1.0,
-                }
-            });
+            let rows = [2, 0, 1].map(|axis| nodes.map(|node| (3 * node + axis) as u32));
+            let entries = [1.0, share - 1.0, -share].map(|c| sign * c);
+            d.push(rows.iter().map(|row| (&row[..], &entries[..])), alike);
         }
     }
     d.finish();
