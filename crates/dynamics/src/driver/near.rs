@@ -11,6 +11,7 @@ use carom_contact::{Near, Pairing, Places, Sliding, Step};
 use super::Driver;
 use super::deletion::as_left;
 use super::tangents::first_thought;
+use crate::step_map::Row;
 
 impl Driver {
     /// Takes the contact of the state before into that of the end.
@@ -47,9 +48,10 @@ impl Driver {
             self.stacked.reopen(near);
             pairing.reopen();
         }
+        let mut placed = None;
         for number in 0..system.contacts.len() {
             pairing.span = self.span(number);
-            self.pair_near_of(number, &mut pairing);
+            self.pair_near_of(number, &mut placed, &mut pairing);
         }
         if !begins {
             self.active.take(pairing.near());
@@ -68,7 +70,8 @@ impl Driver {
         self.pairing = pairing;
     }
 
-    fn pair_near_of(&mut self, number: usize, pairing: &mut Pairing) {
+    /// `placed`: configuration of the contact before.
+    fn pair_near_of(&mut self, number: usize, placed: &mut Option<Row>, pairing: &mut Pairing) {
         let system = Arc::clone(&self.system);
         let (contact, first) = (
             as_left(&self.bared, &system, number),
@@ -91,6 +94,13 @@ impl Driver {
         };
         let places = system.places(time, u, &self.state.motion.frames);
         let (search, initial) = (&mut self.search[number], &mut self.initial[number]);
+        if placed.replace(row) != Some(row) {
+            self.far.forget_places();
+        }
+        let reach = self.active.reaches[number];
+        if self.far.are_apart(number, reach, &places) {
+            return search.rest_anew();
+        }
         if contact.sliding == Sliding::Small && (initial.is_empty() || contact.moves()) {
             initial.clear();
             initial.span = pairing.span;
@@ -114,7 +124,7 @@ impl Driver {
         });
         let near = Near {
             first,
-            reach: self.active.reaches[number],
+            reach,
             step,
             inside: &|point| gaps[first + point] < 0.0,
             initial,

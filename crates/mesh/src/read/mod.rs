@@ -9,22 +9,38 @@ pub mod file;
 pub(crate) mod flatten;
 pub mod gmsh;
 pub mod inp;
+#[cfg(feature = "hdf5")]
+pub mod med;
 pub mod stl;
 pub mod vtu;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::Mesh;
+use crate::{ElementId, Group, Mesh};
 pub use error::{Place, ReadError};
 
 /// Extensions of the files that [`read`] takes.
-pub const EXTENSIONS: &[&str] = &["msh", "inp", "stl", "vtu"];
+pub const EXTENSIONS: &[&str] = &["msh", "inp", "stl", "vtu", "med"];
+
+#[cfg(feature = "hdf5")]
+fn med(path: &Path, bytes: Vec<u8>) -> Result<Mesh, ReadError> {
+    med::parse(path, bytes)
+}
+
+#[cfg(not(feature = "hdf5"))]
+fn med(path: &Path, _: Vec<u8>) -> Result<Mesh, ReadError> {
+    Err(ReadError::Feature {
+        path: path.to_owned(),
+    })
+}
 
 /// Most bytes of a mesh file: 16 GiB, some hundred million nodes.
 const LARGEST: u64 = 16 << 30;
 
 /// Reads the mesh in a file; the extension, in any case, says the format: `.msh` is Gmsh's ([`gmsh`]), `.inp` that of
-/// Abaqus and CalculiX ([`inp`]), `.stl` a surface of triangles ([`stl`]), `.vtu` an unstructured grid of VTK ([`vtu`]).
+/// Abaqus and CalculiX ([`inp`]), `.stl` a surface of triangles ([`stl`]), `.vtu` an unstructured grid of VTK ([`vtu`]), `.med` a mesh of
+/// Salome and code_aster (`med`, with the feature `hdf5`).
 ///
 /// Fails if the file cannot be read or its content refused; see [`ReadError`].
 pub fn read(path: &Path) -> Result<Mesh, ReadError> {
@@ -45,6 +61,24 @@ pub fn read(path: &Path) -> Result<Mesh, ReadError> {
         "inp" => inp::parse(path, &bytes),
         "stl" => stl::parse(path, &bytes),
         "vtu" => vtu::parse(path, &bytes),
+        "med" => med(path, bytes),
         _ => gmsh::parse(path, &bytes),
+    }
+}
+
+/// Adds a group of elements; one of several dimensions has the name for the highest, `name.2d` and the like for others.
+fn add(mesh: &mut Mesh, name: &str, elements: Vec<ElementId>) {
+    let mut by_dim: BTreeMap<usize, Vec<ElementId>> = BTreeMap::new();
+    for element in elements {
+        let dim = mesh.kind(element).table().dim;
+        by_dim.entry(dim).or_default().push(element);
+    }
+    let highest = by_dim.keys().max().copied();
+    for (dim, elements) in by_dim {
+        let name = match Some(dim) == highest {
+            true => name.to_owned(),
+            false => format!("{name}.{dim}d"),
+        };
+        mesh.groups.insert(name, Group::new(dim, elements));
     }
 }
