@@ -211,3 +211,63 @@ fn document(
     file.add_group(root.finish());
     file
 }
+
+#[cfg(test)]
+mod tests {
+    use carom_elements::Kind;
+    use hdf5_pure::File;
+
+    use super::*;
+    use crate::vtu::{self, Cells, Field, Grid, Values};
+
+    #[test]
+    fn instants_follow_each_other_and_what_stays_stands_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut instants = Vec::new();
+        for number in 0..3 {
+            let far = [2.0, 2.0 + f64::from(number), 2.0 + f64::from(number)][number as usize];
+            let points = [[0.0; 3], [1.0, 0.0, 0.0], [far, 0.0, 0.0]];
+            let speed = points.map(|x| [x[0] - 1.0, 0.0, 0.5]);
+            let path = folder.path().join(format!("{number}.vtu"));
+            let zone = [7, 8];
+            let cell_fields = [Field {
+                name: "zone",
+                values: Values::Integer(&zone),
+            }];
+            let grid = Grid {
+                time: 0.1 * f64::from(number),
+                points: &points,
+                cells: &[Cells {
+                    kind: Kind::Bar2,
+                    nodes: &[0, 1, 1, 2],
+                }],
+                point_fields: &[Field {
+                    name: "velocity",
+                    values: Values::Vector(&speed),
+                }],
+                // the first file alone has it
+                cell_fields: if number == 0 { &cell_fields } else { &[] },
+            };
+            vtu::write(&path, &grid).unwrap();
+            instants.push((grid.time, path));
+        }
+        let path = folder.path().join("all.vtkhdf");
+        write(&path, &instants).unwrap();
+        let file = File::open(&path).unwrap();
+        let reals = |name: &str| file.dataset(name).unwrap().read_f64().unwrap();
+        let integers = |name: &str| file.dataset(name).unwrap().read_i64().unwrap();
+        assert_eq!(reals("VTKHDF/Steps/Values"), [0.0, 0.1, 0.2]);
+        let shape = |name: &str| file.dataset(name).unwrap().shape().unwrap();
+        // three instants, each of its own
+        assert_eq!(shape("VTKHDF/Points"), [9, 3]);
+        assert_eq!(integers("VTKHDF/Steps/PointOffsets"), [0, 3, 6]);
+        let x: Vec<f64> = reals("VTKHDF/Points").chunks(3).map(|x| x[0]).collect();
+        assert_eq!(x, [0.0, 1.0, 2.0, 0.0, 1.0, 3.0, 0.0, 1.0, 4.0]);
+        assert_eq!(shape("VTKHDF/PointData/velocity"), [9, 3]);
+        // the mesh and the field stand once
+        assert_eq!(integers("VTKHDF/Connectivity"), [0, 1, 1, 2]);
+        assert_eq!(integers("VTKHDF/Offsets"), [0, 2, 4]);
+        assert_eq!(integers("VTKHDF/CellData/zone"), [7, 8]);
+        assert_eq!(integers("VTKHDF/Steps/CellDataOffsets/zone"), [0; 3]);
+    }
+}

@@ -27,7 +27,7 @@ const CELLS: &str = "cells";
 /// Bytes of the name of a group.
 const NAME: usize = 80;
 
-/// Kinds of cells: name in the file, kind, and which node of the file is each node of ours.
+/// Kinds of cells: name in the file, kind, and which node of the file is each node of a Gmsh file.
 const KINDS: &[(&str, Kind, &[usize])] = &[
     ("PO1", Kind::Point1, &[0]),
     ("SE2", Kind::Bar2, &[0, 1]),
@@ -38,9 +38,23 @@ const KINDS: &[(&str, Kind, &[usize])] = &[
     ("QU8", Kind::Quad8, &[0, 1, 2, 3, 4, 5, 6, 7]),
     ("QU9", Kind::Quad9, &[0, 1, 2, 3, 4, 5, 6, 7, 8]),
     ("TE4", Kind::Tet4, &[0, 2, 1, 3]),
+    ("T10", Kind::Tet10, &[0, 2, 1, 3, 6, 5, 4, 7, 8, 9]),
     ("PY5", Kind::Pyramid5, &[0, 3, 2, 1, 4]),
     ("PE6", Kind::Wedge6, &[0, 2, 1, 3, 5, 4]),
+    (
+        "P15",
+        Kind::Wedge15,
+        &[0, 2, 1, 3, 5, 4, 8, 6, 12, 7, 14, 13, 11, 9, 10],
+    ),
     ("HE8", Kind::Hex8, &[0, 3, 2, 1, 4, 7, 6, 5]),
+    ("H20", Kind::Hex20, HEXAHEDRON.split_at(20).0),
+    ("H27", Kind::Hex27, &HEXAHEDRON),
+];
+
+/// Nodes of hexahedra.
+const HEXAHEDRON: [usize; 27] = [
+    0, 3, 2, 1, 4, 7, 6, 5, 11, 8, 16, 10, 19, 9, 18, 17, 15, 12, 14, 13, 20, 24, 21, 23, 22, 25,
+    26,
 ];
 
 /// What is wrong, where, what was expected, and whether it is sound but not read.
@@ -211,7 +225,7 @@ fn add_cells(
         return Err((
             object,
             found,
-            "linear cells, lines and plane cells of second order",
+            "linear and quadratic cells, pyramids linear",
             true,
         ));
     };
@@ -228,7 +242,13 @@ fn add_cells(
     }
     let block = mesh.blocks.len() as u32;
     // component after component, as coordinates
-    let of_cell = |cell: usize| order.iter().map(move |place| (place, cell));
+    let places: Vec<usize> = kind
+        .table()
+        .gmsh_order
+        .iter()
+        .map(|&place| order[place])
+        .collect();
+    let of_cell = |cell: usize| places.iter().map(move |place| (place, cell));
     let all = (0..count).flat_map(of_cell);
     let all = all.map(|(place, cell)| (nodes[place * count + cell] - 1) as u32);
     mesh.blocks.push(Block {
