@@ -108,7 +108,7 @@ fn thin(contact: &str) -> String {
 carom = 1
 mesh.dimension = 3
 mesh.generate.plate.rectangle = {{ origin = [0.0, 0.0], size = [0.2, 0.2], elements = [8, 8] }}
-mesh.generate.block.box = {{ origin = [0.05, 0.05, -0.1015], size = [0.1, 0.1, 0.1], elements = [2, 2, 2] }}
+mesh.generate.block.box = {{ origin = [0.04, 0.04, -0.1215], size = [0.12, 0.12, 0.12], elements = [2, 2, 2] }}
 mesh.generate.rod.line = {{ from = [0.02, 0.1, 0.0065], to = [0.18, 0.1, 0.0065], elements = 9 }}
 material.steel = {{ density = 7800.0, elastic = {{ young = "200 GPa", poisson = 0.3 }} }}
 body.plate = {{ region = "plate", material = "steel", section.shell.thickness = "2 mm" }}
