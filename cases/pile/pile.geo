@@ -1,4 +1,4 @@
-// Three blocks of different shapes above a tray. gmsh pile.geo -2 -format msh41 -bin
+// Three blocks of different shapes above a tray, pile.msh: gmsh pile.geo -2 -format msh41 -bin
 SetFactory("OpenCASCADE");
 Mesh.Algorithm = 6;
 Mesh.RecombineAll = 0;
