@@ -18,7 +18,8 @@ use carom_elements::Kind;
 use hdf5_pure::{AttrValue, Dataset, File, Group as Folder};
 
 use super::flatten::flatten;
-use super::{Place, ReadError, add};
+use super::groups::add;
+use super::{Place, ReadError};
 use crate::{Block, ElementId, Group, Mesh};
 
 /// The group of all cells of a file without groups.

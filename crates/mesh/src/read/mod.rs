@@ -8,16 +8,16 @@ mod error;
 pub mod file;
 pub(crate) mod flatten;
 pub mod gmsh;
+mod groups;
 pub mod inp;
 #[cfg(feature = "hdf5")]
 pub mod med;
 pub mod stl;
 pub mod vtu;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::{ElementId, Group, Mesh};
+use crate::Mesh;
 pub use error::{Place, ReadError};
 
 /// Extensions of the files that [`read`] takes.
@@ -63,22 +63,5 @@ pub fn read(path: &Path) -> Result<Mesh, ReadError> {
         "vtu" => vtu::parse(path, &bytes),
         "med" => med(path, bytes),
         _ => gmsh::parse(path, &bytes),
-    }
-}
-
-/// Adds a group of elements; one of several dimensions has the name for the highest, `name.2d` and the like for others.
-fn add(mesh: &mut Mesh, name: &str, elements: Vec<ElementId>) {
-    let mut by_dim: BTreeMap<usize, Vec<ElementId>> = BTreeMap::new();
-    for element in elements {
-        let dim = mesh.kind(element).table().dim;
-        by_dim.entry(dim).or_default().push(element);
-    }
-    let highest = by_dim.keys().max().copied();
-    for (dim, elements) in by_dim {
-        let name = match Some(dim) == highest {
-            true => name.to_owned(),
-            false => format!("{name}.{dim}d"),
-        };
-        mesh.groups.insert(name, Group::new(dim, elements));
     }
 }

@@ -3,23 +3,14 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use carom_dynamics::{InterfaceState, Motion, State, System};
+use carom_dynamics::{State, System};
 use serde::{Deserialize, Serialize};
 
 use crate::results::grids::{SurfaceGrid, Volume};
+use crate::results::snapshot::Snapshot;
 use crate::results::{Fields, Zoning};
 use crate::writer::Writer;
 use crate::{Collection, Error, Folder};
-
-/// What the thread needs of a state, and the names of the files it makes of it: the bodies, then each contact.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Snapshot {
-    pub(super) time: f64,
-    pub(super) first: bool,
-    names: Vec<String>,
-    pub(super) motion: Motion,
-    pub(super) interface: InterfaceState,
-}
 
 /// The run's side: when a state is due, and the buffers.
 #[derive(Debug)]
@@ -168,36 +159,6 @@ fn parts(system: &System) -> impl Iterator<Item = String> {
     let contacts = system.contacts.iter();
     let contacts = contacts.map(|contact| format!("contact-{}", contact.name));
     std::iter::once("bodies".to_owned()).chain(contacts)
-}
-
-impl Snapshot {
-    /// Copies what is needed, into the memory of the time before.
-    fn fill(&mut self, fields: &Fields, state: &State) {
-        let State {
-            motion, interface, ..
-        } = state;
-        self.time = state.time;
-        copy(&mut self.motion.u, &motion.u);
-        copy(&mut self.motion.frames, &motion.frames);
-        if fields.velocity || fields.acceleration {
-            copy(&mut self.motion.v, &motion.v);
-        }
-        if fields.acceleration {
-            copy(&mut self.motion.a, &motion.a);
-        }
-        copy(&mut self.motion.history, &motion.history);
-        copy(&mut self.interface.force, &interface.force);
-        copy(&mut self.interface.friction, &interface.friction);
-        copy(&mut self.interface.gap, &interface.gap);
-        copy(&mut self.interface.rate, &interface.rate);
-        copy(&mut self.interface.status, &interface.status);
-        copy(&mut self.interface.watched, &interface.watched);
-    }
-}
-
-fn copy<T: Copy>(to: &mut Vec<T>, from: &[T]) {
-    to.clear();
-    to.extend_from_slice(from);
 }
 
 /// The thread's side.

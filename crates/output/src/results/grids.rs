@@ -12,7 +12,7 @@ use carom_mesh::Face;
 use crate::Error;
 use crate::results::beams::{SECTION_FORCES, rotations, section_forces};
 use crate::results::cells::{ShellFields, cell_stresses, cell_von_mises, deleted, plastic_strains};
-use crate::results::fields::Snapshot;
+use crate::results::snapshot::Snapshot;
 use crate::results::{Fields, Zoning};
 use crate::vtu::{Cells, Field, Grid, Values, write};
 

@@ -34,6 +34,7 @@ pub(crate) mod page;
 mod reduced;
 pub(crate) mod sensor;
 mod settings;
+mod snapshot;
 mod spectra;
 pub(crate) mod stills;
 mod totals;

@@ -20,7 +20,8 @@ use std::path::Path;
 use carom_elements::Kind;
 
 use super::flatten::flatten;
-use super::{Place, ReadError, add};
+use super::groups::add;
+use super::{Place, ReadError};
 use crate::{Block, ElementId, Mesh};
 pub use array::Numbers;
 use array::numbers;
