@@ -1,13 +1,14 @@
-//! How long a run will take, and how much memory: from its first steps.
+//! How long a run will take, and how much memory: from its first steps, with all that they write.
 
-use std::sync::Arc;
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Driver, Stepper, step_count};
-use carom_zones::Whole;
+use carom_dynamics::{Error, Observer, Stepper, step_count};
 
 use crate::build::Built;
-use crate::run::Failed;
+use crate::input::Input;
+use crate::run::{Failed, run};
+use crate::schema::Case;
 
 /// What the first steps of a run take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,64 +17,86 @@ pub struct Estimate {
     pub tried: u64,
     /// Steps of the run; of steps that adapt themselves as many as if they stayed what they are at first.
     pub steps: u64,
-    /// Time of the whole run, s: that of its start, and that of the tried steps times the number of all.
+    /// Time of the whole run, s: that of its start and of its figures and report, and that of the tried steps times the number of all.
     pub seconds: f64,
     /// Largest memory of the program so far, bytes; `None` where the system does not tell.
     pub bytes: Option<u64>,
 }
 
-/// Takes first steps of a case for about `patience`, at least one, and says what all will take. No file is written.
+/// Takes first steps of a case for about `patience`, at least one, and says what all will take. What they write is in a temporary folder, which
+/// is removed.
 ///
 /// # Errors
-/// The run cannot begin, or one of these steps fails.
-pub fn estimate(built: &Built, patience: Duration) -> Result<Estimate, Failed> {
+/// The run cannot begin, one of these steps fails, or there is no temporary folder.
+pub fn estimate(
+    (input, case, built): (&Input, &Case, &Built),
+    patience: Duration,
+) -> Result<Estimate, Failed> {
+    let refused = |source| carom_output::Error::File {
+        action: "create a folder in",
+        path: std::env::temp_dir(),
+        source,
+    };
+    let temporary = tempfile::tempdir().map_err(refused)?;
     let begin = Instant::now();
-    let system = || Arc::clone(&built.system);
-    match &built.zoned {
-        Some(zoned) if built.apart => {
-            let whole = Whole::new(zoned, system());
-            let mut whole = whole.map_err(|error| Failed::Start(error.into()))?;
-            try_steps(&mut whole, built, (begin, patience))
-        }
-        _ => {
-            let mut driver = Driver::new(system()).map_err(Failed::Start)?;
-            try_steps(&mut driver, built, (begin, patience))
-        }
-    }
+    let mut clock = Clock::default();
+    // factors and buffers are made in the first step: at least two are taken
+    let asked = Cell::new(0);
+    let stop = || {
+        asked.set(asked.get() + 1);
+        asked.get() > 2 && begin.elapsed() >= patience
+    };
+    let folder = temporary.path().join("estimate");
+    run((input, case, built), folder, &mut clock, &stop)?;
+    let whole = begin.elapsed().as_secs_f64();
+    let since = |instant: Option<Instant>| instant.map_or(whole, |at| (at - begin).as_secs_f64());
+    let (first, last) = (since(clock.first), since(clock.last));
+    let all = steps_of(built);
+    let each = match clock.steps {
+        0 | 1 => first,
+        steps => (last - first) / (steps - 1) as f64,
+    };
+    let further = all.saturating_sub(clock.steps) as f64;
+    Ok(Estimate {
+        tried: clock.steps,
+        steps: all,
+        seconds: whole + each * further,
+        bytes: largest_memory(),
+    })
 }
 
-fn try_steps(
-    run: &mut dyn Stepper,
-    built: &Built,
-    (begin, patience): (Instant, Duration),
-) -> Result<Estimate, Failed> {
+/// Steps of the whole run.
+fn steps_of(built: &Built) -> u64 {
     let (start, steps) = built
         .stage
         .map_or((0.0, 0), |(end, steps)| (end, u64::from(steps)));
-    let dynamic = match start < built.end {
-        true => step_count(built.end - start, built.system.dt),
-        false => 0,
-    };
-    let all = steps + dynamic;
-    // factors and buffers are made in the first step
-    run.step().map_err(Failed::Step)?;
-    let set_up = begin.elapsed();
-    let begin = Instant::now();
-    let mut tried = 0;
-    while tried + 1 < all && begin.elapsed() < patience {
-        run.step().map_err(Failed::Step)?;
-        tried += 1;
+    match start < built.end {
+        true => steps + step_count(built.end - start, built.system.dt),
+        false => steps,
     }
-    let each = match tried {
-        0 => set_up.as_secs_f64(),
-        _ => begin.elapsed().as_secs_f64() / tried as f64,
-    };
-    Ok(Estimate {
-        tried: tried + 1,
-        steps: all,
-        seconds: set_up.as_secs_f64() + each * (all - 1) as f64,
-        bytes: largest_memory(),
-    })
+}
+
+/// When steps were accepted.
+#[derive(Default)]
+struct Clock {
+    steps: u64,
+    first: Option<Instant>,
+    last: Option<Instant>,
+}
+
+impl Observer for Clock {
+    fn accepted(&mut self, run: &dyn Stepper) -> Result<(), Error> {
+        if run.state().step > 0 {
+            self.steps += 1;
+            self.last = Some(Instant::now());
+            self.first = self.first.or(self.last);
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self, _: &dyn Stepper) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 /// Largest memory of this process so far, bytes.

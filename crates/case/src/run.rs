@@ -232,6 +232,7 @@ pub(crate) fn settings(
                 stress: has(Field::Stress),
                 rotation: has(Field::Rotation),
                 section_forces: has(Field::SectionForces),
+                vtkhdf: fields.vtkhdf,
             }
         }),
         reference: reference(built),

@@ -39,8 +39,8 @@ pub fn check(arguments: &Arguments) -> u8 {
     let loaded = load_with(case, &arguments.set, |problems| {
         keep_offenders(case, problems)
     });
-    let built = match loaded {
-        Ok((_, _, built)) => built,
+    let (input, parsed, built) = match loaded {
+        Ok(loaded) => loaded,
         Err(code) => return code,
     };
     let mut facts = carom_case::facts(&built);
@@ -50,7 +50,7 @@ pub fn check(arguments: &Arguments) -> u8 {
         return code;
     }
     if arguments.estimate {
-        match carom_case::estimate(&built, PATIENCE) {
+        match carom_case::estimate((&input, &parsed, &built), PATIENCE) {
             Ok(estimate) => facts.push(told(&estimate)),
             Err(error) => {
                 err!("error: {error}");

@@ -65,6 +65,7 @@ pub fn compare(arguments: &Arguments) -> u8 {
     }
     let variants = || comparison.variants.iter();
     sweep::reasons(variants());
+    sweep::absent(&comparison.absent());
     out!(
         "  the overshoot of a single step does not converge where the force jumps; that of the mean does"
     );

@@ -161,8 +161,24 @@ fn print(summary: &Summary, folder: &Path) {
         print_level(name, level);
     }
     let alone = summary.contacts.iter();
-    for (name, contact) in alone.filter(|(name, _)| !together.contains(name)) {
+    let alone = alone.filter(|(name, _)| !together.contains(name));
+    // of many contacts those that never closed share a line
+    let many = summary.contacts.len() > MANY;
+    let is_idle = |contact: &Contact| many && contact.first_closing.is_none();
+    for (name, contact) in alone.clone().filter(|(_, contact)| !is_idle(contact)) {
         print_contact(name, contact);
+    }
+    let idle: Vec<&str> = alone
+        .filter(|(_, contact)| is_idle(contact))
+        .map(|(name, _)| name.as_str())
+        .collect();
+    if !idle.is_empty() {
+        let further = match idle.len().saturating_sub(MANY) {
+            0 => String::new(),
+            count => format!(" and {count} more"),
+        };
+        let names = &idle[..idle.len().min(MANY)];
+        out!("  never closed: contacts {}{further}", names.join(", "));
     }
     if let Some(exact) = &summary.exact {
         let percent = |error: Option<f64>| {
@@ -199,6 +215,9 @@ fn print(summary: &Summary, folder: &Path) {
     out!("  report: {}", folder.join("report.html").display());
     out!("  figures: {}", folder.join("plots").display());
 }
+
+/// Contacts from which on those that never closed are not told one by one.
+const MANY: usize = 6;
 
 /// The forces of a contact.
 fn print_contact(name: &str, contact: &Contact) {

@@ -76,6 +76,7 @@ pub fn study(arguments: &Arguments) -> u8 {
     }
     let variants = || study.runs.iter().map(|run| &run.variant);
     sweep::reasons(variants());
+    sweep::absent(&study.absent());
     out!("  {RAW_PEAK}");
     out!("  report: {}", page.display());
     sweep::code(variants())

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_case::{Sweep, SweepError};
 use carom_dynamics::Observer;
+use carom_output::Absent;
 use carom_output::compare::{Outcome, Variant};
 
 use crate::exit::{FAILED, INTERRUPTED};
@@ -93,6 +94,13 @@ pub fn reasons<'a>(variants: impl Iterator<Item = &'a Variant>) {
         if !reason.is_empty() {
             out!("  {} {verdict}: {}", variant.name, line(&reason));
         }
+    }
+}
+
+/// Prints why cells are empty.
+pub fn absent(cells: &[Absent]) {
+    for cell in cells {
+        out!("  – {}", line(&cell.text()));
     }
 }
 

@@ -66,6 +66,8 @@ pub struct Contact {
     /// What is added to the gap of each point, m: initial penetrations that are to count as contact without any
     /// ([`Initial::Offset`](crate::Initial)). Empty for none.
     pub offsets: Vec<f64>,
+    /// Whether points that are far from what they face have no gap in implicit steps too ([`Contact::append_near`]).
+    pub near_only: bool,
 }
 
 impl Contact {

@@ -156,6 +156,7 @@ mod tests {
             target: Target::Rigid(floor.into()),
             sight: None,
             offsets: Vec::new(),
+            near_only: false,
         };
         let x = [[0.0, 0.5, 0.0], [1.0, -0.25, 0.0], [2.0, -1e-12, 0.0]];
         let places = Places {

@@ -105,6 +105,11 @@ impl Search {
         self.faces.take_boxes(places, faces);
     }
 
+    /// Forgets when points that are far are looked at again.
+    pub fn rest_anew(&mut self) {
+        self.rest = Rest::default();
+    }
+
     /// Counts queries and projections from here on.
     pub(crate) fn begin(&mut self) {
         (self.next, self.scratch.projections) = (0, 0);

@@ -72,6 +72,7 @@ fn contact(target: Target, points: Vec<Point>) -> Contact {
         target,
         sight: None,
         offsets: Vec::new(),
+        near_only: false,
     }
 }
 

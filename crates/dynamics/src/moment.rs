@@ -13,8 +13,10 @@ use crate::system::System;
 /// that side. Places are the means of those at the displacements given; of parts at small displacements those of the reference
 /// configuration. That is where the balance of angular momentum has them.
 ///
+/// Nodes of the secondary surface and of those that carry a force are touched, no others.
+///
 /// `forces`: rows, point, and its force along them in N; `at`: frames, and displacements from them, m; `nodal`: room for nodal
-/// forces.
+/// forces, all zero.
 pub fn moment<'a>(
     (system, contact): (&System, usize),
     forces: impl Iterator<Item = (&'a Rows, usize, f64)>,
@@ -24,17 +26,21 @@ pub fn moment<'a>(
     let Some(about) = &system.moments[contact] else {
         return [0.0; 3];
     };
-    nodal.clear();
-    nodal.resize(about.secondary.len(), 0.0);
+    nodal.resize(system.unknowns(), 0.0);
+    let mut loaded = Vec::new();
     for (rows, point, force) in forces.filter(|(_, _, force)| *force != 0.0) {
         rows.add_force(point, force, nodal);
+        loaded.push((rows, point));
     }
-    for (force, own) in nodal.iter_mut().zip(&about.secondary) {
-        if !own {
-            *force = 0.0;
+    if loaded.is_empty() {
+        return [0.0; 3];
+    }
+    let sum = Resultant::on((system, &about.levers), at, nodal);
+    for (rows, point) in loaded {
+        for &unknown in rows.row(point).0 {
+            nodal[unknown as usize] = 0.0;
         }
     }
-    let sum = Resultant::at(system, at, nodal);
     let (c, f) = (&about.point, &sum.linear);
     [0, 1, 2].map(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);

@@ -4,7 +4,7 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::system::System;
+use crate::system::{Levers, System};
 
 /// Force and moment about the origin in the reference configuration; or momentum and angular momentum; or their
 /// impulses.
@@ -26,8 +26,13 @@ impl Resultant {
     /// Resultant of nodal forces, with moments about the origin of the nodes at the mean of these displacements from the
     /// frames; in the reference configuration without any, and in parts of small displacements ([`System::undeformed`]). Moments on
     /// finite rotations, about the axes of their frames, are turned by the mean of the rotations.
-    pub(crate) fn at(
-        system: &System,
+    pub(crate) fn at(system: &System, at: (&[Rotation], &[&[f64]]), f: &[f64]) -> Resultant {
+        Resultant::on((system, &system.levers), at, f)
+    }
+
+    /// The same of the forces on some levers.
+    pub(crate) fn on(
+        (system, levers): (&System, &Levers),
         (frames, displacements): (&[Rotation], &[&[f64]]),
         f: &[f64],
     ) -> Resultant {
@@ -38,7 +43,7 @@ impl Resultant {
             return sum;
         }
         let dim = system.dim;
-        for lever in &system.levers.nodes {
+        for lever in &levers.nodes {
             let first = lever.first as usize;
             let vector = |values: &[f64]| {
                 let mut vector = [0.0; 3];
@@ -65,13 +70,15 @@ impl Resultant {
                 }
             }
         }
-        for (unknown, amplitude) in &system.levers.amplitudes {
+        for (unknown, amplitude) in &levers.amplitudes {
             for i in 0..3 {
                 sum.linear[i] += amplitude.translation[i] * f[*unknown];
                 sum.angular[i] += amplitude.rotation[i] * f[*unknown];
             }
         }
-        for (frame, &node) in frames.iter().zip(unknowns.turning()) {
+        let turning = levers.turning.iter();
+        let turning = turning.filter_map(|&(place, node)| Some((frames.get(place)?, node)));
+        for (frame, node) in turning {
             let own = frame.matrix() * Vec3::from(unknowns.spin(node, f));
             let turned = |u: &&[f64]| {
                 let increment = unknowns.spin(node, u).into();

@@ -92,6 +92,12 @@ impl Bounds {
             .sum()
     }
 
+    /// Distance of two boxes, m; zero where they have a point in common.
+    pub fn apart(&self, other: &Bounds) -> f64 {
+        let out = |i: usize| (self.min[i] - other.max[i]).max(other.min[i] - self.max[i]);
+        (0..3).map(|i| out(i).max(0.0).powi(2)).sum::<f64>().sqrt()
+    }
+
     /// Square of the largest distance of a place of the box from another one, m².
     #[inline]
     pub(crate) fn beyond_squared(&self, other: &Bounds) -> f64 {
@@ -110,7 +116,7 @@ impl Bounds {
 
     /// The largest absolute value of a coordinate, m; zero for the empty box.
     #[inline]
-    pub(crate) fn reach(&self) -> f64 {
+    pub fn reach(&self) -> f64 {
         let ends = self.min.iter().chain(&self.max);
         ends.filter(|x| x.is_finite())
             .fold(0.0, |reach, x| reach.max(x.abs()))

@@ -3,6 +3,9 @@
 // Clippy's exemption for tests covers the test functions, not their helpers.
 #![allow(clippy::unwrap_used)]
 
+mod damage;
 mod gmsh;
 mod inp;
+#[cfg(feature = "hdf5")]
+mod med;
 mod vtu;

@@ -6,6 +6,7 @@
 //!
 //! Units are SI throughout; the names of columns and fields carry them.
 
+mod absent;
 pub mod atomic;
 pub mod checkpoint;
 pub mod compare;
@@ -26,12 +27,15 @@ pub mod study;
 pub mod summary;
 pub mod table;
 pub mod verdict;
+#[cfg(feature = "hdf5")]
+mod vtkhdf;
 pub mod vtu;
 pub mod window;
 
 mod error;
 mod writer;
 
+pub use absent::Absent;
 pub use error::Error;
 pub use folder::Folder;
 pub use history::{History, column};

@@ -5,7 +5,7 @@
 //! not written stay in memory and the next flush tries them again.
 //!
 //! A compressed file is a sequence of gzip members (RFC 1952), one for each flush, with complete rows in each: it can be read up to its
-//! last complete member whenever the run is cut, and be cut back to any of them.
+//! last complete member whenever the run is cut, and be cut back to any of them. Where the disk is full the last members are small ones.
 
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -137,7 +137,7 @@ impl Rows {
     pub fn flush(&mut self) -> Result<(), Error> {
         self.flushed = Instant::now();
         if self.compressed {
-            return self.flush_member();
+            return self.flush_members();
         }
         let (written, outcome) = append(&mut self.file, &self.pending);
         let mut complete = 0;
@@ -157,21 +157,34 @@ impl Rows {
         Err(Error::file("write", &self.path)(cause))
     }
 
-    /// Appends all rows as one member; none where the file system does not take it whole.
-    fn flush_member(&mut self) -> Result<(), Error> {
-        if self.pending.is_empty() {
-            return Ok(());
+    /// Appends all rows as one member. Where the file system does not take it whole, as many rows as it takes, in members of
+    /// half the rows, a quarter, and so on.
+    fn flush_members(&mut self) -> Result<(), Error> {
+        let mut rows = self.row_lengths.len();
+        let mut first = None;
+        while rows.min(self.row_lengths.len()) > 0 {
+            rows = rows.min(self.row_lengths.len());
+            if let Err(cause) = self.append_member(rows) {
+                first.get_or_insert(cause);
+                rows /= 2;
+            }
         }
+        first.map_or(Ok(()), Err)
+    }
+
+    /// Appends the first rows as one member, or nothing.
+    fn append_member(&mut self, rows: usize) -> Result<(), Error> {
+        let bytes = self.row_lengths[..rows].iter().sum();
         let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
         let member = encoder
-            .write_all(&self.pending)
+            .write_all(&self.pending[..bytes])
             .and_then(|()| encoder.finish());
         let member = member.map_err(Error::file("write", &self.path))?;
         let (written, outcome) = append(&mut self.file, &member);
         let Err(cause) = outcome else {
             self.length += written as u64;
-            self.pending.clear();
-            self.row_lengths.clear();
+            self.pending.drain(..bytes);
+            self.row_lengths.drain(..rows);
             return Ok(());
         };
         // The first cause is the one to report; if cutting fails too, the file ends with a part of a member.

@@ -222,14 +222,16 @@ impl System {
             .iter()
             .any(|body| body.spec.kinematics == Kinematics::Axisymmetric);
         let numbered = contacts.iter().zip(&secondary_faces);
+        let levers = Levers::new(&unknowns, parts.iter().zip(&undeformed));
         let moments = model.contacts.iter().zip(numbered);
         let moments = moments.map(|(model, (contact, faces)): (_, (_, &Vec<_>))| {
-            MomentAbout::of(model, (contact, &faces[..]), (&unknowns, dim, axisymmetric))
+            let of = (&unknowns, dim, axisymmetric);
+            MomentAbout::of(model, (contact, &faces[..]), of, &levers)
         });
         let moments = moments.collect::<Result<_, _>>()?;
         let system = System {
             supports,
-            levers: Levers::new(&unknowns, parts.iter().zip(&undeformed)),
+            levers,
             undeformed,
             part_of_body,
             origin,

@@ -193,6 +193,7 @@ pub(crate) fn numbered(
         target,
         sight,
         offsets: Vec::new(),
+        near_only: contact.near_only,
     }
 }
 

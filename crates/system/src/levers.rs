@@ -18,13 +18,15 @@ pub struct Lever {
     pub undeformed: bool,
 }
 
-/// All that forces act on.
-#[derive(Debug)]
+/// All that forces act on, or what some of them act on.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Levers {
     /// The nodes with translations, ascending.
     pub nodes: Vec<Lever>,
     /// The amplitudes, each with its unknown.
     pub amplitudes: Vec<(usize, Amplitude)>,
+    /// The nodes with finite rotations, each with the place of its frame.
+    pub turning: Vec<(usize, u32)>,
 }
 
 impl Levers {
@@ -49,6 +51,20 @@ impl Levers {
         Levers {
             nodes,
             amplitudes: amplitudes.map(|(unknown, of)| (unknown, *of)).collect(),
+            turning: unknowns.turning().iter().copied().enumerate().collect(),
+        }
+    }
+
+    /// Those that have unknowns among the given ones.
+    pub(crate) fn among(&self, unknowns: &Unknowns, has: impl Fn(usize) -> bool) -> Levers {
+        let has_node = |node: u32| unknowns.of(node).any(&has);
+        let nodes = self.nodes.iter().filter(|lever| has_node(lever.node));
+        let amplitudes = self.amplitudes.iter().filter(|(unknown, _)| has(*unknown));
+        let turning = self.turning.iter().filter(|(_, node)| has_node(*node));
+        Levers {
+            nodes: nodes.copied().collect(),
+            amplitudes: amplitudes.copied().collect(),
+            turning: turning.copied().collect(),
         }
     }
 }

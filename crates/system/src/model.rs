@@ -339,6 +339,8 @@ pub struct ModelContact {
     /// Largest penetration that is a contact, m: points see only faces turned against them and not further away inside than
     /// this ([`Sight`](carom_contact::Sight)). `None`: they see everything, unless the surface faces itself.
     pub depth: Option<f64>,
+    /// Whether gaps of points that are far from what they face are not looked for, in implicit steps as in explicit ones.
+    pub near_only: bool,
     /// Duration of a flight that ends an impact, s; `None`: by waves and steps.
     pub merge_within: Option<f64>,
     /// The point that the moment of its forces is reported about, m; `None`: no moment is.
@@ -364,6 +366,7 @@ impl ModelContact {
             friction: 0.0,
             initial: Initial::Keep,
             depth: None,
+            near_only: false,
             moment_about: None,
             merge_within: None,
         }

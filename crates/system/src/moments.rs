@@ -5,15 +5,16 @@ use carom_contact::{Contact, Target};
 use carom_mesh::Face;
 
 use crate::error::Error;
+use crate::levers::Levers;
 use crate::model::ModelContact;
 
-/// The point that the moment of a contact is about, and the unknowns that its forces on the secondary body act on.
+/// The point that the moment of a contact is about, and what its forces on the secondary body act on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MomentAbout {
     /// The point, fixed in space, m.
     pub point: [f64; 3],
-    /// Whether an unknown of the system moves nodes of the secondary surface.
-    pub secondary: Vec<bool>,
+    /// What moves nodes of the secondary surface.
+    pub levers: Levers,
 }
 
 impl MomentAbout {
@@ -25,6 +26,7 @@ impl MomentAbout {
         model: &ModelContact,
         (contact, faces): (&Contact, &[Face]),
         (unknowns, dim, axisymmetric): (&Unknowns, usize, bool),
+        levers: &Levers,
     ) -> Result<Option<MomentAbout>, Error> {
         let Some(point) = model.moment_about else {
             return Ok(None);
@@ -56,6 +58,7 @@ impl MomentAbout {
         if opposite.any(shared) {
             return refuse("its two sides share nodes, whose forces belong to both");
         }
-        Ok(Some(MomentAbout { point, secondary }))
+        let levers = levers.among(unknowns, |unknown| secondary[unknown]);
+        Ok(Some(MomentAbout { point, levers }))
     }
 }

@@ -247,6 +247,7 @@ impl Run {
                 initial: Initial::Keep,
                 depth: None,
                 moment_about: None,
+                near_only: false,
                 merge_within: None,
                 ..contact(secondary, primary, self.law)
             }],

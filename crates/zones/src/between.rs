@@ -8,6 +8,9 @@
 //! forces and solves `ġ + D ΔP` with its signs, D that of the linearised zones without their own contacts; between a point that
 //! lasts and one that does not, the mean of both responses stands for D, which costs passes and changes no result.
 
+mod ended;
+mod flights;
+
 use std::sync::Arc;
 
 use carom_algebra::rotation::Rotation;
@@ -21,16 +24,12 @@ use crate::model::{ModelZone, Zoned};
 use crate::places::Places;
 use carom_dynamics::ContactReport;
 use carom_dynamics::Driver;
-use carom_dynamics::contact_report;
-use carom_dynamics::landing::{arrival, flies, lead};
-use carom_dynamics::moment;
 use carom_dynamics::paired::{append, approaches, told};
-use carom_dynamics::records::{Records, Step};
+use carom_dynamics::records::Records;
 use carom_dynamics::state::{InterfaceState, empty_state};
 use carom_nonsmooth::interface::{Candidate, Interface};
 use carom_schemes::Scheme;
-use carom_schemes::step_map::Impulse;
-use carom_system::{Adaptive, LinkRow, System, on};
+use carom_system::{LinkRow, System, on};
 
 /// Change of the forces over the largest at which the passes end.
 const TOLERANCE: f64 = 1e-12;
@@ -346,149 +345,6 @@ impl Between {
             change: self.change,
             passes,
         }
-    }
-
-    /// Makes the forces those of the state at `time`, the end of an outer step of `dt` (both s).
-    pub(crate) fn accept(&mut self, drivers: &[Driver], [time, dt]: [f64; 2]) {
-        let before = self.state.interface.clone();
-        let interface = &mut self.state.interface;
-        interface.force.fill(0.0);
-        interface.status.fill(Status::Open);
-        interface.watched.fill(false);
-        for (k, &point) in self.candidates.iter().enumerate() {
-            let point = point as usize;
-            interface.force[point] = self.forces[k];
-            interface.status[point] = self.interface.statuses[k];
-            interface.watched[point] = true;
-        }
-        interface.carried.clone_from(&interface.force);
-        interface.count_flights(&before.flight, dt);
-        for (sum, now) in self.state.works.iter_mut().zip(&self.now) {
-            *sum += now;
-        }
-        gather(drivers, &self.places, &mut self.end);
-        let ([u, v], [end, rate], rows) = (&self.start, &self.end, &self.pairing.rows);
-        for contact in 0..self.contacts.len() {
-            let part = self.captured(contact) * dt;
-            for point in self.system.points_of(contact) {
-                let paired = rows.product(point, u) + part * rows.product(point, v);
-                let way = rows.product(point, end) - paired;
-                let interface = &mut self.state.interface;
-                interface.gap[point] = rows.gap(point) + way;
-                interface.rate[point] = rows.product(point, rate);
-            }
-        }
-        self.add_records(&before, [time, dt]);
-    }
-
-    /// Records of a step of `dt` to `end` (both s), from the interface at its start.
-    fn add_records(&mut self, before: &InterfaceState, [end, dt]: [f64; 2]) {
-        let system = Arc::clone(&self.system);
-        for contact in 0..system.contacts.len() {
-            let now = &self.state.interface;
-            let rows = &self.pairing.rows;
-            let mut report = contact_report(system.points_of(contact), rows, [before, now], dt);
-            report.moment = self.moment(contact);
-            let now = &self.state.interface;
-            let step = Step {
-                span: [end - dt, end],
-                dt,
-                impulse: Impulse::weights(0.0, 1.0),
-                forces: [&before.force, &now.force],
-                report: &report,
-                work: self.now[contact],
-                crushed: 0.0,
-                jump: Default::default(),
-            };
-            let velocities = [&self.start[1][..], &self.end[1]];
-            self.state.records.add(&system, contact, &step, velocities);
-            self.reports[contact] = report;
-        }
-    }
-
-    /// Forgets the forces and works so far.
-    pub(crate) fn restart(&mut self, drivers: &[Driver]) {
-        self.state.interface = empty_state(&self.system).interface;
-        self.state.works.fill(0.0);
-        self.state.records = Records::of(&self.system);
-        gather(drivers, &self.places, &mut self.start);
-        self.gather_frames(drivers);
-        self.pair((0.0, 0.0));
-        let (rows, interface) = (&self.pairing.rows, &mut self.state.interface);
-        for point in 0..self.system.points() {
-            interface.gap[point] = rows.gap(point);
-            interface.rate[point] = rows.product(point, &self.start[1]);
-        }
-        for contact in 0..self.contacts.len() {
-            let (rows, now) = (&self.pairing.rows, &self.state.interface);
-            self.reports[contact] =
-                contact_report(self.system.points_of(contact), rows, [now; 2], 0.0);
-        }
-    }
-
-    /// Moment of a contact about the point that it names, at the mean of the places at start and end of the step, N m.
-    fn moment(&mut self, contact: usize) -> [f64; 3] {
-        let (rows, force) = (&self.pairing.rows, &self.state.interface.force);
-        let points = self.system.points_of(contact);
-        let forces = points.map(|point| (rows, point, force[point]));
-        let ends = [&self.start[0][..], &self.end[0]];
-        let at = (&self.frames[..], &ends[..]);
-        moment((&self.system, contact), forces, at, &mut self.nodal)
-    }
-
-    /// Whether a point carries a force or may do so within `dt` (s), at twice its present rate.
-    pub(crate) fn may_touch(&self, dt: f64) -> bool {
-        let (interface, tolerance) = (&self.state.interface, self.system.tolerance);
-        let touches = |point: usize| {
-            let ahead = (interface.gap[point], interface.rate[point]);
-            interface.force[point] != 0.0 || approaches(ahead, dt, tolerance)
-        };
-        (0..self.system.points()).any(touches)
-    }
-
-    /// When the first of the points in flight is at its lead of outer steps of size `planned`, after the start of the attempt of
-    /// `dt` just made (all s); infinite where none is. `largest`: the largest outer step, s.
-    pub(crate) fn first_cut(
-        &self,
-        drivers: &[Driver],
-        (rules, largest): (&Adaptive, f64),
-        [dt, planned]: [f64; 2],
-    ) -> f64 {
-        let (interface, rows) = (&self.state.interface, &self.pairing.rows);
-        let mut first = f64::INFINITY;
-        for point in 0..self.system.points() {
-            let (gap, flight) = (interface.gap[point], interface.flight[point]);
-            if !flies((gap, flight), self.system.tolerance, (rules, largest)) {
-                continue;
-            }
-            let rate = rows.product(point, &self.start[1]);
-            // without forces: of a candidate its own rate at the end, of others that of the motion
-            let candidate = self.candidates.binary_search(&(point as u32)).ok();
-            let free = candidate.and_then(|k| self.data.get(k)).map_or_else(
-                || self.ended(drivers, point),
-                |candidate| candidate.rate_free,
-            );
-            let end = gap + 0.5 * dt * (rate + free);
-            let contact = self.system.contact_of(point);
-            let law = self.system.contacts[contact].law.get();
-            let map = self.schemes[contact].get().step_map(planned);
-            let arrival = arrival([gap, rate, end], dt, self.system.tolerance);
-            let cut = arrival - lead(&map, planned, law);
-            if cut >= rules.smallest {
-                first = first.min(cut);
-            }
-        }
-        first
-    }
-
-    /// Rate of a point at the end of the attempt, m/s.
-    fn ended(&self, drivers: &[Driver], point: usize) -> f64 {
-        let (unknowns, coefficients) = self.pairing.rows.row(point);
-        let terms = unknowns.iter().zip(coefficients).map(|(&unknown, n)| {
-            let (zone, own) = self.homes[unknown as usize];
-            n * drivers[zone].ended().motion.v[own as usize]
-        });
-        terms.sum()
     }
 }
 

@@ -97,6 +97,7 @@ impl Builder<'_> {
                     Penetration::Remove => Initial::Remove,
                 },
                 depth: contact.depth.map(|depth| depth.0),
+                near_only: false,
                 moment_about,
                 merge_within: contact.merge_within.map(|time| time.0),
             });

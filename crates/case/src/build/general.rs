@@ -1,15 +1,16 @@
-//! General contact: the outer sides of all bodies of cells, each with each other and with itself.
+//! General contact: the outer sides of all bodies, each with each other and with itself.
 
 use std::collections::BTreeSet;
 
-use carom_bodies::height;
+use carom_bodies::{Kinematics, Rotations, height};
 use carom_contact::{Initial, Integration, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget};
-use carom_mesh::{ElementId, Face, Mesh, Surface};
+use carom_mesh::{ElementId, Face, Group, Mesh, Surface};
 
 use super::Builder;
 use super::contacts::{has_quadratic_faces, mortar};
 use super::laws::sides;
+use super::shells::around_shells;
 use super::zones::body_of;
 use crate::error::Problem;
 use crate::schema::{Basis, Friction, GeneralContact, GivenLaw};
@@ -26,6 +27,17 @@ struct Part<'a> {
     thickness: f64,
     /// Mean length of the edges of its outer sides, m.
     length: f64,
+}
+
+impl Part<'_> {
+    /// Whether the surface is around axes of beams or middles of shells.
+    fn is_round(&self) -> bool {
+        self.surface.faces.iter().any(Face::is_round)
+    }
+
+    fn is_axis(&self) -> bool {
+        matches!(self.body.spec.kinematics, Kinematics::Beam(_))
+    }
 }
 
 impl Builder<'_> {
@@ -93,25 +105,28 @@ impl Builder<'_> {
         }
     }
 
-    /// Bodies of cells, whose outer sides are faces; a warning names the others.
+    /// Bodies with an outer side; a warning names the others.
     fn parts<'a>(&mut self, mesh: &Mesh, bodies: &'a [ModelBody]) -> Vec<(usize, Part<'a>)> {
         let mut parts = Vec::new();
         for (number, body) in bodies.iter().enumerate() {
-            let cells = &body.spec.cells;
-            let is_full = |cell: &ElementId| mesh.kind(*cell).table().dim == mesh.dim;
-            let given = self.case.body.get(&body.spec.name);
+            let name = &body.spec.name;
+            let given = self.case.body.get(name);
             let material = given.map(|given| given.material.to_string());
-            let (Some(material), true) = (material, mesh.dim > 1 && cells.iter().all(is_full))
-            else {
-                self.warnings.push(format!(
-                    "general-contact: body `{}` has no outer sides of cells and takes no part; name its contacts",
-                    body.spec.name
-                ));
-                continue;
+            let (material, surface) = match (material, outer_side(mesh, bodies, body)) {
+                (Some(material), Ok(surface)) => (material, surface),
+                (_, cause) => {
+                    let cause = cause.err().unwrap_or("no material");
+                    self.warnings.push(format!(
+                        "general-contact: body `{name}` takes no part: {cause}; name its contacts"
+                    ));
+                    continue;
+                }
             };
-            let surface = Surface::outer(mesh, cells);
             let faces = &surface.faces;
-            let thickness = |face: &Face| height(mesh, face.parent, face.kind, face.corners());
+            let thickness = |face: &Face| match face.radius {
+                Some(radius) => 2.0 * radius,
+                None => height(mesh, face.parent, face.kind, face.corners()),
+            };
             let lengths: f64 = faces.iter().map(|face| face.length(&mesh.nodes)).sum();
             let part = Part {
                 body,
@@ -134,7 +149,7 @@ impl Builder<'_> {
     ) -> Option<ModelContact> {
         let [first, second] = [one, other].map(|part| part.body.spec.name.as_str());
         let itself = first == second;
-        if itself && one.body.spec.material.finite().is_none() {
+        if itself && !folds(one.body) {
             return None;
         }
         if !itself && shares_nodes(&one.surface, &other.surface) {
@@ -153,8 +168,9 @@ impl Builder<'_> {
             self.problems.push(problem.accepted(["another name"]));
             return None;
         }
-        // points of the finer side see the coarser one
-        let (secondary, primary) = match one.length <= other.length {
+        // points of axes see faces, otherwise those of the finer side the coarser one
+        let order = |part: &Part| (!part.is_axis(), part.length);
+        let (secondary, primary) = match order(one) <= order(other) {
             true => (one, other),
             false => (other, one),
         };
@@ -163,6 +179,7 @@ impl Builder<'_> {
         let scheme = self.scheme_at(secondary.surface.faces.first().map(|face| face.parent), of);
         let (law, friction) = of_materials(given, [&one.material, &other.material]);
         let law = self.law(&name, law, (&both, &scheme))?;
+        let round = one.is_round() || other.is_round();
         let quadratic = has_quadratic_faces(&secondary.surface, &target);
         let depth = given.depth.map(|depth| depth.0);
         let thin = one.thickness.min(other.thickness);
@@ -172,17 +189,59 @@ impl Builder<'_> {
             .any(|part| part.body.spec.deletion.is_some());
         Some(ModelContact {
             sliding: Sliding::Finite,
-            integration: match quadratic {
+            integration: match quadratic && !round {
                 true => mortar(Basis::default()),
                 false => Integration::Node,
             },
             friction: friction.map_or(0.0, |Friction::Coulomb(coefficient)| coefficient),
             initial: Initial::Touch,
-            // a surface that faces itself has a depth of its own
-            depth: depth.or((!itself && !deletes).then_some(thin)),
+            near_only: !deletes,
+            // surfaces around axes and middles have none, one that faces itself has its own
+            depth: match round {
+                true => None,
+                false => depth.or((!itself && !deletes).then_some(thin)),
+            },
             ..ModelContact::new(name, secondary.surface.clone(), target, law)
         })
     }
+}
+
+/// The whole outer side of a body: of cells that fill the space their faces, of shells and beams what is around them.
+///
+/// # Errors
+/// Why there is none.
+fn outer_side(
+    mesh: &Mesh,
+    bodies: &[ModelBody],
+    body: &ModelBody,
+) -> Result<Surface, &'static str> {
+    let cells = &body.spec.cells;
+    let none = Err("it has no outer sides");
+    let group = |dim: usize| Group {
+        dim,
+        elements: cells.clone(),
+    };
+    match body.spec.kinematics {
+        _ if mesh.dim == 1 => none,
+        Kinematics::Bar { .. } => none,
+        Kinematics::Shell(_) => around_shells(mesh, bodies, &group(2)).map_or(none, Ok),
+        Kinematics::Beam(section) if section.offset != [0.0; 2] => {
+            Err("the axis of its beams is beside their nodes")
+        }
+        Kinematics::Beam(section) => match section.radius {
+            Some(radius) if radius > 0.0 => {
+                Surface::of_axes(mesh, &group(1), cells, |_| radius).or(none)
+            }
+            _ => Err("the section of its beams has no `radius`"),
+        },
+        _ => Ok(Surface::outer(mesh, cells)),
+    }
+}
+
+/// Whether a body moves so much that it may touch itself.
+fn folds(body: &ModelBody) -> bool {
+    let turns = body.spec.kinematics.rotations() == Some(Rotations::Finite);
+    turns || body.spec.kinematics.rotations().is_none() && body.spec.material.finite().is_some()
 }
 
 /// Law and friction of a pair of materials.

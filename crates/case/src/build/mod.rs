@@ -176,6 +176,7 @@ impl Builder<'_> {
         nodal.extend(self.added_forces(&mesh, forces));
         let base = self.base_acceleration(&mesh);
         let probes = self.probes(&mesh, &bodies);
+        self.formats();
         if !self.problems.is_empty() {
             return None;
         }
@@ -279,6 +280,7 @@ impl Builder<'_> {
         self.startable(&system);
         self.advise(&system);
         let levels = self.levels(&system);
+        let probes = self.weighed(probes, &system);
         let end = self.case.time.end.0;
         let reference = self.reference(&system, end);
         Some(Built {

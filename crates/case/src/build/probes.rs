@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use carom_bodies::Kinematics;
-use carom_dynamics::ModelBody;
+use carom_dynamics::{ModelBody, System};
 use carom_elements::{MAX_NODES, map};
 use carom_mesh::{ElementId, Group, Mesh};
 use carom_output::Spectrum;
@@ -12,7 +12,7 @@ use carom_signals::ChannelFilter;
 
 use super::{Builder, BuiltProbe};
 use crate::error::Problem;
-use crate::schema::{Motion, Probe};
+use crate::schema::{Mean, Motion, Probe};
 
 impl Builder<'_> {
     pub(super) fn probes(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Vec<BuiltProbe> {
@@ -54,6 +54,58 @@ impl Builder<'_> {
             });
         }
         probes
+    }
+
+    /// Probes with masses as weights where they ask for them.
+    pub(super) fn weighed(
+        &mut self,
+        mut probes: Vec<BuiltProbe>,
+        system: &System,
+    ) -> Vec<BuiltProbe> {
+        let given = |probe: &BuiltProbe| self.case.probe.get(&probe.name).map(|given| given.mean);
+        if probes.iter().all(|probe| given(probe) != Some(Mean::Mass)) {
+            return probes;
+        }
+        let mut masses = vec![0.0; system.x.len()];
+        for &(node, mass) in system.body_masses.iter().flatten() {
+            masses[node as usize] += mass;
+        }
+        for probe in &mut probes {
+            let given = self.case.probe.get(&probe.name);
+            let Some(given) = given.filter(|given| given.mean == Mean::Mass) else {
+                continue;
+            };
+            let path = format!("probe.{}.mean", probe.name);
+            if given.on.is_none() {
+                let problem = Problem::new(path, "the motion of one node has no mean");
+                let accepted = ["`on` in place of `at`", "no `mean`"];
+                self.problems.push(problem.found("mass").accepted(accepted));
+                continue;
+            }
+            for (node, weight) in &mut probe.nodes {
+                let number = system.number[*node as usize];
+                *weight = masses.get(number as usize).copied().unwrap_or(0.0);
+            }
+            if probe.nodes.iter().all(|(_, weight)| *weight == 0.0) {
+                let problem = Problem::new(path, "the nodes of the probe have no mass");
+                let accepted = ["measure", "a group with mass"];
+                self.problems.push(problem.found("mass").accepted(accepted));
+            }
+        }
+        probes
+    }
+
+    /// Refuses formats of fields that are not built in.
+    pub(super) fn formats(&mut self) {
+        let fields = self.case.output.fields.as_ref();
+        if cfg!(not(feature = "hdf5")) && fields.is_some_and(|fields| fields.vtkhdf) {
+            let message = "this carom writes no VTKHDF files";
+            let problem = Problem::new("output.fields.vtkhdf", message).found("true");
+            self.problems.push(problem.accepted([
+                "`false`",
+                "a carom that is built with: cargo build --release --features hdf5",
+            ]));
+        }
     }
 
     fn spectrum(&mut self, name: &str, probe: &Probe) -> Option<Spectrum> {

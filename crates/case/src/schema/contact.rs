@@ -61,8 +61,8 @@ pub struct Contact {
     pub filter: Vec<ChannelClass>,
 }
 
-/// General contact: the outer sides of all bodies of cells, in the plane and in space, each body with each other; bodies at finite strain
-/// with themselves too. Pairs of bodies that a contact of `[contact]` joins, or that share nodes, are left out.
+/// General contact: the outer sides of all bodies, in the plane and in space, each body with each other; bodies at finite strain or with
+/// finite rotations with themselves too. Of shells and beams they are around middles and axes; bars take no part. Pairs of bodies that a contact of `[contact]` joins, or that share nodes, are left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct GeneralContact {
@@ -70,7 +70,8 @@ pub struct GeneralContact {
     pub law: GivenLaw,
     /// Friction of pairs of materials that have none of their own. Default: none.
     pub friction: Option<Friction>,
-    /// Largest penetration that counts as contact. Default: the least thickness of a cell at the outer sides of the two bodies.
+    /// Largest penetration that counts as contact. Default: the least thickness of a cell at the outer sides of the two bodies. It means
+    /// nothing to shells and beams.
     pub depth: Option<Length>,
     /// What is different between two materials.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

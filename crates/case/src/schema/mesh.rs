@@ -11,7 +11,7 @@ use carom_quantities::{Angle, Coordinate, Length, Vector};
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend("anyOf" = [{ "required": ["file"] }, { "required": ["part"] }, { "required": ["generate"] }], "dependentRequired" = { "unit": ["file"] }))]
 pub struct Mesh {
-    /// Path of a Gmsh file (MSH 2.2 or 4.1, ASCII or binary) of one of Abaqus or CalculiX (`.inp`), of a surface of triangles (`.stl`), or of an unstructured grid of VTK (`.vtu`), from the folder of the case file. Its physical
+    /// Path of a Gmsh file (MSH 2.2 or 4.1, ASCII or binary), of one of Abaqus or CalculiX (`.inp`), of a surface of triangles (`.stl`), of an unstructured grid of VTK (`.vtu`), or of a mesh of Salome and code_aster (`.med`, of a Carom built with `--features hdf5`), from the folder of the case file. Its physical
     /// groups, or its sets and surfaces, are the names that bodies, supports, contacts and probes use.
     pub file: Option<String>,
     /// Unit of the coordinates in `file`.

@@ -64,8 +64,8 @@ pub use obstacle::{
     PolarCurve, PolarPoint, PolarProfile, Side, Sphere, Surface, Turn,
 };
 pub use output::{
-    Allowable, BarReference, Checkpoint, Field, Fields, Histories, Level, Motion, Output, Probe,
-    ProbeSpectrum, Reference, Sides,
+    Allowable, BarReference, Checkpoint, Field, Fields, Histories, Level, Mean, Motion, Output,
+    Probe, ProbeSpectrum, Reference, Sides,
 };
 pub use signal::{
     AccelerationPoint, AccelerationSource, Baseline, Columns, DisplacementSource, FactorSource,

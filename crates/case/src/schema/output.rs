@@ -10,8 +10,11 @@ use carom_quantities::{Coordinate, Duration, Energy, Force, Frequency, Vector};
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend("oneOf" = [{ "required": ["on"] }, { "required": ["at"] }]))]
 pub struct Probe {
-    /// Group of the nodes: the mean of the motion over its length, area or volume.
+    /// Group of the nodes: the mean of the motion over its length, area or volume, or over the mass of its nodes.
     pub on: Option<String>,
+    /// What the mean over `on` is weighted by.
+    #[serde(default)]
+    pub mean: Mean,
     /// A place in the reference configuration: the motion of the node of a body that is nearest to it, and the stress of the cell whose
     /// middle is nearest to it.
     pub at: Option<Vector<Coordinate>>,
@@ -25,6 +28,17 @@ pub struct Probe {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("uniqueItems" = true))]
     pub filter: Vec<ChannelClass>,
+}
+
+/// What the mean of a probe is weighted by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mean {
+    /// The length, area or volume of the group; points count alike.
+    #[default]
+    Measure,
+    /// The masses of the nodes of the group: on a whole body the motion of its centre of mass.
+    Mass,
 }
 
 /// A channel frequency class of SAE J211-1: a low-pass filter without shift of phase. It needs ten steps in the period of its class.
@@ -205,6 +219,10 @@ pub struct Fields {
     /// Quantities to write.
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
     pub record: Vec<Field>,
+    /// Whether they are written as VTKHDF too at the end of the run, in one file of all instants for the bodies and for each contact. It needs
+    /// a Carom that is built with `--features hdf5`.
+    #[serde(default)]
+    pub vtkhdf: bool,
 }
 
 /// A field.

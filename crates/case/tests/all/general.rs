@@ -100,3 +100,53 @@ fn materials_that_are_none_are_told() {
     );
     assert!(format!("{:?}", problems[0]).contains("rubber"));
 }
+
+/// A plate between a block that rises and a rod that falls; `contact`: what lets them.
+fn thin(contact: &str) -> String {
+    format!(
+        r#"
+carom = 1
+mesh.dimension = 3
+mesh.generate.plate.rectangle = {{ origin = [0.0, 0.0], size = [0.2, 0.2], elements = [8, 8] }}
+mesh.generate.block.box = {{ origin = [0.04, 0.04, -0.1215], size = [0.12, 0.12, 0.12], elements = [2, 2, 2] }}
+mesh.generate.rod.line = {{ from = [0.02, 0.1, 0.0065], to = [0.18, 0.1, 0.0065], elements = 9 }}
+material.steel = {{ density = 7800.0, elastic = {{ young = "200 GPa", poisson = 0.3 }} }}
+body.plate = {{ region = "plate", material = "steel", section.shell.thickness = "2 mm" }}
+body.block = {{ region = "block", material = "steel", initial.velocity = [0.0, 0.0, 2.0] }}
+body.rod = {{ region = "rod", material = "steel", section.beam.shape.circle.diameter = "10 mm", initial.velocity = [0.0, 0.0, -3.0] }}
+{contact}
+time = {{ end = "0.32 ms", step = "2 us", scheme.theta = {{}} }}
+"#
+    )
+}
+
+#[test]
+fn shells_and_beams_meet_as_under_contacts_of_their_middles_and_axes() {
+    let named = thin(
+        r#"
+contact.a = { secondary = "plate", primary = "block.top", law.velocity = {}, sliding = "finite" }
+contact.b = { secondary = "rod", primary = "plate", law.velocity = {}, sliding = "finite" }
+"#,
+    );
+    let general = thin("general-contact.law.velocity = {}");
+    let [(one, named), (other, all)] = [named, general].map(|text| result(&text));
+    let names: Vec<&String> = other.contacts.keys().collect();
+    assert_eq!(names, ["all-block-plate", "all-block-rod", "all-plate-rod"]);
+    for (contact, name) in [("a", "all_block_plate"), ("b", "all_plate_rod")] {
+        let [force, of_all] = [
+            &named[&format!("contact.{contact}.force_n")],
+            &all[&format!("contact.{name}.force_n")],
+        ];
+        let largest = force.iter().fold(0.0_f64, |m, f| m.max(*f));
+        assert!(largest > 0.0, "{name} touches");
+        // the middle of the top and the axis are the same faces in both
+        for (one, other) in force.iter().zip(of_all) {
+            assert!(
+                (one - other).abs() < 1e-9 * largest,
+                "{name}: {one} {other}"
+            );
+        }
+    }
+    assert_eq!(other.contacts["all-block-rod"].peak_force, 0.0);
+    assert_eq!(one.contacts["a"].law, other.contacts["all-block-plate"].law);
+}

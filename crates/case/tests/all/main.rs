@@ -11,6 +11,7 @@ mod general;
 mod grades;
 mod large;
 mod losses;
+mod means;
 mod offset;
 mod quadrature;
 mod reactions;

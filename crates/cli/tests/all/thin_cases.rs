@@ -57,6 +57,29 @@ fn a_box_of_shells_falls() {
 }
 
 #[test]
+fn three_blocks_land_in_a_tray() {
+    let summary = run_until("pile", "15 ms", &[]);
+    assert_balanced(&summary, "pile");
+    let contacts = summary["contacts"].as_object().unwrap();
+    assert_eq!(contacts.len(), 10);
+    // the brick falls 4 mm with 1 m/s and more, the hexagon 12 mm behind it later
+    let first = |name: &str| contacts[name]["first_closing"].as_f64();
+    assert!((3.0e-3..5.0e-3).contains(&first("landing").unwrap()));
+    assert_eq!(first("all-brick-hexagon"), None);
+    // two corners land within 15 ms, and each is one impact
+    let impacts = contacts["landing"]["impacts"].as_u64().unwrap();
+    assert!((1..=3).contains(&impacts), "{impacts}");
+    let moment = contacts["landing"]["peak_moment"]["magnitude"]
+        .as_f64()
+        .unwrap();
+    // the largest force, 0.2 to 0.3 kN, has an arm of at most half the diagonal, 65 mm
+    let force = contacts["landing"]["peak_resultant"]["magnitude"]
+        .as_f64()
+        .unwrap();
+    assert!(moment > 0.0 && moment < 0.075 * force, "{moment} {force}");
+}
+
+#[test]
 fn strips_of_plies_and_taper_bend_as_beams() {
     let summary = run_until("shell-strips", "1.2 ms", &[]);
     assert_balanced(&summary, "shell-strips");

@@ -7,7 +7,7 @@ use carom_mesh::Face;
 use super::Pairing;
 use crate::rest::Rest;
 use crate::search::{foot_on, spread};
-use crate::{Contact, Integration, Places, Point, Search, Sliding, Target};
+use crate::{Contact, Integration, Places, Point, Search, Sight, Sliding, Target};
 
 /// What a pairing of the near points of a contact is given.
 pub struct Near<'a> {
@@ -53,6 +53,17 @@ impl Pairing {
         for rows in &mut self.tangents[..dim - 1] {
             rows.open_all(self.areas.len());
         }
+    }
+
+    /// Appends the points of a contact, which face nothing; the number of the first.
+    fn append_open(&mut self, contact: &Contact, dim: usize) -> usize {
+        self.dim = dim;
+        let first = self.len();
+        for (at, point) in (first..).zip(&contact.points) {
+            self.begin(at, point.area);
+            self.open(at);
+        }
+        first
     }
 
     /// Lets the near points face nothing, before the contacts are paired anew.
@@ -170,6 +181,52 @@ impl Contact {
         (search.rest, search.due) = (rest, due);
     }
 
+    /// Appends the points of a contact of finite sliding. Those are looked for whose gap is within `reach` (m), and those that were
+    /// `inside` the other side before: they are as [`Contact::pair_fully`] has them. All others face nothing, also those that are deeper
+    /// than the reach.
+    ///
+    /// What `search` holds from before does not matter to the result.
+    pub fn append_near(
+        &self,
+        places: &Places,
+        search: &mut Search,
+        (reach, inside): (f64, &(dyn Fn(usize) -> bool + Sync)),
+        pairing: &mut Pairing,
+    ) {
+        let near = Near {
+            first: pairing.append_open(self, places.dim()),
+            reach,
+            step: None,
+            inside,
+            initial: &Pairing::default(),
+        };
+        self.pair_near(places, search, &near, pairing);
+    }
+
+    /// Appends the points of a contact whose sides are known to be apart: all face nothing.
+    pub fn append_apart(&self, dim: usize, search: &mut Search, pairing: &mut Pairing) {
+        pairing.append_open(self, dim);
+        search.rest_anew();
+    }
+
+    /// Largest penetration that counts as contact where the points have a sight, m.
+    pub fn deepest(&self) -> Option<f64> {
+        self.sight.as_ref().map(Sight::deepest)
+    }
+
+    /// The most that a point or a face is thick beyond its place, less what is added to gaps, m.
+    pub fn thickest(&self) -> f64 {
+        let points = self.points.iter().enumerate();
+        let beyond = |(k, point): (usize, &Point)| point.radius - self.offset(k);
+        let own = points.map(beyond).fold(0.0, f64::max);
+        let target = match &self.target {
+            Target::Surface(faces) => &faces[..],
+            Target::Rigid(_) => &[],
+        };
+        let radii = target.iter().filter_map(|face| face.radius);
+        own + radii.fold(0.0, f64::max)
+    }
+
     /// Bounds the motion since the last pairing.
     fn travel(&self, rest: &mut Rest, units: usize, places: &Places) {
         let obstacle = match &self.target {
@@ -265,7 +322,8 @@ impl Contact {
             pairing.rows.shift(at, self.offset(k));
             pairing.keep(at, point.area, reach.near);
         }
-        match pairing.near.len() > kept || self.sight.is_some() {
+        // bounds of distances leave sight out
+        match pairing.near.len() > kept || self.faces_itself() {
             true => 0.0,
             false => self.mortar_clearance(places, search, reach.watched),
         }

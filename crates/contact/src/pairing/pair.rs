@@ -150,6 +150,7 @@ mod tests {
             target: Target::Surface(faces),
             sight: None,
             offsets: Vec::new(),
+            near_only: false,
         };
         let mut rows = Rows::default();
         rows.clear();

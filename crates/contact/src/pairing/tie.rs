@@ -42,6 +42,7 @@ impl Tie {
             target: Target::Surface(primary),
             sight: None,
             offsets: Vec::new(),
+            near_only: false,
         };
         let places = Places {
             unknowns: &Unknowns::translations(dim, x.len()),

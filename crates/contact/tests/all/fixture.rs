@@ -28,6 +28,7 @@ pub fn contact(points: Vec<Point>, target: Target) -> Contact {
         target,
         sight: None,
         offsets: Vec::new(),
+        near_only: false,
     }
 }
 

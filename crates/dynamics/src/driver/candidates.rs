@@ -25,6 +25,7 @@ impl Driver {
             self.begin_solve();
             self.solve_candidates()?;
             self.end_iteration();
+            self.look_further();
             if !self.add_missed() {
                 break;
             }

@@ -53,6 +53,9 @@ impl Driver {
                 ..
             } = &mut self.vectors;
             let configuration = (!ahead).then_some(paired);
+            if ahead || placed != configuration {
+                self.far.forget_places();
+            }
             match ahead {
                 true => part_way(motion, predicted, &contact.law, place),
                 // where the one before was paired
@@ -91,8 +94,14 @@ impl Driver {
         let mut places = system.places(time, place, frames);
         places.frames.middle = middle;
         places.frames.balance = (!end.is_empty()).then_some(Balance { end, fraction });
-        let kept = (&mut self.search[number], &mut self.initial[number]);
         let contact = as_left(&self.bared, &system, number);
+        if self.far.has(number) {
+            let (gaps, first) = (&self.state.interface.gap, system.first_point[number]);
+            let inside = |point: usize| gaps[first + point] < 0.0;
+            let kept = (&mut self.search[number], &mut self.pairing);
+            return self.far.append((contact, number), &places, &inside, kept);
+        }
+        let kept = (&mut self.search[number], &mut self.initial[number]);
         append(contact, &places, work, kept, &mut self.pairing);
     }
 
@@ -313,10 +322,41 @@ impl Driver {
         self.pairing.span = [0.0; 2];
         self.vectors.end.clear();
         self.vectors.place.clone_from(&self.state.motion.u);
+        self.begin_far();
         for contact in 0..self.system.contacts.len() {
             self.append(contact, self.state.time);
         }
         self.candidates.clear();
+    }
+
+    /// Begins a step of the contacts that do not look for what is far.
+    pub(super) fn begin_far(&mut self) {
+        self.far.forget_places();
+        let unknowns = &self.system.unknowns;
+        self.far.begin(unknowns, (&self.state.motion.v, self.dt));
+    }
+
+    /// Pairs again where the motion of the iteration leads further than contacts have looked.
+    pub(super) fn look_further(&mut self) {
+        if self.far.is_empty() {
+            return;
+        }
+        let Vectors {
+            x, push, place, dx, ..
+        } = &mut self.vectors;
+        let way = |map: &StepMap| map.displacement.since(&Row::START);
+        self.maps.whole(way, &self.state.motion, [x, push], place);
+        for (span, map) in self.maps.spans() {
+            for i in span {
+                place[i] += map.displacement.x * dx[i];
+            }
+        }
+        if !self.far.is_enough(&self.system.unknowns, place) {
+            // pairing uses the room of the forces of the iteration
+            let work = self.vectors.work.clone();
+            self.pair(true);
+            self.vectors.work = work;
+        }
     }
 
     /// Whether all is linear in the unknown, so that one iteration is all.

@@ -28,6 +28,7 @@ mod direct;
 mod direct_hold;
 mod direct_links;
 mod effective;
+mod far;
 mod floating;
 mod forces;
 mod friction;
@@ -88,6 +89,7 @@ use crate::watch::Watch;
 use active::Active;
 use carried::Carried;
 use effective::Effective;
+use far::Far;
 use floating::Floating;
 use impulse::Impulses;
 use leapfrog::Direct;
@@ -146,6 +148,7 @@ pub struct Driver {
     bared_for: u64,
     watch: Watch,
     active: Active,
+    far: Far,
     /// Points that may carry a force, ascending.
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,

@@ -11,6 +11,7 @@ use carom_contact::{Near, Pairing, Places, Sliding, Step};
 use super::Driver;
 use super::deletion::as_left;
 use super::tangents::first_thought;
+use crate::step_map::Row;
 
 impl Driver {
     /// Takes the contact of the state before into that of the end.
@@ -43,9 +44,10 @@ impl Driver {
             self.active.keep(pairing.near());
             pairing.reopen();
         }
+        let mut placed = None;
         for number in 0..system.contacts.len() {
             pairing.span = self.span(number);
-            self.pair_near_of(number, &mut pairing);
+            self.pair_near_of(number, &mut placed, &mut pairing);
         }
         if !begins {
             self.active.take(pairing.near());
@@ -53,7 +55,8 @@ impl Driver {
         self.pairing = pairing;
     }
 
-    fn pair_near_of(&mut self, number: usize, pairing: &mut Pairing) {
+    /// `placed`: configuration of the contact before.
+    fn pair_near_of(&mut self, number: usize, placed: &mut Option<Row>, pairing: &mut Pairing) {
         let system = Arc::clone(&self.system);
         let (contact, first) = (
             as_left(&self.bared, &system, number),
@@ -76,6 +79,13 @@ impl Driver {
         };
         let places = system.places(time, u, &self.state.motion.frames);
         let (search, initial) = (&mut self.search[number], &mut self.initial[number]);
+        if placed.replace(row) != Some(row) {
+            self.far.forget_places();
+        }
+        let reach = self.active.reaches[number];
+        if self.far.are_apart(number, reach, &places) {
+            return search.rest_anew();
+        }
         if contact.sliding == Sliding::Small && (initial.is_empty() || contact.moves()) {
             initial.clear();
             initial.span = pairing.span;
@@ -99,7 +109,7 @@ impl Driver {
         });
         let near = Near {
             first,
-            reach: self.active.reaches[number],
+            reach,
             step,
             inside: &|point| gaps[first + point] < 0.0,
             initial,

@@ -125,6 +125,7 @@ impl Driver {
         self.evaluate(true)?;
         self.vectors.ahead.clear();
         self.search.iter_mut().for_each(Search::begin_step);
+        self.begin_far();
         self.pair(true);
         if (0..self.system.contacts.len()).any(|k| self.looks_ahead(k)) {
             self.look_ahead()?;

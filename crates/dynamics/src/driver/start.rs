@@ -8,6 +8,7 @@ use carom_contact::{Contact, Pairing, Search};
 use super::active::Active;
 use super::carried::Carried;
 use super::effective::Effective;
+use super::far::Far;
 use super::floating::Floating;
 use super::forces::DAMPING;
 use super::identity::{End, energies};
@@ -102,6 +103,7 @@ impl Driver {
             bared_for: 0,
             watch: Watch::new(&system),
             active: Active::of(&system),
+            far: Far::of(&system),
             candidates: Vec::new(),
             candidate_data: Vec::new(),
             free_gaps: Vec::new(),

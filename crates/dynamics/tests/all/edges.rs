@@ -73,6 +73,7 @@ fn sheared(secondary: usize) -> Driver {
             initial: Initial::Keep,
             depth: None,
             moment_about: None,
+            near_only: false,
             merge_within: None,
         }],
         discrete: Vec::new(),

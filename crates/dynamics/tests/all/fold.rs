@@ -76,6 +76,7 @@ fn pressed(depth: f64, way: f64) -> Driver {
             initial: Initial::Keep,
             depth: None,
             moment_about: None,
+            near_only: false,
             merge_within: None,
         }],
         discrete: Vec::new(),

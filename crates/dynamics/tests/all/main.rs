@@ -9,6 +9,7 @@ mod direct;
 mod discrete;
 mod edges;
 mod explicit;
+mod far;
 mod floating;
 mod flowing;
 mod fold;

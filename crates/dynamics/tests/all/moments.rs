@@ -174,3 +174,19 @@ fn sides_that_share_nodes_have_no_moment() {
     let error = System::new(model).unwrap_err().to_string();
     assert!(error.contains("share nodes"), "{error}");
 }
+
+#[test]
+fn moments_touch_the_nodes_of_the_secondary_surface_alone() {
+    for model in [on_slope, on_block] {
+        let system = System::new(model(CENTRE)).unwrap();
+        let about = system.moments[0].as_ref().unwrap();
+        let mut nodes: Vec<u32> = about.levers.nodes.iter().map(|lever| lever.node).collect();
+        nodes.sort_unstable();
+        let faces = system.secondary_faces[0].iter();
+        let mut own: Vec<u32> = faces.flat_map(|face| face.corners()).copied().collect();
+        own.sort_unstable();
+        own.dedup();
+        assert_eq!(nodes, own);
+        assert!(own.len() < system.x.len() / 4);
+    }
+}

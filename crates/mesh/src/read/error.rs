@@ -25,6 +25,14 @@ pub enum ReadError {
         /// Extensions that are read.
         expected: &'static [&'static str],
     },
+    /// The format needs a feature that is not built in.
+    #[error(
+        "{}: this carom reads no MED files; build it with: cargo build --release --features hdf5", path.display()
+    )]
+    Feature {
+        /// The file.
+        path: PathBuf,
+    },
     /// The content breaks the rules of the format.
     #[error("{}, {place}: found {found}, expected {expected}", path.display())]
     Malformed {
@@ -54,6 +62,8 @@ pub enum ReadError {
 /// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
+    /// A group or data set of an HDF5 file.
+    Object(&'static str),
     /// A line of a text file, from 1.
     Line(usize),
     /// A byte of a binary file, from 0.
@@ -63,6 +73,7 @@ pub enum Place {
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Place::Object(name) => write!(f, "{name}"),
             Place::Line(line) => write!(f, "line {line}"),
             Place::Byte(byte) => write!(f, "byte {byte}"),
         }

@@ -8,7 +8,10 @@ mod error;
 pub mod file;
 pub(crate) mod flatten;
 pub mod gmsh;
+mod groups;
 pub mod inp;
+#[cfg(feature = "hdf5")]
+pub mod med;
 pub mod stl;
 pub mod vtu;
 
@@ -18,13 +21,26 @@ use crate::Mesh;
 pub use error::{Place, ReadError};
 
 /// Extensions of the files that [`read`] takes.
-pub const EXTENSIONS: &[&str] = &["msh", "inp", "stl", "vtu"];
+pub const EXTENSIONS: &[&str] = &["msh", "inp", "stl", "vtu", "med"];
+
+#[cfg(feature = "hdf5")]
+fn med(path: &Path, bytes: Vec<u8>) -> Result<Mesh, ReadError> {
+    med::parse(path, bytes)
+}
+
+#[cfg(not(feature = "hdf5"))]
+fn med(path: &Path, _: Vec<u8>) -> Result<Mesh, ReadError> {
+    Err(ReadError::Feature {
+        path: path.to_owned(),
+    })
+}
 
 /// Most bytes of a mesh file: 16 GiB, some hundred million nodes.
 const LARGEST: u64 = 16 << 30;
 
 /// Reads the mesh in a file; the extension, in any case, says the format: `.msh` is Gmsh's ([`gmsh`]), `.inp` that of
-/// Abaqus and CalculiX ([`inp`]), `.stl` a surface of triangles ([`stl`]), `.vtu` an unstructured grid of VTK ([`vtu`]).
+/// Abaqus and CalculiX ([`inp`]), `.stl` a surface of triangles ([`stl`]), `.vtu` an unstructured grid of VTK ([`vtu`]), `.med` a mesh of
+/// Salome and code_aster (`med`, with the feature `hdf5`).
 ///
 /// Fails if the file cannot be read or its content refused; see [`ReadError`].
 pub fn read(path: &Path) -> Result<Mesh, ReadError> {
@@ -45,6 +61,7 @@ pub fn read(path: &Path) -> Result<Mesh, ReadError> {
         "inp" => inp::parse(path, &bytes),
         "stl" => stl::parse(path, &bytes),
         "vtu" => vtu::parse(path, &bytes),
+        "med" => med(path, bytes),
         _ => gmsh::parse(path, &bytes),
     }
 }

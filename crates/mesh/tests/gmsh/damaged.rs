@@ -1,35 +1,7 @@
 //! Files cut and overwritten anywhere: an error or a sound mesh, never a panic.
 
-use carom_mesh::Mesh;
-
 use super::{FORMATS, MESHES, bytes_of, parse};
-
-/// Whether every number of a mesh is one of something that it has.
-fn is_consistent(mesh: &Mesh) -> bool {
-    let nodes = mesh.nodes.len() as u32;
-    let finite = mesh.nodes.iter().flatten().all(|x| x.is_finite());
-    let whole =
-        |block: &carom_mesh::Block| block.nodes.len() == block.len() * block.kind.table().nodes;
-    let known = mesh
-        .blocks
-        .iter()
-        .all(|block| block.nodes.iter().all(|&node| node < nodes) && whole(block));
-    let groups = mesh.groups.values().all(|group| {
-        group.elements.iter().all(|id| {
-            let block = &mesh.blocks[id.block as usize];
-            block.kind.table().dim == group.dim && (id.index as usize) < block.len()
-        })
-    });
-    finite && known && groups
-}
-
-/// A pseudo-random number below `n` (xorshift, Marsaglia 2003).
-fn draw(state: &mut u64, n: usize) -> usize {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    (*state % n as u64) as usize
-}
+use crate::damage::{damaged, is_consistent};
 
 #[test]
 fn a_file_cut_at_any_byte_is_refused() {
@@ -56,15 +28,7 @@ fn overwritten_bytes_give_an_error_or_a_consistent_mesh() {
     {
         let content = bytes_of(mesh, format);
         for _ in 0..5000 {
-            let mut content = content.clone();
-            for _ in 0..=draw(&mut state, 3) {
-                let place = draw(&mut state, content.len());
-                content[place] = match draw(&mut state, 3) {
-                    0 => content[place] ^ (1 << draw(&mut state, 8)),
-                    1 => draw(&mut state, 256) as u8,
-                    _ => b"0123456789-.e \n$"[draw(&mut state, 16)],
-                };
-            }
+            let content = damaged(&content, &mut state);
             if let Ok(mesh) = parse(&content) {
                 assert!(is_consistent(&mesh), "{mesh:?}");
             }

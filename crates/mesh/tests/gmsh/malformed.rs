@@ -90,7 +90,7 @@ fn a_file_that_is_not_there_or_of_another_kind_is_refused() {
     let other = read("no/such/mesh.unv".as_ref()).unwrap_err().to_string();
     assert_eq!(
         other,
-        "no/such/mesh.unv: found the extension \"unv\", expected one of: msh, inp, stl, vtu"
+        "no/such/mesh.unv: found the extension \"unv\", expected one of: msh, inp, stl, vtu, med"
     );
 }
 

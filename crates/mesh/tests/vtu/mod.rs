@@ -1,8 +1,11 @@
 //! Files that another program has written: meshio 5, from the meshes beside them in Gmsh's format.
 
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use carom_mesh::{Mesh, read};
+
+use crate::damage::{damaged, is_consistent};
 
 fn fixture(name: &str) -> Mesh {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
@@ -83,4 +86,27 @@ fn what_is_cut_off_damaged_or_of_another_sort_is_told() {
         let error = parse(&text).map(|_| ()).unwrap_err().to_string();
         assert!(error.contains(told), "{told}: {error}");
     }
+}
+
+#[test]
+fn damaged_files_give_an_error_or_a_consistent_mesh() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let mut state = 0x9e37_79b9_7f4a_7c15;
+    let begin = Instant::now();
+    for name in ["mixed-ascii.vtu", "mixed-plain.vtu", "mixed-zlib.vtu"] {
+        let whole = std::fs::read(folder.join(name)).unwrap();
+        let parse = |content: &[u8]| read::vtu::parse(Path::new(name), content);
+        for length in (0..whole.len()).step_by(7) {
+            if let Ok(mesh) = parse(&whole[..length]) {
+                assert!(is_consistent(&mesh), "{name} cut at {length}");
+            }
+        }
+        for _ in 0..2000 {
+            let content = damaged(&whole, &mut state);
+            if let Ok(mesh) = parse(&content) {
+                assert!(is_consistent(&mesh), "{mesh:?}");
+            }
+        }
+    }
+    assert!(begin.elapsed() < Duration::from_secs(20), "a reader hangs");
 }

@@ -1,6 +1,7 @@
 //! The columns of the table of a comparison, each once: text, CSV and page are made from this list.
 
-use crate::compare::{Done, Variant};
+use crate::Absent;
+use crate::compare::{Comparison, Done, Outcome, Standard, Variant};
 use crate::form::Form;
 use crate::form::NOTHING;
 use crate::rows::Cell;
@@ -204,6 +205,63 @@ pub(crate) fn table(variants: &[Variant]) -> Table {
             .collect(),
         rows: variants.iter().map(row).collect(),
     }
+}
+
+/// The cells of the table that are empty, of the variants that were computed.
+pub(crate) fn absent(comparison: &Comparison) -> Vec<Absent> {
+    let done = comparison.variants.iter();
+    let done: Vec<(&str, &Done)> = done
+        .filter_map(|v| Some((v.name.as_str(), v.done()?)))
+        .collect();
+    let shown = COLUMNS.iter().filter_map(|c| Some((c, c.head?)));
+    let cells = shown.flat_map(|(column, head)| {
+        let empty = done
+            .iter()
+            .filter(|(_, done)| (column.value)(done).is_none());
+        empty.map(move |(name, done)| (head, *name, reason(comparison, column, done)))
+    });
+    Absent::gather(cells, done.len())
+}
+
+/// Why a variant has no value in a column.
+fn reason(comparison: &Comparison, column: &Column, done: &Done) -> String {
+    let standard = match &comparison.standard {
+        Standard::Run(name) => comparison.variants.iter().find(|v| v.name == *name),
+        Standard::Exact | Standard::Nothing => None,
+    };
+    let reason = match (column.name, done.contact()) {
+        ("energy_change", _) => "no energy at the start",
+        ("dissipation_scheme_j", _) => {
+            "no energy identity of the scheme is known: the residual has it too"
+        }
+        (_, None) => "no contact",
+        ("force_error" | "overshoot" | "mean_overshoot" | "impulse_error", _) => {
+            match (&comparison.standard, standard.map(|v| &v.outcome)) {
+                (Standard::Nothing, _) => "nothing to compare with",
+                (
+                    Standard::Run(_),
+                    None | Some(Outcome::Refused(_) | Outcome::Failed(_) | Outcome::Stopped),
+                ) => "the reference was not computed",
+                _ if done.summary.contacts.values().all(|c| c.impulse.is_none()) => {
+                    "static steps take no time"
+                }
+                _ => "the reference has no force",
+            }
+        }
+        ("restitution", Some(contact)) => {
+            let told = contact.no_restitution.clone();
+            return told.unwrap_or_else(|| match contact.first_closing {
+                None => "no impact".to_owned(),
+                Some(_) => "no complete impact".to_owned(),
+            });
+        }
+        ("release_s", Some(contact)) => match contact.first_closing {
+            None => "never closed",
+            Some(_) => "closed at the end",
+        },
+        _ => "not known of this run",
+    };
+    reason.to_owned()
 }
 
 /// Names of the columns of `comparison.csv`.

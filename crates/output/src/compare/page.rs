@@ -9,12 +9,17 @@ use crate::compare::{Comparison, Standard, columns};
 use crate::page::{PROGRAM, STYLE};
 use crate::report::environment;
 use crate::table::{Table, write_csv};
-use crate::{Error, Folder, atomic};
+use crate::{Absent, Error, Folder, atomic};
 
 impl Comparison {
     /// The table for people.
     pub fn table(&self) -> Table {
         columns::table(&self.variants)
+    }
+
+    /// The empty cells of the table, each with its reason.
+    pub fn absent(&self) -> Vec<Absent> {
+        columns::absent(self)
     }
 
     /// Writes `comparison.csv`, the figures `plots/*.svg` and `report.html` into the folder; returns the path of the page.
@@ -81,6 +86,7 @@ impl Comparison {
                 heads => inner(&table.heads),
                 variants,
                 window,
+                absent => self.absent().iter().map(Absent::text).collect::<Vec<_>>(),
                 head => Value::from_safe_string(head),
                 block => Value::from_safe_string(block),
                 program => Value::from_safe_string(PROGRAM.to_owned()),

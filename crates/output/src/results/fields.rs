@@ -1,32 +1,16 @@
 //! Fields as VTU and PVD: copied by the run into one of two buffers, derived and written by the background thread.
 
-use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use carom_contact::law::{Level, Status};
-use carom_contact::{Contact, Integration, Point};
-use carom_dynamics::{InterfaceState, Motion, Order, State, System};
-use carom_elements::Kind;
-use carom_mesh::Face;
+use carom_dynamics::{State, System};
 use serde::{Deserialize, Serialize};
 
-use crate::results::beams::{SECTION_FORCES, rotations, section_forces};
-use crate::results::cells::{ShellFields, cell_stresses, cell_von_mises, deleted, plastic_strains};
+use crate::results::grids::{SurfaceGrid, Volume};
+use crate::results::snapshot::Snapshot;
 use crate::results::{Fields, Zoning};
-use crate::vtu::{Cells, Field, Grid, Values, write};
 use crate::writer::Writer;
 use crate::{Collection, Error, Folder};
-
-/// What the thread needs of a state, and the names of the files it makes of it: the bodies, then each contact.
-#[derive(Clone, Debug, Default)]
-struct Snapshot {
-    time: f64,
-    first: bool,
-    names: Vec<String>,
-    motion: Motion,
-    interface: InterfaceState,
-}
 
 /// The run's side: when a state is due, and the buffers.
 #[derive(Debug)]
@@ -110,7 +94,7 @@ impl FieldOutput {
         outcome
     }
 
-    /// Hands over the last state, unless it is there already, and waits for the thread.
+    /// Hands over the last state, unless it is there already, waits for the thread, and writes the files of all instants.
     pub(crate) fn finish(
         &mut self,
         folder: &mut Folder,
@@ -121,7 +105,33 @@ impl FieldOutput {
             true => Ok(()),
             false => self.send(folder, system, state),
         };
-        sent.and(self.writer.finish())
+        sent.and(self.writer.finish())?;
+        match self.fields.vtkhdf {
+            true => self.write_whole(folder, system),
+            false => Ok(()),
+        }
+    }
+
+    /// Writes a file of all instants for the bodies and for each contact.
+    #[cfg(feature = "hdf5")]
+    fn write_whole(&self, folder: &mut Folder, system: &System) -> Result<(), Error> {
+        let instants = self.sent.times.iter().enumerate();
+        let instants: Vec<(f64, Vec<String>)> = instants
+            .map(|(number, time)| (*time, names(system, number)))
+            .collect();
+        for (number, part) in parts(system).enumerate() {
+            let path = folder.file(&format!("fields/{part}.vtkhdf"))?;
+            let files = instants.iter();
+            let files = files.map(|(time, names)| (*time, folder.path().join(&names[number])));
+            crate::vtkhdf::write(&path, &files.collect::<Vec<_>>())?;
+        }
+        Ok(())
+    }
+
+    /// The case is refused before the run.
+    #[cfg(not(feature = "hdf5"))]
+    fn write_whole(&self, _: &mut Folder, _: &System) -> Result<(), Error> {
+        Ok(())
     }
 
     fn send(&mut self, folder: &mut Folder, system: &System, state: &State) -> Result<(), Error> {
@@ -139,42 +149,16 @@ impl FieldOutput {
 
 /// Names of the files of one instant.
 fn names(system: &System, number: usize) -> Vec<String> {
-    let contacts = system.contacts.iter();
-    let contacts = contacts.map(|contact| format!("contact-{}", contact.name));
-    let parts = std::iter::once("bodies".to_owned()).chain(contacts);
-    parts
+    parts(system)
         .map(|part| format!("fields/{part}-{number:06}.vtu"))
         .collect()
 }
 
-impl Snapshot {
-    /// Copies what is needed, into the memory of the time before.
-    fn fill(&mut self, fields: &Fields, state: &State) {
-        let State {
-            motion, interface, ..
-        } = state;
-        self.time = state.time;
-        copy(&mut self.motion.u, &motion.u);
-        copy(&mut self.motion.frames, &motion.frames);
-        if fields.velocity || fields.acceleration {
-            copy(&mut self.motion.v, &motion.v);
-        }
-        if fields.acceleration {
-            copy(&mut self.motion.a, &motion.a);
-        }
-        copy(&mut self.motion.history, &motion.history);
-        copy(&mut self.interface.force, &interface.force);
-        copy(&mut self.interface.friction, &interface.friction);
-        copy(&mut self.interface.gap, &interface.gap);
-        copy(&mut self.interface.rate, &interface.rate);
-        copy(&mut self.interface.status, &interface.status);
-        copy(&mut self.interface.watched, &interface.watched);
-    }
-}
-
-fn copy<T: Copy>(to: &mut Vec<T>, from: &[T]) {
-    to.clear();
-    to.extend_from_slice(from);
+/// What has a file at each instant.
+fn parts(system: &System) -> impl Iterator<Item = String> {
+    let contacts = system.contacts.iter();
+    let contacts = contacts.map(|contact| format!("contact-{}", contact.name));
+    std::iter::once("bodies".to_owned()).chain(contacts)
 }
 
 /// The thread's side.
@@ -201,340 +185,4 @@ impl Files {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         self.collection.add(snapshot.time, &names)
     }
-}
-
-/// All bodies as one grid on the system's nodes.
-struct Volume {
-    cells: Vec<(Kind, Vec<u32>)>,
-    /// Number of the body of each cell, in the order of the case.
-    body: Vec<i32>,
-    /// Zone of each cell, and its mean weights of inertia and internal work; empty without zones.
-    zone: Vec<i32>,
-    weights: [Vec<f64>; 2],
-}
-
-impl Volume {
-    fn new(system: &System, zoning: Option<&Zoning>) -> Volume {
-        let mut volume = Volume {
-            cells: Vec::new(),
-            body: Vec::new(),
-            zone: Vec::new(),
-            weights: [Vec::new(), Vec::new()],
-        };
-        if let Some(zoning) = zoning {
-            for (zone, weights) in zoning.of_body.iter().zip(&zoning.weights) {
-                let zone = *zone as i32;
-                volume.zone.extend(weights[0].iter().map(|_| zone));
-                for (all, own) in volume.weights.iter_mut().zip(weights) {
-                    all.extend(own);
-                }
-            }
-        }
-        for (number, body) in system.bodies.iter().enumerate() {
-            let mut last = None;
-            for &cell in body.cells() {
-                let kind = system.mesh.kind(cell);
-                if last != Some(kind) {
-                    volume.cells.push((kind, Vec::new()));
-                    last = Some(kind);
-                }
-                let nodes = system.mesh.element_nodes(cell).iter();
-                if let Some((_, block)) = volume.cells.last_mut() {
-                    block.extend(nodes.map(|node| system.number[*node as usize]));
-                }
-                volume.body.push(number as i32);
-            }
-        }
-        volume
-    }
-
-    fn write(
-        &self,
-        path: &Path,
-        system: &System,
-        fields: &Fields,
-        snapshot: &Snapshot,
-    ) -> Result<(), Error> {
-        let chosen = [
-            ("displacement", fields.displacement, Order::Displacement),
-            ("velocity", fields.velocity, Order::Velocity),
-            ("acceleration", fields.acceleration, Order::Acceleration),
-        ];
-        let chosen = chosen.into_iter().filter(|(_, on, _)| *on);
-        let motions: Vec<(&str, Vec<[f64; 3]>)> = chosen
-            .map(|(name, _, order)| (name, vectors(system, &snapshot.motion, order)))
-            .collect();
-        let point_fields = motions.iter().map(|(name, values)| Field {
-            name,
-            values: Values::Vector(values),
-        });
-        let mut point_fields: Vec<Field> = point_fields.collect();
-        let rotation = match fields.rotation {
-            true => rotations(system, &snapshot.motion.u),
-            false => Vec::new(),
-        };
-        if fields.rotation {
-            point_fields.push(Field {
-                name: "rotation",
-                values: Values::Vector(&rotation),
-            });
-        }
-        let forces = match fields.section_forces {
-            true => section_forces(system, &snapshot.motion),
-            false => Default::default(),
-        };
-        let stress = match fields.stress {
-            true => cell_stresses(system, &snapshot.motion.u, &snapshot.motion.history),
-            false => Vec::new(),
-        };
-        let plastic = plastic_strains(system, &snapshot.motion.history);
-        let shells = match fields.stress || fields.section_forces {
-            true => ShellFields::new(system, &snapshot.motion, &stress),
-            false => None,
-        };
-        let mises = cell_von_mises(&stress, shells.as_ref());
-        let mut cell_fields = vec![Field {
-            name: "body",
-            values: Values::Integer(&self.body),
-        }];
-        // they never change: the first file has them
-        if snapshot.first && !self.zone.is_empty() {
-            let [inertia, stiffness] = &self.weights;
-            cell_fields.extend([
-                Field {
-                    name: "zone",
-                    values: Values::Integer(&self.zone),
-                },
-                Field {
-                    name: "inertia_weight",
-                    values: Values::Scalar(inertia),
-                },
-                Field {
-                    name: "stiffness_weight",
-                    values: Values::Scalar(stiffness),
-                },
-            ]);
-        }
-        if fields.stress {
-            cell_fields.push(Field {
-                name: "stress",
-                values: Values::SymmetricTensor(&stress),
-            });
-            cell_fields.push(Field {
-                name: "von_mises",
-                values: Values::Scalar(&mises),
-            });
-        }
-        if let Some(shells) = &shells {
-            cell_fields.extend(shells.fields(fields));
-        }
-        let forces = SECTION_FORCES.iter().zip(&forces);
-        cell_fields.extend(
-            forces
-                .filter(|_| fields.section_forces)
-                .map(|(name, values)| Field {
-                    name,
-                    values: Values::Vector(values),
-                }),
-        );
-        if let Some(plastic) = &plastic {
-            cell_fields.push(Field {
-                name: "plastic_strain",
-                values: Values::Scalar(plastic),
-            });
-        }
-        let deleted = deleted(system, &snapshot.motion.history);
-        let deleted = deleted.map(|all| all.into_iter().map(i32::from).collect::<Vec<_>>());
-        if let Some(deleted) = &deleted {
-            cell_fields.push(Field {
-                name: "deleted",
-                values: Values::Integer(deleted),
-            });
-        }
-        write(
-            path,
-            &Grid {
-                time: snapshot.time,
-                points: &places(
-                    system,
-                    &system.x,
-                    &vectors(system, &snapshot.motion, Order::Displacement),
-                ),
-                cells: &borrowed(&self.cells),
-                point_fields: &point_fields,
-                cell_fields: &cell_fields,
-            },
-        )
-    }
-}
-
-/// The places to draw points at: as they were, so that a viewer may add displacements of any scale, or, where
-/// displacements are large, as they are.
-fn places<'a>(
-    system: &System,
-    x: &'a [[f64; 3]],
-    displacement: &[[f64; 3]],
-) -> Cow<'a, [[f64; 3]]> {
-    match system.is_nonlinear() {
-        false => Cow::Borrowed(x),
-        true => {
-            let moved = x.iter().zip(displacement);
-            Cow::Owned(moved.map(|(x, u)| [0, 1, 2].map(|i| x[i] + u[i])).collect())
-        }
-    }
-}
-
-/// The contact points of a contact: nodes on the secondary surface, or Gauss points by themselves.
-struct SurfaceGrid {
-    contact: usize,
-    points: Vec<[f64; 3]>,
-    cells: Vec<(Kind, Vec<u32>)>,
-}
-
-impl SurfaceGrid {
-    fn new(system: &System, contact: usize) -> SurfaceGrid {
-        let Contact {
-            points,
-            integration,
-            ..
-        } = &system.contacts[contact];
-        if let Integration::Points | Integration::Weak { .. } = integration {
-            return SurfaceGrid::of_points(system, contact, points);
-        }
-        let nodes: Vec<u32> = points.iter().map(Point::node).collect();
-        let mut places: Vec<(u32, u32)> = nodes.iter().copied().zip(0..).collect();
-        places.sort_unstable();
-        let place = |node: &u32| {
-            let found = places.binary_search_by_key(node, |(node, _)| *node);
-            found.ok().map(|k| places[k].1)
-        };
-        let mut cells = Vec::new();
-        for kind in Kind::ALL {
-            let faces = system.secondary_faces[contact].iter();
-            let of_kind = faces.filter_map(|face| shown(face, &place));
-            let of_kind = of_kind.filter(|(shown, _)| *shown == kind);
-            let nodes: Vec<u32> = of_kind.flat_map(|(_, nodes)| nodes).collect();
-            if !nodes.is_empty() {
-                cells.push((kind, nodes));
-            }
-        }
-        SurfaceGrid {
-            contact,
-            points: nodes.iter().map(|node| system.x[*node as usize]).collect(),
-            cells,
-        }
-    }
-
-    fn of_points(system: &System, contact: usize, points: &[Point]) -> SurfaceGrid {
-        let reference = vec![0.0; system.unknowns()];
-        let places = system.places(0.0, &reference, &system.initial_frames);
-        SurfaceGrid {
-            contact,
-            points: points.iter().map(|point| point.place(&places)).collect(),
-            cells: vec![(Kind::Point1, (0..points.len() as u32).collect())],
-        }
-    }
-
-    fn write(&self, path: &Path, system: &System, snapshot: &Snapshot) -> Result<(), Error> {
-        let contact = &system.contacts[self.contact];
-        let range = system.first_point[self.contact]..system.first_point[self.contact + 1];
-        let interface = &snapshot.interface;
-        let (force, status) = (
-            &interface.force[range.clone()],
-            &interface.status[range.clone()],
-        );
-        // a point that faces nothing has no gap: viewers leave out what is not a number
-        let gap = |gap: &f64| if gap.is_finite() { *gap } else { f64::NAN };
-        let gap: Vec<f64> = interface.gap[range.clone()].iter().map(gap).collect();
-        let points = contact.points.iter().zip(force);
-        let pressure: Vec<f64> = points
-            .map(|(point, force)| {
-                match (*force == 0.0, point.area > 0.0) {
-                    (true, _) => 0.0,
-                    (false, true) => force / point.area,
-                    // a node inside that the deletion of elements has laid bare
-                    (false, false) => f64::NAN,
-                }
-            })
-            .collect();
-        let friction = interface.friction.get(range.clone()).unwrap_or(&[]);
-        let traction: Vec<f64> = contact
-            .points
-            .iter()
-            .zip(friction)
-            .map(|(point, [one, other])| one.hypot(*other) / point.area)
-            .collect();
-        let sign = |on: bool| i32::from(on);
-        let closed: Vec<i32> = status.iter().map(|s| sign(*s != Status::Open)).collect();
-        let watched = interface.watched[range.clone()].iter();
-        let watched: Vec<i32> = watched.map(|on| sign(*on)).collect();
-        let all = vectors(system, &snapshot.motion, Order::Displacement);
-        let moved = |point: &Point| {
-            point.carriers().fold([0.0; 3], |sum: [f64; 3], (node, n)| {
-                [0, 1, 2].map(|i| sum[i] + n * all[node as usize][i])
-            })
-        };
-        let displacement: Vec<[f64; 3]> = contact.points.iter().map(moved).collect();
-        let signs = match contact.law.get().level() {
-            Level::Gap | Level::GapAndRate => vec![("S_g", &closed)],
-            Level::Rate => vec![("S_d", &watched), ("S_v", &closed)],
-        };
-        let scalar = |name, values| Field {
-            name,
-            values: Values::Scalar(values),
-        };
-        let mut fields = vec![
-            scalar("gap", &gap[..]),
-            scalar("gap_rate", &interface.rate[range.clone()]),
-            scalar("pressure", &pressure),
-            scalar("force", force),
-            Field {
-                name: "displacement",
-                values: Values::Vector(&displacement),
-            },
-        ];
-        if system.friction[self.contact] > 0.0 && !traction.is_empty() {
-            fields.push(scalar("friction_traction", &traction));
-        }
-        fields.extend(signs.into_iter().map(|(name, values)| Field {
-            name,
-            values: Values::Integer(values),
-        }));
-        write(
-            path,
-            &Grid {
-                time: snapshot.time,
-                points: &places(system, &self.points, &displacement),
-                cells: &borrowed(&self.cells),
-                point_fields: &fields,
-                cell_fields: &[],
-            },
-        )
-    }
-}
-
-fn borrowed(cells: &[(Kind, Vec<u32>)]) -> Vec<Cells<'_>> {
-    let blocks = cells
-        .iter()
-        .map(|(kind, nodes)| Cells { kind: *kind, nodes });
-    blocks.collect()
-}
-
-/// One vector of three components per node.
-fn vectors(system: &System, motion: &Motion, order: Order) -> Vec<[f64; 3]> {
-    let nodes = 0..system.x.len() as u32;
-    nodes
-        .map(|node| system.of_node(node, motion, order))
-        .collect()
-}
-
-/// A face as it is drawn, with the places of its nodes: in full, or by its corners where only these are points of the
-/// contact.
-fn shown(face: &Face, place: &impl Fn(&u32) -> Option<u32>) -> Option<(Kind, Vec<u32>)> {
-    let linear = face.kind.table().linear;
-    [face.kind, linear].into_iter().find_map(|kind| {
-        let nodes = face.corners()[..kind.table().nodes].iter();
-        let places: Option<Vec<u32>> = nodes.map(place).collect();
-        Some((kind, places?))
-    })
 }

@@ -8,8 +8,8 @@ use serde::Deserialize;
 
 use super::due::Due;
 use super::{
-    Results, discrete, exact, fields, figures, histories, impacts, instants, loads, page, stills,
-    totals,
+    Results, columns, discrete, exact, fields, figures, histories, impacts, instants, loads, page,
+    stills, totals,
 };
 use crate::checkpoint::{self, Checkpoint};
 use crate::results::{Settings, Tables};
@@ -53,7 +53,7 @@ impl Results {
         system: Arc<System>,
     ) -> Result<Results, Error> {
         let Gathered((listed, histories, impacts, sent), beside) = checkpoint.gathered()?;
-        let [history, contact] = histories::files(&settings);
+        let [history, contact] = columns::files(&settings);
         let tables = [
             (history.as_str(), histories.0[0]),
             (contact.as_str(), histories.0[1]),
@@ -95,7 +95,6 @@ impl Results {
         settings.fields = None;
         let tables = Tables::Closed(impacts.1);
         let mut results = Results::with((settings, system), folder, tables)?;
-        results.broken = true;
         results.recall(beside, checkpoint);
         Ok(results)
     }

@@ -9,6 +9,7 @@
 
 mod beams;
 mod cells;
+mod columns;
 mod conclusion;
 mod contacts;
 mod costs;
@@ -19,6 +20,7 @@ mod fields;
 mod figures;
 mod film;
 mod filtered;
+mod grids;
 mod histories;
 mod impacts;
 pub(crate) mod inspect;
@@ -32,6 +34,7 @@ pub(crate) mod page;
 mod reduced;
 pub(crate) mod sensor;
 mod settings;
+mod snapshot;
 mod spectra;
 pub(crate) mod stills;
 mod totals;
@@ -98,6 +101,8 @@ pub struct Results {
     due: Due,
     /// Whether an accepted state has not been taken whole: no checkpoint is written any more.
     broken: bool,
+    /// Whether tables and checkpoints stay as they are ([`Results::review`]).
+    reviews: bool,
     /// When this part of the run began, and the wall time of those before.
     begin: Instant,
     earlier: Duration,
@@ -124,7 +129,7 @@ impl Results {
         for probe in &settings.probes {
             sensor::of_probe(&system, probe)?;
         }
-        histories::columns(&system, &settings, point.as_ref())?;
+        columns::columns(&system, &settings, point.as_ref())?;
         // what is wrong with the settings is found before there is a folder
         let folder = Folder::create(&settings.folder)?;
         Results::with((settings, system), folder, Tables::New)
@@ -140,8 +145,9 @@ impl Results {
         let probes = settings.probes.iter();
         let probes = probes.map(|probe| sensor::of_probe(&system, probe));
         let probes = probes.collect::<Result<Vec<_>, Error>>()?;
-        let columns = histories::columns(&system, &settings, point.as_ref())?;
-        if !matches!(tables, Tables::Closed(_)) {
+        let columns = columns::columns(&system, &settings, point.as_ref())?;
+        let reviews = matches!(tables, Tables::Closed(_));
+        if !reviews {
             atomic::write_text(&folder.file("case.toml")?, &settings.case_text)?;
         }
         for place in 0..settings.checkpoints.keep {
@@ -194,6 +200,7 @@ impl Results {
             last: Last::default(),
             due: Due::from(0.0),
             broken: false,
+            reviews,
             begin: Instant::now(),
             earlier: Duration::ZERO,
             system,
@@ -247,7 +254,7 @@ impl Results {
     fn end(&mut self, run: &dyn Stepper) -> Result<(), Error> {
         let state = run.state();
         // before the last rows and fields, which a run that goes on has not
-        let kept = match self.broken {
+        let kept = match self.broken || self.reviews {
             true => Ok(()),
             false => self.keep(run),
         };

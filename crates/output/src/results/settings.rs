@@ -145,6 +145,8 @@ pub struct Fields {
     pub rotation: bool,
     /// Forces (N) and moments (N m) in the sections of beams.
     pub section_forces: bool,
+    /// Whether a VTKHDF file of all instants is written too; needs the feature `hdf5`.
+    pub vtkhdf: bool,
 }
 
 /// An exact solution of a contact, from time 0 of the run.

@@ -1,6 +1,10 @@
 //! The force histories of a study in one figure: those of the runs, or of the nearest one over the history that a fit wants.
 
 use crate::compare::{Done, StepForce};
+use crate::page::block::Block;
+use crate::page::draft::{self, draft, line, zipped};
+use crate::page::schema::{Page, SCHEMA};
+use crate::page::{self, Data};
 use crate::plot::{Axis, Curve, Figure, Panel, Role};
 use crate::results::exact::Polyline;
 use crate::study::{Run, Study};
@@ -51,6 +55,36 @@ impl Study {
             columns: 1,
         };
         figure.svg().ok()
+    }
+
+    /// The plot of the page: the forces of all runs, that which a fit wants under them.
+    pub(crate) fn plots(&self) -> Data {
+        let done = self.runs.iter();
+        let done = done.filter_map(|run| Some((&run.variant.name, drawn(run.variant.done()?)?)));
+        let computed = done.map(|(name, curve)| line(name.clone(), "computed", zipped(&curve)));
+        let wanted = self.wanted.as_ref().map(StepForce::curve);
+        let wanted = wanted
+            .iter()
+            .map(|curve| line("wanted", "exact", zipped(curve)));
+        let title = self.contact().map(|name| format!("Contact {name}"));
+        let lines = wanted.chain(computed).collect();
+        let drafts = title.map(|title| draft("plot-study", title, ("contact force", "N"), lines));
+        let ends = self.runs.iter().filter_map(|run| run.variant.done());
+        let mut block = Block::default();
+        let page = Page {
+            schema: SCHEMA,
+            abscissa: page::schema::Quantity {
+                name: "time".to_owned(),
+                unit: "s",
+            },
+            begin: 0.0,
+            end: ends.map(|done| done.summary.time.end).fold(0.0, f64::max),
+            events: Vec::new(),
+            plots: draft::plots(drafts.into_iter().collect(), &mut block),
+            raster: None,
+            model: None,
+        };
+        Data { page, block }
     }
 
     /// The run whose force is nearest to `wanted` by [`StepForce::distance`].

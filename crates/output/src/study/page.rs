@@ -4,14 +4,16 @@ use std::path::PathBuf;
 
 use minijinja::{Value, context};
 
+use crate::compare::Done;
 use crate::compare::page::inner;
 use crate::form::NOTHING;
+use crate::page::{PROGRAM, STYLE};
 use crate::plot::{Logarithmic, Series, quantity, rounded};
 use crate::report::environment;
 use crate::rows::Cell;
 use crate::study::{Abscissa, Order, Quantity, Run, Source, Study};
 use crate::table::{Table, write_csv};
-use crate::{Error, Folder, atomic};
+use crate::{Absent, Error, Folder, atomic};
 
 /// What is said wherever the raw peak is shown.
 pub const RAW_PEAK: &str = "the raw peak of a single step does not converge where the force jumps; use the peak of the mean";
@@ -40,6 +42,27 @@ impl Study {
             heads: heads.chain(["verdict".to_owned()]).collect(),
             rows: self.runs.iter().enumerate().map(row).collect(),
         }
+    }
+
+    /// The empty cells of the table, each with its reason.
+    pub fn absent(&self) -> Vec<Absent> {
+        let done = self.runs.iter();
+        let done: Vec<(&Run, &Done)> = done
+            .filter_map(|run| Some((run, run.variant.done()?)))
+            .collect();
+        let cells = self.shown().into_iter().flat_map(|quantity| {
+            let empty = done
+                .iter()
+                .filter(move |(run, _)| quantity.of(run).is_none());
+            empty.map(move |(run, done)| {
+                (
+                    quantity.name(),
+                    run.variant.name.as_str(),
+                    quantity.reason(done),
+                )
+            })
+        });
+        Absent::gather(cells, done.len())
     }
 
     /// The orders for people.
@@ -243,6 +266,7 @@ impl Study {
         };
         let envelope = self.envelope_table();
         let runs: Vec<Value> = self.runs.iter().zip(&table.rows).map(run).collect();
+        let [head, block] = self.plots().texts()?;
         let page = environment.get_template("study.html")?.render(context! {
             title => self.title.clone(),
             keys => self.keys.iter().map(|(key, _)| key.clone()).collect::<Vec<_>>(),
@@ -260,6 +284,11 @@ impl Study {
             figure => figure.map(Value::from_safe_string),
             forces => forces.map(Value::from_safe_string),
             wanted => self.wanted.is_some(),
+            absent => self.absent().iter().map(Absent::text).collect::<Vec<_>>(),
+            head => Value::from_safe_string(head),
+            block => Value::from_safe_string(block),
+            program => Value::from_safe_string(PROGRAM.to_owned()),
+            program_style => Value::from_safe_string(STYLE.to_owned()),
         })?;
         Ok(page)
     }

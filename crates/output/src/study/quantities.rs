@@ -1,5 +1,6 @@
 //! The quantities of a study, each once.
 
+use crate::compare::Done;
 use crate::study::Run;
 
 /// A quantity whose convergence is studied.
@@ -135,5 +136,31 @@ impl Quantity {
             }
         };
         value.is_finite().then_some(Measure { value, exact })
+    }
+
+    /// Why a run that was computed has no value.
+    pub(crate) fn reason(self, done: &Done) -> String {
+        let Some(contact) = done.contact() else {
+            return match self {
+                Quantity::EnergyChange => "no energy at the start".to_owned(),
+                _ => "no contact".to_owned(),
+            };
+        };
+        let reason = match self {
+            Quantity::EnergyChange => "no energy at the start",
+            Quantity::ForceError | Quantity::DisplacementError => match &done.summary.exact {
+                None => "no exact solution",
+                Some(_) => "the exact solution is zero over the run",
+            },
+            Quantity::Restitution => {
+                let told = contact.no_restitution.clone();
+                return told.unwrap_or_else(|| match contact.first_closing {
+                    None => "no impact".to_owned(),
+                    Some(_) => "no complete impact".to_owned(),
+                });
+            }
+            _ => "static steps take no time",
+        };
+        reason.to_owned()
     }
 }

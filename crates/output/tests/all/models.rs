@@ -173,6 +173,7 @@ pub fn all_fields(every: f64) -> Option<Fields> {
         stress: true,
         rotation: false,
         section_forces: false,
+        vtkhdf: false,
     })
 }
 

@@ -1,5 +1,6 @@
 //! CSV tables, read back with another library, whole and cut by a full disk.
 
+use std::io::Read;
 use std::path::Path;
 use std::process::Command;
 
@@ -226,9 +227,48 @@ fn a_file_size_limit_leaves_complete_rows_and_names_the_file() {
     }
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_size_limit_leaves_all_compressed_rows_that_fit() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("histories.csv.gz");
+    let status = Command::new("sh")
+        .args([
+            "-c",
+            "trap '' XFSZ; ulimit -f 200; exec \"$0\" --exact tables::fill_until_refused --quiet",
+        ])
+        .arg(std::env::current_exe().unwrap())
+        .env("CAROM_TEST_FILL", &path)
+        .stdout(std::process::Stdio::null())
+        .status()
+        .unwrap();
+    assert!(status.success());
+    let found = std::fs::read(&path).unwrap();
+    let limit = if found.len() > 102_400 {
+        204_800
+    } else {
+        102_400
+    };
+    // a member of one row takes up to 18 bytes of head and tail (RFC 1952), and its row of less than 40
+    assert!(
+        found.len() <= limit && found.len() + 58 > limit,
+        "{} of {limit}",
+        found.len()
+    );
+    let mut text = String::new();
+    flate2::read::MultiGzDecoder::new(&found[..])
+        .read_to_string(&mut text)
+        .unwrap();
+    let rows: Vec<&str> = text.lines().skip(1).collect();
+    assert!(rows.len() > 1000);
+    for (step, row) in rows.iter().enumerate() {
+        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        assert_eq!(cells, [step as f64 / 3.0, step as f64]);
+    }
+}
+
 #[test]
 fn a_compressed_table_has_the_rows_of_a_plain_one_and_is_read_up_to_its_last_member() {
-    use std::io::Read;
     let folder = tempfile::tempdir().unwrap();
     let [plain, packed] = ["a.csv", "a.csv.gz"].map(|name| folder.path().join(name));
     let read = |path: &Path| {

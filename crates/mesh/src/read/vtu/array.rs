@@ -15,13 +15,18 @@ const LARGEST: usize = 16 << 30;
 pub(super) type Fault = String;
 
 /// Numbers of an array.
-pub(super) enum Numbers {
+#[derive(Clone, Debug, PartialEq)]
+pub enum Numbers {
+    /// Whole numbers of any size.
     Integers(Vec<i64>),
+    /// Real numbers of any precision.
     Reals(Vec<f64>),
 }
 
 impl Numbers {
-    pub(super) fn len(&self) -> usize {
+    /// How many there are.
+    #[allow(clippy::len_without_is_empty)]
+    pub fn len(&self) -> usize {
         match self {
             Numbers::Integers(values) => values.len(),
             Numbers::Reals(values) => values.len(),

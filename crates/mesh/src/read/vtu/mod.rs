@@ -12,6 +12,7 @@
 
 mod array;
 mod document;
+mod stored;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,10 +20,13 @@ use std::path::Path;
 use carom_elements::Kind;
 
 use super::flatten::flatten;
+use super::groups::add;
 use super::{Place, ReadError};
-use crate::{Block, ElementId, Group, Mesh};
+use crate::{Block, ElementId, Mesh};
+pub use array::Numbers;
 use array::numbers;
 use document::{Array, Document, Fault, document};
+pub use stored::{Stored, StoredArray, stored};
 
 /// The group of all cells of a file without groups.
 const CELLS: &str = "cells";
@@ -32,26 +36,28 @@ const CELLS: &str = "cells";
 /// # Errors
 /// The first thing that is malformed or of a sort that is not read, with the line of its element.
 pub fn parse(path: &Path, content: &[u8]) -> Result<Mesh, ReadError> {
-    read(content).map_err(|(line, found, expected, unsupported)| {
-        let (path, place) = (path.to_owned(), Place::Line(line));
-        match unsupported {
-            true => ReadError::Unsupported {
-                path,
-                place,
-                found,
-                accepted: expected.to_owned(),
-            },
-            false => ReadError::Malformed {
-                path,
-                place,
-                found,
-                expected: expected.to_owned(),
-            },
-        }
-    })
+    read(content).map_err(|fault| error(path, fault))
 }
 
-fn read(content: &[u8]) -> Result<Mesh, Fault> {
+fn error(path: &Path, (line, found, expected, unsupported): Fault) -> ReadError {
+    let (path, place) = (path.to_owned(), Place::Line(line));
+    match unsupported {
+        true => ReadError::Unsupported {
+            path,
+            place,
+            found,
+            accepted: expected.to_owned(),
+        },
+        false => ReadError::Malformed {
+            path,
+            place,
+            found,
+            expected: expected.to_owned(),
+        },
+    }
+}
+
+fn file(content: &[u8]) -> Result<File<'_>, Fault> {
     let mark = b"<AppendedData";
     let start = content.windows(mark.len()).position(|found| found == mark);
     let underscore = start.and_then(|start| {
@@ -63,7 +69,11 @@ fn read(content: &[u8]) -> Result<Mesh, Fault> {
         None => (content, &[][..]),
     };
     let document = document(&String::from_utf8_lossy(text))?;
-    let file = File { document, appended };
+    Ok(File { document, appended })
+}
+
+fn read(content: &[u8]) -> Result<Mesh, Fault> {
+    let file = file(content)?;
     let mut mesh = Mesh {
         dim: 3,
         nodes: file.nodes()?,
@@ -218,23 +228,6 @@ impl File<'_> {
             mesh.groups.retain(|name, _| name == CELLS);
         }
         Ok(())
-    }
-}
-
-/// Adds a group for each dimension of the elements.
-fn add(mesh: &mut Mesh, name: &str, elements: Vec<ElementId>) {
-    let mut by_dim: BTreeMap<usize, Vec<ElementId>> = BTreeMap::new();
-    for element in elements {
-        let dim = mesh.kind(element).table().dim;
-        by_dim.entry(dim).or_default().push(element);
-    }
-    let highest = by_dim.keys().max().copied();
-    for (dim, elements) in by_dim {
-        let name = match Some(dim) == highest {
-            true => name.to_owned(),
-            false => format!("{name}.{dim}d"),
-        };
-        mesh.groups.insert(name, Group::new(dim, elements));
     }
 }
 

@@ -68,19 +68,28 @@ fn raster(results: &Results, block: &mut Block) -> Option<Raster> {
     if own.cells.is_empty() || !ever {
         return None;
     }
-    let contacts = system.contacts.iter().zip(&own.rows);
-    let rows = contacts.map(|(contact, rows)| RasterRows {
-        name: contact.name.clone(),
-        rows: *rows,
-        points: contact.points.len(),
-    });
+    let (mut rows, mut cells, mut first) = (Vec::new(), Vec::new(), 0);
+    for (contact, count) in system.contacts.iter().zip(&own.rows) {
+        let all = &own.cells[first * raster::COLUMNS..(first + count) * raster::COLUMNS];
+        first += count;
+        // most pairs of a general contact never meet
+        if contact.near_only && all.iter().all(|cell| *cell <= 1) {
+            continue;
+        }
+        cells.extend_from_slice(all);
+        rows.push(RasterRows {
+            name: contact.name.clone(),
+            rows: *count,
+            points: contact.points.len(),
+        });
+    }
     Some(Raster {
         id: "plot-status",
         columns: raster::COLUMNS,
         begin: own.begin(),
         end: own.end(),
-        contacts: rows.collect(),
-        cells: block.bytes(own.cells.iter().copied()),
+        contacts: rows,
+        cells: block.bytes(cells.into_iter()),
         note: "a row is a contact point, or neighbours in the order of the mesh of which one at least is closed".to_owned(),
     })
 }

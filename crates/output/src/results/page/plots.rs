@@ -8,9 +8,9 @@ use crate::page::draft::{self, Draft, Line, draft, line, zipped};
 use crate::page::schema::Plot;
 use crate::plot::{Logarithmic, quantity};
 use crate::results::Results;
+use crate::results::columns::moments;
 use crate::results::exact::{Polyline, force_curve, motion_curves};
 use crate::results::filtered::FilteredCurve;
-use crate::results::histories::moments;
 use crate::results::page::series::ContactSeries;
 use crate::results::sensor::COMPONENTS;
 use crate::results::stills::Still;
@@ -67,6 +67,8 @@ fn groups(results: &Results) -> Vec<(Vec<usize>, bool)> {
     if order.len() <= OWN {
         return order.into_iter().map(|k| (vec![k], false)).collect();
     }
+    // most pairs of a general contact never meet
+    order.retain(|k| !results.system.contacts[*k].near_only || peak(k) > 0.0);
     order.sort_by(|a, b| peak(b).total_cmp(&peak(a)));
     let groups = order.chunks(SHARED).enumerate();
     groups.map(|(k, group)| (group.to_vec(), k > 0)).collect()

@@ -3,7 +3,7 @@
 use carom_dynamics::{Order, State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
-use crate::results::histories::moments;
+use crate::results::columns::moments;
 use crate::results::impacts::ContactTotals;
 use crate::results::sensor::Sensor;
 use crate::results::trace::Trace;
