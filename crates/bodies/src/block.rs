@@ -3,6 +3,8 @@
 //! A chunk sums into its own node list, and the lists are added in chunk order: no atomics, and equal bits for any
 //! number of threads.
 
+use std::ops::Range;
+
 use carom_algebra::lanes::Lanes;
 use carom_algebra::tensor::Mat3;
 use carom_elements::{Kind, MAX_NODES, Rule};
@@ -297,23 +299,38 @@ impl Block {
         })
     }
 
-    /// Volume (m³) and mean stress (Pa) of each element, in the block's order; weights do not enter: it is the stress
-    /// of the model.
-    pub(crate) fn stresses(&self, dim: usize, u: &[f64], out: &mut Vec<(f64, Mat3)>) {
-        by_nodes!(self.kind => self.stress(dim, u, out));
+    /// Places of its elements that are among those `of` the body, `first` being the number of its first one there.
+    pub(crate) fn within(&self, of: &Range<usize>, first: usize) -> Range<usize> {
+        let [start, end] = [of.start, of.end].map(|k| k.saturating_sub(first).min(self.len()));
+        start..end
     }
 
-    fn stress<const N: usize>(&self, dim: usize, u: &[f64], out: &mut Vec<(f64, Mat3)>) {
-        for chunk in &self.chunks {
-            for element in chunk.connectivity.chunks_exact(N) {
-                let (x, u_e) = chunk.gather::<N>(element, dim, u);
-                out.push(match &self.physics {
-                    Physics::Bar(bar) => bar.stress(&x, &u_e),
-                    Physics::Continuum(law) => {
-                        continuum::stress(law, &self.stiffness_points, &x, &u_e)
-                    }
-                });
-            }
+    /// Volume (m³) and mean stress (Pa) of the elements at some places, in the block's order; weights do not enter: it is the stress
+    /// of the model.
+    pub(crate) fn stresses(
+        &self,
+        (dim, of): (usize, Range<usize>),
+        u: &[f64],
+        out: &mut Vec<(f64, Mat3)>,
+    ) {
+        by_nodes!(self.kind => self.stress((dim, of), u, out));
+    }
+
+    fn stress<const N: usize>(
+        &self,
+        (dim, of): (usize, Range<usize>),
+        u: &[f64],
+        out: &mut Vec<(f64, Mat3)>,
+    ) {
+        let length = chunk_length(self.kind);
+        for place in of {
+            let chunk = &self.chunks[place / length];
+            let element = &chunk.connectivity[N * (place % length)..][..N];
+            let (x, u_e) = chunk.gather::<N>(element, dim, u);
+            out.push(match &self.physics {
+                Physics::Bar(bar) => bar.stress(&x, &u_e),
+                Physics::Continuum(law) => continuum::stress(law, &self.stiffness_points, &x, &u_e),
+            });
         }
     }
 }

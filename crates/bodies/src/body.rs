@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::rotation::Rotation;
-use carom_algebra::tensor::Mat3;
 use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
@@ -498,32 +497,6 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.delete(at, new),
             _ => Ok(Deleted::default()),
-        }
-    }
-
-    /// Volume (m³) and mean stress (Pa) of each element, in the order of [`Body::cells`]; see [`Solid::stresses`].
-    pub fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
-        match self {
-            Body::Solid(solid) => solid.stresses(u, history),
-            Body::Beam(beam) => beam.stresses(u, history),
-            Body::LargeBeam(beam) => beam.stresses(u, history),
-            Body::Shell(shell) => shell.stresses(u, history),
-            // neither volume nor stress
-            Body::Discrete(discrete) => vec![(0.0, Mat3::zeros()); discrete.cells().len()],
-            Body::Rigid(rigid) => vec![(0.0, Mat3::zeros()); rigid.cells().len()],
-            Body::Reduced(reduced) => reduced.stresses(u),
-        }
-    }
-
-    /// Mean equivalent plastic strain of each element in the `history` of this body, of bars and beams the largest of their fibres, in the
-    /// order of [`Body::cells`]; none of a body without plasticity.
-    pub fn plastic_strains(&self, history: &[f64]) -> Option<Vec<f64>> {
-        match self {
-            Body::Solid(solid) => solid.plastic_strains(history),
-            Body::Beam(beam) => beam.plastic_strains(history),
-            Body::LargeBeam(beam) => beam.plastic_strains(history),
-            Body::Shell(shell) => shell.plastic_strains(history),
-            _ => None,
         }
     }
 

@@ -31,6 +31,7 @@ mod single;
 mod size;
 mod solid;
 mod stability;
+mod stresses;
 mod together;
 mod turning;
 mod weights;

@@ -384,15 +384,25 @@ impl Solid {
     /// At finite strain the current volume and the Cauchy stress of `history`, that of this body at `u`; not numbers in an
     /// element whose law gives none.
     pub fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
+        self.stresses_of(0..self.cells.len(), (u, history))
+    }
+
+    /// The same of some elements.
+    pub(crate) fn stresses_of(
+        &self,
+        of: Range<usize>,
+        (u, history): (&[f64], &[f64]),
+    ) -> Vec<(f64, Mat3)> {
         if let Some(finite) = &self.finite {
-            return finite.stresses(&self.blocks, u, history);
+            return finite.stresses((&self.blocks, of), u, history);
         }
         if let Some(flowing) = &self.flowing {
-            return self.stresses_of_bars(flowing, (u, history));
+            return self.stresses_of_bars(flowing, (u, history))[of].to_vec();
         }
-        let mut out = Vec::with_capacity(self.cells.len());
+        let (mut out, mut first) = (Vec::with_capacity(of.len()), 0);
         for block in &self.blocks {
-            block.stresses(self.dim, u, &mut out);
+            block.stresses((self.dim, block.within(&of, first)), u, &mut out);
+            first += block.len();
         }
         out
     }

@@ -3,6 +3,8 @@
 //! Chunks are computed in parallel, each into its own list, and added in their order: equal bits for any number of
 //! threads.
 
+use std::ops::Range;
+
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Mat3;
 use carom_elements::MAX_NODES;
@@ -258,14 +260,14 @@ impl Finite {
         Ok(())
     }
 
-    /// Current volume (m³) and mean Cauchy stress (Pa) of each element; no number where the law gives none.
+    /// Current volume (m³) and mean Cauchy stress (Pa) of the elements `of`; no number where the law gives none.
     pub(crate) fn stresses(
         &self,
-        blocks: &[Block],
+        (blocks, of): (&[Block], Range<usize>),
         u: &[f64],
         history: &[f64],
     ) -> Vec<(f64, Mat3)> {
-        let (mut out, mut kept) = (Vec::new(), 0);
+        let (mut out, mut first, mut kept) = (Vec::new(), 0, 0);
         let at = Placement {
             u,
             v: &[],
@@ -277,13 +279,14 @@ impl Finite {
         for block in blocks {
             let own = self.kept_of_element(block);
             let room = || (Element::room(), vec![0.0; own]);
-            let all = (0..block.len()).into_par_iter();
-            out.par_extend(all.map_init(room, |(element, new), place| {
+            let asked = block.within(&of, first).into_par_iter();
+            out.par_extend(asked.map_init(room, |(element, new), place| {
                 block.set(element, &self.shape, place);
                 let old = kept + own * place..kept + own * (place + 1);
                 let stress = self.at_element(element, &at, old, |local| element.cauchy(local, new));
                 stress.unwrap_or((f64::NAN, Mat3::repeat(f64::NAN)))
             }));
+            first += block.len();
             kept += own * block.len();
         }
         out

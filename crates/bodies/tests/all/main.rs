@@ -22,6 +22,7 @@ mod sample;
 mod shells;
 mod sizes;
 mod stiffness;
+mod stresses;
 mod threads;
 mod weights;
 

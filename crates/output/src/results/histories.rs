@@ -26,6 +26,8 @@ pub(crate) struct Histories {
     contact: Option<History>,
     links: bool,
     probes: Vec<(Probe, Vec<Sensor>)>,
+    /// Body and place in it of the cell of each probe, if it has one.
+    cells: Vec<Option<[usize; 2]>>,
     row: Vec<Cell<'static>>,
     every: Option<f64>,
     since: Since,
@@ -74,6 +76,7 @@ impl Histories {
             file: Some(open(&path, columns, 0)?),
             contact,
             row: Vec::with_capacity(columns.len()),
+            cells: settings.probes.iter().map(|of| cell(system, of)).collect(),
             since: since.unwrap_or_default(),
             ..Histories::closed(settings, sensors)
         })
@@ -87,6 +90,7 @@ impl Histories {
             contact: None,
             links: settings.zoning.is_some(),
             probes: probes.zip(sensors).collect(),
+            cells: Vec::new(),
             row: Vec::new(),
             every: settings.history_every,
             since: Since::default(),
@@ -150,8 +154,10 @@ impl Histories {
                 row.extend(sensors.iter().zip(frame).map(of));
             }
         }
-        for (probe, _) in &self.probes {
-            row.extend(stress(system, probe, state).into_iter().flatten());
+        for ((probe, _), at) in self.probes.iter().zip(&self.cells) {
+            if probe.cell.is_some() {
+                row.extend(stress(system, *at, state));
+            }
         }
         push_supports(system, report, row);
         for load in loads {
@@ -295,18 +301,22 @@ fn put(system: &System, (k, contact): (usize, &ContactReport), row: &mut Vec<Cel
     }
 }
 
-/// Mean stress of the cell of a probe and its equivalent, in the order of [`stresses`]; `None` without a cell.
-fn stress(system: &System, probe: &Probe, state: &State) -> Option<Vec<Cell<'static>>> {
+/// Body and place in it of the cell of a probe.
+fn cell(system: &System, probe: &Probe) -> Option<[usize; 2]> {
     let cell = probe.cell?;
     let mut bodies = system.bodies.iter().enumerate();
-    let found = bodies.find_map(|(k, body)| {
+    bodies.find_map(|(k, body)| {
         let place = body.cells().iter().position(|own| *own == cell)?;
-        Some((k, body, place))
-    });
-    let tensor = found.and_then(|(k, body, place)| {
+        Some([k, place])
+    })
+}
+
+/// Mean stress of a cell and its equivalent, in the order of [`stresses`].
+fn stress(system: &System, at: Option<[usize; 2]>, state: &State) -> Vec<Cell<'static>> {
+    let tensor = at.and_then(|[k, place]| {
         let history = system.history(k, &state.motion.history);
-        let all = body.stresses(&state.motion.u, history);
-        all.get(place).map(|(_, stress)| in_order(stress))
+        let stress = system.bodies[k].stress(place, &state.motion.u, history);
+        stress.map(|(_, stress)| in_order(&stress))
     });
     let of = |name: &str| {
         let tensor = tensor.as_ref()?;
@@ -314,7 +324,7 @@ fn stress(system: &System, probe: &Probe, state: &State) -> Option<Vec<Cell<'sta
         Some(place.map_or(von_mises(tensor), |place| tensor[place]))
     };
     let cells = stresses(system).iter().map(|name| Cell::from(of(name)));
-    Some(cells.collect())
+    cells.collect()
 }
 
 /// Components of a symmetric tensor in the order of fields.
