@@ -89,7 +89,7 @@ fn raster(results: &Results, block: &mut Block) -> Option<Raster> {
         begin: own.begin(),
         end: own.end(),
         contacts: rows,
-        cells: block.bytes(cells.into_iter()),
+        cells: block.bytes(cells),
         note: "a row is a contact point, or neighbours in the order of the mesh of which one at least is closed".to_owned(),
     })
 }
