@@ -24,7 +24,12 @@ fn the_stress_of_one_element_is_that_among_all() {
         let stresses = body.stresses(&u, &[]);
         assert_eq!(stresses.len(), body.cells().len());
         for (k, found) in stresses.iter().enumerate() {
-            assert_eq!(body.stress(k, &u, &[]).as_ref(), Some(found), "{}: {k}", sample.name);
+            assert_eq!(
+                body.stress(k, &u, &[]).as_ref(),
+                Some(found),
+                "{}: {k}",
+                sample.name
+            );
         }
         assert_eq!(body.stress(stresses.len(), &u, &[]), None);
     }
