@@ -5,7 +5,7 @@ use carom_algebra::tensor::Mat3;
 use crate::Body;
 
 impl Body {
-    /// Volume (m³) and mean stress (Pa) of each element, in the order of [`Body::cells`]; see [`Solid::stresses`].
+    /// Volume (m³) and mean stress (Pa) of each element, in the order of [`Body::cells`]; see [`Solid::stresses`](crate::Solid::stresses).
     pub fn stresses(&self, u: &[f64], history: &[f64]) -> Vec<(f64, Mat3)> {
         match self {
             Body::Solid(solid) => solid.stresses(u, history),
