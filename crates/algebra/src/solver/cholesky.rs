@@ -1,15 +1,15 @@
 //! Sparse Cholesky factorisation A = Pᵀ L Lᵀ P of a symmetric positive definite matrix.
 //!
-//! The order of elimination is ours (`ordering.rs`), the supernodal factor is faer's, computed by one thread so that its bits
-//! depend on the matrix and the processor alone, and the sweeps are ours (`sweep.rs`). Unknowns without neighbours (fixed ones)
+//! The order of elimination is ours (`ordering.rs`), supernodes and dense kernels are faer's; fronts (`fronts.rs`) and sweeps
+//! (`sweep.rs`) are ours. The bits depend on the matrix and the processor alone, not on the number of threads. Unknowns without neighbours (fixed ones)
 //! never reach the factor: they are divided by their diagonal.
 
+use super::fronts::Fronts;
 use super::panel::{LANES, Lanes};
 use super::response::{Response, SparseRow};
-use super::supernodal::{Lower, Symbolic, analyse, factorise};
+use super::supernodal::analyse;
 use super::sweep::{Backward, Forward, ForwardLanes, Panels};
 use crate::{Error, csr::Csr, ordering};
-use faer::linalg::cholesky::llt::factor::LltError;
 use pulp::Arch;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -44,8 +44,8 @@ pub struct Cholesky {
     connected: usize,
     /// Fingerprint of the analysed pattern.
     pattern: Pattern,
-    symbolic: Symbolic,
     panels: Panels,
+    fronts: Fronts,
     /// Panels of L, column-major.
     values: Vec<f64>,
     /// Square roots of the diagonal entries of the unknowns without neighbours.
@@ -73,6 +73,8 @@ impl Cholesky {
         let position = ordering::inverse(matrix.n, &order.permutation);
         let symbolic = analyse(matrix, &order.permutation[..order.connected], &position)?;
         let panels = Panels::new(&symbolic);
+        let connected = &order.permutation[..order.connected];
+        let fronts = Fronts::new(&panels, matrix, connected, &position);
         let (entries, flops) = panels.work();
         let isolated = matrix.n - order.connected;
         let mut factor = Self {
@@ -94,8 +96,8 @@ impl Cholesky {
             connected: order.connected,
             permutation: order.permutation,
             position,
-            symbolic,
             panels,
+            fronts,
         };
         factor.stats.bytes = factor.bytes();
         factor.refactor(matrix)?;
@@ -112,23 +114,13 @@ impl Cholesky {
             });
         }
         self.stats.factorisations += 1;
-        let connected = &self.permutation[..self.connected];
-        let lower = Lower::new(matrix, connected, &self.position)?;
-        for (root, &i) in self
-            .isolated
-            .iter_mut()
-            .zip(&self.permutation[self.connected..])
-        {
+        let (connected, isolated) = self.permutation.split_at(self.connected);
+        for (root, &i) in self.isolated.iter_mut().zip(isolated) {
             *root = isolated_root(matrix, i as usize)?;
         }
-        let factorised = factorise(&mut self.values, &lower, &self.symbolic)?;
-        factorised.map_err(|LltError::NonPositivePivot { index }| {
-            let unknown = self.permutation[index.min(self.connected - 1)] as usize;
-            Error::NotPositiveDefinite {
-                unknown,
-                diagonal: matrix.get(unknown, unknown),
-            }
-        })
+        self.fronts
+            .factorise(&self.panels, (matrix, connected), &mut self.values)
+            .map_err(|failure| failure.of(matrix, connected))
     }
 
     /// x ← A⁻¹ x: one forward and one backward sweep, no allocation.
@@ -225,15 +217,14 @@ impl Cholesky {
     }
 
     fn bytes(&self) -> usize {
-        let symbolic = &self.symbolic;
         size_of_val(&*self.permutation)
             + size_of_val(&*self.position)
             + size_of_val(&*self.values)
             + size_of_val(&*self.isolated)
             + size_of_val(&*self.y)
             + size_of_val(&*self.scratch)
-            + size_of_val(symbolic.row_idx())
             + self.panels.bytes()
+            + self.fronts.bytes()
     }
 }
 

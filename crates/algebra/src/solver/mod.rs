@@ -5,6 +5,8 @@
 //! y = L⁻¹ P r, Y = L⁻¹ P Nᵀ (sparse, computed once), W = Yᵀ Y = N A⁻¹ Nᵀ, N x_free = Yᵀ y, x = Pᵀ L⁻ᵀ (y + Y p).
 
 mod cholesky;
+mod front;
+mod fronts;
 mod panel;
 mod quasi_definite;
 mod response;

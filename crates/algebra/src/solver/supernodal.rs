@@ -1,17 +1,14 @@
-//! Calls of faer: the supernodal structure of a factor, and its values. One thread, so that the bits never change.
-//!
-//! Both take the matrix in the order of elimination, restricted to the unknowns that have neighbours.
+//! Calls of faer: the supernodal structure of a factor, of the matrix in the order of elimination, restricted to the unknowns that have
+//! neighbours.
 
 use crate::{Error, csr::Csr};
 use faer::{
-    Par,
     dyn_stack::{MemBuffer, MemStack, StackReq},
-    linalg::cholesky::llt::factor::{LltError, LltRegularization},
+    sparse::SymbolicSparseColMatRef,
     sparse::linalg::{
         SymbolicSupernodalParams,
         cholesky::{simplicial, supernodal},
     },
-    sparse::{SparseColMatRef, SymbolicSparseColMatRef},
 };
 
 /// Supernodes of a factor.
@@ -91,35 +88,4 @@ pub(super) fn analyse(
         SymbolicSupernodalParams::default(),
     )
     .map_err(|error| failed(&error))
-}
-
-/// Computes the panels of L. The outer error is a lack of memory, the inner one a pivot that is not positive.
-pub(super) fn factorise(
-    values: &mut [f64],
-    lower: &Lower,
-    symbolic: &Symbolic,
-) -> Result<Result<(), LltError>, Error> {
-    let n = symbolic.ncols();
-    let pattern =
-        SymbolicSparseColMatRef::new_unsorted_checked(n, n, &lower.col_ptr, None, &lower.row);
-    let matrix = SparseColMatRef::new(pattern, &lower.values[..]);
-    let requirement = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(
-        symbolic,
-        Par::Seq,
-        Default::default(),
-    );
-    let mut memory = MemBuffer::try_new(requirement).map_err(|_| Error::Analysis {
-        unknowns: n,
-        reason: "out of memory".into(),
-    })?;
-    Ok(supernodal::factorize_supernodal_numeric_llt(
-        values,
-        matrix,
-        LltRegularization::default(),
-        symbolic,
-        Par::Seq,
-        MemStack::new(&mut memory),
-        Default::default(),
-    )
-    .map(|_| ()))
 }

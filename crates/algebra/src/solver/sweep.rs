@@ -10,9 +10,9 @@ use pulp::{Simd, WithSimd};
 
 /// Where the panels of a factor lie.
 pub(crate) struct Panels {
-    list: Vec<Panel>,
+    pub(super) list: Vec<Panel>,
     /// Rows below the triangles, panel after panel, ascending within one.
-    rows: Vec<u32>,
+    pub(super) rows: Vec<u32>,
     /// Panel of each column.
     of_column: Vec<u32>,
     /// Rows of the tallest panel.
@@ -21,24 +21,30 @@ pub(crate) struct Panels {
 
 /// One supernode.
 #[derive(Clone, Copy)]
-struct Panel {
+pub(super) struct Panel {
     /// First column, and number of columns.
-    begin: usize,
-    columns: usize,
+    pub(super) begin: usize,
+    pub(super) columns: usize,
     /// First entry in `Panels::rows`, and number of rows below the triangle.
-    first_row: usize,
-    below: usize,
+    pub(super) first_row: usize,
+    pub(super) below: usize,
     /// First entry in the values of the factor.
-    value: usize,
+    pub(super) value: usize,
 }
 
 impl Panel {
-    fn rows(&self) -> usize {
+    pub(super) fn rows(&self) -> usize {
         self.columns + self.below
     }
 
     fn values<'a>(&self, values: &'a [f64]) -> &'a [f64] {
         &values[self.value..self.value + self.rows() * self.columns]
+    }
+
+    /// Additions and multiplications that eliminate its columns.
+    pub(super) fn operations(&self) -> f64 {
+        let lengths = self.below + 1..=self.rows();
+        lengths.map(|length| (length * length) as f64).sum()
     }
 }
 
@@ -74,15 +80,11 @@ impl Panels {
 
     /// Stored entries of the factor (lower triangles only) and operations to compute them.
     pub fn work(&self) -> (usize, f64) {
-        let (mut entries, mut operations) = (0, 0.0);
-        for panel in &self.list {
-            for j in 0..panel.columns {
-                let length = panel.rows() - j;
-                entries += length;
-                operations += (length * length) as f64;
-            }
-        }
-        (entries, operations)
+        let entries = |p: &Panel| p.columns * p.rows() - p.columns * (p.columns - 1) / 2;
+        (
+            self.list.iter().map(entries).sum(),
+            self.list.iter().map(Panel::operations).sum(),
+        )
     }
 
     /// Bytes held by the index arrays.
@@ -122,12 +124,24 @@ impl Panels {
     }
 
     /// Panel in which the first row below panel `s` is a column.
-    fn parent(&self, s: u32) -> Option<u32> {
+    pub(super) fn parent(&self, s: u32) -> Option<u32> {
         let row = self.rows_below(&self.list[s as usize]).first()?;
         Some(self.of_column[*row as usize])
     }
 
-    fn rows_below(&self, panel: &Panel) -> &[u32] {
+    /// Row of the front of a panel: its columns, then the rows below them. The panel has the row.
+    pub(super) fn local(&self, panel: &Panel, row: u32) -> u32 {
+        match (row as usize).checked_sub(panel.begin) {
+            Some(column) if column < panel.columns => column as u32,
+            _ => {
+                let place = self.rows_below(panel).partition_point(|&other| other < row);
+                (panel.columns + place) as u32
+            }
+        }
+    }
+
+    /// Rows below the triangle of a panel, ascending.
+    pub(super) fn rows_below(&self, panel: &Panel) -> &[u32] {
         &self.rows[panel.first_row..panel.first_row + panel.below]
     }
 }

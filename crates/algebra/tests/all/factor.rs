@@ -382,3 +382,42 @@ mod dense_lu {
         );
     }
 }
+
+/// Runs with this number of threads.
+fn on<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build().unwrap().install(run)
+}
+
+#[test]
+fn threads_share_fronts_and_the_bits_stay() {
+    // 14 739 unknowns: dozens of subtrees, and fronts that are cut into strips
+    let system = block(16, 0.5);
+    let b = Random(16).vector(system.matrix.n);
+    let solve = |threads| {
+        on(threads, || {
+            let mut x = b.clone();
+            factor(&system).solve(&mut x);
+            x
+        })
+    };
+    let alone = solve(1);
+    assert!(alone == solve(2) && alone == solve(5));
+}
+
+#[test]
+fn threads_agree_on_the_first_pivot_that_fails() {
+    let mut system = block(12, 0.5);
+    for spoilt in [700, 3000, 5200] {
+        system.matrix.add(spoilt, spoilt, -1e6);
+    }
+    let fails = |threads| {
+        on(threads, || {
+            Cholesky::new(&system.matrix, &system.node).err()
+        })
+    };
+    let alone = fails(1);
+    assert!(alone.is_some());
+    assert_eq!(alone, fails(2));
+    assert_eq!(alone, fails(5));
+}
