@@ -51,4 +51,16 @@ pub enum Error {
         /// Cause, as the library reports it.
         reason: String,
     },
+    /// Iterations do not end: the matrix is not positive definite, or nearly singular.
+    #[error(
+        "after {iterations} iterations the residual is {residual:.1e} of the first, most of it at unknown {unknown}"
+    )]
+    Iterations {
+        /// Iterations made.
+        iterations: usize,
+        /// Least residual over the first.
+        residual: f64,
+        /// Unknown with the largest residual.
+        unknown: usize,
+    },
 }

@@ -380,6 +380,12 @@ fn cost(summary: &Summary) -> String {
     let counts = &summary.counts;
     let megabytes = |bytes: u64| format!("{:.3} MB", bytes as f64 / 1e6);
     let factor = match counts.factorisations {
+        0 if counts.matrix_products > 0 => {
+            format!(
+                "no factor, {} products with the matrix",
+                counts.matrix_products
+            )
+        }
         0 => "no factorisation".to_string(),
         1 => format!(
             "1 factorisation for the run, {}",

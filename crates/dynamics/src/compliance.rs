@@ -140,6 +140,11 @@ impl Compliance {
         self.candidates.clear();
         self.candidates.extend_from_slice(candidates);
         self.together = together;
+        if operators.iterate() {
+            self.groups.join_all(candidates.len());
+            self.version += 1;
+            return;
+        }
         match together {
             true => self.groups.join_all(candidates.len()),
             false => {
@@ -209,6 +214,19 @@ impl Compliance {
         &self.groups
     }
 
+    /// The row of a point over the y of `begin`, where matrices are solved with by iterations.
+    pub(crate) fn row(&self, point: u32, operators: &Operators) -> SparseRow {
+        let mut all = SparseRow::default();
+        for (group, column) in self.columns(point) {
+            if let Column::Row(row) = column {
+                let first = operators.place(*group) as u32;
+                all.dofs.extend(row.dofs.iter().map(|dof| first + dof));
+                all.coefficients.extend_from_slice(&row.coefficients);
+            }
+        }
+        all
+    }
+
     /// D over the rows of a group, row-major.
     pub(crate) fn block(&self, group: usize) -> &[f64] {
         self.blocks.entries(group)
@@ -274,7 +292,9 @@ impl Compliance {
             }
         }
         for (group, (owners, sparse)) in by_group.into_iter().enumerate() {
-            self.columns_computed += sparse.len();
+            if !operators.iterates(group) {
+                self.columns_computed += sparse.len();
+            }
             let columns = operators.respond(group, sparse);
             for (point, column) in owners.into_iter().zip(columns) {
                 if let Some(kept) = &mut self.kept[point as usize] {
@@ -353,7 +373,7 @@ impl Compliance {
     pub(crate) fn bytes(&self) -> usize {
         let columns = self.kept.iter().flatten().flat_map(|kept| &kept.columns);
         let bytes = columns.map(|(_, column)| match column {
-            Column::Diagonal(row) => 12 * row.dofs.len(),
+            Column::Row(row) => 12 * row.dofs.len(),
             Column::Factored(response) => response.bytes(),
             Column::Updated(response, products) => response.bytes() + 8 * products.len(),
         });

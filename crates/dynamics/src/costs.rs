@@ -33,6 +33,8 @@ pub struct Work {
     pub sweeps: usize,
     /// Columns A⁻¹ Nᵀ computed.
     pub columns: usize,
+    /// Products with matrices that are solved with by iterations.
+    pub products: usize,
 }
 
 impl Work {
@@ -41,6 +43,7 @@ impl Work {
         for stats in operators.stats() {
             self.add_factor(stats);
         }
+        self.products += operators.products();
     }
 
     pub(crate) fn add_factor(&mut self, stats: &FactorStats) {
@@ -78,6 +81,7 @@ impl Costs {
         work.factorisations += its.factorisations;
         work.sweeps += its.sweeps;
         work.columns += its.columns;
+        work.products += its.products;
         self.compliance_bytes += other.compliance_bytes;
         self.force_sweeps += other.force_sweeps;
         self.element_updates += other.element_updates;

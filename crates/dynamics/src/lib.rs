@@ -5,6 +5,7 @@
 //! printing.
 
 mod blocks;
+mod choice;
 mod columns;
 mod compliance;
 pub mod condensed;
@@ -64,5 +65,5 @@ pub use system::{
     Adaptive, Closing, Damping, Iteration, Load, LoadKind, Mass, Model, ModelBody, ModelConstraint,
     ModelContact, ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget, MomentAbout,
     Motion, NamedSupport, NodalLoad, Nonlinear, Order, Preload, Prescribed, PrescribedTurn,
-    Refused, ReportedSupport, Support, System,
+    Refused, ReportedSupport, Solver, Support, System,
 };

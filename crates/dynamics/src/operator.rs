@@ -5,8 +5,9 @@ use std::ops::Range;
 use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
-use carom_algebra::solver::{Cholesky, FactorStats, Response, SparseRow, gram};
+use carom_algebra::solver::{Cholesky, FactorStats, Iterative, Response, SparseRow, gram};
 
+use crate::choice::{self, Use};
 use crate::error::Error;
 use crate::low_rank::LowRank;
 use crate::system::{LinkRow, System, push_cliques};
@@ -23,13 +24,36 @@ pub(crate) enum Operator {
     Factored(Box<Cholesky>),
     /// With a part of low rank: y = (A + B Bᵀ)⁻¹ r but for the backward sweep, Y = L⁻¹ Nᵀ beside its products with H.
     Updated(LowRank),
+    /// A matrix that is solved with by iterations: y = A⁻¹ r, and Y is no more than Nᵀ. Forces of rows are found together with their motion, which is
+    /// added to y at once.
+    Iterated(Iterated),
+}
+
+/// A matrix that is solved with by iterations.
+pub(crate) struct Iterated {
+    /// None while it is lent to the problem of contacts.
+    pub(crate) solver: Option<Box<Iterative>>,
+    /// Residual over the load at which iterations end.
+    pub(crate) tolerance: f64,
+    /// Why the last ones did not end.
+    pub(crate) failed: Option<AlgebraError>,
+}
+
+impl Iterated {
+    /// y = A⁻¹ r.
+    fn begin(&mut self, r: &[f64], y: &mut [f64]) {
+        let Some(solver) = &mut self.solver else {
+            unreachable!("a matrix is given back before the next solve")
+        };
+        self.failed = solver.solve(r, y, self.tolerance).err();
+    }
 }
 
 /// What `respond` keeps of one row.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Column {
     /// The row itself: unknowns of the part and coefficients.
-    Diagonal(SparseRow),
+    Row(SparseRow),
     /// L⁻¹ Nᵀ.
     Factored(Response),
     /// L⁻¹ Nᵀ and Hᵀ L⁻¹ Nᵀ.
@@ -37,17 +61,6 @@ pub(crate) enum Column {
 }
 
 impl Operator {
-    /// Factorises a symmetric positive definite matrix; unknowns marked `fixed` are taken out.
-    /// `nodes`: node of each unknown.
-    pub(crate) fn factored(
-        matrix: &Csr,
-        fixed: &[bool],
-        nodes: &[u32],
-    ) -> Result<Operator, AlgebraError> {
-        let factor = Cholesky::new(&matrix.with_identity(fixed), &groups(nodes))?;
-        Ok(Operator::Factored(Box::new(factor)))
-    }
-
     /// The inverse of a diagonal matrix; unknowns marked `fixed` do not move.
     pub(crate) fn diagonal(diagonal: &[f64], fixed: &[bool]) -> Operator {
         let entries = diagonal.iter().zip(fixed);
@@ -68,13 +81,16 @@ impl Operator {
             }
             Operator::Factored(factor) => factor.forward(r, y),
             Operator::Updated(updated) => updated.begin(r, y),
+            Operator::Iterated(iterated) => iterated.begin(r, y),
         }
     }
 
     /// Columns of rows, which name unknowns of the part.
     pub(crate) fn respond(&mut self, rows: Vec<SparseRow>) -> Vec<Column> {
         match self {
-            Operator::Diagonal(_) => rows.into_iter().map(Column::Diagonal).collect(),
+            Operator::Diagonal(_) | Operator::Iterated(_) => {
+                rows.into_iter().map(Column::Row).collect()
+            }
             Operator::Factored(factor) => factor
                 .respond(&rows)
                 .into_iter()
@@ -94,7 +110,7 @@ impl Operator {
     /// N A⁻¹ Nᵀ of two columns.
     pub(crate) fn dot(&self, one: &Column, other: &Column) -> f64 {
         match (self, one, other) {
-            (Operator::Diagonal(a), Column::Diagonal(one), Column::Diagonal(other)) => {
+            (Operator::Diagonal(a), Column::Row(one), Column::Row(other)) => {
                 let mut sum = 0.0;
                 for (i, n) in one.dofs.iter().zip(&one.coefficients) {
                     for (j, m) in other.dofs.iter().zip(&other.coefficients) {
@@ -122,7 +138,7 @@ impl Operator {
             .iter()
             .filter_map(|column| match column {
                 Column::Factored(response) => Some(response),
-                Column::Diagonal(_) | Column::Updated(..) => None,
+                Column::Row(_) | Column::Updated(..) => None,
             })
             .collect();
         if responses.len() == columns.len() {
@@ -137,7 +153,7 @@ impl Operator {
     /// N A⁻¹ r from the y of `begin`.
     pub(crate) fn free(&self, column: &Column, y: &[f64]) -> f64 {
         match column {
-            Column::Diagonal(row) => row
+            Column::Row(row) => row
                 .dofs
                 .iter()
                 .zip(&row.coefficients)
@@ -150,7 +166,7 @@ impl Operator {
     /// Adds the force of one row to y.
     pub(crate) fn add(&self, column: &Column, force: f64, y: &mut [f64]) {
         match (self, column) {
-            (Operator::Diagonal(a), Column::Diagonal(row)) => {
+            (Operator::Diagonal(a), Column::Row(row)) => {
                 for (&i, n) in row.dofs.iter().zip(&row.coefficients) {
                     y[i as usize] += force * n / a[i as usize];
                 }
@@ -159,6 +175,7 @@ impl Operator {
             (Operator::Updated(updated), Column::Updated(response, products)) => {
                 updated.add((response, products), force, y);
             }
+            (Operator::Iterated(_), Column::Row(_)) => {}
             _ => unreachable!("columns are made by their own operator"),
         }
     }
@@ -166,7 +183,7 @@ impl Operator {
     /// x from y, which is scratch afterwards.
     pub(crate) fn end(&mut self, y: &mut [f64], x: &mut [f64]) {
         match self {
-            Operator::Diagonal(_) => x.copy_from_slice(y),
+            Operator::Diagonal(_) | Operator::Iterated(_) => x.copy_from_slice(y),
             Operator::Factored(factor) => factor.backward(y, x),
             Operator::Updated(updated) => updated.factor.backward(y, x),
         }
@@ -175,9 +192,17 @@ impl Operator {
     /// Size and use of the factor, if there is one.
     pub(crate) fn stats(&self) -> Option<&FactorStats> {
         match self {
-            Operator::Diagonal(_) => None,
+            Operator::Diagonal(_) | Operator::Iterated(_) => None,
             Operator::Factored(factor) => Some(factor.stats()),
             Operator::Updated(updated) => Some(updated.factor.stats()),
+        }
+    }
+
+    /// Products with a matrix that is solved with by iterations, so far.
+    pub(crate) fn products(&self) -> usize {
+        match self {
+            Operator::Iterated(iterated) => iterated.solver.as_ref().map_or(0, |s| s.products()),
+            Operator::Diagonal(_) | Operator::Factored(_) | Operator::Updated(_) => 0,
         }
     }
 
@@ -329,7 +354,9 @@ impl Operators {
         let (group, _) = self.home(unknown);
         match self.operator(group) {
             Operator::Diagonal(_) => unknown,
-            Operator::Factored(_) | Operator::Updated(_) => self.unknowns() + group,
+            Operator::Factored(_) | Operator::Updated(_) | Operator::Iterated(_) => {
+                self.unknowns() + group
+            }
         }
     }
 
@@ -369,6 +396,69 @@ impl Operators {
         self.operator(group).add(column, force, &mut y[place]);
     }
 
+    /// Whether any matrix is solved with by iterations.
+    pub(crate) fn iterate(&self) -> bool {
+        (0..self.groups.len()).any(|group| self.iterates(group))
+    }
+
+    /// Whether the matrix of a group is solved with by iterations.
+    pub(crate) fn iterates(&self, group: usize) -> bool {
+        matches!(self.groups[group].operator, Some(Operator::Iterated(_)))
+    }
+
+    /// Products with matrices that are solved with by iterations, so far.
+    pub(crate) fn products(&self) -> usize {
+        let operators = self.groups.iter().filter_map(|g| g.operator.as_ref());
+        operators.map(Operator::products).sum()
+    }
+
+    /// The matrices that are solved with by iterations, and the places of their first unknowns in the y of `begin`; the largest tolerance.
+    /// They come back by [`Operators::take_back`].
+    pub(crate) fn lend(&mut self) -> (Vec<(usize, Box<Iterative>)>, f64) {
+        let mut tolerance: f64 = 0.0;
+        let mut lent = Vec::new();
+        for group in &mut self.groups {
+            if let Some(Operator::Iterated(iterated)) = &mut group.operator {
+                tolerance = tolerance.max(iterated.tolerance);
+                lent.extend(
+                    iterated
+                        .solver
+                        .take()
+                        .map(|solver| (group.place.start, solver)),
+                );
+            }
+        }
+        (lent, tolerance)
+    }
+
+    /// Takes the lent matrices back.
+    pub(crate) fn take_back(&mut self, lent: Vec<(usize, Box<Iterative>)>) {
+        let mut lent = lent.into_iter();
+        for group in &mut self.groups {
+            if let Some(Operator::Iterated(iterated)) = &mut group.operator {
+                iterated.solver = lent.next().map(|(_, solver)| solver);
+            }
+        }
+    }
+
+    /// The place of a row of a group in the y of `begin`.
+    pub(crate) fn place(&self, group: usize) -> usize {
+        self.groups[group].place.start
+    }
+
+    /// Why iterations of the last `begin` did not end, and the first unknown of their part.
+    pub(crate) fn failure(&mut self) -> Option<(usize, AlgebraError)> {
+        self.groups
+            .iter_mut()
+            .find_map(|group| match &mut group.operator {
+                Some(Operator::Iterated(iterated)) => {
+                    let cause = iterated.failed.take()?;
+                    Some((group.parts[0].start, cause))
+                }
+                _ => None,
+            })
+    }
+
     /// Sizes and uses of the factors.
     pub(crate) fn stats(&self) -> impl Iterator<Item = &FactorStats> {
         let operators = self.groups.iter().filter_map(|g| g.operator.as_ref());
@@ -377,7 +467,7 @@ impl Operators {
 }
 
 /// Numbers without gaps of the nodes of unknowns, nodes ascending.
-fn groups(nodes: &[u32]) -> Vec<u32> {
+pub(crate) fn groups(nodes: &[u32]) -> Vec<u32> {
     let mut number = 0;
     let mut last = nodes.first().copied();
     let group = |&node: &u32| {
@@ -424,6 +514,22 @@ pub(crate) fn of_part(
     factored(system, part, &a, &held, matrix)
 }
 
+/// The operator of the matrix of a part, or the error that names its first node.
+pub(crate) fn solvable(
+    (system, of): (&System, Use),
+    part: &Range<usize>,
+    a: &Csr,
+    held: &[bool],
+    matrix: &'static str,
+) -> Result<Operator, Error> {
+    let nodes = &system.unknowns.node_of_each()[part.clone()];
+    choice::operator((system, of), a, held, nodes).map_err(|cause| Error::Factor {
+        matrix,
+        node: system.mesh_node[nodes[0] as usize],
+        cause,
+    })
+}
+
 /// The factor of the matrix of a part, or the error that names its first node.
 pub(crate) fn factored(
     system: &System,
@@ -433,11 +539,13 @@ pub(crate) fn factored(
     matrix: &'static str,
 ) -> Result<Operator, Error> {
     let nodes = &system.unknowns.node_of_each()[part.clone()];
-    Operator::factored(a, held, nodes).map_err(|cause| Error::Factor {
+    let factor = Cholesky::new(&a.with_identity(held), &groups(nodes));
+    let factor = factor.map_err(|cause| Error::Factor {
         matrix,
         node: system.mesh_node[nodes[0] as usize],
         cause,
-    })
+    })?;
+    Ok(Operator::Factored(Box::new(factor)))
 }
 
 /// `mass` M + `damping` C + `stiffness_factors` K of one part, C that of dashpots, with a factor of K for each body.

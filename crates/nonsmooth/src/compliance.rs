@@ -1,5 +1,9 @@
 //! The condensed compliance D of an interface problem: all entries, or the sparse rows that it is a product of.
 
+use std::cell::RefCell;
+
+use carom_algebra::solver::Saddle;
+
 use crate::Lumped;
 
 /// D, symmetric and positive semi-definite, in x per N.
@@ -9,6 +13,26 @@ pub enum Compliance<'a> {
     Dense(&'a [f64]),
     /// `D = N M⁻¹ Nᵀ` with sparse N and diagonal M.
     Lumped(&'a Lumped),
+}
+
+/// D of a problem without friction, of which the entries need not be known.
+#[derive(Clone, Copy)]
+pub enum Condensed<'a> {
+    /// All entries, row-major.
+    Dense(&'a [f64]),
+    /// `D = N M⁻¹ Nᵀ` with sparse N and diagonal M.
+    Lumped(&'a Lumped),
+    /// `D = N A⁻¹ Nᵀ` with A whose columns nobody computes: forces and motion are found together, by iterations.
+    Iterated(&'a RefCell<Saddle>),
+}
+
+impl<'a> From<Compliance<'a>> for Condensed<'a> {
+    fn from(compliance: Compliance<'a>) -> Condensed<'a> {
+        match compliance {
+            Compliance::Dense(entries) => Condensed::Dense(entries),
+            Compliance::Lumped(rows) => Condensed::Lumped(rows),
+        }
+    }
 }
 
 impl Compliance<'_> {

@@ -7,12 +7,12 @@
 //! number of points that disagree, one point at a time changes, the last first: for laws without corner this ends on
 //! every positive definite D (Murty; Júdice and Pires 1994, block principal pivoting).
 //!
-//! The equations are solved by a dense factor, or, where D is the product of sparse rows, by conjugate gradients.
+//! The equations are solved by a dense factor, or, where D is the product of sparse rows or not known, by conjugate gradients.
 
 use carom_algebra::dense::DenseCholesky;
 use carom_laws::{End, Law, Local, Relation, Status};
 
-use crate::Compliance;
+use crate::{Compliance, Condensed};
 use iterated::Iterated;
 use serde::{Deserialize, Serialize};
 use thiserror::Error as ThisError;
@@ -145,8 +145,9 @@ pub struct Interface {
     own: [Vec<f64>; 2],
     /// Points that are not open.
     closed: Vec<(u32, Status)>,
-    /// Those whose gap or rate depends on the forces of the step.
+    /// Those whose gap or rate depends on the forces of the step, and their numbers.
     coupled: Vec<(u32, Status)>,
+    numbers: Vec<u32>,
     rhs: Vec<f64>,
     product: Vec<f64>,
     reversals: Vec<u32>,
@@ -158,12 +159,13 @@ impl Interface {
     ///
     /// `compliance`: D over the candidates, and its version; `s`: [s_g, s_v], the factors of x in the gap and
     /// in the rate.
-    pub fn solve(
+    pub fn solve<'d>(
         &mut self,
         candidates: &[Candidate],
-        compliance: (Compliance, u64),
+        (d, version): (impl Into<Condensed<'d>>, u64),
         s: [f64; 2],
     ) -> Result<(), Failure> {
+        let compliance = (d.into(), version);
         let n = candidates.len();
         self.statuses.clear();
         // a corner is found anew in each step, from a closed point that opens
@@ -232,7 +234,7 @@ impl Interface {
     fn equalities(
         &mut self,
         candidates: &[Candidate],
-        (d, version): (Compliance, u64),
+        (d, version): (Condensed, u64),
         s: [f64; 2],
     ) -> Result<(), Failure> {
         let n = candidates.len();
@@ -271,17 +273,23 @@ impl Interface {
                 self.coupled.push((i, status));
             }
         }
-        self.multiply(d);
+        self.multiply(d)?;
         let own = |i: u32, status| {
             let relation = relation(i, status);
-            relation.compliance / scale(i, &relation)
+            let shift = match d {
+                Condensed::Iterated(saddle) if candidates[i as usize].faces_itself => {
+                    SHIFT * saddle.borrow().diagonal(i as usize)
+                }
+                _ => 0.0,
+            };
+            relation.compliance / scale(i, &relation) + shift
         };
         // of a compliant law they depend on the size of the step, on which an explicit D does not
         let [at_hand, of_factor] = &mut self.own;
         at_hand.clear();
         at_hand.extend(self.coupled.iter().map(|&(i, status)| own(i, status)));
         let stands = self.factor_of.0 == version && self.factor_of.1 == self.coupled;
-        if let (Compliance::Dense(d), true) = (d, !stands || at_hand != of_factor) {
+        if let (Condensed::Dense(d), true) = (d, !stands || at_hand != of_factor) {
             of_factor.clone_from(at_hand);
             let shared = |i: u32| candidates[i as usize].faces_itself;
             self.factor_of.1.clear();
@@ -299,7 +307,7 @@ impl Interface {
             -free(i, &relation) / scale(i, &relation) - self.product[i as usize]
         }));
         match (d, &self.factor) {
-            (Compliance::Lumped(d), _) => {
+            (Condensed::Lumped(d), _) => {
                 let own = &self.own[0];
                 self.iterated
                     .solve(d, (&self.coupled, own), &mut self.rhs)
@@ -308,21 +316,38 @@ impl Interface {
                         cause,
                     })?;
             }
-            (Compliance::Dense(_), Some(factor)) => factor.solve(&mut self.rhs),
-            (Compliance::Dense(_), None) => {}
+            (Condensed::Iterated(saddle), _) => {
+                self.numbers.clear();
+                self.numbers.extend(self.coupled.iter().map(|(i, _)| *i));
+                let (numbers, own) = (&self.numbers[..], &self.own[0][..]);
+                let solved = saddle.borrow_mut().solve(numbers, own, &mut self.rhs);
+                solved.map_err(|cause| Failure::Singular {
+                    points: numbers.len(),
+                    cause,
+                })?;
+                for (&(i, _), &force) in self.coupled.iter().zip(&self.rhs) {
+                    self.forces[i as usize] = force;
+                }
+                let saddle = saddle.borrow();
+                for (i, product) in self.product.iter_mut().enumerate() {
+                    *product = saddle.along(i);
+                }
+                return Ok(());
+            }
+            (Condensed::Dense(_), Some(factor)) => factor.solve(&mut self.rhs),
+            (Condensed::Dense(_), None) => {}
         }
         for (&(i, _), &force) in self.coupled.iter().zip(&self.rhs) {
             self.forces[i as usize] = force;
         }
-        self.multiply(d);
-        Ok(())
+        self.multiply(d)
     }
 
     /// D P.
-    fn multiply(&mut self, d: Compliance) {
+    fn multiply(&mut self, d: Condensed) -> Result<(), Failure> {
         let n = self.forces.len();
         match d {
-            Compliance::Dense(d) => {
+            Condensed::Dense(d) => {
                 for (i, product) in self.product.iter_mut().enumerate() {
                     *product = self
                         .closed
@@ -331,12 +356,25 @@ impl Interface {
                         .sum();
                 }
             }
-            Compliance::Lumped(d) => self.iterated.multiply(d, &self.forces, &mut self.product),
+            Condensed::Lumped(d) => self.iterated.multiply(d, &self.forces, &mut self.product),
+            Condensed::Iterated(saddle) => {
+                let mut saddle = saddle.borrow_mut();
+                let refused = |cause| Failure::Singular { points: n, cause };
+                if saddle.give(&self.forces).map_err(refused)? {
+                    for (i, product) in self.product.iter_mut().enumerate() {
+                        *product = saddle.along_given(i);
+                    }
+                }
+                if self.coupled.is_empty() {
+                    saddle.rest();
+                }
+            }
         }
+        Ok(())
     }
 
     /// Candidates whose law asks for another status.
-    fn disagreements(&mut self, candidates: &[Candidate], d: Compliance, s: [f64; 2]) {
+    fn disagreements(&mut self, candidates: &[Candidate], d: Condensed, s: [f64; 2]) {
         self.changes.clear();
         for (i, candidate) in candidates.iter().enumerate() {
             if is_stuck(candidate, i, d, candidates.len()) {
@@ -360,7 +398,7 @@ impl Interface {
     fn clip(
         &mut self,
         candidates: &[Candidate],
-        compliance: (Compliance, u64),
+        compliance: (Condensed, u64),
         s: [f64; 2],
     ) -> Result<(), Failure> {
         let mut cut: Vec<(usize, Status)> = Vec::new();
@@ -442,7 +480,7 @@ fn factor(
 }
 
 /// Whether no force moves a point, all of its nodes being held, and its law does not say the force either: it carries none.
-fn is_stuck(candidate: &Candidate, i: usize, d: Compliance, n: usize) -> bool {
+fn is_stuck(candidate: &Candidate, i: usize, d: Condensed, n: usize) -> bool {
     let relation = candidate
         .law
         .get()
@@ -450,17 +488,18 @@ fn is_stuck(candidate: &Candidate, i: usize, d: Compliance, n: usize) -> bool {
     diagonal(d, i, n) == 0.0 && relation.compliance == 0.0
 }
 
-fn diagonal(d: Compliance, i: usize, n: usize) -> f64 {
+fn diagonal(d: Condensed, i: usize, n: usize) -> f64 {
     match d {
-        Compliance::Dense(d) => d[i * n + i],
-        Compliance::Lumped(d) => d.block(i, 0, 0),
+        Condensed::Dense(d) => d[i * n + i],
+        Condensed::Lumped(d) => d.block(i, 0, 0),
+        Condensed::Iterated(saddle) => saddle.borrow().diagonal(i),
     }
 }
 
 fn end(
     candidate: &Candidate,
     i: usize,
-    d: Compliance,
+    d: Condensed,
     s: [f64; 2],
     forces: &[f64],
     product: &[f64],

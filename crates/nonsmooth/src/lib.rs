@@ -9,6 +9,6 @@ pub mod interface;
 mod lumped;
 mod weak;
 
-pub use compliance::Compliance;
+pub use compliance::{Compliance, Condensed};
 pub use lumped::{Lumped, Unknown};
 pub use weak::Weak;

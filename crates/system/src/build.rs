@@ -54,6 +54,7 @@ impl System {
         system.check_zones()?;
         system.check_nonlinear()?;
         system.check_integration()?;
+        system.check_solver()?;
         Ok(Arc::new(system))
     }
 

@@ -3,6 +3,7 @@
 use carom_signals::Amplitude;
 
 use crate::loads::{Load, NodalLoad};
+use crate::solver::Solver;
 
 /// Nodes that move as prescribed.
 #[derive(Clone, Debug)]
@@ -53,6 +54,8 @@ pub struct Iteration {
     pub passes: usize,
     /// Times that a step that failed is halved before the run ends.
     pub halvings: u32,
+    /// How linear equations are solved.
+    pub solver: Solver,
 }
 
 impl Default for Iteration {
@@ -61,6 +64,7 @@ impl Default for Iteration {
             tolerance: 1e-10,
             passes: 30,
             halvings: 6,
+            solver: Solver::Auto,
         }
     }
 }

@@ -20,6 +20,9 @@ pub enum Refused {
     /// The damping of modes of a body, by its name.
     #[error("damping of the modes of body '{0}'")]
     ModalDamping(String),
+    /// The solution of steps by iterations.
+    #[error("an iterative solver")]
+    Iterative,
     /// A static stage.
     #[error("a static stage")]
     StaticStage,

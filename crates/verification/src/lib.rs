@@ -94,6 +94,7 @@ mod hertz_spheres;
 mod interface_problems;
 mod invariance;
 mod ironing;
+mod iterative_solver;
 mod knocking_oscillators;
 mod large_beams;
 mod large_shells;
@@ -250,6 +251,7 @@ registry! {
     interface_problems
     invariance
     ironing
+    iterative_solver
     knocking_oscillators
     long_run
     mass_on_stop

@@ -7,14 +7,19 @@
 mod cholesky;
 mod front;
 mod fronts;
+mod iterative;
 mod panel;
 mod quasi_definite;
 mod response;
+mod saddle;
 mod supernodal;
 mod sweep;
 
+pub use crate::ordering::predict;
 pub use cholesky::{Cholesky, FactorStats};
+pub use iterative::Iterative;
 pub use quasi_definite::QuasiDefinite;
 pub use response::{Response, SparseRow, gram};
+pub use saddle::Saddle;
 
 pub(crate) use panel::{backward, forward};

@@ -5,6 +5,7 @@
 
 mod block;
 mod factor;
+mod iterations;
 mod numbers;
 mod respond;
 

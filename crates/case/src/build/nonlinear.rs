@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use carom_dynamics::{
     Damping, Driver, Iteration, Load, ModelBody, Nonlinear, Preload, Prescribed, PrescribedTurn,
-    System,
+    Solver, System,
 };
 
 use super::Builder;
 use crate::error::Problem;
+use crate::schema;
 
 impl Builder<'_> {
     /// Loads and motions with damping, static stage and the rules of the iteration.
@@ -39,6 +40,11 @@ impl Builder<'_> {
                 tolerance: time.newton.tolerance,
                 passes: time.newton.passes as usize,
                 halvings: time.newton.halvings,
+                solver: match time.solver {
+                    schema::Solver::Auto => Solver::Auto,
+                    schema::Solver::Direct => Solver::Direct,
+                    schema::Solver::Iterative => Solver::Iterative,
+                },
             },
             ..Nonlinear::default()
         }

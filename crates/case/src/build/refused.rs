@@ -145,6 +145,7 @@ impl Builder<'_> {
     fn refused_nonlinear(&self, what: &Refused, why: &str) -> Problem {
         let path = match what {
             Refused::StaticStage => "time.static".to_string(),
+            Refused::Iterative => "time.solver".to_string(),
             Refused::Integration(contact) => format!("contact.{contact}.integration"),
             Refused::Damping(body) => format!("body.{body}.damping.stiffness"),
             Refused::ModalDamping(body) => format!("body.{body}.damping.modal"),

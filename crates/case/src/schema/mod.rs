@@ -72,7 +72,7 @@ pub use signal::{
     Signal, SpectrumPoint, Synthetic,
 };
 pub use time::{
-    Adaptive, Closing, LargestStep, MeshStep, Newton, StaticStage, Step, StepRule, Time,
+    Adaptive, Closing, LargestStep, MeshStep, Newton, Solver, StaticStage, Step, StepRule, Time,
 };
 pub use zone::{
     Arlequin, Bracket, BracketLength, BracketName, BracketWith, H1Bracket, InnerSteps, Interface,

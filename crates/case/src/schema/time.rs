@@ -25,6 +25,9 @@ pub struct Time {
     /// Solution of steps that need iterations.
     #[serde(default)]
     pub newton: Newton,
+    /// Solution of the linear equations of implicit steps.
+    #[serde(default)]
+    pub solver: Solver,
 }
 
 impl Time {
@@ -48,6 +51,20 @@ impl Time {
     pub fn is_static(&self) -> bool {
         self.stage.is_some_and(|stage| stage.end.0 == self.end.0)
     }
+}
+
+/// Solution of the linear equations of implicit steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Solver {
+    /// As predicted to cost less, from counts of operations and of bytes.
+    #[default]
+    Auto,
+    /// A sparse factor: computed once where the matrix stays the same.
+    Direct,
+    /// Conjugate gradients, without a factor: forces of contacts and motion are found together. Not with friction, links, zones or a
+    /// static stage.
+    Iterative,
 }
 
 /// A static stage: the equilibrium of loads, supports and contacts, without inertia.

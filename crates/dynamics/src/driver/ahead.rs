@@ -22,7 +22,7 @@ impl Driver {
                 false => residual[i] + self.maps.contact() * motion.contact_force[i] + link,
             };
         }
-        self.free_motion();
+        self.free_motion()?;
         let vectors = &mut self.vectors;
         for (dx, x) in vectors.dx.iter_mut().zip(&vectors.x) {
             *dx += x;

@@ -22,7 +22,7 @@ impl Driver {
         self.load_iteration();
         self.choose_candidates();
         for _ in 0..ADDITIONS {
-            self.begin_solve();
+            self.begin_solve()?;
             self.solve_candidates()?;
             self.end_iteration();
             self.look_further();
@@ -54,13 +54,22 @@ impl Driver {
     }
 
     /// The first half of the solve with the forces in `work`.
-    fn begin_solve(&mut self) {
+    ///
+    /// # Errors
+    /// Iterations that do not end.
+    fn begin_solve(&mut self) -> Result<(), Error> {
         let begin = Instant::now();
+        let mut failure = None;
         if let Some((operators, _)) = self.effective.both() {
             operators.begin(&self.vectors.work, &mut self.vectors.half);
+            failure = operators.failure();
         }
         self.hold_links();
         self.phases.sweeps += begin.elapsed();
+        match failure {
+            None => Ok(()),
+            Some((unknown, cause)) => Err(self.not_solved(unknown, cause)),
+        }
     }
 
     /// The motion of the iteration from the begun solve with all forces in it.
@@ -78,12 +87,16 @@ impl Driver {
     }
 
     /// The motion `dx` that the forces in `work` and the jump of the supports give.
-    pub(super) fn free_motion(&mut self) {
+    ///
+    /// # Errors
+    /// Iterations that do not end.
+    pub(super) fn free_motion(&mut self) -> Result<(), Error> {
         if self.jumps() {
             self.load_jump();
         }
-        self.begin_solve();
+        self.begin_solve()?;
         self.end_iteration();
+        Ok(())
     }
 
     /// Points that may carry a force. Some laws say so before the forces; of others, those are taken that carried one or that
@@ -147,9 +160,12 @@ impl Driver {
         let rows = &self.pairing.rows;
         let points = (&self.candidates[..], 1, together);
         compliance.update(points, rows, &system.fixed, operators);
-        let several = compliance.groups().several();
+        let (several, iterate) = (compliance.groups().several(), operators.iterate());
         self.describe_candidates(None);
         let factor = self.maps.contact();
+        if iterate {
+            return self.solve_iterated(factor);
+        }
         if several {
             let map = self.maps.first();
             self.solve_groups([map.gap.x * factor, map.rate.x * factor])?;
@@ -195,7 +211,7 @@ impl Driver {
     }
 
     /// Writes the forces and statuses found, and adds the forces, times `factor`, to the begun solve.
-    fn take_forces(&mut self, factor: f64) -> Result<(), Error> {
+    pub(super) fn take_forces(&mut self, factor: f64) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
         let Some((operators, compliance, linking)) = self.effective.all() else {
             return Ok(());

@@ -15,11 +15,12 @@ use carom_contact::Pairing;
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
 use super::part_matrix::part_matrix;
+use crate::choice::Use;
 use crate::columns::HeldColumns;
 use crate::compliance::Compliance;
 use crate::costs::Work;
 use crate::error::Error;
-use crate::operator::{Operator, Operators, factored, single};
+use crate::operator::{Operator, Operators, single, solvable};
 use crate::step_map::StepMap;
 use crate::system::{LinkRow, Maps, NumberedModal, System};
 
@@ -372,7 +373,11 @@ fn linear_part(
     for (place, entry) in diagonal[part.clone()].iter_mut().enumerate() {
         *entry = a.get(place, place);
     }
-    let operator = factored(system, part, &a, fixed, "effective matrix")?;
+    let of = Use {
+        stays: true,
+        inertia: map.inertia.x != 0.0,
+    };
+    let operator = solvable((system, of), part, &a, fixed, "effective matrix")?;
     let columns = modal_columns(system, part, damping_rate(map).x);
     let node = system.unknowns.node(part.start) as usize;
     let operator = operator

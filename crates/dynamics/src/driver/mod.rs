@@ -35,6 +35,7 @@ mod friction;
 mod held;
 mod identity;
 mod impulse;
+mod iterated;
 mod joined;
 mod landing;
 mod leapfrog;
@@ -69,8 +70,10 @@ mod tangents;
 mod turned;
 mod weak;
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
+use carom_algebra::solver::Saddle;
 use carom_bodies::{Scratch, Stored};
 use carom_contact::law::{Displacement, Level};
 use carom_contact::{Contact, Law, Pairing, Search};
@@ -137,6 +140,8 @@ pub struct Driver {
     interface: Interface,
     /// Those of groups of candidates that do not act on each other, where there are several.
     interfaces: Vec<Interface>,
+    /// The problem of contacts where matrices are solved with by iterations.
+    saddle: RefCell<Saddle>,
     pairing: Pairing,
     /// Whether its rows are those of the reference places, so that its gaps alone move.
     rows_stand: bool,

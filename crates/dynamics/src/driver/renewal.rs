@@ -9,9 +9,10 @@ use carom_bodies::Placement;
 use super::effective::{At, Matrices, Turning};
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
+use crate::choice::{self, Use};
 use crate::costs::Work;
 use crate::error::Error;
-use crate::operator::{Operator, add_rows, push_rows};
+use crate::operator::{Iterated, Operator, add_rows, push_rows};
 use crate::system::{System, push_cliques};
 
 impl Matrices {
@@ -97,9 +98,18 @@ impl Matrices {
             let nodes: Vec<u32> = unknowns.map(|unknown| all[unknown]).collect();
             let factored = match &mut group.operator {
                 Some(Operator::Factored(factor)) => factor.refactor(&free),
+                Some(Operator::Iterated(Iterated {
+                    solver: Some(solver),
+                    ..
+                })) => solver.renew(free),
                 other => {
+                    let of = Use {
+                        stays: false,
+                        inertia: at.maps.all().iter().all(|map| map.inertia.x != 0.0),
+                    };
                     let none = vec![false; free.n];
-                    Operator::factored(&free, &none, &nodes).map(|new| *other = Some(new))
+                    let new = choice::operator((system, of), &free, &none, &nodes);
+                    new.map(|new| *other = Some(new))
                 }
             };
             if let Err(cause) = factored {
@@ -260,4 +270,5 @@ fn retire(operator: &Operator, retired: &mut Work) {
     if let Some(stats) = operator.stats() {
         retired.add_factor(stats);
     }
+    retired.products += operator.products();
 }

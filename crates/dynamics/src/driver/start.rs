@@ -1,5 +1,6 @@
 //! The initial state, and the passage from the static stage to the dynamics.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use carom_bodies::{Scratch, Stored};
@@ -96,6 +97,7 @@ impl Driver {
             restoring: Restoring::default(),
             interface: Interface::default(),
             interfaces: Vec::new(),
+            saddle: RefCell::default(),
             pairing: Pairing::default(),
             initial: vec![Pairing::default(); system.contacts.len()],
             search: system.contacts.iter().map(|_| Search::default()).collect(),

@@ -16,6 +16,7 @@ pub(super) fn counts(costs: &Costs, passes: u64) -> Counts {
         factor_entries: factors.iter().map(|f| f.nnz_factor as u64).sum(),
         factor_bytes: factors.iter().map(|f| f.bytes as u64).sum(),
         contact_columns: costs.work.columns as u64,
+        matrix_products: costs.work.products as u64,
         compliance_bytes: costs.compliance_bytes as u64,
         force_sweeps: costs.force_sweeps as u64,
         element_updates: costs.element_updates,

@@ -351,6 +351,9 @@ pub struct Counts {
     pub factor_bytes: u64,
     /// Columns A⁻¹ Nᵀ computed for contact points.
     pub contact_columns: u64,
+    /// Products with matrices that are solved with by iterations.
+    #[serde(default)]
+    pub matrix_products: u64,
     /// Bytes of these columns and of the compliance of the contact.
     pub compliance_bytes: u64,
     /// Evaluations of the internal forces.

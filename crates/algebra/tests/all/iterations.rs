@@ -1,0 +1,120 @@
+//! Conjugate gradients, and constrained motions.
+
+use crate::block::block;
+use crate::numbers::distance;
+use carom_algebra::Error;
+use carom_algebra::solver::{Cholesky, Iterative, Saddle, SparseRow, gram};
+use carom_testing::Random;
+
+/// Rows of the bottom of a block of `n` cubed cells: two neighbours each, so that rows share nodes.
+fn rows(n: usize) -> Vec<SparseRow> {
+    let nodes = (n as u32 + 1).pow(2);
+    let row = |node: u32| SparseRow {
+        dofs: vec![3 * node + 2, 3 * (node + 1) + 2, 3 * node],
+        coefficients: vec![0.6, 0.4, 0.1],
+    };
+    (0..nodes - 1).map(row).collect()
+}
+
+#[test]
+fn solutions_equal_those_of_the_factor() {
+    for (n, shift) in [(1, 0.1), (4, 0.5), (9, 5.0)] {
+        let system = block(n, shift);
+        let b = Random(31).vector(system.matrix.n);
+        let (mut x, mut reference) = (vec![0.0; b.len()], b.clone());
+        Cholesky::new(&system.matrix, &system.node)
+            .unwrap()
+            .solve(&mut reference);
+        let mut solver = Iterative::new(system.matrix, &system.node).unwrap();
+        let iterations = solver.solve(&b, &mut x, 1e-13).unwrap();
+        assert!(
+            distance(&x, &reference) < 1e-11,
+            "{}",
+            distance(&x, &reference)
+        );
+        assert!(iterations < 150, "{iterations}");
+        assert_eq!(solver.products(), iterations);
+    }
+}
+
+#[test]
+fn iterations_do_not_grow_with_the_mesh() {
+    // the shift is what the mass is in a step at a Courant number that stays: the condition number stays too
+    let iterations = |n| {
+        let system = block(n, 3.0);
+        let b = Random(32).vector(system.matrix.n);
+        let mut x = vec![0.0; b.len()];
+        Iterative::new(system.matrix, &system.node)
+            .unwrap()
+            .solve(&b, &mut x, 1e-10)
+            .unwrap()
+    };
+    let [coarse, fine] = [8, 16].map(iterations);
+    // as the square root of the condition number they would double with the halved size of the elements
+    assert!(2 * fine < 3 * coarse, "{coarse} and {fine}");
+}
+
+#[test]
+fn constrained_motions_equal_those_of_the_columns() {
+    let (n, shift) = (5, 1.0);
+    let system = block(n, shift);
+    let rows = rows(n);
+    let mut factor = Cholesky::new(&system.matrix, &system.node).unwrap();
+    let columns = factor.respond(&rows);
+    let d = gram(&columns.iter().collect::<Vec<_>>());
+    let mut saddle = Saddle::default();
+    let solver = Box::new(Iterative::new(system.matrix, &system.node).unwrap());
+    saddle.begin(vec![(0, solver)], rows.iter().cloned(), 1e-12);
+    // first without compliance, then fewer rows, some of which yield, from the motion before
+    let all: Vec<u32> = (0..rows.len() as u32).collect();
+    let some: Vec<u32> = all.iter().copied().filter(|k| k % 3 != 1).collect();
+    let yielding: Vec<f64> = some
+        .iter()
+        .map(|&k| if k % 2 == 0 { 0.0 } else { 0.3 })
+        .collect();
+    for (points, own) in [(&all, vec![0.0; all.len()]), (&some, yielding)] {
+        let b = Random(33).vector(points.len());
+        let mut forces = b.clone();
+        saddle.solve(points, &own, &mut forces).unwrap();
+        // N A⁻¹ Nᵀ P + K P = b, with the products of the columns
+        let product = |i: u32| -> f64 {
+            let terms = points.iter().zip(&forces);
+            terms
+                .map(|(&j, p)| d[i as usize * rows.len() + j as usize] * p)
+                .sum()
+        };
+        for (k, &i) in points.iter().enumerate() {
+            let left = product(i) + own[k] * forces[k] - b[k];
+            assert!(left.abs() < 1e-9, "{left}");
+        }
+        for i in 0..rows.len() {
+            assert!((saddle.along(i) - product(i as u32)).abs() < 1e-9);
+        }
+    }
+    let operators = saddle.end();
+    assert_eq!(operators.len(), 1);
+}
+
+#[test]
+fn a_matrix_that_is_not_positive_definite_is_refused() {
+    let mut system = block(3, 1.0);
+    system.matrix.add(40, 40, -1e3);
+    let refused = Iterative::new(system.matrix, &system.node).err();
+    assert!(matches!(
+        refused,
+        Some(Error::NotPositiveDefinite { unknown: 39, .. })
+    ));
+    // blocks that are positive, and a matrix that is not
+    let mut system = block(3, 1.0);
+    let stiff = 10.0 * system.matrix.get(40, 40);
+    system.matrix.add(40, 43, stiff);
+    system.matrix.add(43, 40, stiff);
+    let mut solver = Iterative::new(system.matrix, &system.node).unwrap();
+    let b = Random(34).vector(solver.unknowns());
+    let mut x = vec![0.0; b.len()];
+    let failed = solver.solve(&b, &mut x, 1e-12);
+    assert!(
+        matches!(failed, Err(Error::Iterations { .. })),
+        "{failed:?}"
+    );
+}

@@ -1,0 +1,113 @@
+//! A factor or iterations: which costs less, as predicted from counts.
+
+use carom_algebra::Error as AlgebraError;
+use carom_algebra::csr::Csr;
+use carom_algebra::solver::{Cholesky, Iterative, predict};
+
+use crate::operator::{Iterated, Operator, groups};
+use crate::system::{Solver, System};
+
+/// Unknowns below which a factor is always cheap.
+const FEW: usize = 8000;
+
+/// Additions and multiplications of a factorisation in the time of reading a byte of memory: some 25e9 and 10e9 of them a second.
+const OPERATIONS_PER_BYTE: f64 = 2.5;
+
+/// Bytes of a factor from which on it is not made: it, and the fronts that its making takes, would not fit in 16 GiB.
+const MOST_BYTES: f64 = 8e9;
+
+/// Steps that a matrix is taken to serve. The length of the run does not count: a run that goes on from a checkpoint to a later end takes the
+/// same solver.
+const STEPS: f64 = 100.0;
+
+/// Solves of a step: without contact forces, and with them.
+const SOLVES: f64 = 2.0;
+
+/// Solves with a matrix that the next iteration makes anew.
+const SOLVES_OF_TANGENT: f64 = 3.0;
+
+/// Residual over the load at which iterations end. Contact forces are found whole in each iteration of a step, not what they change by, so that a
+/// tangent needs as many digits as a matrix that stays.
+const TOLERANCE: f64 = 1e-12;
+
+/// What the matrix of a part serves.
+#[derive(Clone, Copy)]
+pub(crate) struct Use {
+    /// Whether it stays the same over steps; a tangent serves an iteration.
+    pub(crate) stays: bool,
+    /// Whether the matrix has a mass: without, iterations grow with the mesh.
+    pub(crate) inertia: bool,
+}
+
+/// An operator of a symmetric positive definite matrix; unknowns marked `fixed` are taken out. `nodes`: node of each unknown.
+pub(crate) fn operator(
+    (system, of): (&System, Use),
+    matrix: &Csr,
+    fixed: &[bool],
+    nodes: &[u32],
+) -> Result<Operator, AlgebraError> {
+    let matrix = matrix.with_identity(fixed);
+    let groups = groups(nodes);
+    let asked = system.nonlinear.iteration.solver;
+    let few = matrix.n < FEW || !of.inertia;
+    if asked == Solver::Direct || asked == Solver::Auto && (few || system.needs_factor().is_some())
+    {
+        return factor(&matrix, &groups);
+    }
+    let predicted = match asked {
+        Solver::Auto => Some(predict(&matrix, &groups)?),
+        Solver::Direct | Solver::Iterative => None,
+    };
+    let mut solver = Box::new(Iterative::new(matrix, &groups)?);
+    match predicted {
+        Some(factor_of) if !pays(&mut solver, of, factor_of) => factor(solver.matrix(), &groups),
+        _ => Ok(Operator::Iterated(Iterated {
+            solver: Some(solver),
+            tolerance: TOLERANCE,
+            failed: None,
+        })),
+    }
+}
+
+fn factor(matrix: &Csr, groups: &[u32]) -> Result<Operator, AlgebraError> {
+    let factor = Cholesky::new(matrix, groups)?;
+    Ok(Operator::Factored(Box::new(factor)))
+}
+
+/// Whether iterations are predicted to cost less than a factor of so many entries, made with so many operations.
+fn pays(solver: &mut Iterative, of: Use, [entries, operations]: [f64; 2]) -> bool {
+    // a step with a factor reads it twice, whatever its contacts
+    let [solves, sweeps] = match of.stays {
+        true => [SOLVES * STEPS, 2.0 * STEPS],
+        false => [SOLVES_OF_TANGENT, 2.0 * SOLVES_OF_TANGENT],
+    };
+    let direct = operations / OPERATIONS_PER_BYTE + sweeps * 8.0 * entries;
+    let n = solver.unknowns();
+    let iteration = 12.0 * solver.matrix().nnz() as f64 + 96.0 * n as f64;
+    let iterations = iterations(solver, TOLERANCE);
+    let iterative = iterations.map_or(f64::INFINITY, |count| solves * count as f64 * iteration);
+    let pays = iterative < direct || 8.0 * entries > MOST_BYTES && iterative.is_finite();
+    tracing::debug!(
+        "{n} unknowns: a factor would cost as much as reading {direct:.1e} bytes, iterations {iterative:.1e}: {}",
+        if pays { "iterations" } else { "a factor" },
+    );
+    pays
+}
+
+/// Iterations of a solve with some load; none if they do not end.
+fn iterations(solver: &mut Iterative, tolerance: f64) -> Option<usize> {
+    // a fixed load with all wave lengths: numbers of a linear congruence
+    let next = |state: u64| {
+        state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1)
+    };
+    let states = std::iter::successors(Some(1), |state| Some(next(*state)));
+    let n = solver.unknowns();
+    let load: Vec<f64> = states
+        .take(n)
+        .map(|state: u64| (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5)
+        .collect();
+    let mut x = vec![0.0; n];
+    solver.solve(&load, &mut x, tolerance).ok()
+}
