@@ -18,6 +18,9 @@ const STRIP: usize = 192;
 /// Rows of a piece of the triangular solves of large fronts.
 const PIECE: usize = 512;
 
+/// Numbers in the squares that a worker keeps.
+const KEPT: usize = 16_000_000;
+
 /// Operations from which on a front is cut into strips.
 const LARGE: f64 = 2e7;
 
@@ -27,6 +30,8 @@ pub(super) struct Room {
     scratch: MemBuffer,
     /// Squares that nobody needs any more: the system would clear new pages for each.
     free: Vec<Vec<f64>>,
+    /// Numbers in them.
+    kept: usize,
 }
 
 impl Room {
@@ -36,6 +41,7 @@ impl Room {
         Some(Room {
             scratch: MemBuffer::try_new(request).ok()?,
             free: Vec::new(),
+            kept: 0,
         })
     }
 
@@ -43,18 +49,19 @@ impl Room {
     pub fn take(&mut self, length: usize) -> Option<Vec<f64>> {
         let fits = |vector: &Vec<f64>| (length..=2 * length).contains(&vector.len());
         if let Some(k) = self.free.iter().rposition(fits) {
-            return Some(self.free.swap_remove(k));
+            let vector = self.free.swap_remove(k);
+            self.kept -= vector.len();
+            return Some(vector);
         }
-        let length = length + length / 4;
-        let mut vector = Vec::new();
-        vector.try_reserve_exact(length).ok()?;
-        vector.resize(length, 0.0);
-        Some(vector)
+        Vec::<f64>::new().try_reserve_exact(length).ok()?;
+        // pages that nobody writes to, those of the upper triangle, are not there
+        Some(vec![0.0; length])
     }
 
-    /// Keeps a vector for the next front.
+    /// Keeps a vector for the next front, if it is not large.
     pub fn give(&mut self, vector: Vec<f64>) {
-        if !vector.is_empty() {
+        if !vector.is_empty() && self.kept + vector.len() <= KEPT {
+            self.kept += vector.len();
             self.free.push(vector);
         }
     }
