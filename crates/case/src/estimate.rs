@@ -21,6 +21,8 @@ pub struct Estimate {
     pub seconds: f64,
     /// Largest memory of the program so far, bytes; `None` where the system does not tell.
     pub bytes: Option<u64>,
+    /// How linear equations were solved; `None` where there were none.
+    pub solver: Option<&'static str>,
 }
 
 /// Takes first steps of a case for about `patience`, at least one, and says what all will take. What they write is in a temporary folder, which
@@ -62,6 +64,7 @@ pub fn estimate(
         steps: all,
         seconds: whole + each * further,
         bytes: largest_memory(),
+        solver: clock.solver,
     })
 }
 
@@ -82,6 +85,7 @@ struct Clock {
     steps: u64,
     first: Option<Instant>,
     last: Option<Instant>,
+    solver: Option<&'static str>,
 }
 
 impl Observer for Clock {
@@ -90,6 +94,13 @@ impl Observer for Clock {
             self.steps += 1;
             self.last = Some(Instant::now());
             self.first = self.first.or(self.last);
+            let work = run.costs().work;
+            self.solver = match (work.factorisations, work.products) {
+                (0, 0) => None,
+                (_, 0) => Some("a factor"),
+                (0, _) => Some("iterations"),
+                (_, _) => Some("factors and iterations"),
+            };
         }
         Ok(())
     }

@@ -93,8 +93,11 @@ fn told(estimate: &Estimate) -> Fact {
     let memory = estimate.bytes.map_or(String::new(), |bytes| {
         format!(", {:.0} MB of memory", bytes as f64 / 1e6)
     });
+    let solver = estimate
+        .solver
+        .map_or(String::new(), |solver| format!("; equations by {solver}"));
     let value = format!(
-        "about {}{memory}, as its first {} of {} steps",
+        "about {}{memory}, as its first {} of {} steps{solver}",
         quantity(estimate.seconds, "s"),
         estimate.tried,
         estimate.steps
