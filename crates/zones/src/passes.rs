@@ -82,17 +82,21 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
-/// Adds the work of the links in the step of a zone just completed.
+/// Adds the work of the links in the step of a zone just completed. Of links that turn, `now` and `last` are forces of terms.
 pub(crate) fn record(
     driver: &Driver,
-    rows: &[(u32, LinkRow)],
+    (rows, turn): (&[(u32, LinkRow)], bool),
     [now, last, _]: &mut [Vec<f64>; 3],
     (links, works): (&[(String, Range<usize>)], &mut [f64]),
 ) {
-    for (row, terms) in rows {
-        let row = *row as usize;
-        let link = links.partition_point(|(_, range)| range.end <= row);
-        works[link] += driver.row_work(terms, last[row], now[row]);
+    let link_of = |row: u32| links.partition_point(|(_, range)| range.end <= row as usize);
+    if turn {
+        driver.terms_work(rows, [last, now], |row, work| works[link_of(row)] += work);
+    } else {
+        for (row, terms) in rows {
+            let own = *row as usize;
+            works[link_of(*row)] += driver.row_work(terms, last[own], now[own]);
+        }
     }
     last.copy_from_slice(now);
 }

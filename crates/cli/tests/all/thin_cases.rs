@@ -181,10 +181,20 @@ fn a_bar_of_solid_and_beam_turns_over() {
 
 /// Places of the end of the bar that turns over, by time in µs, with these schemes and this step.
 fn turned_over(solid: &str, beam: &str, step: &str) -> BTreeMap<u64, [f64; 2]> {
+    run_over((solid, 1), beam, step).0
+}
+
+/// The same with so many steps of the solid in one of the beam, and the summary.
+fn run_over(
+    (solid, substeps): (&str, u32),
+    beam: &str,
+    step: &str,
+) -> (BTreeMap<u64, [f64; 2]>, serde_json::Value) {
     let work = tempfile::tempdir().unwrap();
     fs::write(work.path().join("case.toml"), TURNING).unwrap();
     let set = [
         format!("zone.solid.scheme={solid}"),
+        format!("zone.solid.substeps={substeps}"),
         format!("zone.beam.scheme={beam}"),
         format!("time.step={step}"),
     ];
@@ -192,7 +202,8 @@ fn turned_over(solid: &str, beam: &str, step: &str) -> BTreeMap<u64, [f64; 2]> {
     let arguments: Vec<&str> = ["run", "case.toml"].into_iter().chain(set).collect();
     let output = carom(work.path(), &arguments);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
-    assert_balanced(&summary(work.path()), "two schemes");
+    let summary = summary(work.path());
+    assert_balanced(&summary, "two schemes");
     let histories = fs::read_to_string(work.path().join("case.carom/histories.csv")).unwrap();
     let mut lines = histories.lines().map(|line| line.split(','));
     let heads: Vec<&str> = lines.next().unwrap().collect();
@@ -203,7 +214,7 @@ fn turned_over(solid: &str, beam: &str, step: &str) -> BTreeMap<u64, [f64; 2]> {
         let [t, x, y] = columns.map(|k| cells[k].parse::<f64>().unwrap());
         ((1e6 * t).round() as u64, [x, y])
     };
-    lines.map(row).collect()
+    (lines.map(row).collect(), summary)
 }
 
 /// Velocity steps in the solid and displacement steps in the beam: with half the step a quarter of the error, of second order as each of both. One scheme at a quarter of
