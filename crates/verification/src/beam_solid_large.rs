@@ -26,7 +26,11 @@ use crate::check::{Check, Row, Size};
 use crate::glued_turning::{self, CONSERVING, Joined, TurnedPatch};
 
 /// A model of both bodies and what joins them.
-pub(crate) fn model(bar: &Spliced, stepping: (Scheme, f64), joined: Joined) -> Result<Model, Error> {
+pub(crate) fn model(
+    bar: &Spliced,
+    stepping: (Scheme, f64),
+    joined: Joined,
+) -> Result<Model, Error> {
     let mesh = bar.mesh()?;
     let (bodies, glued) = bar.glued_turning(&mesh)?;
     Ok(glued_turning::model(

@@ -116,7 +116,11 @@ impl TurnedPatch {
         let mut fastest = 0.0_f64;
         for _ in 0..Self::STEPS {
             zones.step()?;
-            fastest = zones.drivers().iter().map(fastest_node).fold(fastest, f64::max);
+            fastest = zones
+                .drivers()
+                .iter()
+                .map(fastest_node)
+                .fold(fastest, f64::max);
         }
         Ok(fastest / (self.speed() * Self::STRAIN))
     }

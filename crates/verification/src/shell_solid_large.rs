@@ -50,7 +50,11 @@ pub(crate) fn patch_plate() -> Plate {
     }
 }
 
-pub(crate) fn model(plate: &Plate, stepping: (Scheme, f64), joined: Joined) -> Result<Model, Error> {
+pub(crate) fn model(
+    plate: &Plate,
+    stepping: (Scheme, f64),
+    joined: Joined,
+) -> Result<Model, Error> {
     let mesh = plate.mesh()?;
     let (bodies, glued) = plate.glued_turning(&mesh)?;
     Ok(glued_turning::model(

@@ -16,6 +16,9 @@ const GAIN: f64 = 0.5;
 /// Most passes over an outer step.
 pub(crate) const MOST_PASSES: usize = 30;
 
+/// The same where links turn: H does not know that their forces turn with the rows, and passes gain a factor of three to ten.
+const MOST_TURNING_PASSES: usize = 60;
+
 impl Zones {
     /// Whether the rows hold, or would after a change of the multipliers by rounding; corrects the multipliers `which`
     /// (0 pointwise, 1 of the outer step) if not.
@@ -40,7 +43,7 @@ impl Zones {
         // at rest all velocities are rounding; then the forces tell what is small
         let forces = largest(old).max(largest(target));
         let change = largest(&self.defect);
-        if change <= TOLERANCE * forces || !gains && change <= self.rounding() {
+        if change <= TOLERANCE * forces || !gains && self.force_of_change() <= self.rounding() {
             return Ok(true);
         }
         self.moves.next(&mut self.defect);
@@ -54,11 +57,25 @@ impl Zones {
         Ok(false)
     }
 
-    /// What rounding leaves in the forces of the zones, N. Passes end there once they gain no more: stiff elements turn the rounding
-    /// of displacements into velocities far above that of the velocities.
+    /// Most passes over an outer step with multipliers that are linear in it.
+    pub(crate) fn most_passes(&self) -> usize {
+        match self.turning {
+            None => MOST_PASSES,
+            Some(_) => MOST_TURNING_PASSES,
+        }
+    }
+
+    /// The largest force on one side by the change of a multiplier, N.
+    fn force_of_change(&self) -> f64 {
+        let changes = self.defect.iter().zip(&self.norms);
+        changes.fold(0.0, |most, (l, norm)| f64::max(most, 0.5 * norm * l.abs()))
+    }
+
+    /// What rounding and the iterations leave in the forces of the zones, N. Passes end there once they gain no more: stiff elements turn the
+    /// rounding of displacements into velocities far above that of the velocities.
     fn rounding(&self) -> f64 {
-        let zones = self.drivers.iter();
-        zones.map(Driver::rounding_of_forces).fold(0.0, f64::max)
+        let left = |driver: &Driver| driver.rounding_of_forces().max(driver.left_over());
+        self.drivers.iter().map(left).fold(0.0, f64::max)
     }
 
     /// Largest velocity of all zones, at the end of the step or at its start.

@@ -65,9 +65,8 @@ impl Zoned {
     fn check_turning(&self) -> Result<(), Error> {
         let turning = self.turning_nodes();
         let mut links = self.links.iter();
-        let turns = |link: &&ModelLink| {
-            link.has_arms(self.model.mesh.dim, &|node| turning.contains(&node))
-        };
+        let turns =
+            |link: &&ModelLink| link.has_arms(self.model.mesh.dim, &|node| turning.contains(&node));
         let Some(link) = links.find(turns) else {
             return Ok(());
         };

@@ -50,11 +50,9 @@ impl Zones {
         if between.is_some() {
             make_room(&mut drivers, &systems)?;
         }
-        let multipliers = start(
-            &mut drivers,
-            (&mut rows, &mut turning, count),
-            &|zone| systems[zone].initial_displacement.clone(),
-        )?;
+        let multipliers = start(&mut drivers, (&mut rows, &mut turning, count), &|zone| {
+            systems[zone].initial_displacement.clone()
+        })?;
         let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
         let far = zoned.zones.iter();
         let far = far.map(|zone| zone.far.unwrap_or(zone.substeps));

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::model::LinkKind;
-use crate::passes::{MOST_PASSES, record, sample};
+use crate::passes::{record, sample};
 use crate::zones::Zones;
 use carom_system::on;
 
@@ -92,7 +92,7 @@ impl Zones {
         }
         self.moves.clear();
         let mut joined = false;
-        for pass in 1..=MOST_PASSES {
+        for pass in 1..=self.most_passes() {
             self.passes = pass;
             self.samples.clear();
             self.defect.fill(0.0);
