@@ -52,6 +52,15 @@ fn a_tube_in_the_hole_of_its_plate_runs() {
 }
 
 #[test]
+fn a_bar_of_solid_and_beam_turns_in_unequal_steps() {
+    let summary = run_until("turning-bar", "50 ms", &[]);
+    assert_balanced(&summary, "turning-bar");
+    // the zones keep the impulse of the push, 200 kPa of 0.1 m x 10 mm that grow over 0.1 s: 2.5 N s
+    let momentum = summary["momentum"]["final"][1].as_f64().unwrap();
+    assert!((momentum - 2.5).abs() < 1e-6, "{momentum}");
+}
+
+#[test]
 fn a_box_of_shells_falls() {
     assert_balanced(&run_until("dropped-box", "20 us", &[]), "dropped-box");
 }
