@@ -26,7 +26,11 @@ use crate::check::{Check, Row, Size};
 use crate::glued_turning::{self, CONSERVING, Joined, TurnedPatch};
 
 /// A model of both bodies and what joins them.
-fn model(bar: &Spliced, stepping: (Scheme, f64), joined: Joined) -> Result<Model, Error> {
+pub(crate) fn model(
+    bar: &Spliced,
+    stepping: (Scheme, f64),
+    joined: Joined,
+) -> Result<Model, Error> {
     let mesh = bar.mesh()?;
     let (bodies, glued) = bar.glued_turning(&mesh)?;
     Ok(glued_turning::model(
@@ -43,7 +47,7 @@ const STEEL: Elastic = Elastic {
 };
 
 /// The bar of the patch.
-fn patch_bar(dim: usize) -> Spliced {
+pub(crate) fn patch_bar(dim: usize) -> Spliced {
     const H: f64 = 0.1;
     Spliced {
         dim,
@@ -65,18 +69,23 @@ fn patch_bar(dim: usize) -> Spliced {
     }
 }
 
-/// Largest speed of a turned and stretched bar over c ε, and the energy without the strain over that of a strain of one.
-fn turned_patch(dim: usize, scheme: Scheme, joined: Joined) -> Result<[f64; 2], Error> {
-    let bar = patch_bar(dim);
+/// The patch that a bar is.
+pub(crate) fn patch_of(bar: &Spliced) -> TurnedPatch {
     let ([height, width], length) = (bar.section, bar.beam[1]);
-    let patch = TurnedPatch {
-        axis: match dim {
+    TurnedPatch {
+        axis: match bar.dim {
             2 => Vec3::z(),
             _ => Vec3::new(1.0, 2.0, 3.0),
         },
         material: bar.material,
         size: [length, height, width],
-    };
+    }
+}
+
+/// Largest speed of a turned and stretched bar over c ε, and the energy without the strain over that of a strain of one.
+fn turned_patch(dim: usize, scheme: Scheme, joined: Joined) -> Result<[f64; 2], Error> {
+    let bar = patch_bar(dim);
+    let patch = patch_of(&bar);
     // explicit steps are below the critical one
     let step = if scheme.get().is_explicit() { 0.1 } else { 1.0 } * patch.step();
     let model = model(&bar, (scheme, step), joined)?;
@@ -146,9 +155,9 @@ fn elastica(load: f64, steps: u64) -> Result<[f64; 2], Error> {
     Ok([u / length, v / length])
 }
 
-/// A soft bar that spins about two axes and tumbles.
-fn spinning(steps: usize) -> Result<Vec<Row>, Error> {
-    let bar = Spliced {
+/// A soft bar of 1 m.
+pub(crate) fn soft_bar() -> Spliced {
+    Spliced {
         section: [0.08, 0.06],
         solid: [0.0, 0.6],
         beam: [0.4, 1.0],
@@ -160,8 +169,12 @@ fn spinning(steps: usize) -> Result<Vec<Row>, Error> {
             poisson: 0.3,
         },
         ..patch_bar(3)
-    };
-    let model = model(&bar, (CONSERVING, 4e-3), Joined::Turning)?;
+    }
+}
+
+/// A soft bar that spins about two axes and tumbles.
+fn spinning(steps: usize) -> Result<Vec<Row>, Error> {
+    let model = model(&soft_bar(), (CONSERVING, 4e-3), Joined::Turning)?;
     glued_turning::tumbling("spinning bar", model, Vec3::x() * 0.5, (steps, 1e-8))
 }
 

@@ -1,7 +1,7 @@
 //! What overlaps of thin bodies with finite rotations and solids at finite strain are asked.
 
 use carom_algebra::rotation::Rotation;
-use carom_algebra::tensor::Vec3;
+use carom_algebra::tensor::{Mat3, Vec3};
 use carom_algebra::unknowns::Kind;
 use carom_bodies::MassKind;
 use carom_dynamics::scheme::EnergyMomentum;
@@ -11,10 +11,10 @@ use carom_dynamics::{
 };
 use carom_materials::Elastic;
 use carom_mesh::Mesh;
-use carom_zones::Glued;
+use carom_zones::{Glued, LinkKind, ModelZone, Zoned, Zones};
 
 use crate::Error;
-use crate::build::surface;
+use crate::build::{newmark, surface};
 use crate::check::{Row, Size};
 
 pub(crate) const CONSERVING: Scheme = Scheme::EnergyMomentum(EnergyMomentum {});
@@ -83,11 +83,59 @@ impl TurnedPatch {
     /// Largest speed over c ε while a wave runs through the body, and the energy without the strain over that of a strain of one. `end`: nodes at the
     /// end of the thin body, and their parts of the force; the solid has the group `solid.left`.
     pub(crate) fn run(&self, mut model: Model, end: &[(u32, f64)]) -> Result<[f64; 2], Error> {
-        let increment = self.axis.normalize() * Rotation::increment(100.0_f64.to_radians());
-        let turn = Rotation::cayley(&increment).matrix();
-        let Elastic { young, poisson, .. } = self.material;
+        let Elastic { young, .. } = self.material;
         let [length, height, width] = self.size;
-        let along = turn * Vec3::x() * (young * Self::STRAIN);
+        self.load(&mut model, end)?;
+        let mut driver = Driver::new(System::new(model)?)?;
+        let rest = vec![0.0; driver.system().unknowns()];
+        let start = self.turned(driver.system(), 0.0);
+        driver.restart(&start, &rest)?;
+        let whole = 0.5 * young * height * width * length;
+        let energy = driver.state().ledger.balance.strain / whole;
+        let start = self.turned(driver.system(), Self::STRAIN);
+        driver.restart(&start, &rest)?;
+        let mut fastest = 0.0_f64;
+        for _ in 0..Self::STEPS {
+            driver.step()?;
+            fastest = fastest.max(fastest_node(&driver));
+        }
+        Ok([fastest / (self.speed() * Self::STRAIN), energy])
+    }
+
+    /// Largest speed over c ε while a wave runs through the body, in zones that step apart.
+    pub(crate) fn run_apart(&self, mut zoned: Zoned, end: &[(u32, f64)]) -> Result<f64, Error> {
+        self.load(&mut zoned.model, end)?;
+        let mut zones = Zones::new(&zoned)?;
+        let start = zones.drivers().iter().map(|driver| {
+            let u = self.turned(driver.system(), Self::STRAIN);
+            let rest = vec![0.0; u.len()];
+            [u, rest]
+        });
+        let start: Vec<[Vec<f64>; 2]> = start.collect();
+        zones.restart(&start)?;
+        let mut fastest = 0.0_f64;
+        for _ in 0..Self::STEPS {
+            zones.step()?;
+            fastest = zones
+                .drivers()
+                .iter()
+                .map(fastest_node)
+                .fold(fastest, f64::max);
+        }
+        Ok(fastest / (self.speed() * Self::STRAIN))
+    }
+
+    /// The turn, as an increment and as a matrix.
+    fn turn(&self) -> (Vec3, Mat3) {
+        let increment = self.axis.normalize() * Rotation::increment(100.0_f64.to_radians());
+        (increment, Rotation::cayley(&increment).matrix())
+    }
+
+    /// Pulls at both ends with the force of the strain.
+    fn load(&self, model: &mut Model, end: &[(u32, f64)]) -> Result<(), Error> {
+        let (_, turn) = self.turn();
+        let [_, height, width] = self.size;
+        let along = turn * Vec3::x() * (self.material.young * Self::STRAIN);
         let load = |&(node, part): &(u32, f64)| NodalLoad {
             name: "right".into(),
             nodes: vec![node],
@@ -102,37 +150,55 @@ impl TurnedPatch {
             kind: LoadKind::Traction((-along).into()),
             amplitude: Amplitude::constant(1.0),
         }];
-        let mut driver = Driver::new(System::new(model)?)?;
-        let rest = vec![0.0; driver.system().unknowns()];
-        let turned = |system: &System, strain: f64| -> Vec<f64> {
-            let of = |unknown: usize| {
-                let x = Vec3::from(system.x[system.unknowns.node(unknown) as usize]);
-                let across = -poisson * strain;
-                let stretched = x + Vec3::new(strain * x.x, across * x.y, across * x.z);
-                match system.unknowns.kind(unknown) {
-                    Kind::Translation(axis) => (turn * stretched - x)[axis],
-                    Kind::Rotation(axis) => increment[axis],
-                    Kind::Amplitude(_) => 0.0,
-                }
-            };
-            (0..rest.len()).map(of).collect()
-        };
-        let start = turned(driver.system(), 0.0);
-        driver.restart(&start, &rest)?;
-        let whole = 0.5 * young * height * width * length;
-        let energy = driver.state().ledger.balance.strain / whole;
-        let start = turned(driver.system(), Self::STRAIN);
-        driver.restart(&start, &rest)?;
-        let mut fastest = 0.0_f64;
-        for _ in 0..Self::STEPS {
-            driver.step()?;
-            let (system, motion) = (driver.system(), &driver.state().motion);
-            for node in 0..system.x.len() as u32 {
-                let v = Vec3::from(system.unknowns.vector(node, &motion.v));
-                fastest = fastest.max(v.norm());
+        Ok(())
+    }
+
+    /// Displacements of the turned body with a strain, m, and increments of its rotations, rad.
+    fn turned(&self, system: &System, strain: f64) -> Vec<f64> {
+        let (increment, turn) = self.turn();
+        let of = |unknown: usize| {
+            let x = Vec3::from(system.x[system.unknowns.node(unknown) as usize]);
+            let across = -self.material.poisson * strain;
+            let stretched = x + Vec3::new(strain * x.x, across * x.y, across * x.z);
+            match system.unknowns.kind(unknown) {
+                Kind::Translation(axis) => (turn * stretched - x)[axis],
+                Kind::Rotation(axis) => increment[axis],
+                Kind::Amplitude(_) => 0.0,
             }
-        }
-        Ok([fastest / (self.speed() * Self::STRAIN), energy])
+        };
+        (0..system.unknowns()).map(of).collect()
+    }
+}
+
+/// Largest speed of a node, m/s.
+fn fastest_node(driver: &Driver) -> f64 {
+    let (system, motion) = (driver.system(), &driver.state().motion);
+    let speed = |node| Vec3::from(system.unknowns.vector(node, &motion.v)).norm();
+    (0..system.x.len() as u32).map(speed).fold(0.0, f64::max)
+}
+
+/// The two bodies of a model as zones: the solid with so many steps of its scheme in one of Newmark's of the thin body.
+pub(crate) fn apart(mut model: Model, (scheme, substeps): (Scheme, u32)) -> Zoned {
+    let mut links = std::mem::take(&mut model.links);
+    links.iter_mut().for_each(|link| link.zones = [0, 1]);
+    if scheme.get().needs_lumped_mass() {
+        model.bodies[0].mass = MassKind::Lumped;
+    }
+    let zone = |name: &str, body, scheme, substeps| ModelZone {
+        name: name.into(),
+        bodies: vec![body],
+        scheme,
+        substeps,
+        far: None,
+    };
+    Zoned {
+        zones: vec![
+            zone("solid", 0, scheme, substeps),
+            zone("thin", 1, newmark(0.25, 0.5), 1),
+        ],
+        links,
+        kind: LinkKind::PrakashHjelmstad,
+        model,
     }
 }
 
@@ -157,6 +223,20 @@ pub(crate) fn elastica(
     Ok(rows)
 }
 
+/// Velocities of a body that spins about all axes of its `centre` and drifts, m/s and rad/s.
+pub(crate) fn spin(system: &System, centre: Vec3) -> Vec<f64> {
+    let (spin, drift) = (Vec3::new(6.0, 4.0, 12.0), Vec3::new(0.3, -0.2, 0.1));
+    let of = |unknown: usize| {
+        let x = Vec3::from(system.x[system.unknowns.node(unknown) as usize]);
+        match system.unknowns.kind(unknown) {
+            Kind::Translation(axis) => (drift + spin.cross(&(x - centre)))[axis],
+            Kind::Rotation(axis) => spin[axis],
+            Kind::Amplitude(_) => 0.0,
+        }
+    };
+    (0..system.unknowns()).map(of).collect()
+}
+
 /// A free body that spins about two axes of its `centre` and tumbles, with the conserving scheme: its balances over so many steps. Bounds of
 /// what iterations leave that end at 1e-12 of the forces: of energy and works 1e-8, of both momenta `of_momenta`; it bends, which is bounded from below.
 pub(crate) fn tumbling(
@@ -166,20 +246,7 @@ pub(crate) fn tumbling(
     (steps, of_momenta): (usize, f64),
 ) -> Result<Vec<Row>, Error> {
     let mut driver = Driver::new(System::new(model)?)?;
-    let system = driver.system();
-    let spin = Vec3::new(6.0, 4.0, 12.0);
-    let mut v = vec![0.0; system.unknowns()];
-    for (unknown, v) in v.iter_mut().enumerate() {
-        let x = Vec3::from(system.x[system.unknowns.node(unknown) as usize]);
-        *v = match system.unknowns.kind(unknown) {
-            Kind::Translation(axis) => {
-                let drift = Vec3::new(0.3, -0.2, 0.1);
-                (drift + spin.cross(&(x - centre)))[axis]
-            }
-            Kind::Rotation(axis) => spin[axis],
-            Kind::Amplitude(_) => 0.0,
-        };
-    }
+    let v = spin(driver.system(), centre);
     let rest = vec![0.0; v.len()];
     driver.restart(&rest, &v)?;
     let (mut strain, mut work) = (0.0_f64, 0.0_f64);

@@ -87,6 +87,7 @@ mod energy_identity;
 mod energy_identity_features;
 mod first_force;
 mod glued_rotating;
+mod glued_substeps;
 mod glued_turning;
 mod hertz_cylinder;
 mod hertz_impact;
@@ -245,6 +246,7 @@ registry! {
     explicit_implicit
     first_force
     glued_rotating
+    glued_substeps
     hertz_cylinder
     hertz_impact
     hertz_spheres

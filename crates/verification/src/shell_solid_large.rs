@@ -15,6 +15,7 @@ use carom_algebra::tensor::Vec3;
 use carom_arlequin::Weighting;
 use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Order, Preload, Scheme, System};
 use carom_materials::Elastic;
+use carom_mesh::Mesh;
 
 use crate::Error;
 use crate::beams::held;
@@ -30,7 +31,7 @@ const STEEL: Elastic = Elastic {
 };
 
 /// The plate of the patch.
-fn patch_plate() -> Plate {
+pub(crate) fn patch_plate() -> Plate {
     const H: f64 = 0.1;
     Plate {
         thickness: H,
@@ -49,7 +50,11 @@ fn patch_plate() -> Plate {
     }
 }
 
-fn model(plate: &Plate, stepping: (Scheme, f64), joined: Joined) -> Result<Model, Error> {
+pub(crate) fn model(
+    plate: &Plate,
+    stepping: (Scheme, f64),
+    joined: Joined,
+) -> Result<Model, Error> {
     let mesh = plate.mesh()?;
     let (bodies, glued) = plate.glued_turning(&mesh)?;
     Ok(glued_turning::model(
@@ -59,26 +64,31 @@ fn model(plate: &Plate, stepping: (Scheme, f64), joined: Joined) -> Result<Model
     ))
 }
 
-/// Largest speed of a turned and stretched plate over c ε, and the energy without the strain over that of a strain of one.
-fn turned_patch(plate: &Plate, joined: Joined) -> Result<[f64; 2], Error> {
-    let patch = TurnedPatch {
+/// The patch that a plate is.
+pub(crate) fn patch_of(plate: &Plate) -> TurnedPatch {
+    TurnedPatch {
         axis: Vec3::new(1.0, 2.0, 3.0),
         material: plate.material,
         size: [plate.shell[1], plate.width, plate.thickness],
-    };
-    let model = model(plate, (CONSERVING, patch.step()), joined)?;
+    }
+}
+
+/// Nodes at the end of the shell, and their parts of its force.
+pub(crate) fn end_of(plate: &Plate, mesh: &Mesh) -> Vec<(u32, f64)> {
     let grid = plate.grid();
-    let nodes = plate.of_shell(&model.mesh, &grid.column(grid.n));
+    let nodes = plate.of_shell(mesh, &grid.column(grid.n));
     let last = nodes.len() - 1;
-    let part = |k: usize| match k {
-        0 => 0.5,
-        k if k == last => 0.5,
-        _ => 1.0,
-    };
+    let part = |k: usize| if k == 0 || k == last { 0.5 } else { 1.0 };
     let end = nodes.iter().enumerate();
-    let end: Vec<(u32, f64)> = end
-        .map(|(k, &node)| (node, part(k) / last as f64))
-        .collect();
+    end.map(|(k, &node)| (node, part(k) / last as f64))
+        .collect()
+}
+
+/// Largest speed of a turned and stretched plate over c ε, and the energy without the strain over that of a strain of one.
+fn turned_patch(plate: &Plate, joined: Joined) -> Result<[f64; 2], Error> {
+    let patch = patch_of(plate);
+    let model = model(plate, (CONSERVING, patch.step()), joined)?;
+    let end = end_of(plate, &model.mesh);
     patch.run(model, &end)
 }
 
@@ -128,9 +138,9 @@ fn elastica(load: f64, steps: u64) -> Result<[f64; 2], Error> {
     Ok([u / length, w / length])
 }
 
-/// A soft plate that spins about two axes and tumbles.
-fn tumbling(steps: usize) -> Result<Vec<Row>, Error> {
-    let plate = Plate {
+/// A soft plate of 1 m.
+pub(crate) fn soft_plate() -> Plate {
+    Plate {
         thickness: 0.06,
         width: 0.4,
         solid: [0.0, 0.6],
@@ -144,8 +154,12 @@ fn tumbling(steps: usize) -> Result<Vec<Row>, Error> {
             poisson: 0.3,
         },
         ..patch_plate()
-    };
-    let model = model(&plate, (CONSERVING, 4e-3), Joined::Turning)?;
+    }
+}
+
+/// A soft plate that spins about two axes and tumbles.
+fn tumbling(steps: usize) -> Result<Vec<Row>, Error> {
+    let model = model(&soft_plate(), (CONSERVING, 4e-3), Joined::Turning)?;
     glued_turning::tumbling("tumbling plate", model, Vec3::x() * 0.5, (steps, 1e-10))
 }
 

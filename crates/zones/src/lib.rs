@@ -26,6 +26,7 @@ mod step;
 mod thin;
 mod tie;
 mod together;
+mod turning;
 mod whole;
 mod zones;
 

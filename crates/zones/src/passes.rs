@@ -16,6 +16,9 @@ const GAIN: f64 = 0.5;
 /// Most passes over an outer step.
 pub(crate) const MOST_PASSES: usize = 30;
 
+/// The same where links turn: H does not know that their forces turn with the rows, and passes gain a factor of three to ten.
+const MOST_TURNING_PASSES: usize = 60;
+
 impl Zones {
     /// Whether the rows hold, or would after a change of the multipliers by rounding; corrects the multipliers `which`
     /// (0 pointwise, 1 of the outer step) if not.
@@ -40,7 +43,7 @@ impl Zones {
         // at rest all velocities are rounding; then the forces tell what is small
         let forces = largest(old).max(largest(target));
         let change = largest(&self.defect);
-        if change <= TOLERANCE * forces || !gains && change <= self.rounding() {
+        if change <= TOLERANCE * forces || !gains && self.force_of_change() <= self.rounding() {
             return Ok(true);
         }
         self.moves.next(&mut self.defect);
@@ -54,11 +57,25 @@ impl Zones {
         Ok(false)
     }
 
-    /// What rounding leaves in the forces of the zones, N. Passes end there once they gain no more: stiff elements turn the rounding
-    /// of displacements into velocities far above that of the velocities.
+    /// Most passes over an outer step with multipliers that are linear in it.
+    pub(crate) fn most_passes(&self) -> usize {
+        match self.turning {
+            None => MOST_PASSES,
+            Some(_) => MOST_TURNING_PASSES,
+        }
+    }
+
+    /// The largest force on one side by the change of a multiplier, N.
+    fn force_of_change(&self) -> f64 {
+        let changes = self.defect.iter().zip(&self.norms);
+        changes.fold(0.0, |most, (l, norm)| f64::max(most, 0.5 * norm * l.abs()))
+    }
+
+    /// What rounding and the iterations leave in the forces of the zones, N. Passes end there once they gain no more: stiff elements turn the
+    /// rounding of displacements into velocities far above that of the velocities.
     fn rounding(&self) -> f64 {
-        let zones = self.drivers.iter();
-        zones.map(Driver::rounding_of_forces).fold(0.0, f64::max)
+        let left = |driver: &Driver| driver.rounding_of_forces().max(driver.left_over());
+        self.drivers.iter().map(left).fold(0.0, f64::max)
     }
 
     /// Largest velocity of all zones, at the end of the step or at its start.
@@ -82,17 +99,21 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
-/// Adds the work of the links in the step of a zone just completed.
+/// Adds the work of the links in the step of a zone just completed. Of links that turn, `now` and `last` are forces of terms.
 pub(crate) fn record(
     driver: &Driver,
-    rows: &[(u32, LinkRow)],
+    (rows, turn): (&[(u32, LinkRow)], bool),
     [now, last, _]: &mut [Vec<f64>; 3],
     (links, works): (&[(String, Range<usize>)], &mut [f64]),
 ) {
-    for (row, terms) in rows {
-        let row = *row as usize;
-        let link = links.partition_point(|(_, range)| range.end <= row);
-        works[link] += driver.row_work(terms, last[row], now[row]);
+    let link_of = |row: u32| links.partition_point(|(_, range)| range.end <= row as usize);
+    if turn {
+        driver.terms_work(rows, [last, now], |row, work| works[link_of(row)] += work);
+    } else {
+        for (row, terms) in rows {
+            let own = *row as usize;
+            works[link_of(*row)] += driver.row_work(terms, last[own], now[own]);
+        }
     }
     last.copy_from_slice(now);
 }

@@ -111,7 +111,7 @@ impl Zones {
             if self.substeps[k] > 1 {
                 record(
                     driver,
-                    &self.rows[k],
+                    (&self.rows[k], false),
                     &mut self.mixes[k],
                     (&self.links, &mut self.works[0]),
                 );

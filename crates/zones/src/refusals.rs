@@ -7,9 +7,9 @@ use carom_contact::Integration;
 use carom_contact::law::Level;
 
 use crate::error::Error;
-use crate::model::Zoned;
+use crate::model::{LinkKind, ModelZone, Zoned};
 use carom_schemes::step_map::Impulse;
-use carom_system::{self as system, Refused};
+use carom_system::{self as system, ModelBody, ModelLink, Refused};
 
 impl Zoned {
     /// Refuses contacts that zones of unequal steps cannot have between them.
@@ -48,26 +48,56 @@ impl Zoned {
         self.check_steps()
     }
 
-    /// Refuses links whose rows turn.
-    fn check_turning(&self) -> Result<(), Error> {
+    /// Nodes of bodies with finite rotations.
+    pub(crate) fn turning_nodes(&self) -> BTreeSet<u32> {
+        self.nodes_of_bodies(|body| body.spec.kinematics.rotations() == Some(Rotations::Finite))
+    }
+
+    fn nodes_of_bodies(&self, which: impl Fn(&ModelBody) -> bool) -> BTreeSet<u32> {
         let mesh = &self.model.mesh;
-        let bodies = self.model.bodies.iter();
-        let finite =
-            bodies.filter(|body| body.spec.kinematics.rotations() == Some(Rotations::Finite));
-        let cells = finite.flat_map(|body| &body.spec.cells);
-        let nodes: BTreeSet<u32> = cells
-            .flat_map(|&cell| mesh.element_nodes(cell))
-            .copied()
-            .collect();
-        let turns = |node: u32| nodes.contains(&node);
+        let bodies = self.model.bodies.iter().filter(|body| which(body));
+        let cells = bodies.flat_map(|body| &body.spec.cells);
+        let nodes = cells.flat_map(|&cell| mesh.element_nodes(cell));
+        nodes.copied().collect()
+    }
+
+    /// Refuses what links whose rows turn do not take.
+    fn check_turning(&self) -> Result<(), Error> {
+        let turning = self.turning_nodes();
         let mut links = self.links.iter();
-        match links.find(|link| link.has_arms(mesh.dim, &turns)) {
+        let turns =
+            |link: &&ModelLink| link.has_arms(self.model.mesh.dim, &|node| turning.contains(&node));
+        let Some(link) = links.find(turns) else {
+            return Ok(());
+        };
+        let refuse = |link: &ModelLink, why| {
+            let what = Refused::TurningLink(link.name.clone());
+            Err(system::Error::Nonlinear { what, why }.into())
+        };
+        let apart = |zone: &ModelZone| zone.substeps > 1 || zone.far.is_some_and(|far| far > 1);
+        if self.kind == LinkKind::GravouilCombescure && self.zones.iter().any(apart) {
+            return refuse(
+                link,
+                "rows that turn hold at the end of the outer step, where the places of both sides are known; take link = \
+                 \"prakash-hjelmstad\", or equal steps",
+            );
+        }
+        let stiff = self.nodes_of_bodies(|body| {
+            let turns = body.spec.kinematics.rotations() == Some(Rotations::Finite);
+            !turns && body.spec.material.finite().is_none()
+        });
+        let small = |link: &ModelLink| {
+            let rows = link.rows.iter();
+            let mut terms = rows.flat_map(|row| row.inner.iter().chain(&row.outer));
+            terms.any(|term| stiff.contains(&term.node))
+        };
+        let mut links = self.links.iter().filter(turns);
+        match links.find(|link| small(link)) {
             None => Ok(()),
-            Some(link) => Err(system::Error::Nonlinear {
-                what: Refused::TurningLink(link.name.clone()),
-                why: "rows that turn join places, not velocities; take equal steps",
-            }
-            .into()),
+            Some(link) => refuse(
+                link,
+                "a body at small strain does not turn; give it a material at finite strain",
+            ),
         }
     }
 

@@ -35,6 +35,9 @@ impl Zones {
 
     /// Makes and factors H of the multipliers that a pass looks for.
     pub(crate) fn factorise(&mut self) -> Result<(), Error> {
+        if let Some(links) = &mut self.turning {
+            links.at_origins(&self.origins, &mut self.rows);
+        }
         let n = self.norms.len();
         let alike = self.substeps.iter().all(|m| *m == 1);
         if n > DENSE && alike {

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::model::Zoned;
 use crate::moves::Moves;
 use crate::response::answer;
+use crate::turning::{ByZone, TurningLinks};
 use crate::zones::Zones;
 use carom_dynamics::condensed::{Answer, Condensed, DENSE, Joined};
 use carom_dynamics::linked::Origin;
@@ -28,7 +29,8 @@ impl Zones {
         let systems = zoned.systems()?;
         let contacts = zoned.contacts();
         let count = zoned.links.iter().map(|link| link.rows.len()).sum();
-        let rows = rows(zoned, &systems);
+        let mut rows = rows(zoned, &systems);
+        let mut turning = TurningLinks::new(zoned, &systems, &mut rows)?;
         let mut norms = vec![0.0; count];
         for (row, terms) in rows.iter().flatten() {
             norms[*row as usize] += terms.iter().map(|(_, c)| c.abs()).sum::<f64>();
@@ -46,9 +48,11 @@ impl Zones {
             .collect::<Result<Vec<_>, carom_dynamics::Error>>()?;
         let between = Between::new(zoned, &drivers)?;
         if between.is_some() {
-            make_room(&mut drivers)?;
+            make_room(&mut drivers, &systems)?;
         }
-        let multipliers = start(&mut drivers, &rows, count)?;
+        let multipliers = start(&mut drivers, (&mut rows, &mut turning, count), &|zone| {
+            systems[zone].initial_displacement.clone()
+        })?;
         let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
         let far = zoned.zones.iter();
         let far = far.map(|zone| zone.far.unwrap_or(zone.substeps));
@@ -70,6 +74,7 @@ impl Zones {
             kept: Vec::new(),
             contacts,
             rows,
+            turning,
             norms,
             links,
             kind: zoned.kind,
@@ -110,8 +115,18 @@ impl Zones {
     /// No work yet; Λ before the first step is L₀.
     fn start_works(&mut self) {
         let first = &self.multipliers[0];
-        let mixes = || [first.clone(), first.clone(), first.clone()];
-        self.mixes = self.drivers.iter().map(|_| mixes()).collect();
+        let force = |rows: &Vec<(u32, LinkRow)>| match self.turning {
+            None => first.clone(),
+            Some(_) => {
+                let terms = |(row, terms): &(u32, LinkRow)| {
+                    let l = first[*row as usize];
+                    terms.iter().map(move |(_, c)| c * l).collect::<Vec<_>>()
+                };
+                rows.iter().flat_map(terms).collect()
+            }
+        };
+        let mixes = |rows| [force(rows), force(rows), force(rows)];
+        self.mixes = self.rows.iter().map(mixes).collect();
         self.works = [vec![0.0; self.links.len()], vec![0.0; self.links.len()]];
     }
 
@@ -127,7 +142,11 @@ impl Zones {
             }
             driver.restart(u, v)?;
         }
-        let multipliers = start(&mut self.drivers, &self.rows, self.norms.len())?;
+        if let Some(links) = &mut self.turning {
+            links.restart();
+        }
+        let links = (&mut self.rows, &mut self.turning, self.norms.len());
+        let multipliers = start(&mut self.drivers, links, &|zone| motions[zone][0].clone())?;
         (self.step, self.time) = (0, 0.0);
         self.control = Control::start(self.largest);
         self.sizes = [self.largest; 2];
@@ -146,8 +165,8 @@ impl Zones {
 }
 
 /// The terms of all rows by zone, on its unknowns, with the sign of the side.
-fn rows(zoned: &Zoned, systems: &[Arc<System>]) -> Vec<Vec<(u32, LinkRow)>> {
-    let mut by_zone: Vec<Vec<(u32, LinkRow)>> = vec![Vec::new(); systems.len()];
+fn rows(zoned: &Zoned, systems: &[Arc<System>]) -> ByZone {
+    let mut by_zone: ByZone = vec![Vec::new(); systems.len()];
     let mut number = 0;
     for link in &zoned.links {
         for row in &link.rows {
@@ -173,25 +192,28 @@ fn rows(zoned: &Zoned, systems: &[Arc<System>]) -> Vec<Vec<(u32, LinkRow)>> {
 }
 
 /// Starts the drivers with room for forces from other zones.
-fn make_room(drivers: &mut [Driver]) -> Result<(), Error> {
-    for driver in drivers {
-        let motion = &driver.state().motion;
-        let (u, v) = (motion.u.clone(), motion.v.clone());
-        driver.link(&vec![0.0; u.len()]);
-        driver.restart(&u, &v)?;
+fn make_room(drivers: &mut [Driver], systems: &[Arc<System>]) -> Result<(), Error> {
+    for (driver, system) in drivers.iter_mut().zip(systems) {
+        driver.link(&vec![0.0; system.unknowns()]);
+        driver.restart(&system.initial_displacement, &system.initial_velocity)?;
     }
     Ok(())
 }
 
-/// Starts the drivers with velocities that satisfy the rows; returns the first multipliers.
+/// Starts the drivers with velocities that satisfy the rows; returns the first multipliers. `displacement`: with which a zone was started, m, of
+/// rotations the increment, rad.
 fn start(
     drivers: &mut [Driver],
-    rows: &[Vec<(u32, LinkRow)>],
-    count: usize,
+    (rows, turning, count): (&mut ByZone, &mut Option<TurningLinks>, usize),
+    displacement: &dyn Fn(usize) -> Vec<f64>,
 ) -> Result<Vec<f64>, Error> {
     if count == 0 {
         return Ok(Vec::new());
     }
+    if let Some(links) = turning {
+        links.at_states(drivers, rows);
+    }
+    let rows = &*rows;
     let masses = drivers
         .iter()
         .map(|driver| Operators::new(driver.system(), 1.0, 0.0, "mass matrix"))
@@ -232,9 +254,14 @@ fn start(
             multipliers[*row as usize] -= on(terms, a);
         }
     }
+    if let Some(links) = turning {
+        for (row, own) in links.centripetal(drivers, &velocities) {
+            multipliers[row as usize] -= own;
+        }
+    }
     factor.solve(&mut multipliers);
     for (k, driver) in drivers.iter_mut().enumerate() {
-        let u = driver.state().motion.u.clone();
+        let u = displacement(k);
         driver.link(&forces(&rows[k], &multipliers, u.len()));
         driver.restart(&u, &velocities[k])?;
     }

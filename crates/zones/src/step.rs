@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::model::LinkKind;
-use crate::passes::{MOST_PASSES, record, sample};
+use crate::passes::{record, sample};
 use crate::zones::Zones;
 use carom_system::on;
 
@@ -28,7 +28,7 @@ impl Zones {
         let driver = &mut self.drivers[k];
         record(
             driver,
-            &self.rows[k],
+            (&self.rows[k], self.turning.is_some()),
             &mut self.mixes[k],
             (&self.links, &mut self.works[0]),
         );
@@ -53,6 +53,9 @@ impl Zones {
         self.time = self.control.instant(self.step, self.time, self.dt);
         if let Some(between) = &mut self.between {
             between.accept(&self.drivers, [self.time, self.dt]);
+        }
+        if let Some(links) = &mut self.turning {
+            links.accept();
         }
         self.step += 1;
         self.sizes = [self.dt, self.sizes[0]];
@@ -79,6 +82,9 @@ impl Zones {
     /// Multipliers linear over the outer step, rows that hold at its end.
     fn step_ramped(&mut self) -> Result<(), Error> {
         self.guess();
+        if let Some(links) = &mut self.turning {
+            links.begin(&self.drivers, self.dt, &mut self.rows);
+        }
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] == 1 {
                 driver.prepare()?;
@@ -86,7 +92,7 @@ impl Zones {
         }
         self.moves.clear();
         let mut joined = false;
-        for pass in 1..=MOST_PASSES {
+        for pass in 1..=self.most_passes() {
             self.passes = pass;
             self.samples.clear();
             self.defect.fill(0.0);
@@ -99,6 +105,7 @@ impl Zones {
                 last.copy_from_slice(before);
                 self.ramp_zone(k)?;
             }
+            self.add_defects();
             let pressed = match &mut self.between {
                 Some(between) => between.corrected((self.step, self.dt))?,
                 None => true,
@@ -131,7 +138,7 @@ impl Zones {
         }
     }
 
-    /// Takes the steps of one zone with the multipliers as they stand, and adds its part of the defect.
+    /// Takes the steps of one zone with the multipliers as they stand.
     fn ramp_zone(&mut self, k: usize) -> Result<(), Error> {
         let m = self.substeps[k];
         if m > 1
@@ -148,12 +155,16 @@ impl Zones {
             let [old, new] = &self.multipliers;
             let [_, end] = driver.link_weights();
             let part = (f64::from(j) + end) / f64::from(m);
-            let mix = &mut self.pointwise[0];
-            for (i, mix) in mix.iter_mut().enumerate() {
-                *mix = (1.0 - part) * old[i] + part * new[i];
+            let (rows, force) = (&self.rows[k], &mut self.mixes[k][0]);
+            if let Some(links) = &self.turning {
+                links.forces((k, part), rows, &self.multipliers, force);
+                driver.set_link_terms(rows, force);
+            } else {
+                for (i, mix) in force.iter_mut().enumerate() {
+                    *mix = (1.0 - part) * old[i] + part * new[i];
+                }
+                driver.set_link_force(rows, force);
             }
-            driver.set_link_force(&self.rows[k], mix);
-            self.mixes[k][0].copy_from_slice(mix);
             if let Some(between) = &self.between {
                 between.push(k, driver);
             }
@@ -171,14 +182,23 @@ impl Zones {
                 self.take(k);
             }
         }
-        let driver = &self.drivers[k];
-        let v = match m {
-            1 => &driver.ended().motion.v,
-            _ => &driver.state().motion.v,
-        };
-        for (row, terms) in &self.rows[k] {
-            self.defect[*row as usize] += on(terms, v);
-        }
         Ok(())
+    }
+
+    /// What the velocities at the end of the pass miss in the rows.
+    fn add_defects(&mut self) {
+        if let Some(links) = &mut self.turning {
+            let ends = (&self.drivers[..], &self.substeps[..], self.dt);
+            links.end(ends, (&mut self.rows, &mut self.defect));
+        }
+        for (k, driver) in self.drivers.iter().enumerate() {
+            let v = match self.substeps[k] {
+                1 => &driver.ended().motion.v,
+                _ => &driver.state().motion.v,
+            };
+            for (row, terms) in &self.rows[k] {
+                self.defect[*row as usize] += on(terms, v);
+            }
+        }
     }
 }

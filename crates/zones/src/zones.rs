@@ -5,13 +5,14 @@ use serde::{Deserialize, Serialize};
 use crate::between::{Between, BetweenState};
 use crate::model::LinkKind;
 use crate::moves::Moves;
+use crate::turning::{ByZone, TurningLinks};
 use carom_dynamics::Balance;
 use carom_dynamics::ContactReport;
 use carom_dynamics::condensed::Condensed;
 use carom_dynamics::linked::Origin;
 use carom_dynamics::state::State;
 use carom_dynamics::{Control, Driver};
-use carom_system::{Adaptive, LinkRow};
+use carom_system::Adaptive;
 
 /// The condensed problem of an outer step of some size with some numbers of inner steps.
 pub(crate) struct Kept {
@@ -49,8 +50,10 @@ pub struct ZonesState {
     pub multipliers: Vec<f64>,
     /// The same one and two steps before.
     pub earlier: [Vec<f64>; 2],
-    /// Λ of each zone in its last step.
+    /// Λ of each zone in its last step; where links turn, the forces of their terms, N.
     pub forces: Vec<Vec<f64>>,
+    /// Of links that turn, the running mean of what places miss in the rows, m times the unit of the row.
+    pub missed: Vec<f64>,
     /// Work of each link on both its sides, J.
     pub link_works: Vec<f64>,
     /// Where each zone was linearised last.
@@ -73,7 +76,9 @@ pub struct Zones {
     /// Contacts of the model by zone.
     pub(crate) contacts: Vec<Vec<usize>>,
     /// By zone, number of the row and its terms there.
-    pub(crate) rows: Vec<Vec<(u32, LinkRow)>>,
+    pub(crate) rows: ByZone,
+    /// Links among them that turn.
+    pub(crate) turning: Option<TurningLinks>,
     /// Contacts between zones.
     pub(crate) between: Option<Between>,
     /// Σ |c| of each row.
@@ -120,7 +125,8 @@ pub struct Zones {
     pub(crate) worst: f64,
     pub(crate) free: [Vec<f64>; 2],
     pub(crate) pointwise: [Vec<f64>; 2],
-    /// Λ of each zone in the step that it takes, in its last one, and in its last one before the outer step.
+    /// Λ of each zone in the step that it takes, in its last one, and in its last one before the outer step; where links turn, the
+    /// forces of their terms.
     pub(crate) mixes: Vec<[Vec<f64>; 3]>,
     /// Moves of the multipliers in the passes so far.
     pub(crate) moves: Moves,
@@ -198,6 +204,7 @@ impl Zones {
             multipliers: self.multipliers[0].clone(),
             earlier: self.earlier.clone(),
             forces: self.mixes.iter().map(|[_, last, _]| last.clone()).collect(),
+            missed: (self.turning.as_ref()).map_or(Vec::new(), |links| links.missed().to_vec()),
             link_works: self.works[1].clone(),
             origins: self.origins.clone(),
             between: self.between.as_ref().map(|between| between.state.clone()),
@@ -217,6 +224,9 @@ impl Zones {
             before.clone_from(force);
         }
         self.works[1].clone_from(&state.link_works);
+        if let Some(links) = &mut self.turning {
+            links.resume(&state.missed);
+        }
         if state.origins != self.origins {
             self.start_from(state.origins.clone());
         }

@@ -167,7 +167,7 @@ impl Builder<'_> {
         discrete.extend(self.fluids(&mut mesh));
         let mut constraints = self.constraints(&mesh, &bodies);
         let turning = self.nodes_with_rotations(&mesh);
-        let (transitions, links) = self.transitions(&mesh, &bodies, &turning);
+        let (transitions, mut links) = self.transitions(&mesh, &bodies, &turning);
         constraints.extend(transitions);
         let (supports, motions, turns) = self.supports(&mesh);
         let gravity = self.gravity(&mesh);
@@ -181,7 +181,10 @@ impl Builder<'_> {
             return None;
         }
         self.pieces(&mesh, &bodies);
-        let joints = self.joints_of(&mesh, &mut bodies, &supports);
+        let mut joints = self.joints_of(&mesh, &mut bodies, &supports);
+        if !self.plan.zones.is_empty() {
+            joints.links.append(&mut links);
+        }
         let cells: Vec<Vec<carom_mesh::ElementId>> =
             bodies.iter().map(|body| body.spec.cells.clone()).collect();
         let mut contacts = self.contacts(&mesh, &bodies, &cells);

@@ -49,7 +49,7 @@ impl Builder<'_> {
             let face = self.surface(mesh, &sides, &format!("{path}.face"), given.face);
             let of = (name, given, path.as_str());
             if self.both_turn(mesh, bodies, of, face.as_ref()) {
-                links.extend(self.end_turns_on(mesh, of, face));
+                links.extend(self.end_turns_on((mesh, bodies), of, face));
                 continue;
             }
             if self.turns_by_any_angle(mesh, bodies, of, face.as_ref()) {
@@ -61,10 +61,11 @@ impl Builder<'_> {
             };
             all.extend(found);
         }
+        let inside = |link: &&ModelLink| link.zones[0] == link.zones[1];
         let names = all.iter().map(|one| &one.name);
-        let mut names = names.chain(links.iter().map(|one| &one.name));
+        let mut names = names.chain(links.iter().filter(inside).map(|one| &one.name));
         if let (Some(first), false) = (names.next(), self.plan.zones.is_empty()) {
-            let message = "transitions are not available in zones";
+            let message = "in zones a transition joins a beam with finite rotations and a solid at finite strain of two zones";
             let problem = Problem::new(format!("transition.{first}"), message);
             self.problems.push(problem.accepted([
                 "a case without zones",
@@ -95,7 +96,7 @@ impl Builder<'_> {
     /// The end of a beam with finite rotations on a face of a solid at finite strain.
     fn end_turns_on(
         &mut self,
-        mesh: &Mesh,
+        (mesh, bodies): (&Mesh, &[ModelBody]),
         (name, given, path): (&str, &Given, &str),
         face: Option<Surface>,
     ) -> Option<ModelLink> {
@@ -103,9 +104,18 @@ impl Builder<'_> {
         let (end, face) = (end?, face?);
         self.apart_from_face(&[end], &face, (given, path))?;
         let rows = self.mean_rows(mesh, (end, &face), (given, path))?;
+        // those of the face are the inner terms
+        let on_face = |cell: &ElementId| face.faces.iter().any(|face| face.parent == *cell);
+        let at_end = |cell: &ElementId| mesh.element_nodes(*cell).contains(&end);
+        let zone = |own: &dyn Fn(&ElementId) -> bool| {
+            let body = bodies
+                .iter()
+                .position(|body| body.spec.cells.iter().any(own));
+            body.and_then(|body| self.plan.zone_of(body)).unwrap_or(0)
+        };
         Some(ModelLink {
             name: name.to_owned(),
-            zones: [0, 0],
+            zones: [zone(&on_face), zone(&at_end)],
             rows: rows.rows,
         })
     }

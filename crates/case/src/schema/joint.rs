@@ -66,6 +66,7 @@ pub struct RigidLink {
 /// The end of a beam on a face of a solid or plane body that it continues, the edge of a shell on a face of a solid, or two surfaces whose
 /// nodes need not match. The two bodies have no common nodes.
 /// Ends turn by small angles, or by any if `motion` is `"distributing"`, the beam has finite rotations and the other body is at finite strain.
+/// In zones, only of this last kind, between two zones.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend(

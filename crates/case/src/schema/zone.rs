@@ -88,7 +88,8 @@ pub struct Arlequin {
     #[serde(default)]
     pub bracket: Bracket,
     /// Multiplier as a function of time within an outer step. Default: `"gravouil-combescure"` if all zones take the
-    /// outer step, otherwise `"prakash-hjelmstad"`, which then does not dissipate. All joints of a case use the same.
+    /// outer step, otherwise `"prakash-hjelmstad"`, which then does not dissipate and alone takes bodies with finite rotations.
+    /// All joints of a case use the same.
     pub link: Option<Link>,
 }
 

@@ -52,6 +52,15 @@ impl Driver {
         }
     }
 
+    /// Sets the force of the links, given term by term in the order of the rows, N.
+    pub fn set_link_terms(&mut self, rows: &[(u32, LinkRow)], forces: &[f64]) {
+        self.link_force.fill(0.0);
+        let terms = rows.iter().flat_map(|(_, terms)| terms);
+        for ((dof, _), force) in terms.zip(forces) {
+            self.link_force[*dof as usize] += force;
+        }
+    }
+
     /// Adds forces of other rows to those of the links, N.
     pub fn add_link_rows(&mut self, rows: &[(u32, LinkRow)], forces: &[f64]) {
         if self.link_force.is_empty() {
@@ -133,6 +142,28 @@ impl Driver {
             false => weights.lag * (on(terms, &new.v) - on(terms, &old.v)),
         };
         (weights.old * before + weights.new * now) * (travel - later)
+    }
+
+    /// Work of the forces of links, given term by term in the order of the rows, in the step just completed, J; each row with its number to
+    /// `add`. `before` and `now`: forces of the step before and of this one, N.
+    pub fn terms_work(
+        &self,
+        rows: &[(u32, LinkRow)],
+        [before, now]: [&[f64]; 2],
+        mut add: impl FnMut(u32, f64),
+    ) {
+        let weights = &self.link_work_weights(0);
+        let [old, new] = [&self.state.motion, &self.next.motion];
+        let mut forces = before.iter().zip(now);
+        for (row, terms) in rows {
+            let work = |(&(dof, _), (before, now)): (&(u32, f64), (&f64, &f64))| {
+                let i = dof as usize;
+                let way = new.u[i] - old.u[i] - weights.lag * (new.v[i] - old.v[i]);
+                (weights.old * before + weights.new * now) * way
+            };
+            let work = terms.iter().zip(forces.by_ref()).map(work).sum();
+            add(*row, work);
+        }
     }
 
     /// Factors of M and K in the effective matrix, and of its solution in the velocity at the end of a step.

@@ -178,6 +178,11 @@ impl Driver {
         self.rounding_with(if finite { 1.0 } else { 0.0 })
     }
 
+    /// Norm of the forces that the iterations of the last step may have left unbalanced, N; zero of linear steps.
+    pub fn left_over(&self) -> f64 {
+        self.left_over
+    }
+
     /// `places`: factor of the distances from the origin.
     fn rounding_with(&self, places: f64) -> f64 {
         let (system, u) = (&self.system, &self.state.motion.u);

@@ -5,6 +5,7 @@
 
 mod allocation;
 mod beams;
+mod crossing;
 mod direct;
 mod discrete;
 mod edges;

@@ -85,7 +85,7 @@ impl TurningRows {
     ///
     /// # Errors
     /// A mediator without all rows of a node.
-    pub(crate) fn add(
+    pub fn add(
         &mut self,
         link: &ModelLink,
         (number, unknowns, x): (&[u32], &Unknowns, &[[f64; 3]]),
