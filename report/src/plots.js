@@ -6,6 +6,8 @@ import { digits, prefix, quantity } from "./format.js";
 import { colour, onTheme, series } from "./theme.js";
 
 const HEIGHT = 220;
+/** What is left free beside the axes of time of all plots, so that they stand under each other. */
+const BESIDE = { left: 76, right: 24 };
 /** Key of the cursors of all plots over time. */
 const SYNC = "time";
 
@@ -32,6 +34,9 @@ function powers(low, high) {
   for (let k = Math.ceil(first / every) * every; k <= last; k += every) all.push(10 ** k);
   return all;
 }
+
+/** uPlot writes only powers of ten whose digits it knows; what it leaves out is null. */
+const unfiltered = (_, splits) => splits;
 
 const power = (value) => (value === 1 ? "1" : `1e${Math.round(Math.log10(value))}`.replace("-", "−"));
 
@@ -163,6 +168,7 @@ class Plot {
     return {
       width: Math.max(280, this.figure.clientWidth || 900),
       height: HEIGHT,
+      padding: [null, BESIDE.right, null, 0],
       scales: {
         x: { time: false, distr: spec.scale === "double logarithmic" ? 3 : 1 },
         y: logarithmic ? { distr: 3, range: (_, low, high) => this.decades(low, high) } : {},
@@ -177,7 +183,7 @@ class Plot {
           size: 34,
           ...(this.overTime
             ? { values: (_, splits) => splits.map((t) => digits(t / this.xFactor)) }
-            : { splits: (_, axis, low, high) => powers(low, high), values: (_, splits) => splits.map(power) }),
+            : { splits: (_, axis, low, high) => powers(low, high), filter: unfiltered, values: (_, splits) => splits.map(power) }),
         },
         {
           stroke: ink,
@@ -185,9 +191,9 @@ class Plot {
           ticks: grid,
           label: name(spec.quantity, this.sign, spec.unit),
           labelSize: 20,
-          size: 56,
+          size: BESIDE.left - 20,
           ...(logarithmic
-            ? { splits: (_, axis, low, high) => powers(low, high), values: (_, splits) => splits.map(power) }
+            ? { splits: (_, axis, low, high) => powers(low, high), filter: unfiltered, values: (_, splits) => splits.map(power) }
             : { values: (_, splits) => splits.map((y) => digits(y)) }),
         },
       ],
@@ -250,6 +256,8 @@ class Plot {
 
 /** Puts every plot into its section, in place of the static figures. */
 export function showPlots(page, read, shared) {
+  const { style } = document.documentElement;
+  for (const side of ["left", "right"]) style.setProperty(`--beside-${side}`, `${BESIDE[side]}px`);
   const plots = [];
   let zooming = false;
   const all = {
@@ -258,6 +266,7 @@ export function showPlots(page, read, shared) {
       zooming = true;
       const { min, max } = from.scales.x;
       for (const other of plots) if (other.overTime && other.plot !== from) other.plot.setScale("x", { min, max });
+      shared.span(min, max);
       zooming = false;
     },
   };

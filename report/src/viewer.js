@@ -51,6 +51,7 @@ class Viewer {
       field: this.instants.fields[0].id,
       range: "run",
       section: null,
+      peak: true,
       edges: !this.model.decimated_from,
     };
     this.controls = controls(this);
@@ -93,7 +94,9 @@ class Viewer {
     this.parts.mark(this.instants.touching(frame));
     const look = this.instants.look(field, this.choice.range === "run" ? null : frame);
     this.parts.paint(this.instants.values(field, frame), look);
-    this.legend(look);
+    const peak = this.instants.peak(field, frame);
+    this.parts.point(this.choice.peak ? peak : null, this.factor);
+    this.legend(look, peak);
     this.controls.at(still, frame);
     this.shared.set(still.time, this);
     this.render();
@@ -109,9 +112,17 @@ class Viewer {
     }
   }
 
-  legend(look) {
-    const place = document.getElementById("model-legend");
-    place.replaceChildren();
+  /** Colours by a field. */
+  colour(field) {
+    if (!this.instants.fields.some((f) => f.id === field)) return;
+    this.choice.field = field;
+    this.controls.coloured(field);
+    this.show();
+  }
+
+  legend(look, peak) {
+    const legend = document.getElementById("model-legend");
+    legend.replaceChildren();
     if (look.categories) {
       look.names.slice(0, 24).forEach((name, k) => {
         const entry = document.createElement("span");
@@ -119,16 +130,22 @@ class Viewer {
         swatch.className = "swatch";
         swatch.style.background = series(k);
         entry.append(swatch, ` ${name} `);
-        place.append(entry);
+        legend.append(entry);
       });
-      if (look.names.length > 24) place.append(`and ${look.names.length - 24} more`);
+      if (look.names.length > 24) legend.append(`and ${look.names.length - 24} more`);
       return;
     }
     const [low, high] = look.range;
     const bar = document.createElement("span");
     bar.className = "ramp";
     bar.style.background = gradient(look.map);
-    place.append(quantity(low, look.unit), bar, `${quantity(high, look.unit)} ${look.note ?? ""}`);
+    legend.append(quantity(low, look.unit), bar, `${quantity(high, look.unit)} ${look.note ?? ""}`);
+    if (!peak) return;
+    const place = document.createElement("span");
+    place.id = "model-peak";
+    const at = peak.place.slice(0, this.model.dimension).map((x) => quantity(x, "m"));
+    place.textContent = `◯ ${peak.word} at this instant: ${quantity(peak.value, look.unit)} at (${at.join(", ")})`;
+    legend.append(place);
   }
 
   /** Looks at the whole model from a side. */
