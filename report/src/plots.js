@@ -87,31 +87,33 @@ function drawMarks(plot, page, { rounding, overTime }, instant) {
   ctx.restore();
 }
 
-/** The table under a plot: the names of its curves with their values at the pointer, and their extremes. */
-function extremes(curves) {
+/** The extremes of the curves that are shown at first; what is rounding beside the largest value is zero. */
+function extremes(all) {
+  const curves = all.filter(({ curve, ys }) => !curve.hidden && ys.length > 0);
+  const rounding = 1e-12 * largest(curves.map((c) => c.ys));
+  const shown = (y, unit) => quantity(Math.abs(y) < rounding ? 0 : y, unit);
+  const found = curves.map((one) => {
+    let [low, high] = [0, 0];
+    one.ys.forEach((y, k) => {
+      if (y < one.ys[low]) low = k;
+      if (y > one.ys[high]) high = k;
+    });
+    const at = (k) => `${shown(one.ys[k], one.unit)} at ${quantity(one.xs[k], one.axis)}`;
+    return { ...one, low, high, at };
+  });
   const table = document.createElement("p");
   table.className = "extremes";
   if (curves.length > 4) {
-    const all = curves.flatMap(({ curve, xs, ys, unit, axis }) =>
-      Array.from(ys, (y, k) => ({ y, text: `${quantity(y, unit)} at ${quantity(xs[k], axis)} (${curve.name})` })),
-    );
-    const low = all.reduce((a, b) => (b.y < a.y ? b : a));
-    const high = all.reduce((a, b) => (b.y > a.y ? b : a));
-    table.textContent = `lowest ${low.text} · highest ${high.text}`;
+    const low = found.reduce((a, b) => (b.ys[b.low] < a.ys[a.low] ? b : a));
+    const high = found.reduce((a, b) => (b.ys[b.high] > a.ys[a.high] ? b : a));
+    table.textContent = `lowest ${low.at(low.low)} (${low.curve.name}) · highest ${high.at(high.high)} (${high.curve.name})`;
     return table;
   }
-  const texts = curves.map(({ curve, xs, ys, unit, axis }) => {
-    if (curve.role === "exact" || ys.length === 0) return null;
-    let low = 0;
-    let high = 0;
-    ys.forEach((y, k) => {
-      if (y < ys[low]) low = k;
-      if (y > ys[high]) high = k;
-    });
-    const at = (k) => `${quantity(ys[k], unit)} at ${quantity(xs[k], axis)}`;
-    return ys[low] === ys[high] ? `${curve.name}: ${quantity(ys[0], unit)}` : `${curve.name}: ${at(low)} … ${at(high)}`;
+  const texts = found.filter(({ curve }) => curve.role !== "exact").map(({ curve, ys, unit, low, high, at }) => {
+    const values = ys[low] === ys[high] ? shown(ys[0], unit) : `${at(low)} … ${at(high)}`;
+    return `${curve.name}: ${values}`;
   });
-  table.textContent = texts.filter(Boolean).join(" · ");
+  table.textContent = texts.join(" · ");
   return table;
 }
 
@@ -203,6 +205,7 @@ class Plot {
           label: curve.name,
           spanGaps: true,
           points: { show: false },
+          show: !curve.hidden,
           ...look(curve, this.curves.filter((c) => c.curve.role !== "exact").findIndex((c) => c.curve === curve)),
           value: (_, y) => value(y),
         })),

@@ -5,8 +5,7 @@
 //! ```
 //!
 //! The files are taken in turn, each damaged anew. Meshes are read, of tables the columns too. A case (`.toml`) is read and built, with the files
-//! beside it. A checkpoint (`.state`) is read, and the run of its results folder made ready to go on; half of the checkpoints get the
-//! checksum of what they then have. A file that fails is kept in the folder.
+//! beside it. Of a checkpoint (`.state`) the report of its results folder is written. A file that fails is kept in the folder.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -14,10 +13,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use carom_algebra::fingerprint::Fingerprint;
 use carom_case::{Input, Resume, build, parse};
 use carom_mesh::Mesh;
-use carom_testing::damage::{damaged, draw};
+use carom_testing::damage::damaged;
 use carom_testing::{Counter, held};
 
 #[global_allocator]
@@ -57,7 +55,7 @@ fn main() -> Anyhow<()> {
     let begin = Instant::now();
     while begin.elapsed() < time {
         let file = &sound[read % sound.len()];
-        let content = of_checkpoint(damaged(&file.content, &mut state), file, &mut state);
+        let content = damaged(&file.content, &mut state);
         std::fs::write(&file.copy, &content)?;
         NUMBER.store(read + 1, Ordering::Relaxed);
         let [before, _] = held();
@@ -105,22 +103,6 @@ fn sound(file: &Path, folder: &Path) -> Anyhow<Sound> {
         copy: folder.join(inside).join(name),
         folder: folder.to_owned(),
     })
-}
-
-/// Gives half of the checkpoints the checksum of what they have.
-fn of_checkpoint(content: Vec<u8>, file: &Sound, state: &mut u64) -> Vec<u8> {
-    let is_state = file.copy.extension().is_some_and(|end| end == "state");
-    let end = content.iter().position(|byte| *byte == b'\n');
-    match end {
-        Some(end) if is_state && draw(state, 2) == 0 => {
-            let digits = Fingerprint::default().bytes(&content[end + 1..]).digits();
-            let first = file.content.iter().take_while(|byte| **byte != b'\n');
-            let first: Vec<u8> = first.copied().collect();
-            let words = first.len() - digits.len().min(first.len());
-            [&first[..words], digits.as_bytes(), &content[end..]].concat()
-        }
-        _ => content,
-    }
 }
 
 /// Reads the copy of a file; whether it is taken.

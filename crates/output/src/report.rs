@@ -118,7 +118,9 @@ fn code(message: &str) -> String {
     let mut html = String::new();
     let parts: Vec<&str> = message.split('`').collect();
     for (k, part) in parts.iter().enumerate() {
-        let part = HtmlEscape(part);
+        // no line begins with the sign of a per cent
+        let part = part.replace(" %", "\u{a0}%");
+        let part = HtmlEscape(&part);
         let _ = match k {
             0 => write!(html, "{part}"),
             // a backtick without its other one stands as it is
@@ -178,6 +180,7 @@ mod tests {
                 "`carom study --vary a=1`",
                 "<code>carom study <span class=\"option\">--vary</span> a=1</code>",
             ),
+            ("7 % of 9", "7\u{a0}% of 9"),
             ("", ""),
         ] {
             assert_eq!(code(message), html);

@@ -82,6 +82,9 @@ pub struct Curve {
     pub name: String,
     /// `computed`, `exact`, `filtered`, or `instants` for single values.
     pub role: &'static str,
+    /// Whether it is drawn only when its name is clicked.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub hidden: bool,
     /// Abscissae, ascending; two equal ones are a jump.
     pub x: Array,
     /// Ordinates.
