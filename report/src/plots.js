@@ -134,7 +134,7 @@ class Plot {
       unit: plot.unit,
       axis: this.axis.unit,
     }));
-    [this.factor, this.sign] = plot.scale === "linear" ? prefix(largest(this.curves.map((c) => c.ys)), plot.unit) : [1, ""];
+    [this.factor, this.sign] = plot.scale === "linear" ? prefix(largest(this.curves.filter((c) => !c.curve.hidden).map((c) => c.ys)), plot.unit) : [1, ""];
     [this.xFactor, this.xSign] = prefix(this.overTime ? page.end : 1, this.axis.unit);
     this.data = this.join();
     const title = document.createElement("figcaption");
