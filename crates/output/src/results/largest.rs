@@ -4,6 +4,7 @@ use carom_dynamics::System;
 
 use crate::maxima::{Maxima, Maximum};
 use crate::results::Results;
+use crate::results::cells::middle;
 use crate::results::page::model;
 use crate::results::stills::{Largest, Still};
 
@@ -33,17 +34,6 @@ fn of_cells(results: &Results, stills: &[&Still], field: usize) -> Option<Maximu
     let middle = middle(system, cell)?;
     let body = seen.body_of_cell[cell as usize] as usize;
     Some(maximum(system, (value, time), (body, &middle)))
-}
-
-/// Where the middle of a cell is in the reference configuration, m.
-pub(crate) fn middle(system: &System, cell: u32) -> Option<[f64; 3]> {
-    let mut elements = system.bodies.iter().flat_map(|body| body.cells());
-    let nodes = system.mesh.element_nodes(*elements.nth(cell as usize)?);
-    let count = nodes.len() as f64;
-    Some(nodes.iter().fold([0.0; 3], |sum, node| {
-        let x = system.mesh.nodes[*node as usize];
-        [0, 1, 2].map(|i| sum[i] + x[i] / count)
-    }))
 }
 
 /// The largest displacement of a node that is seen.

@@ -8,7 +8,7 @@ use carom_dynamics::System;
 use crate::page::block::{Array, Block, COARSE, FINE};
 use crate::page::schema::{Field, Frame, Model, Obstacle, Peak};
 use crate::results::Results;
-use crate::results::largest::middle;
+use crate::results::cells::middle;
 use crate::results::outlines::size;
 use crate::results::page::chosen::Chosen;
 use crate::results::page::obstacles::{self, Near};
